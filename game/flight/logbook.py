@@ -14,6 +14,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any, Final
 
+from ai.flights.score import landing_score
 from ai.nn.files import parse_json, read_end
 from ai.nn.schema import read_as
 from game.core import texts
@@ -22,7 +23,6 @@ from game.core.trash import Trash
 from game.flight import flight_file
 from game.flight.flight import Flight
 from game.flight.flight_file import Entry, Record
-from game.flight.outcomes import landing_score
 
 FOLDER: Final = "flights"
 LOGBOOK: Final = "logbook.jsonl"

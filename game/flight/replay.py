@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 
 from ai.common.environment import Doubles
+from ai.flights.verification import Earned, earned
 from ai.lander.pilots import COAST
 from game.flight.flight import DECISION_STEPS, Flight, Recording, StickHolder
 from game.flight.flight_file import Record
@@ -88,6 +89,11 @@ class FlightReplay:
     def complete(self) -> bool:
         """Whether the scout has reached the end."""
         return self._scout.over or self.reached >= self.length
+
+    @property
+    def earned(self) -> Earned | None:
+        """What the flight really earned; None until the scout has reached the end."""
+        return earned(self._scout.env, self.record.recording.mission) if self.complete else None
 
     @property
     def faithful(self) -> bool:

@@ -14,6 +14,7 @@ from game.drawing.canvas import Canvas
 from game.flight.credit import Credit
 from game.flight.difficulty import Difficulty
 from game.flight.flight import Flight, StickHolder
+from game.flight.flight_file import Record
 from game.flight.handicap import OWN
 from game.flight.logbook import Records
 from game.flight.networks import Network, Policy
@@ -46,6 +47,7 @@ class FlownFlight:
         difficulty: its changes of gravity and pace.
         pace: the clock that slows down after a crash.
         ending: the ending, with slow motion and outcome card.
+        record: the record of the flight once it is over; None before, and where none is kept.
         waiting: whether the craft still hangs until the pilot's first touch.
 
     """
@@ -64,6 +66,7 @@ class FlownFlight:
         self._context, self._settings = context, context.settings
         self.challenge, self.hands = challenge, hands
         self.waiting = self._held_before = True
+        self.record: Record | None = None
         self._was_over = False  # whether the flight was over before its latest step
         alone = check or (challenge is not None and challenge.alone)
         self._policy = None if alone else policy
@@ -173,6 +176,9 @@ class FlownFlight:
             medal=credit.medal,
             pace=credit.pace,
         )
+        x, y, angle = self.flight.poses.now[0].tolist()
+        self.record = Record(self.flight.recording, entry, (x, y, angle))
+        told = told or (challenge.written(entry) if challenge else "")
         skill.add(entry)
         if told or records.problem:
             context.note(told or records.problem)

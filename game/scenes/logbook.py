@@ -16,16 +16,19 @@ from game.core.scene import Transition, push
 from game.drawing.canvas import Canvas
 from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import HUMAN, LABEL, MARGIN, MUTE, SMALL, TITLE, VIEW_SIZE
+from game.flight import sharing
 from game.flight.flight_file import Entry, Record
 from game.flight.logbook import Records, Totals, best, skill, totals
+from game.play.friend import paste
 from game.play.race import race
 from game.ui.actions import Action, Table
+from game.ui.clipboard import give
 from game.ui.context import Context
-from game.ui.list_scene import VERB_LINE, ListLayout, ListScene
+from game.ui.list_scene import VERB_LINE, VERB_SIZE, ListLayout, ListScene
 from game.ui.listing import Row
 from game.ui.virtual_pointer import VirtualPointer
 from game.ui.widget import Widget
-from game.ui.widgets import Choice
+from game.ui.widgets import Choice, TextButton
 
 _LEFT: Final = 824
 _LAYOUT: Final = ListLayout(
@@ -62,7 +65,13 @@ class LogbookScene(ListScene[Entry]):
                   read_x=texts.LOGBOOK_FLIGHT.format),
         ])  # fmt: skip
         self.form.add(VirtualPointer(manager, self._charts.box, self._charts.follow))
+        paste_box = (MARGIN + 130, _LAYOUT.foot, 220, VERB_LINE)
+        self._paste = TextButton(manager, paste_box, texts.CODE_PASTE, lambda: paste(context), size=VERB_SIZE)
         self._reload()
+
+    def _below_list(self) -> list[Widget]:
+        """Return the way back, and beside it the way in for a friend's flight."""
+        return [*super()._below_list(), self._paste]
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Pass the event to the charts and the widgets."""
@@ -122,6 +131,7 @@ class LogbookScene(ListScene[Entry]):
                 [
                     (texts.LOGBOOK_WATCH, self._watch),
                     (texts.LOGBOOK_RACE, self._race),
+                    (texts.CODE_COPY, self._copy),
                     (texts.LOGBOOK_THROW_AWAY, self._throw_away),
                 ]
             )
@@ -151,6 +161,11 @@ class LogbookScene(ListScene[Entry]):
     def _race(self) -> Transition | None:
         record = self._read()
         return push("play", record.recording.seed, challenge=race(record)) if record else None
+
+    def _copy(self) -> None:
+        if record := self._read():
+            code = sharing.code(record)
+            give(self.context, code, texts.CODE_COPIED.format(count=len(code)))
 
     def _throw_away(self) -> None:
         if self.chosen and self._replayable:

@@ -23,6 +23,7 @@ from game.play.challenge import Challenge, Duel
 from game.play.ending import FlightEnding
 from game.play.flown_flight import FlownFlight
 from game.ui.actions import Action, Run, Table, answering, hints_of
+from game.ui.clipboard import give
 from game.ui.context import Context
 from game.ui.hints import HintRow
 from game.ui.widget import OnPress
@@ -129,7 +130,9 @@ class PlayScene(Scene):
 
     def _card_actions(self) -> list[Action]:
         card = self.ending.card
-        return captions.card_actions(self._go_on, self._runs, self.challenge, good=card.good) if card else []
+        hint = (self.challenge or Challenge).copy_hint
+        copy = [Action(pygame.K_k, self._copy, hint, Command.STEP)] if self.flown.record else []
+        return [*captions.card_actions(self._go_on, self._runs, self.challenge, good=card.good), *copy] if card else []
 
     def update(self) -> Transition | None:
         """Advance by 1/60 s: fly a step, unless the craft waits or slowed time makes none due."""
@@ -247,6 +250,12 @@ class PlayScene(Scene):
             network = self.network
             text = texts.DIAL_NEEDS if network.policy else texts.NO_NETWORK
             self.context.note(text.format(name=network.name, problem=network.problem))
+
+    def _copy(self) -> None:
+        """Copy what tells a friend of the flight that is over."""
+        if self.flown.record:
+            challenge = self.challenge or Challenge()
+            give(self.context, *challenge.message(self.flown.record))
 
     def _go_on(self) -> Transition | None:
         """After a landing, go to a new start, or leave a challenge with only one; after a crash, retry."""

@@ -10,6 +10,8 @@ from typing import Final
 
 import pygame
 
+from ai.flights.code import code_of
+from ai.flights.shared import SharedFlight
 from ai.lander.environment import Outcome
 from game.audio.flight_sounds import FlightSound
 from game.cockpit import hud
@@ -24,13 +26,16 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, VIEW_SIZE
 from game.export.export import Export
 from game.export.kinds import KINDS
+from game.flight import sharing
 from game.flight.flight import StickHolder
 from game.flight.flight_file import Record
 from game.flight.replay import FlightReplay
 from game.input.controls import Command
 from game.panels.timeline import Timeline, runs
+from game.play.friend import BELOW_CLAIM, Claimed
 from game.play.race import fly_on, race
 from game.ui.actions import Action, Table
+from game.ui.clipboard import give
 from game.ui.context import Context
 from game.ui.form_scene import FormScene
 from game.ui.hints import HintRow
@@ -56,13 +61,14 @@ class ReplayScene(FormScene):
     """Replay of a recorded flight.
 
     Attributes:
+        claimed: a friend's claim, checked by flying it again; None for a flight of the player's own.
         export: the film that is being made of it; None while there is none.
 
     """
 
     takes_tab = True
 
-    def __init__(self, context: Context, record: Record) -> None:
+    def __init__(self, context: Context, record: Record, friend: SharedFlight | None = None) -> None:
         super().__init__(context)
         self.record = record
         self._pace = SlowMotion()
@@ -71,7 +77,9 @@ class ReplayScene(FormScene):
         self.export: Export | None = None
         self.flight_replay = FlightReplay(self.record)
         self.flight_replay.scout(1)
-        self._scenery = Scenery(self.flight_replay.flight, context.settings.reduced_motion, _CLEAR)
+        self.claimed = Claimed(friend, self.flight_replay) if friend else None
+        clear = BELOW_CLAIM if friend else _CLEAR
+        self._scenery = Scenery(self.flight_replay.flight, context.settings.reduced_motion, clear)
         self._heard = FlightSound(context.sound, self.flight_replay.flight.env, self._pace, warns=False)
         self._build()
         self._look()
@@ -119,7 +127,7 @@ class ReplayScene(FormScene):
         self._reward_bar.reached = self.flight_replay.reached
         if self.export:
             self._follow_export(self.export)
-        if self.flight_replay.complete and not self.flight_replay.faithful and not self._warned:
+        if not self.claimed and self.flight_replay.complete and not self.flight_replay.faithful and not self._warned:
             self._warned = True
             self.context.note(texts.REPLAY_OTHER_RULES)
         for _ in range(self.playback.steps()):
@@ -189,7 +197,8 @@ class ReplayScene(FormScene):
         self.form.add(self.playback.row(manager, box))
         rows: list[tuple[str, OnPress]] = [
             (texts.REPLAY_TAKE_OVER, self._take_over),
-            (texts.LOGBOOK_RACE, self._race),
+            (texts.FRIEND_ANSWER if self.claimed else texts.LOGBOOK_RACE, self._race),
+            (texts.CODE_COPY, self._copy),
             (texts.REPLAY_EXPORT, self._begin_or_stop_export),
             (texts.BACK, Pop),
         ]
@@ -200,17 +209,27 @@ class ReplayScene(FormScene):
             words.append(TextButton(manager, (round(x), _VERBS, round(wide) + 2, _VERB), word, press, size=SMALL))
             self.form.add(words[-1])
             x += wide + 28
-        self._export_word = words[2]
+        self._export_word = words[3]
 
     def _take_over(self) -> Transition | None:
         """Fly on from the moment that is shown."""
         if self.flight_replay.flight.over:
             self.context.note(texts.REPLAY_OVER)
             return None
-        return push("play", self.record.recording.seed, challenge=fly_on(self.record, self.flight_replay))
+        return push("play", self.record.recording.seed, challenge=fly_on(self.record, self.flight_replay, self._rival))
 
     def _race(self) -> Transition:
-        return push("play", self.record.recording.seed, challenge=race(self.record))
+        return push("play", self.record.recording.seed, challenge=race(self.record, self._rival))
+
+    @property
+    def _rival(self) -> str:
+        """Name of a friend's ghost; empty for one of the player's own."""
+        return texts.FRIEND_NAME if self.claimed else ""
+
+    def _copy(self) -> None:
+        """Copy the flight as a code; a friend's as it came, with its own claim."""
+        code = code_of(self.claimed.flight) if self.claimed else sharing.code(self.record)
+        give(self.context, code, texts.CODE_COPIED.format(count=len(code)))
 
     def _begin_or_stop_export(self) -> Transition | None:
         """Ask for the film's format and start the export, or cancel the running one."""
@@ -267,6 +286,16 @@ class ReplayScene(FormScene):
         hud.draw_readouts(canvas, self._readouts)
 
     def _draw_words(self, canvas: Canvas) -> None:
+        self._draw_title(canvas)
+        self._draw_moment(canvas)
+        self.form.draw(canvas)
+        self.draw_hints(canvas)
+
+    def _draw_title(self, canvas: Canvas) -> None:
+        """Draw which flight it is; of a friend's, the claim, and what comes of checking it."""
+        if self.claimed:
+            self.claimed.draw(canvas)
+            return
         entry = self.record.entry
         when = time.strftime("%Y-%m-%d %H:%M", time.localtime(entry.when))
         mission = texts.MISSIONS.get(self.record.recording.mission)
@@ -276,11 +305,15 @@ class ReplayScene(FormScene):
             title,
             texts.REPLAY_LINE.format(end=texts.OUTCOMES[entry.outcome][0], seconds=entry.seconds, when=when),
         )
+
+    def _draw_moment(self, canvas: Canvas) -> None:
+        """Draw the seconds, and who flies at that moment or how it ended."""
         flight = self.flight_replay.flight
         seconds = f"{self.flight_replay.at * STEP:.2f}"
         middle = VIEW_SIZE[0] / 2
         figure = canvas.text(f"{seconds} s", (middle, 58), size=22, weight="light", align="centre", tabular=True)
-        by = texts.YOU_FLEW if flight.flown_by is StickHolder.HUMAN else texts.NETWORK_FLEW
+        by_hand = flight.flown_by is StickHolder.HUMAN
+        by = (texts.YOU_FLEW if by_hand else texts.NETWORK_FLEW) if not self.claimed else texts.FRIEND_FLEW[by_hand]
         if self.ended:
             by = texts.OUTCOMES[flight.outcome.name][0] if flight.over else by
         canvas.text(by, (middle, 34), size=SMALL, colour=MUTE, align="centre", room=2 * _FIGURE - 16)
@@ -291,8 +324,6 @@ class ReplayScene(FormScene):
         elif self.playback.stopped:
             for x in (figure.left - 20, figure.left - 15):
                 canvas.line((x, 45), (x, 57), INK, 2)
-        self.form.draw(canvas)
-        self.draw_hints(canvas)
 
 
 def _draw_way(canvas: Canvas, view: View, flight_replay: FlightReplay) -> None:
