@@ -247,6 +247,8 @@ class PlayScene(Scene):
             network = self.network
             text = texts.DIAL_NEEDS if network.policy else texts.NO_NETWORK
             self.context.note(text.format(name=network.name, problem=network.problem))
+        elif problem := self.flown.cockpit.lacks:
+            self.context.note(problem)
 
     def _go_on(self) -> Transition | None:
         """After a landing, go to a new start, or leave a challenge with only one; after a crash, retry."""
