@@ -37,6 +37,7 @@ class ChanceMeter:
     Attributes:
         chance: chance to be saved after the action asked for, 0 to 1; None while it is not known.
         required: chance that the dial asks for; None without a guardian.
+        critic: the safety critic, once the player has wished to see the chance.
 
     """
 
@@ -44,6 +45,7 @@ class ChanceMeter:
         self._settings, self._wishes = settings, wishes
         self._policy: Policy | None = None
         self.critic: Critic | None = None
+        self._reason = texts.CHANCE_NO_NETWORK
         self.chance: float | None = None
         self.required: float | None = None
         self._shown = 1.0
@@ -53,13 +55,20 @@ class ChanceMeter:
     @property
     def wished(self) -> bool:
         """Whether the chance is to be shown in a flight without a guardian, too, and can be."""
+        return self._settings.edge and self._wishes and not self.problem
+
+    @property
+    def problem(self) -> str:
+        """Text that says why the chance can't be shown though it is wished; empty if it can, or is not."""
         flight = self._flight
-        if not (self._settings.edge and self._wishes) or not known_for(flight.env):
-            return False
+        if not (self._settings.edge and self._wishes):
+            return ""
+        if not known_for(flight.env):
+            return texts.CHANCE_MOON_ONLY
         if flight.network is not self._policy:
             self._policy = flight.network
-            self.critic, _ = critic_of(flight.network)
-        return self.critic is not None
+            self.critic, self._reason = critic_of(flight.network)
+        return "" if self.critic is not None else texts.MAP_NO_CRITIC.format(problem=self._reason)
 
     def follow(self) -> None:
         """Follow a step of the flight: the critic is asked once for each decision."""

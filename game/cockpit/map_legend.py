@@ -17,7 +17,7 @@ from game.drawing.prose import wrapped
 from game.drawing.tokens import INK, LABEL, MARGIN, MUTE, NET, SMALL
 from game.panels.chance_values import of_hundred
 from game.panels.q_values import signed
-from game.world.chance_map import EDGE, SAFE, veil_colours
+from game.world.chance_map import EDGE, SAFE, ChanceMap, veil_colours
 from game.world.policy_map import ACTION, CHANCE, COLOURS, OFF, score_colours
 
 _LEFT, _TOP, _ROW = float(MARGIN), 226.0, 17.0
@@ -88,6 +88,16 @@ def _draw_chances(canvas: Canvas, world: Watched) -> float:
     canvas.line((_LEFT, y + _ROW - 4), (_LEFT + 24, y + _ROW - 4), NET, alpha=0.6)
     canvas.text(texts.MAP_SAFE.format(chance=of_hundred(SAFE)), (_LEFT + 34, y + _ROW), size=SMALL, colour=MUTE)
     return y + _ROW
+
+
+def draw_edge_line(canvas: Canvas, chance_map: ChanceMap) -> None:
+    """Draw the sign of the edge of no return and the words on it, below the title of a flight."""
+    if not chance_map.said:
+        return
+    x, y = _LEFT, 102.0
+    draw_edge_sign(canvas, (x, y - 5))
+    words = canvas.text(chance_map.said, (x + 34, y), size=SMALL, colour=MUTE)
+    canvas.explain((x - 4, y - 14, words.right - x + 8, 20), texts.EXPLAIN_MAP[CHANCE - 1], lambda: texts.MAP_SAME)
 
 
 def draw_edge_sign(canvas: Canvas, left: Point) -> None:

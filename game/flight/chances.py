@@ -15,12 +15,14 @@ import numpy as np
 from ai.common.environment import Floats
 from ai.lander.conditions import CALM
 from ai.lander.environment import NUM_ACTIONS, PARAMS, LanderEnv, Outcome
+from game.core import texts
 from game.flight.flight import DECISION_STEPS, Flight, StickHolder
 from game.flight.networks import Policy, QPolicy
 from game.flight.replay import FlightReplay
 
 FALL: Final = 0.4  # chance that must be lost from a height before it is a fall
 _LEVEL: Final = 0.02  # a chance that much below the highest is as high
+_REBOUND: Final = 0.15  # rise from the lowest chance that ends a fall
 _MOSTLY: Final = 0.5  # share of a fall from which on one press of keys has taken it
 _ROWS: Final = 24  # moments judged at once: some tenths of a millisecond
 _CALM: Final = 60  # steps without a dangerous action after which another one is another rescue
@@ -34,9 +36,9 @@ class Critic(Protocol):
 
 
 def critic_of(policy: Policy | None) -> tuple[Critic | None, str]:
-    """Return the safety critic beside a network, and, if there is none, the reason; "" where none can be."""
+    """Return the safety critic beside a network, and, if there is none, the reason."""
     if not isinstance(policy, QPolicy):
-        return None, ""
+        return None, texts.CHANCE_NO_NETWORK
     from ai.copilot.critic import critic_beside
 
     return critic_beside(policy)
@@ -111,9 +113,9 @@ def _last_as_high(chances: Sequence[float], top: int, number: int) -> int:
 def _bottom(chances: Sequence[float], number: int) -> int:
     """Return the moment from `number` on at which the chance has stopped falling."""
     low = number
-    while number + 1 < len(chances) and chances[number + 1] <= chances[low] + _LEVEL:
+    while number + 1 < len(chances) and chances[number + 1] <= chances[low] + _REBOUND:
         number += 1
-        if chances[number] < chances[low] - _LEVEL / 4:
+        if chances[number] < chances[low] - _LEVEL:
             low = number
     return low
 

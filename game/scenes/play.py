@@ -101,7 +101,8 @@ class PlayScene(Scene):
         """What each key does at this moment: those of the card, once it is seen, and those of the flight."""
         explain = self.explained.action()
         if self.ending.shown == 0:
-            return [*self._flight_actions(), Action(Command.CONFIRM, self.ending.hurry), explain]
+            edge = Action(pygame.K_m, self._show_edge)  # by mouse and gamepad it is one of the choices
+            return [*self._flight_actions(), Action(Command.CONFIRM, self.ending.hurry), edge, explain]
         space = [Action(pygame.K_SPACE, self._go_on)] if self.ending.shown >= 1 else []
         return [*self._card_actions(), *self._flight_actions(), Action(Command.CONFIRM, self._go_on), *space, explain]
 
@@ -240,6 +241,12 @@ class PlayScene(Scene):
         elif self.flight.network is None and not self.flight.over:
             problem = texts.NO_NETWORK.format(problem=self.network.problem)
             self.context.note(texts.FLOWN_ALONE if self.credit.alone else problem)
+
+    def _show_edge(self) -> None:
+        """Show the chance to be saved or hide it, over the sky too; tell why it can't be shown."""
+        self._settings.edge = not self._settings.edge
+        if problem := self.flown.cockpit.chance_meter.problem:
+            self.context.note(problem)
 
     def _name_what_lacks(self) -> None:
         """Tell the player why the dial has no effect, where it has none."""

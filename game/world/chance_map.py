@@ -140,11 +140,11 @@ class ChanceMap:
         with canvas.unnoted():  # stars shine through it
             self._picture.draw(canvas, (left, top, right - left, bottom - top), self.cells, self._paint)
 
-    def draw_edge(self, canvas: Canvas, view: View, env: LanderEnv, head: float) -> None:
-        """Draw the edge of no return with ticks on its lost side, and the line within which nearly all are saved."""
+    def draw_edge(self, canvas: Canvas, view: View, env: LanderEnv, head: float, *, safe: bool = True) -> None:
+        """Draw the edge of no return with ticks on its lost side, and the line within which nearly all are `safe`."""
         if self.cells is None:
             return
-        for line in self.cells.safe:
+        for line in self.cells.safe if safe else []:
             for part in _over_ground(env, line):
                 draw_faint(canvas.surface, view.pixels(part), NET, 0.35, head * canvas.scale)
         for line in self.cells.edges:
@@ -173,7 +173,8 @@ def _table() -> Doubles:
     """Return what lies over the sky for even steps of log odds, (n, 4): red, green, blue and alpha, 0 to 255."""
     chances = 1 / (1 + np.exp(-np.linspace(-_STEEPEST, _STEEPEST, 256)))
     channels = [*np.array(_TONES, float).T, 255 * np.array(_COVERS)]
-    return np.stack([np.interp(chances, _MARKS, channel) for channel in channels], axis=-1)
+    table: Doubles = np.stack([np.interp(chances, _MARKS, channel) for channel in channels], axis=-1)
+    return table
 
 
 _VEIL: Final = _table()
@@ -182,14 +183,16 @@ _VEIL: Final = _table()
 def veil_colours(chances: Doubles) -> Doubles:
     """Return the colours (..., 3) of chances as they lie over a dark sky, for a legend."""
     tones = np.array([mix(NIGHT0, tone, cover) for tone, cover in zip(_TONES, _COVERS, strict=True)], float)
-    return np.stack([np.interp(chances, _MARKS, tones[:, channel]) for channel in range(3)], axis=-1)
+    colours: Doubles = np.stack([np.interp(chances, _MARKS, tones[:, channel]) for channel in range(3)], axis=-1)
+    return colours
 
 
 def _in_metres(places: Doubles, line: Doubles) -> Doubles:
     """Turn a line in columns and rows of a grid of places into metres."""
     (left, top), (right, bottom) = places[0, 0], places[-1, -1]
     share = line / (np.array(places.shape[1::-1]) - 1)
-    return np.array([left, top]) + share * np.array([right - left, bottom - top])
+    metres: Doubles = np.array([left, top]) + share * np.array([right - left, bottom - top])
+    return metres
 
 
 def _over_ground(env: LanderEnv, line: Doubles) -> list[Doubles]:
