@@ -162,10 +162,15 @@ def draw_title(canvas: Canvas, text: str, lamp: Lamp, reach: float = 16.0) -> fl
     shape, colour, glow = lamp
     middle = VIEW_SIZE[0] / 2
     width = canvas.text(text, (middle + 9, 41), size=TEXT, align="centre", room=_TITLE_ROOM).width
-    spot = (middle - width / 2 - 8, 36)
+    spot = lamp_spot(width)
     canvas.glow(spot, reach, colour, glow)
     canvas.marker(shape, spot, 8 if shape == "circle" else 11, colour)
     return width
+
+
+def lamp_spot(width: float) -> Point:
+    """Return the middle of the lamp before a title of that width."""
+    return VIEW_SIZE[0] / 2 - width / 2 - 8, 36.0
 
 
 def draw_hand(canvas: Canvas, text: str, colour: Colour) -> None:
@@ -251,15 +256,17 @@ def draw_card(
         _draw_rival(canvas, rival, [label for label, _, _ in card.figures], (left, top + 183), width)
         top += _RIVAL_ROWS
     draw_share(canvas, left, top + 188, width, card.human)
-    if card.stepped_in:
+    if told := card.told:
         words = canvas.text(
-            texts.SHARE_MOMENTS.format(times=card.stepped_in),
+            told,
             (left + width / 2 + 8, top + 188),
             size=SMALL,
             colour=MUTE,
             align="centre",
         )
         canvas.marker("diamond", (words.left - 10, top + 184), 8, NET)
+        if card.saved is not None:
+            canvas.explain((words.left - 16, top + 172, words.width + 20, 20), texts.EXPLAIN_CARD_SAVED)
     canvas.line((left, top + 218), (left + width, top + 218), LINE)
 
 

@@ -43,6 +43,7 @@ class Settings:
     check_flights: bool = False  # check flights: every fifth flight is flown without help
     teach: bool = False  # whether good landings are kept for a network to learn from
     explain: bool = True  # whether the co-pilot's panel is shown
+    edge: bool = False  # whether the chance to be saved is shown, over the sky and while flying alone
     gravity: Annotated[float, Within(*GRAVITY_SHARES)] = 1.0  # share of normal gravity in free flights
     pace: Annotated[float, Within(*PACES)] = 1.0  # time scale of a flight
     keys: dict[str, Any] = field(default_factory=dict)  # changed keys, as game.input.bindings writes them

@@ -96,6 +96,11 @@ class Flight:
         """Whether the person shares the stick with the co-pilot."""
         return self.hand is StickHolder.HUMAN and self.copilot is not None and self.copilot.assist > 0
 
+    @property
+    def guarded(self) -> bool:
+        """Whether the latest decision was a guardian's with a safety critic: coasting is then an action like others."""
+        return self.decision is not None and self.decision.chances is not None
+
     def put(self, moment: dict[str, Any], source: Recording, step: int) -> None:
         """Restore a snapshot `moment` of the environment after `step` steps of a flight from the same start."""
         self.env.restore(moment)
@@ -180,8 +185,10 @@ class Flight:
             self._held_for = (self._held_for + 1) % DECISION_STEPS
             return self.asked, StickHolder.HUMAN
         action = self._ask_copilot()
-        self.overridden = self.asked not in (COAST, action)
-        return action, StickHolder.HUMAN if action == self.asked != COAST else StickHolder.NETWORK
+        # With nothing pressed the co-pilot flies; only a guardian that looks at the chance to be saved lets it coast.
+        asks = self.asked != COAST or self.guarded
+        self.overridden = asks and action != self.asked
+        return action, StickHolder.HUMAN if asks and not self.overridden else StickHolder.NETWORK
 
     def _ask_network(self) -> int:
         if self.alone is None or self._held_for == 0:

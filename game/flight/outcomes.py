@@ -14,7 +14,8 @@ from game.core import texts
 class OutcomeCard:
     """Contents of an outcome card: good or not, the reason, figures as label, value, unit, and advice.
 
-    For a shared flight, `stepped_in` is how often the co-pilot intervened. `medal` is 3 for gold, 2, 1, 0 for none.
+    For a shared flight, `stepped_in` is how often the co-pilot intervened, and `saved` how often it saved the person;
+    None for a flight without a guardian that could tell, or without a landing. `medal` is 3 for gold, 2, 1, 0 for none.
     `left` is the card's left edge.
     """
 
@@ -27,7 +28,16 @@ class OutcomeCard:
     score: str = ""
     medal: int = 0
     stepped_in: int | None = None
+    saved: int | None = None
     left: float = 400.0
+
+    @property
+    def told(self) -> str:
+        """Text that says how often the co-pilot saved the person or stepped in; empty if there is nothing to say."""
+        if self.saved is not None:
+            few = texts.CARD_SAVED
+            return few[self.saved] if self.saved < len(few) else texts.CARD_SAVED_OFTEN.format(times=self.saved)
+        return texts.SHARE_MOMENTS.format(times=self.stepped_in) if self.stepped_in else ""
 
 
 @dataclass(frozen=True)

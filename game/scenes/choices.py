@@ -31,8 +31,8 @@ _LABELS: Final = 142
 _FIRST: Final = 136
 _ROW: Final = 40
 _HELP: Final = 18  # from the last row to the sentence on the one in focus
-_TOGGLES: Final = 40
-_TOGGLE_ROW: Final = 58
+_TOGGLES: Final = 38
+_TOGGLE_ROW: Final = 50
 _CHART: Final = pygame.Rect(800, 152, 372, 176)
 
 
@@ -54,12 +54,17 @@ class ChoicesScene(FormScene):
             self._add_starts()
             self._add_slider("gravity", GRAVITY_SHARES, texts.CHOICES_GRAVITY, lambda: texts.CHOICES_GRAVITY_HELP)
         self._add_slider("pace", PACES, texts.PACE, lambda: texts.CHOICES_PACE_HELP)
-        toggles = {"check_flights": texts.CHOICES_CHECK, "teach": texts.CHOICES_TEACH, "explain": texts.CHOICES_EXPLAIN}
+        toggles = {
+            "check_flights": texts.CHOICES_CHECK,
+            "teach": texts.CHOICES_TEACH,
+            "explain": texts.CHOICES_EXPLAIN,
+            "edge": texts.CHOICES_EDGE,
+        }
         if self._challenge:
-            toggles = {"explain": texts.CHOICES_EXPLAIN}
+            toggles = {name: toggles[name] for name in ("explain", "edge")}
         top = _FIRST + len(self._rows) * _ROW + _TOGGLES
         for row, (name, (label, hint)) in enumerate(toggles.items()):
-            box = (MARGIN, top + row * _TOGGLE_ROW, _WIDTH, 52)
+            box = (MARGIN, top + row * _TOGGLE_ROW, _WIDTH, 48)
             value = getattr(context.settings, name)
             form.add(Toggle(form.manager, box, label, value, self._changes(name), hint=hint))
         form.add(TextButton(form.manager, (MARGIN, 624, 96, 32), texts.CHOICES_FLY, Pop, size=18))
