@@ -75,8 +75,9 @@ class ChanceMeter:
         flight, decision = self._flight, self._flight.decision
         if flight.over:
             return
-        if decision is not None and decision.chance is not None and flight.shared:
-            self.chance, self.required = _finite(float(decision.chance[0])), float(decision.required[0])
+        chance = decision.chance if decision is not None and flight.shared else None
+        if decision is not None and chance is not None and decision.required is not None:
+            self.chance, self.required = _finite(float(chance[0])), float(decision.required[0])
             return
         self.required = None
         if not self.wished:

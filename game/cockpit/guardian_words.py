@@ -36,7 +36,8 @@ def no_critic(copilot: CoPilot) -> str:
 
 def shared_chances(decision: SharedDecision) -> ChanceValues:
     """Return the chances to be saved of one lander's shared decision by a guardian with a safety critic."""
-    assert decision.chances is not None and decision.required is not None
+    assert decision.chances is not None
+    assert decision.required is not None
     chances = tuple(decision.chances[0].astype(float).tolist())
     return ChanceValues(chances, int(decision.action[0]), int(decision.pilot[0]), float(decision.required[0]))
 
