@@ -199,11 +199,13 @@ class Rescues:
     Attributes:
         times: how many there were.
         guarded: whether the flight, or a part of it, was guarded by a safety critic.
+        throughout: assist of the guardian that watched over every step alike, 0 to 1; 0 if there was none.
 
     """
 
     def __init__(self) -> None:
         self.times, self.guarded = 0, False
+        self.throughout: float = -1.0  # before the first step
         self._since = _CALM
 
     def follow(self, flight: Flight) -> None:
@@ -211,6 +213,8 @@ class Rescues:
         decision = flight.decision
         chance = decision.chance if decision is not None and flight.shared else None
         self._since += 1
+        assist = 0.0 if decision is None or chance is None else decision.assist
+        self.throughout = assist if self.throughout in (-1.0, assist) else 0.0
         if decision is None or chance is None or decision.required is None:
             return
         self.guarded = True

@@ -88,6 +88,11 @@ class Credit:
         return self._shared or (self._flight.shared and not self._flight.over)
 
     @property
+    def check(self) -> bool:
+        """Whether it is a check flight."""
+        return self._check
+
+    @property
     def alone(self) -> bool:
         """Whether the person must fly alone: in a check flight, and in some challenges."""
         return self._check or (self._challenge is not None and self._challenge.alone)

@@ -16,7 +16,7 @@ class OutcomeCard:
 
     For a shared flight, `stepped_in` is how often the co-pilot intervened, and `saved` how often it saved the person;
     None for a flight without a guardian that could tell, or without a landing. `medal` is 3 for gold, 2, 1, 0 for none.
-    `left` is the card's left edge.
+    `left` is the card's left edge. `growth` are lines on what the flight has shown of the person's own skill.
     """
 
     good: bool
@@ -30,6 +30,7 @@ class OutcomeCard:
     stepped_in: int | None = None
     saved: int | None = None
     left: float = 400.0
+    growth: tuple[str, ...] = ()
 
     @property
     def told(self) -> str:

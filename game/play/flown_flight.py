@@ -182,6 +182,7 @@ class FlownFlight:
             course=challenge.name if challenge else "",
             medal=credit.medal,
             pace=credit.pace,
+            guarded=max(0.0, self.cockpit.rescues.throughout),
         )
         x, y, angle = self.flight.poses.now[0].tolist()
         self.record = Record(self.flight.recording, entry, (x, y, angle))
@@ -225,4 +226,6 @@ class FlownFlight:
         hud.draw_readouts(canvas, self._readouts)
         explain_readouts(canvas, flight.env)
         if self.waiting and not (self.challenge and not self.challenge.opening):
-            captions.draw_opening(canvas, self._context.controls, self.challenge, self.path_preview.asks)
+            captions.draw_opening(
+                canvas, self._context.controls, self.challenge, self.path_preview.asks, check=self.credit.check
+            )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final
 
 import pygame
@@ -9,7 +10,7 @@ import pygame
 from game.core import texts
 from game.core.scene import Pop, Scene, Transition, push
 from game.drawing.canvas import Canvas
-from game.flight import networks
+from game.flight import fading, networks
 from game.flight.credit import Credit
 from game.flight.flight import Flight, StickHolder
 from game.flight.handicap import HANDS, OWN
@@ -18,7 +19,7 @@ from game.flight.skill import Skill
 from game.input.controls import Command, translate
 from game.input.mouse import MouseStick
 from game.panels.explained import Explained
-from game.play import captions
+from game.play import captions, growth
 from game.play.challenge import Challenge, Duel
 from game.play.ending import FlightEnding
 from game.play.flown_flight import FlownFlight
@@ -89,8 +90,11 @@ class PlayScene(Scene):
             return None
         if event.type in (pygame.WINDOWFOCUSLOST, pygame.WINDOWFOCUSGAINED):
             self._away = int(event.type == pygame.WINDOWFOCUSLOST)
+        fades = fading.active(self._settings)
         if self.flown.cockpit.take(event):
             self._name_what_lacks()
+            if fades and not fading.active(self._settings):
+                self.context.note(texts.FADE_RESTS)
             return None
         self._mouse.take(event)
         if translate(event) is Command.UNPLUGGED and not (self.waiting or self.flight.over):
@@ -127,7 +131,16 @@ class PlayScene(Scene):
         }
 
     def _flight_actions(self) -> list[Action]:
-        return captions.flight_actions(self._runs, self.flight, self.challenge, leaves=self._leaves)
+        actions = captions.flight_actions(self._runs, self.flight, self.challenge, leaves=self._leaves)
+        if not (self.credit.check and self.waiting):
+            return actions
+        skip = Action(Command.NEXT, self._skip_check, texts.CHECK_SKIP)
+        return [skip, *(action for action in actions if action.key is not Command.NEXT)]
+
+    def _skip_check(self) -> None:
+        """Fly the same start with help, and be asked again only after as many flights as usual."""
+        self._skill.skip_check()
+        self.retry()
 
     def _card_actions(self) -> list[Action]:
         card = self.ending.card
@@ -193,7 +206,8 @@ class PlayScene(Scene):
             self.flown = FlownFlight(self.context, seed, self.network.policy, self.challenge)
             return
         pads, hands = self._chosen()
-        check = self._settings.check_flights and self._skill.check_due and not self._eased
+        checks = self._settings.check_flights or self._settings.fade
+        check = checks and self._skill.check_due and not self._eased
         hands = OWN if check else hands
         self.flown = FlownFlight(self.context, seed, self.network.policy, pads=pads, hands=hands, check=check)
 
@@ -212,6 +226,18 @@ class PlayScene(Scene):
             self.flown.make_card(self._skill)
             if challenge is None or challenge.kept:
                 self.flown.write_down(self._records, self._skill, self.network)
+                self._grow()
+
+    def _grow(self) -> None:
+        """Let help fade after a free flight, and tell on the card what the flight has shown."""
+        card = self.ending.card
+        if self.challenge or card is None:
+            return
+        before = self._settings.assist
+        lines = growth.follow(self._skill.change, self._settings, check=self.credit.check, landed=card.good)
+        self.ending.card = replace(card, growth=lines)
+        if before != self._settings.assist:
+            self.context.apply_settings()
 
     @property
     def _held(self) -> int:
