@@ -23,8 +23,8 @@ DRIFT: Final = 0.12  # standard deviation of the step in log-odds from one fligh
 INTERVAL: Final = 0.8  # chance that the truth lies between an estimate's ends
 WIDEST: Final = 0.5  # of an interval that still says something
 CALM_SECONDS: Final = 1.6  # that a guardian may have changed in a flight that is called calm
-# For some assists of a guardian (k,): log-odds of a calm landing = base + slope · log-odds of a landing alone + spread ·
-# a standard normal number that each pilot has. From `benchmarks/becoming.py --calibrate`.
+# For some assists of a guardian: log-odds of a calm landing = base + slope · log-odds of a landing alone + spread · a
+# standard normal number that each pilot has. From `benchmarks/becoming.py --calibrate`.
 ASSISTS: Final = (0.1, 0.2, 0.4, 0.6)
 BASE: Final = (0.0, 0.0, -1.0, -2.0)
 SLOPE: Final = (0.7, 0.7, 0.6, 0.6)
@@ -94,9 +94,7 @@ class LandingAlone:
         below = np.linspace(0.0, 1.0 - INTERVAL, 41)
         lows, highs = np.interp(below, up_to, _EDGES), np.interp(below + INTERVAL, up_to, _EDGES)
         shortest = int((highs - lows).argmin())
-        return Estimate(
-            float(share @ _CHANCE), float(lows[shortest]), float(highs[shortest]), self.alone, self.helped
-        )
+        return Estimate(float(share @ _CHANCE), float(lows[shortest]), float(highs[shortest]), self.alone, self.helped)
 
     def _learn(self, likelihood: Doubles) -> None:
         """Let time pass until the next flight, and multiply by the likelihood of what it showed."""

@@ -40,15 +40,15 @@ class Becoming:
     """Estimates from the player's flights, oldest first.
 
     Attributes:
-        curves: for each kind of start, the estimate after each flight that tells something.
-        landings: for each kind of start, whether each flight alone landed.
+        flights: for each kind of start, the flights that tell something.
+        curves: the estimate after each of them.
 
     """
 
     def __init__(self, entries: Iterable[Entry] = ()) -> None:
         self._beliefs = {kind: LandingAlone() for kind in KINDS}
+        self.flights: dict[str, list[Entry]] = {kind: [] for kind in KINDS}
         self.curves: dict[str, list[Estimate]] = {kind: [] for kind in KINDS}
-        self.landings: dict[str, list[bool]] = {kind: [] for kind in KINDS}
         told = [entry for entry in entries if tells(entry)]
         for kind in KINDS:
             for entry in [entry for entry in told if kind_of(entry) == kind][-_MOST:]:
@@ -66,10 +66,10 @@ class Becoming:
         belief, before = self._beliefs[kind], self.estimate(kind)
         if entry.alone:
             belief.add_alone(landed=entry.landed)
-            self.landings[kind].append(entry.landed)
         else:
             changed = (1.0 - entry.human) * entry.seconds
             belief.add_helped(landed=entry.landed, changed=changed, assist=entry.guarded)
         after = belief.estimate
+        self.flights[kind].append(entry)
         self.curves[kind].append(after)
         return Change(kind, before, after)

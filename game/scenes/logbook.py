@@ -17,9 +17,12 @@ from game.drawing.canvas import Canvas
 from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import HUMAN, LABEL, MARGIN, MUTE, SMALL, TITLE, VIEW_SIZE
 from game.flight import sharing
+from game.flight.becoming import KINDS, Becoming
 from game.flight.flight_file import Entry, Record
-from game.flight.logbook import Records, Totals, best, skill, totals
+from game.flight.logbook import Records, Totals, best, totals
+from game.panels.becoming_band import draw_band
 from game.play.friend import paste
+from game.play.growth import said
 from game.play.race import race
 from game.ui.actions import Action, Table
 from game.ui.clipboard import give
@@ -42,8 +45,11 @@ _LAYOUT: Final = ListLayout(
     rise=9,
 )
 _WIDTH: Final = VIEW_SIZE[0] - MARGIN - _LEFT
-_CHARTS: Final = (136, 304)
+_KINDS: Final = 112  # the choice of a kind of start, above its chart
+_CHARTS: Final = (136, 330)
 _CHART_HEIGHT: Final = 150
+_ENDS: Final = (2.0, 4.0)  # dashes of the band's ends
+_SAID: Final = 304.0  # the estimate in words, between the charts
 _TOTALS: Final = (146.0, 132.0)  # baseline of their labels, and how far apart they stand
 
 
@@ -58,10 +64,21 @@ class LogbookScene(ListScene[Entry]):
         self._filter = self.form.add(
             Choice(manager, box, "", texts.LOGBOOK_FILTERS, 0, lambda _: self._fill(), size=SMALL)
         )
+        self._kind = self.form.add(
+            Choice(
+                manager,
+                (_LEFT, _KINDS, _WIDTH, 20),
+                "",
+                [texts.BECOMING_KINDS[kind] for kind in KINDS],
+                0,
+                lambda _: self._plot(),
+                size=SMALL,
+            )
+        )
         self._charts = Charts([
-            Chart((_LEFT, _CHARTS[0], _WIDTH, _CHART_HEIGHT), texts.LOGBOOK_SKILL, limits=(0.0, 100.0),
-                  read="{:.0f} %".format, read_x=texts.LOGBOOK_FLIGHT.format),
-            Chart((_LEFT, _CHARTS[1], _WIDTH, _CHART_HEIGHT), texts.LOGBOOK_FUEL, read="{:.1f} s".format,
+            Chart((_LEFT, _CHARTS[0], _WIDTH, _CHART_HEIGHT), texts.BECOMING_TITLE, limits=(0.0, 10.0),
+                  read="{:.1f}".format, read_x=texts.LOGBOOK_FLIGHT.format, empty=texts.BECOMING_NONE),
+            Chart((_LEFT, _CHARTS[1], _WIDTH, _CHART_HEIGHT - 20), texts.LOGBOOK_FUEL, read="{:.1f} s".format,
                   read_x=texts.LOGBOOK_FLIGHT.format),
         ])  # fmt: skip
         self.form.add(VirtualPointer(manager, self._charts.box, self._charts.follow))
@@ -99,7 +116,7 @@ class LogbookScene(ListScene[Entry]):
         self._entries = self._records.entries()
         self._kept, self._thrown = self._records.kept(), self._records.thrown()
         self._line = self._records.problem or texts.LOGBOOK_PLACE.format(folder=self._records.folder)
-        self._totals = totals(self._entries)
+        self._totals, self._becoming = totals(self._entries), Becoming(self._entries)
         self._plot()
         self._fill()
 
@@ -113,13 +130,18 @@ class LogbookScene(ListScene[Entry]):
         self._show(shown, self.chosen)
 
     def _plot(self) -> None:
-        own = skill(self._entries)
-        fuel = [entry.fuel if entry.landed else np.nan for entry in self._entries if entry.alone]
-        number, span = np.arange(1, len(own) + 1), (1.0, float(len(own)))
-        share = Series(number, 100 * np.array(own), texts.LOGBOOK_YOU, HUMAN, smooth=False)
-        landings = Series(number, np.array(fuel, float), texts.LOGBOOK_YOU, HUMAN)
-        for chart, series in zip(self._charts.charts, (share, landings), strict=True):
-            chart.set([series], span)
+        """Draw the curve of the chosen kind of start, and the fuel of landings alone from it."""
+        kind = KINDS[self._kind.index]
+        curve, flights = self._becoming.curves[kind], self._becoming.flights[kind]
+        number, span = np.arange(1, len(curve) + 1), (1.0, float(len(curve)))
+        shares = np.array([(each.mean, each.low, each.high) for each in curve]).reshape(-1, 3)
+        fuel = [entry.fuel if entry.landed and entry.alone else np.nan for entry in flights]
+        series = [
+            Series(number, 10 * share, name, HUMAN, dash=dash, smooth=False)
+            for share, name, dash in zip(shares.T, texts.BECOMING_LINES, ((), _ENDS, _ENDS), strict=True)
+        ]
+        self._charts.charts[0].set(series, span)
+        self._charts.charts[1].set([Series(number, np.array(fuel, float), texts.LOGBOOK_YOU, HUMAN)], span)
 
     def _row(self, entry: Entry) -> Row:
         return entry_row(entry)
@@ -184,7 +206,13 @@ class LogbookScene(ListScene[Entry]):
     def _draw_behind(self, canvas: Canvas) -> None:
         """Draw the totals and the charts."""
         _draw_totals(canvas, self._totals)
+        kind, chart = KINDS[self._kind.index], self._charts.charts[0]
+        curve = self._becoming.curves[kind]
+        draw_band(canvas, curve, lambda number, share: chart.place(number, 10 * share))
         self._charts.draw(canvas)
+        if curve:
+            text = said(self._becoming.estimate(kind))
+            canvas.text(text, (_LEFT, _SAID), size=SMALL, colour=MUTE, room=_WIDTH)
 
     def _draw_chosen(self, canvas: Canvas) -> None:
         """Write below the verbs why a flight does not count, and why it cannot be seen any more."""
