@@ -4,7 +4,7 @@
     python -m benchmarks.becoming --calibrate   the constants of ai/copilot/alone.py, for the shipped safety critic
 
 Pilots are hands with faults drawn at random (`ai.copilot.hands.any_hands`) that each keeps for life. As most of them
-land never or always, they are drawn many times, and those that land sometimes are kept first.
+land never or always, more are drawn than are needed, and as many kept of every skill as there are.
 """
 
 from __future__ import annotations
@@ -65,8 +65,12 @@ class Population:
         drawn = _SCREENED * pilots
         self._drawn = any_hands(drawn, np.random.default_rng(seed), agent)
         self._kept = np.arange(drawn)
-        landed = self.alone(_SCREENING).mean(axis=1)
-        self._kept = np.argsort(np.abs(landed - 0.5), kind="stable")[:pilots]
+        times = self.alone(_SCREENING).sum(axis=1)
+        rank = np.zeros(drawn)  # among those that landed as often
+        for landed in range(_SCREENING + 1):
+            same = times == landed
+            rank[same] = np.arange(same.sum())
+        self._kept = np.argsort(rank, kind="stable")[:pilots]
 
     def alone(self, flights: int) -> Bools:
         """Return whether each pilot's flights alone landed, (pilots, flights)."""
