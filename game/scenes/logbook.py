@@ -45,7 +45,7 @@ _LAYOUT: Final = ListLayout(
     rise=9,
 )
 _WIDTH: Final = VIEW_SIZE[0] - MARGIN - _LEFT
-_KINDS: Final = 112  # the choice of a kind of start, above its chart
+_KINDS: Final = 98  # the choice of a kind of start, above its chart
 _CHARTS: Final = (136, 330)
 _CHART_HEIGHT: Final = 150
 _ENDS: Final = (2.0, 4.0)  # dashes of the band's ends
