@@ -30,7 +30,7 @@ _SECONDS: Final = 1 / 15  # of a decision
 _SCREENED: Final = 5  # pilots drawn for each one kept
 _SCREENING: Final = 8  # flights of each of them
 _CHECK_EVERY: Final = 5
-_FLIGHTS: Final = (5, 10, 20, 40)
+_FLIGHTS: Final = (5, 10, 25)
 
 
 def chosen(pilot: Any, pilots: Ints) -> ClumsyHands:
@@ -133,7 +133,13 @@ def coverage(population: Population, truth: int, assist: float) -> None:
     share = population.alone(truth).mean(axis=1)
     alone = population.alone(max(_FLIGHTS))
     landed, changed = population.helped(max(_FLIGHTS), assist)
-    print(f"{len(share)} pilots, who land {share.mean():.0%} alone ({truth} flights each)")
+    print(f"{truth} flights alone for each pilot's true share")
+    report(share, alone, landed, changed, assist)
+
+
+def report(share: Doubles, alone: Bools, landed: Bools, changed: Doubles, assist: float) -> None:
+    """Print the same, given true shares (pilots,) and what flights alone and helped have shown (pilots, flights)."""
+    print(f"{len(share)} pilots, who land {share.mean():.0%} alone")
     print("flights              | truth in the 80 % interval | its width | estimate off by")
     for every, told in ((1, "alone"), (_CHECK_EVERY, f"guardian {assist:.0%}, 1 in 5 alone")):
         for flights in _FLIGHTS:

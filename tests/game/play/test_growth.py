@@ -123,7 +123,7 @@ def test_help_rests_once_the_player_turns_the_dial_and_the_game_says_so_once(ope
     driver.key(pygame.K_n)
     driver.key(pygame.K_MINUS)
     assert driver.said == texts.FADE_RESTS
-    driver.app.notes.say("")
+    driver.app.notes.show("")
     driver.key(pygame.K_MINUS)
     assert driver.said == ""
     assert driver.app.context.settings.assist == pytest.approx(0.2)
@@ -139,9 +139,7 @@ def test_fading_is_switched_on_among_the_choices_and_begins_at_the_dials_place(o
     (toggle,) = [
         each for each in driver.form.widgets if isinstance(each, Toggle) and each.label == texts.FADE_CHOICE[0]
     ]
-    while driver.form.focused is not toggle:
-        driver.key(pygame.K_DOWN)
-    driver.key(pygame.K_RETURN)
+    driver.click((toggle.box.right - 20, toggle.box.centery))
     settings = driver.app.context.settings
     assert (settings.fade, settings.faded_to, fading.active(settings)) == (True, 0.7, True)
 
