@@ -22,6 +22,7 @@ from ai.common.environment import Doubles
 DRIFT: Final = 0.12  # standard deviation of the step in log-odds from one flight to the next
 INTERVAL: Final = 0.8  # chance that the truth lies between an estimate's ends
 WIDEST: Final = 0.5  # of an interval that still says something
+FEWEST: Final = 5  # flights from which on it does
 CALM_SECONDS: Final = 1.6  # that a guardian may have changed in a flight that is called calm
 # For some assists of a guardian: log-odds of a calm landing = base + slope · log-odds of a landing alone + spread · a
 # standard normal number that each pilot has. From `benchmarks/becoming.py --calibrate`.
@@ -57,7 +58,7 @@ class Estimate:
     @property
     def known(self) -> bool:
         """Whether there were enough flights to say anything."""
-        return self.high - self.low <= WIDEST
+        return self.alone + self.helped >= FEWEST and self.high - self.low <= WIDEST
 
 
 class LandingAlone:

@@ -21,6 +21,7 @@ def test_without_flights_every_share_is_as_likely():
 def test_more_flights_narrow_it_and_few_say_nothing():
     widths = [after([True, False] * pairs) for pairs in (1, 5, 20)]
     assert [each.known for each in widths] == [False, True, True]
+    assert not after([False] * 4).known
     assert widths[0].high - widths[0].low > widths[1].high - widths[1].low > widths[2].high - widths[2].low
     assert [each.alone for each in widths] == [2, 10, 40]
 

@@ -58,17 +58,17 @@ def test_help_is_steady_for_a_pilot_who_stays_as_they_are(share: float):
 def test_it_goes_in_small_steps_and_waits_until_enough_is_known():
     dial = np.array([0.4, *fly(fading_from(0.4), lambda _: 0.98, 60, seed=2)])
     assert abs(np.diff(dial)).max() <= fading.STEP + 1e-9
-    unknown = Estimate(0.9, 0.3, 1.0)
+    unknown = Estimate(0.9, 0.3, 1.0, alone=20)
     assert not unknown.known
     assert fading.faded(0.4, unknown) == 0.4
-    assert fading.faded(0.1, Estimate(0.96, 0.9, 1.0)) == 0.0
-    assert fading.faded(0.0, Estimate(0.2, 0.1, 0.3)) == 0.1
-    assert fading.faded(0.6, Estimate(0.2, 0.1, 0.3)) == 0.6
+    assert fading.faded(0.1, Estimate(0.96, 0.9, 1.0, alone=20)) == 0.0
+    assert fading.faded(0.0, Estimate(0.2, 0.1, 0.3, alone=20)) == 0.1
+    assert fading.faded(0.6, Estimate(0.2, 0.1, 0.3, alone=20)) == 0.6
 
 
 def test_the_players_own_turn_of_the_dial_is_respected():
     settings = fading_from(0.4)
-    sure = Estimate(0.97, 0.93, 1.0)
+    sure = Estimate(0.97, 0.93, 1.0, alone=20)
     assert fading.fade(settings, sure)
     assert (settings.assist, fading.active(settings)) == (0.3, True)
     settings.assist = 0.5
@@ -81,5 +81,5 @@ def test_the_players_own_turn_of_the_dial_is_respected():
 
 def test_without_the_switch_the_dial_stays():
     settings = Settings(assist=0.4, faded_to=0.4)
-    assert not fading.fade(settings, Estimate(0.97, 0.93, 1.0))
+    assert not fading.fade(settings, Estimate(0.97, 0.93, 1.0, alone=20))
     assert settings.assist == 0.4

@@ -154,12 +154,12 @@ def test_the_logbook_says_the_estimate_by_kind_of_start(open_game: Open, context
 
 def test_words_for_few_flights_and_for_many():
     assert growth.said(Estimate(0.5, 0.1, 0.9, alone=2)) == texts.BECOMING_TOO_FEW.format(count=2)
-    assert growth.said(Estimate(0.7, 0.52, 0.88)) == texts.BECOMING_ESTIMATE.format(share=7, low=5, high=9)
-    assert growth.said(Estimate(0.99, 0.98, 1.0)) == texts.BECOMING_SURE.format(share=10)
+    assert growth.said(Estimate(0.7, 0.52, 0.88, alone=20)) == texts.BECOMING_ESTIMATE.format(share=7, low=5, high=9)
+    assert growth.said(Estimate(0.99, 0.98, 1.0, alone=20)) == texts.BECOMING_SURE.format(share=10)
 
 
 def test_the_first_checks_are_not_compared_with_what_is_not_known():
-    wide, less = Estimate(0.5, 0.1, 0.9), Estimate(0.6, 0.2, 0.95)
+    wide, less = Estimate(0.5, 0.1, 0.9, alone=20), Estimate(0.6, 0.2, 0.95, alone=20)
     change, settings = Change("plain", wide, less), Settings(assist=0.4, fade=True, faded_to=0.4)
     assert growth.follow(change, settings, check=True, landed=True) == (texts.CHECK_FIRST[1],)
     assert growth.follow(change, settings, check=False, landed=True) == ()
