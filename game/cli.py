@@ -1,8 +1,9 @@
-"""Command-line commands that open the game on a screen other than the menu."""
+"""Command-line commands of the game: to open it on a screen other than the menu, and to verify flights."""
 
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 from typing import Any, Final
 
 from game.core import texts
@@ -11,11 +12,15 @@ _FIRST: Final = "stack"
 
 
 def add_commands(commands: Any) -> None:
-    """Add the command `physics` to a parser's sub-commands."""
+    """Add the commands `physics` and `verify` to a parser's sub-commands."""
     physics = commands.add_parser("physics", help=texts.CLI_PHYSICS)
     names = sorted(texts.EXHIBITS)
     physics.add_argument("--exhibit", choices=names, default=_FIRST, help=texts.CLI_EXHIBIT.format(name=_FIRST))
     physics.set_defaults(run=open_physics)
+    verify = commands.add_parser("verify", help=texts.CLI_VERIFY)
+    verify.add_argument("files", nargs="+", type=Path, metavar="FILE", help=texts.CLI_VERIFY_FILES)
+    verify.add_argument("--json", action="store_true", help=texts.CLI_VERIFY_JSON)
+    verify.set_defaults(run=_verify)
 
 
 def open_physics(arguments: argparse.Namespace) -> int:
@@ -24,3 +29,9 @@ def open_physics(arguments: argparse.Namespace) -> int:
     from game.start import play
 
     return play(arguments.user_dir, arguments.full_screen, begin=Route("physics", (arguments.exhibit,)))
+
+
+def _verify(arguments: argparse.Namespace) -> int:
+    from game.verify import verify
+
+    return verify(arguments)

@@ -22,13 +22,14 @@ LATE = {
 EXTRA = {"ai.gym.lander": {"gymnasium"}}
 # The floors inside `ai` and `game`, from the bottom up: a package imports from itself and from those before it.
 AI_FLOORS = (
-    "ai.nn", "ai.common", "ai.lander", "ai.agent", "ai.training", "ai.copilot", "ai.digits", "ai.gym", "ai.cli",
+    "ai.nn", "ai.common", "ai.lander", "ai.flights", "ai.agent", "ai.training", "ai.copilot", "ai.digits", "ai.gym",
+    "ai.cli",
 )  # fmt: skip
 GAME_FLOORS = (
     "game.core", "game.input", "game.audio", "game.drawing", "game.ui", "game.charts", "game.flight", "game.training",
     "game.world", "game.panels", "game.lesson", "game.cockpit", "game.exhibits", "game.digits", "game.play",
     "game.learn",
-    "game.export", "game.shell", "game.scenes", "game.start", "game.cli",
+    "game.export", "game.shell", "game.scenes", "game.start", "game.verify", "game.cli",
 )  # fmt: skip
 # These only describe what is handed to them from above, for the type checker.
 DESCRIBED_FROM_ABOVE = {"game.core.scene"}

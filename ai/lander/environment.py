@@ -217,10 +217,14 @@ class LanderEnv(Craft):
         offset = self.position - (self._top(pad) + np.array([0.0, self.params.stand]))
         return sensed(offset, self._relative_velocity(), *self._turned(), contacts, pads=pads)
 
-    def observe_at(self, slot: int, places: Doubles) -> Floats:
-        """Return what lander `slot` would observe at other places (m, 2) in the air, moving as it does now: (m, 9)."""
+    def observe_at(self, slot: int, places: Doubles, pad: int | None = None) -> Floats:
+        """Return what lander `slot` would observe at other places (m, 2) in the air, moving as it does now: (m, 9).
+
+        It is about the lander's target, or about another `pad` by its number.
+        """
         at = np.full(len(places), slot)
-        offset = places - (self.pad[at] + np.array([0.0, self.params.stand]))
+        pads = self.target if pad is None else np.full(self.num_envs, pad)
+        offset = places - (self._top(pads)[at] + np.array([0.0, self.params.stand]))
         sin, cos, spin = (part[at] for part in self._turned())
         nothing = np.zeros((len(places), 2), dtype=bool)
         return sensed(offset, self._relative_velocity()[at], sin, cos, spin, nothing, pads=len(self.ground.pads))

@@ -9,7 +9,7 @@ import pygame
 from game.cockpit.hud import Lamp, draw_title
 from game.core import texts
 from game.core.settings import Settings
-from game.drawing.canvas import Canvas
+from game.drawing.canvas import Canvas, Now
 from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NET, SMALL, VIEW_SIZE
 from game.flight.credit import FlownBy
 from game.input.controls import Command, translate
@@ -57,9 +57,12 @@ class AssistDial:
         at_once = self._settings.reduced_motion or self._dragged
         self._shown += (1.0 if at_once else _EASE) * (wanted - self._shown)
 
-    def draw(self, canvas: Canvas, text: str, stick: FlownBy, lamp: Lamp) -> None:
-        """Write who flies, after a lamp of that shape, colour and glow, and draw the slider."""
-        draw_title(canvas, text, lamp)
+    def draw(self, canvas: Canvas, text: str, stick: FlownBy, lamp: Lamp, means: Now) -> float:
+        """Write who flies, after a lamp of that shape, colour and glow, and draw the slider.
+
+        `means` says, for those who ask, what the dial means now. Returns the text's width in points.
+        """
+        width = draw_title(canvas, text, lamp)
         left, right = _TRACK
         for word, x, align in zip(texts.DIAL_ENDS, (left - 10, right + 10), ("right", "left"), strict=True):
             canvas.text(word, (x, _LINE + 4), size=SMALL, colour=MUTE, align=align)  # type: ignore[arg-type]
@@ -67,9 +70,10 @@ class AssistDial:
         reach = self._shown * (right - left)
         if reach >= 1:
             canvas.pill((left, _LINE - 1, reach, 2), NET)
-        canvas.explain(_HOLD, texts.EXPLAIN_DIAL)
+        canvas.explain(_HOLD, texts.EXPLAIN_DIAL, means)
         handle = (left + reach, _LINE)
         canvas.dot(handle, 5 + self._dragged, HUMAN if stick is FlownBy.PERSON else INK)
+        return width
 
     def _drag(self, x: float) -> None:
         share = (x - _TRACK[0]) / (_TRACK[1] - _TRACK[0])

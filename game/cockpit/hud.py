@@ -162,10 +162,15 @@ def draw_title(canvas: Canvas, text: str, lamp: Lamp, reach: float = 16.0) -> fl
     shape, colour, glow = lamp
     middle = VIEW_SIZE[0] / 2
     width = canvas.text(text, (middle + 9, 41), size=TEXT, align="centre", room=_TITLE_ROOM).width
-    spot = (middle - width / 2 - 8, 36)
+    spot = lamp_spot(width)
     canvas.glow(spot, reach, colour, glow)
     canvas.marker(shape, spot, 8 if shape == "circle" else 11, colour)
     return width
+
+
+def lamp_spot(width: float) -> Point:
+    """Return the middle of the lamp before a title of that width."""
+    return VIEW_SIZE[0] / 2 - width / 2 - 8, 36.0
 
 
 def draw_hand(canvas: Canvas, text: str, colour: Colour) -> None:
@@ -216,6 +221,7 @@ def draw_share(canvas: Canvas, left: float, top: float, width: float, human: flo
 CARD: Final = pygame.Rect(400, 136, 480, 264)
 _ADVICE_ROW: Final = 24
 _RIVAL_ROWS: Final = 60
+_GROWTH_ROW: Final = 22
 
 
 def draw_card(
@@ -229,7 +235,7 @@ def draw_card(
     drop = 10 * (1 - shown)
     left, top, width = card.left + 32, CARD.top - drop, CARD.width - 64
     lower = _ADVICE_ROW if advise and card.advice else 0
-    canvas.panel((card.left, top, CARD.width, CARD.height + lower + (_RIVAL_ROWS if rival else 0)))
+    canvas.panel((card.left, top, CARD.width, CARD.height + lower + _below(card, rival=rival is not None)))
     colour = canvas.palette.good if card.good else canvas.palette.warn
     canvas.glow((left + 10, top + 44), 30, colour, 0.5 * shown)
     canvas.marker("check" if card.good else "cross", (left + 10, top + 44), 18, colour)
@@ -251,23 +257,33 @@ def draw_card(
         _draw_rival(canvas, rival, [label for label, _, _ in card.figures], (left, top + 183), width)
         top += _RIVAL_ROWS
     draw_share(canvas, left, top + 188, width, card.human)
-    if card.stepped_in:
+    if told := card.told:
         words = canvas.text(
-            texts.SHARE_MOMENTS.format(times=card.stepped_in),
+            told,
             (left + width / 2 + 8, top + 188),
             size=SMALL,
             colour=MUTE,
             align="centre",
         )
         canvas.marker("diamond", (words.left - 10, top + 184), 8, NET)
+        if card.saved is not None:
+            canvas.explain((words.left - 16, top + 172, words.width + 20, 20), texts.EXPLAIN_CARD_SAVED)
+    for line in card.growth:
+        canvas.text(line, (left, top + 220), size=SMALL, colour=HUMAN, room=width)
+        top += _GROWTH_ROW
     canvas.line((left, top + 218), (left + width, top + 218), LINE)
 
 
 def card_row(card: OutcomeCard, hints: list[Hint], shown: float, advise: bool, *, rival: bool) -> HintRow:
     """Return the row of hints at the foot of that card."""
-    lower = _ADVICE_ROW * bool(advise and card.advice) + _RIVAL_ROWS * rival
+    lower = _ADVICE_ROW * bool(advise and card.advice) + _below(card, rival=rival)
     place = (card.left + 32, CARD.top - 10 * (1 - shown) + lower + 244)
     return HintRow(hints, place, room=CARD.width - 64)
+
+
+def _below(card: OutcomeCard, *, rival: bool) -> int:
+    """Return how many points of rows a card has more than the usual ones."""
+    return _RIVAL_ROWS * rival + _GROWTH_ROW * len(card.growth)
 
 
 def _draw_rival(canvas: Canvas, rival: RivalOutcome, labels: Sequence[str], corner: Point, width: float) -> None:

@@ -1,10 +1,8 @@
-"""Displays of shared control: lamp, line of who flew, and the co-pilot's overrides beside the craft."""
+"""Displays of shared control: the lamp, and the co-pilot's overrides beside the craft."""
 
 from __future__ import annotations
 
 import math
-from collections import deque
-from itertools import groupby
 from typing import Final
 
 from ai.common.environment import Doubles
@@ -12,19 +10,16 @@ from ai.lander.pilots import COAST
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.shapes import Shape
-from game.drawing.tokens import HUMAN, NET, SMALL, VIEW_SIZE, Colour
-from game.flight.flight import DECISION_STEPS, Flight, StickHolder
+from game.drawing.tokens import HUMAN, NET, SMALL, Colour
+from game.flight.flight import Flight, StickHolder
 from game.world import lander as art
 from game.world.camera import ClearArea, View
 
 _LASTS: Final = 40  # steps that a message stays after the last override: long enough to be read
 _FADES: Final = 14
-_SAMPLES: Final = 120  # decisions on the line, eight seconds
-_STRIP: Final = (VIEW_SIZE[0] / 2 - 90, 77.0, 180.0)  # left, middle, width
 _DOTS: Final = 6  # for an engine that was asked for and not fired
 _SIGN: Final = 9.0  # from the middle of a sign to the words beside it
 _LOWEST: Final = 620.0  # row above the read-outs
-_YOURS, _HANDED, _CHANGED = range(3)
 
 
 class Overrides:
@@ -40,8 +35,6 @@ class Overrides:
         self._since = _LASTS + _FADES
         self._word = ""
         self._asked = self._flown = COAST
-        self._now = _YOURS
-        self._line: deque[int] = deque(maxlen=_SAMPLES)
 
     def follow(self, flight: Flight) -> bool:
         """Update after a step; return whether the co-pilot has just stepped in."""
@@ -50,12 +43,7 @@ class Overrides:
         if flight.overridden:
             self._asked, self._flown = flight.asked, flight.recording.actions[-1]
             self._word = difference(self._asked, self._flown)
-            self._now = _CHANGED
         self.times += begins
-        if len(flight.recording.actions) % DECISION_STEPS == 0 and not flight.over:
-            yours = flight.flown_by is StickHolder.HUMAN
-            self._line.append(_CHANGED if self._now == _CHANGED else _YOURS if yours else _HANDED)
-            self._now = _YOURS
         return begins
 
     @property
@@ -69,21 +57,9 @@ class Overrides:
             return "circle", NET, 0.8
         if self._since < _FADES:
             return "diamond", NET, 1.6
-        if flight.shared and flight.flown_by is StickHolder.NETWORK and flight.asked == COAST:
+        if flight.shared and flight.flown_by is StickHolder.NETWORK and flight.asked == COAST and not flight.guarded:
             return "ring", NET, 0.5
         return "circle", HUMAN, 0.8
-
-    def draw_line(self, canvas: Canvas) -> None:
-        """Draw the line of who flew in the last seconds; it is thick where the co-pilot stepped in."""
-        left, middle, width = _STRIP
-        step = width / _SAMPLES
-        x = left + width - step * len(self._line)
-        for kind, run in groupby(self._line):
-            length = step * len(list(run))
-            height = 7.0 if kind == _CHANGED else 1.0
-            colour, alpha = (HUMAN, 0.6) if kind == _YOURS else (NET, 1.0 if kind == _CHANGED else 0.6)
-            canvas.fill(canvas.rect(x, middle - height / 2, max(length, 1.0), height), colour, alpha)
-            x += length
 
     def draw_word(self, canvas: Canvas, view: View, pose: Doubles, clear: ClearArea) -> None:
         """Write the override beside the craft, where it is `clear`, and draw suppressed flames as dots."""

@@ -21,8 +21,12 @@ class Scene:
 
     Attributes:
         context: the shared services.
+        takes_files: whether files can be dropped here that are no flights.
+        typing: whether a text is being typed, which then takes what is pasted.
 
     """
+
+    takes_files = typing = False
 
     def __init__(self, context: Context) -> None:
         self.context = context

@@ -40,9 +40,12 @@ class Settings:
     copilot: str = "tolerance"  # mode of the co-pilot, a Mode of ai.copilot.copilot
     three_pads: bool = False  # three pads among hills, instead of one on a plain
     hands: str = "own"  # handicap of the hands, a name of game.flight.handicap.HANDS
-    check_flights: bool = False  # check flights: every fifth flight is flown without help
+    check_flights: bool = False  # check flights: now and then a flight is flown without help
+    fade: bool = False  # whether help fades as the player improves, with check flights
+    faded_to: float = 0.0  # assist at which fading has left the dial; at another one, it was turned by hand
     teach: bool = False  # whether good landings are kept for a network to learn from
     explain: bool = True  # whether the co-pilot's panel is shown
+    edge: bool = False  # whether the chance to be saved is shown, over the sky and while flying alone
     gravity: Annotated[float, Within(*GRAVITY_SHARES)] = 1.0  # share of normal gravity in free flights
     pace: Annotated[float, Within(*PACES)] = 1.0  # time scale of a flight
     keys: dict[str, Any] = field(default_factory=dict)  # changed keys, as game.input.bindings writes them

@@ -8,12 +8,12 @@ from __future__ import annotations
 from enum import Enum, auto
 from typing import Protocol
 
+from ai.flights.score import landing_score
 from ai.lander.environment import Outcome
 from game.core import texts
 from game.flight.difficulty import Difficulty
 from game.flight.flight import Flight, StickHolder
 from game.flight.handicap import OWN
-from game.flight.outcomes import landing_score
 
 
 class CreditRules(Protocol):
@@ -86,6 +86,11 @@ class Credit:
     def helped(self) -> bool:
         """Whether a co-pilot has shared the stick at any time, or will in the next step."""
         return self._shared or (self._flight.shared and not self._flight.over)
+
+    @property
+    def check(self) -> bool:
+        """Whether it is a check flight."""
+        return self._check
 
     @property
     def alone(self) -> bool:

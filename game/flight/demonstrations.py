@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Final
 
+from ai.flights.score import landing_score
 from game.core.lock import held
 from game.flight.flight import Flight, StickHolder
-from game.flight.outcomes import landing_score
 
 FILE_NAME: Final = "demonstrations.json"
 _LEAST_STEPS: Final = 60  # flown by hand to the end, to count as a takeover

@@ -2,55 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from enum import Enum
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from ai.common.decision import Decision
 from ai.common.environment import Doubles, Floats
-from ai.lander.environment import LanderEnv, Outcome
-from ai.lander.missions import STARTS
+from ai.flights.recording import Recording, StickHolder
+from ai.flights.starts import begun
+from ai.lander.environment import Outcome
 from ai.lander.pilots import COAST
 from game.flight.handicap import OWN, Handicap
 from game.flight.networks import Policy, QPolicy, decide
 from game.flight.poses import Poses
-from game.flight.surface import ground_of
 
 if TYPE_CHECKING:
     from ai.copilot.copilot import CoPilot, SharedDecision
 
+__all__ = ["DECISION_STEPS", "Flight", "Recording", "StickHolder"]
+
 # Physics steps per decision of a network, here as in training.
 DECISION_STEPS: Final = 4
-
-
-class StickHolder(Enum):
-    """Holder of the stick."""
-
-    HUMAN = "human"
-    NETWORK = "network"
-
-
-@dataclass
-class Recording:
-    """Recording of a flight for an exact replay: its start, and the action of every step.
-
-    `hands` says who chose each action: with a shared stick, the person if the action is the one they asked for.
-    `gravity` lists its changes: the first step, and the share of normal gravity.
-    """
-
-    seed: int
-    spawn: str
-    pads: int = 1
-    actions: list[int] = field(default_factory=list)
-    hands: list[StickHolder] = field(default_factory=list)
-    mission: str = ""
-    gravity: list[tuple[int, float]] = field(default_factory=list)
-
-    def gravity_at(self, step: int) -> float:
-        """Return the share of normal gravity during a step."""
-        return next((share for begin, share in reversed(self.gravity) if begin <= step), 1.0)
 
 
 class Flight:
@@ -85,11 +57,7 @@ class Flight:
         mission: str = "",
         shares: bool = True,
     ) -> None:
-        if mission:
-            self.env = STARTS[mission].begin()
-        else:
-            self.env = LanderEnv(1, seed, spawn, frame_skip=1, ground=ground_of(seed, pads))
-            self.env.reset()
+        self.env = begun([seed], spawn, pads, mission)
         self.observation: Floats = self.env.observe()
         self.hand, self.shares = StickHolder.HUMAN, shares
         self.recording = Recording(seed, spawn, pads, mission=mission)
@@ -127,6 +95,11 @@ class Flight:
     def shared(self) -> bool:
         """Whether the person shares the stick with the co-pilot."""
         return self.hand is StickHolder.HUMAN and self.copilot is not None and self.copilot.assist > 0
+
+    @property
+    def guarded(self) -> bool:
+        """Whether the latest decision was a guardian's with a safety critic: coasting is then an action like others."""
+        return self.decision is not None and self.decision.chances is not None
 
     def put(self, moment: dict[str, Any], source: Recording, step: int) -> None:
         """Restore a snapshot `moment` of the environment after `step` steps of a flight from the same start."""
@@ -212,8 +185,10 @@ class Flight:
             self._held_for = (self._held_for + 1) % DECISION_STEPS
             return self.asked, StickHolder.HUMAN
         action = self._ask_copilot()
-        self.overridden = self.asked not in (COAST, action)
-        return action, StickHolder.HUMAN if action == self.asked != COAST else StickHolder.NETWORK
+        # With nothing pressed the co-pilot flies; only a guardian that looks at the chance to be saved lets it coast.
+        asks = self.asked != COAST or self.guarded
+        self.overridden = asks and action != self.asked
+        return action, StickHolder.HUMAN if asks and not self.overridden else StickHolder.NETWORK
 
     def _ask_network(self) -> int:
         if self.alone is None or self._held_for == 0:

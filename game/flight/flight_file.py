@@ -15,6 +15,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Annotated, Any, Final
 
+from ai.flights.recording import LONGEST, Recording, StickHolder
 from ai.lander.environment import NUM_ACTIONS, Outcome
 from ai.lander.missions import MISSIONS
 from ai.lander.spawns import SPAWNS
@@ -22,13 +23,11 @@ from ai.nn.files import brief, parse_json, read_text, write_text
 from ai.nn.schema import OneOf, Seed, Share, Sized, Within, check_header, read_as
 from game.core import texts
 from game.core.settings import GRAVITY_SHARES
-from game.flight.flight import Recording, StickHolder
 
 FORMAT: Final = "tranquility flight"
 VERSION: Final = 4
 # Version 1 had no changes of gravity, 2 no rules of missions, 3 no reason why a flight does not count.
 _READS: Final = (1, 2, 3, 4)
-_LONGEST: Final = 120 * 60  # physics steps of a flight, at most
 _LARGEST: Final = 1_000_000  # bytes
 _LONGEST_NAME: Final = 255  # characters, as in the name of a file
 _MOST: Final = 32_503_680_000 - 1  # limit of any figure; as a date the year 2999, the last on some systems
@@ -62,6 +61,7 @@ class Entry:
         rules: version of its mission's rules at the time, from `rules_of`.
         barred: why it does not count as the person's own, a key of `texts.NOT_COUNTED`; empty if it does, or was flown
             before this field existed.
+        guarded: assist of the guardian with a safety critic that watched over all of it, 0 to 1; 0 for none.
         course: name of a mission; empty for a free flight.
         medal: 3 for gold, 2, 1, and 0 for none.
         file: name of the flight's file, for a replay.
@@ -85,6 +85,7 @@ class Entry:
     pace: _Figure = 1.0
     rules: _Number = 0
     barred: _Name = ""
+    guarded: Share = 0.0
 
     @property
     def practice(self) -> bool:
@@ -204,6 +205,6 @@ def _unpacked(text: str) -> list[str]:
     """Decode the output of `_packed`; raises ValueError for bad input, before that takes much memory."""
     runs = [run.split("*") for run in text.split()]
     counts = [int(count) for _, count in runs]
-    if any(count < 1 for count in counts) or sum(counts) > _LONGEST:
+    if any(count < 1 for count in counts) or sum(counts) > LONGEST:
         raise ValueError(texts.FLIGHT_ACTIONS)
     return [word for (word, _), count in zip(runs, counts, strict=True) for _ in range(count)]

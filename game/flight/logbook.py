@@ -14,6 +14,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any, Final
 
+from ai.flights.score import landing_score
 from ai.nn.files import parse_json, read_end
 from ai.nn.schema import read_as
 from game.core import texts
@@ -22,7 +23,6 @@ from game.core.trash import Trash
 from game.flight import flight_file
 from game.flight.flight import Flight
 from game.flight.flight_file import Entry, Record
-from game.flight.outcomes import landing_score
 
 FOLDER: Final = "flights"
 LOGBOOK: Final = "logbook.jsonl"
@@ -227,14 +227,3 @@ def totals(entries: Sequence[Entry]) -> Totals:
         sum(entry.fuel for entry in entries),
         longest,
     )
-
-
-def skill(entries: Iterable[Entry], window: int = RECENT_OWN) -> list[float]:
-    """Return the share of landings, 0 to 1, among the last `window` flights by the person alone, after each flight."""
-    return shares([entry.landed for entry in entries if entry.alone], window)
-
-
-def shares(landed: Sequence[bool], window: int) -> list[float]:
-    """Return the moving average of landings, 0 to 1, over the last `window` flights, after each flight."""
-    recent = (landed[max(0, last - window) : last] for last in range(1, len(landed) + 1))
-    return [sum(few) / len(few) for few in recent]

@@ -14,8 +14,9 @@ from game.core import texts
 class OutcomeCard:
     """Contents of an outcome card: good or not, the reason, figures as label, value, unit, and advice.
 
-    For a shared flight, `stepped_in` is how often the co-pilot intervened. `medal` is 3 for gold, 2, 1, 0 for none.
-    `left` is the card's left edge.
+    For a shared flight, `stepped_in` is how often the co-pilot intervened, and `saved` how often it saved the person;
+    None for a flight without a guardian that could tell, or without a landing. `medal` is 3 for gold, 2, 1, 0 for none.
+    `left` is the card's left edge. `growth` are lines on what the flight has shown of the person's own skill.
     """
 
     good: bool
@@ -27,7 +28,17 @@ class OutcomeCard:
     score: str = ""
     medal: int = 0
     stepped_in: int | None = None
+    saved: int | None = None
     left: float = 400.0
+    growth: tuple[str, ...] = ()
+
+    @property
+    def told(self) -> str:
+        """Text that says how often the co-pilot saved the person or stepped in; empty if there is nothing to say."""
+        if self.saved is not None:
+            few = texts.CARD_SAVED
+            return few[self.saved] if self.saved < len(few) else texts.CARD_SAVED_OFTEN.format(times=self.saved)
+        return texts.SHARE_MOMENTS.format(times=self.stepped_in) if self.stepped_in else ""
 
 
 @dataclass(frozen=True)
@@ -72,17 +83,6 @@ def flight_figures(env: LanderEnv, slot: int = 0) -> tuple[tuple[str, str, str],
         figures.append((texts.TOUCHDOWN, f"{float(env.impact[slot, 0]):.1f}", "m/s"))
     away = abs(float(env.position[slot, 0] - env.pad[slot, 0]))
     return (*figures, (texts.FROM_MIDDLE, f"{away:.1f}", "m"))
-
-
-def landing_score(env: LanderEnv, slot: int = 0) -> int:
-    """Return the score of a landing: up to 100 times its pad's factor, less for a hard touch or off the middle."""
-    number = int(env.landed_on[slot])
-    if number < 0:
-        return 0
-    pad = env.ground.pads[number]
-    hard = min(1.0, float(env.impact[slot, 0]) / env.limits.touch_speed)
-    aside = min(1.0, abs(float(env.position[slot, 0] - env.pad_shift[slot]) - pad.x) / (pad.width / 2))
-    return pad.factor * round(100 - 40 * hard - 30 * aside)
 
 
 def crash_reason(env: LanderEnv, slot: int = 0) -> str:

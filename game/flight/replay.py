@@ -6,7 +6,8 @@ from typing import Final
 
 import numpy as np
 
-from ai.common.environment import Doubles
+from ai.common.environment import Doubles, Floats
+from ai.flights.verification import Earned, earned
 from ai.lander.pilots import COAST
 from game.flight.flight import DECISION_STEPS, Flight, Recording, StickHolder
 from game.flight.flight_file import Record
@@ -53,6 +54,7 @@ class FlightReplay:
         flight: the flight at the step that is shown.
         length: physics steps of the whole flight.
         path: positions (steps + 1, 2) up to the scout's step.
+        observations: what could be observed of each pad, (pads, 9), before every decision of the scout in the air.
 
     """
 
@@ -63,6 +65,8 @@ class FlightReplay:
         self._moments = [self._scout.env.snapshot()]
         self._places = np.empty((self.length + 1, 2))
         self._places[0] = self._scout.env.position[0]
+        self.observations: list[Floats] = []
+        self._touched = False
 
     @property
     def at(self) -> int:
@@ -90,6 +94,11 @@ class FlightReplay:
         return self._scout.over or self.reached >= self.length
 
     @property
+    def earned(self) -> Earned | None:
+        """What the flight really earned; None until the scout has reached the end."""
+        return earned(self._scout.env, self.record.recording.mission) if self.complete else None
+
+    @property
     def faithful(self) -> bool:
         """Whether the replay matches the record so far; it does not if the rules have changed since."""
         if not self.complete:
@@ -103,10 +112,17 @@ class FlightReplay:
         for _ in range(steps):
             if self.complete:
                 return
+            self._observe()
             self._scout.step(COAST)
             self._places[self.reached] = self._scout.env.position[0]
             if self.reached % _EVERY == 0:
                 self._moments.append(self._scout.env.snapshot())
+
+    def _observe(self) -> None:
+        """Keep what a pilot could observe before the scout's next decision, up to the first touch."""
+        self._touched = self._touched or self.touching
+        if self.reached % DECISION_STEPS == 0 and not self._touched:
+            self.observations.append(self._scout.env.observe_pads()[0])
 
     def step(self) -> None:
         """Show the next step."""

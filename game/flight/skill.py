@@ -5,27 +5,51 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Final
 
+from game.flight.becoming import Becoming, Change, kind_of
 from game.flight.flight_file import Entry
-from game.flight.logbook import RECENT_OWN, skill
 
 CHECK_EVERY: Final = 5
+CHECK_SELDOM: Final = 10  # where it is well known how often the player would land alone
+_WELL_KNOWN: Final = 0.2  # width of the estimate's interval
 
 
 class Skill:
-    """Skill of a player from their free flights, oldest first; missions have their own figures."""
+    """Skill of a player from their free flights, oldest first; missions have their own figures.
+
+    Attributes:
+        becoming: how often the player would land alone, from all flights that tell something of it.
+        change: what the latest flight has changed in that; None if nothing.
+
+    """
 
     def __init__(self, entries: Iterable[Entry]) -> None:
+        entries = list(entries)
         self.entries = [entry for entry in entries if _counts(entry)]
+        self.becoming = Becoming(entries)
+        self.change: Change | None = None
+        self._since = 0  # flights before the last check flight that was skipped
 
     def add(self, entry: Entry) -> None:
         """Add a flight that has just ended."""
         self.entries += [entry] * _counts(entry)
+        self.change = self.becoming.add(entry)
+
+    def skip_check(self) -> None:
+        """Leave out the check flight that is due; the next one comes after as many flights as usual."""
+        self._since = len(self.entries)
 
     @property
     def check_due(self) -> bool:
-        """Whether the next flight is a check flight: all flights of the last `CHECK_EVERY` - 1 were helped."""
-        last = self.entries[1 - CHECK_EVERY :]
-        return len(last) == CHECK_EVERY - 1 and not any(entry.alone for entry in last)
+        """Whether the next flight is a check flight: all flights since the last one were helped, and they were enough.
+
+        Where it is well known how often the player would land alone, it takes more of them.
+        """
+        if not self.entries:
+            return False
+        estimate = self.becoming.estimate(kind_of(self.entries[-1]))
+        every = CHECK_SELDOM if estimate.high - estimate.low <= _WELL_KNOWN else CHECK_EVERY
+        last = self.entries[self._since :][1 - every :]
+        return len(last) == every - 1 and not any(entry.alone for entry in last)
 
     @property
     def best(self) -> int:
@@ -36,11 +60,6 @@ class Skill:
     def own(self) -> list[bool]:
         """Results of the flights without help: whether each landed."""
         return [entry.landed for entry in self.entries if entry.alone]
-
-    @property
-    def curve(self) -> list[float]:
-        """Skill curve: share of landings, 0 to 1, among the last `RECENT_OWN` flights without help, after each."""
-        return skill(self.entries, RECENT_OWN)
 
 
 def _counts(entry: Entry) -> bool:

@@ -8,16 +8,10 @@ from typing import Final
 import numpy as np
 
 from ai.lander.environment import LanderEnv
-from ai.lander.ground import Ground, hilly
+from ai.lander.ground import Ground
 
 _PROFILE_REACH: Final = 30.0  # metres to both sides for which the ground's height is cached
 _PROFILE_STEP: Final = 0.02
-
-
-@lru_cache(maxsize=8)
-def ground_of(seed: int, pads: int) -> Ground:
-    """Return the ground of a flight: a plain with one pad, or hills with a pad of every size."""
-    return Ground.flat() if pads == 1 else hilly(np.random.default_rng(seed))
 
 
 def surface_height(env: LanderEnv, x: float) -> float:

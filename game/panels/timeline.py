@@ -62,33 +62,34 @@ class Timeline(Widget):
 
     def drag(self, x: float) -> None:
         """Seek to the mouse."""
-        left, width = self._track
+        left, width = self.track
         self._on_seek(round(self.length * (x - left) / width))
 
     @property
-    def _track(self) -> tuple[float, float]:
+    def track(self) -> tuple[float, float]:
         """Left end and width of the strip, in points."""
         return self.box.left + _LABELS, self.box.width - _LABELS
 
-    def _place(self, step: float) -> float:
-        left, width = self._track
+    def place(self, step: float) -> float:
+        """Return where a step is on the strip, in points."""
+        left, width = self.track
         return left + width * min(max(step / self.length, 0.0), 1.0)
 
     def paint(self, canvas: Canvas) -> None:
         """Draw the strip, the lanes below it and the mark of the moment."""
         super().paint(canvas)
-        (left, width), top = self._track, self.box.top + _TOP
+        (left, width), top = self.track, self.box.top + _TOP
         self._still.draw(canvas, self.box, tuple(self.box), self._paint_runs)
-        far = self._place(self.reached)
+        far = self.place(self.reached)
         if far < left + width - 1:  # the part that is not computed yet
             canvas.fill(canvas.rect(far, top - 1, left + width - far, _BAR + 2), LINE, 0.7)
-        x = self._place(self.at)
-        canvas.line((x, top - 5), (x, top + 12 + 2 * _LANE + 5), INK, 1)
+        x = self.place(self.at)
+        canvas.line((x, top - 5), (x, self.box.bottom - 7), INK, 1)
         canvas.dot((x, top + 1.5), 4.5 + self.warmth, INK)
 
     def _paint_runs(self, canvas: Canvas) -> None:
         """Draw the lanes, which stay the same until the end; they can have many stretches."""
-        left, width = _LABELS, self._track[1]
+        left, width = _LABELS, self.track[1]
 
         def lay(stretches: Sequence[tuple[int, int, Colour]], top: float) -> None:
             for start, stop, colour in stretches:

@@ -41,12 +41,15 @@ def _draw_free_title(canvas: Canvas, flight: Flight, network: Network, hands: st
     hud.draw_corner(canvas, texts.THREE_PADS if flight.recording.pads > 1 else texts.FREE_FLIGHT, flown, notice)
 
 
-def draw_opening(canvas: Canvas, controls: Controls, challenge: Challenge | None, forecast: bool) -> None:
-    """Draw the controls and the legend of the dotted paths while the craft hangs and waits."""
+def draw_opening(
+    canvas: Canvas, controls: Controls, challenge: Challenge | None, forecast: bool, *, check: bool = False
+) -> None:
+    """Draw the controls and the legend of the dotted paths while the craft hangs and waits, before a `check` kindly."""
     paths = [(texts.PATH_YOURS, HUMAN)]
     if forecast:
         paths.append((texts.PATH_NETWORK, NET))
-    hud.draw_opening(canvas, flight_hints(controls), challenge.opening if challenge else texts.BEGIN, paths)
+    begin = texts.CHECK_BEGIN if check else texts.BEGIN
+    hud.draw_opening(canvas, flight_hints(controls), challenge.opening if challenge else begin, paths)
 
 
 def flight_actions(

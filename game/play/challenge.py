@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from datetime import date
 from typing import Final
 
 from ai.lander.environment import Cause, LanderEnv, Outcome
@@ -11,9 +10,10 @@ from ai.lander.missions import Mission
 from game.core import texts
 from game.core.settings import Settings
 from game.drawing.canvas import Canvas
+from game.flight import sharing
 from game.flight.credit import Credit
 from game.flight.flight import Flight, Recording
-from game.flight.flight_file import Record
+from game.flight.flight_file import Entry, Record
 from game.flight.networks import Policy
 from game.flight.outcomes import OutcomeCard
 from game.flight.replay import FlightReplay, ReplayedFlight
@@ -54,6 +54,7 @@ class Challenge:
         bar: key in `texts.NOT_COUNTED` of why its flights do not count as the player's own; empty if they may.
         alone: whether the network may neither help nor take over.
         next_hint: hint of the key for what comes next; empty where it does nothing.
+        copy_hint: hint of the key that copies what a friend is told.
         title, line: name of the challenge, for the corner.
         goal: goal of the flight, for the corner as well.
         opening: text while the craft hangs and waits; empty to leave the middle free.
@@ -68,6 +69,7 @@ class Challenge:
     alone = False
     through = False
     next_hint = ""
+    copy_hint = texts.CODE_HINT_COPY
     title = line = goal = opening = ""
 
     def flight(self, seed: int, network: Policy | None) -> Flight:
@@ -100,6 +102,15 @@ class Challenge:
 
     def leave(self) -> None:
         """Leave the challenge for free flights."""
+
+    def written(self, entry: Entry) -> str:  # noqa: ARG002
+        """Take note of the logbook's line of a finished flight; return what went wrong, empty if nothing did."""
+        return ""
+
+    def message(self, record: Record) -> tuple[str, str]:
+        """Return what a friend is told of a flight that is over, and what the player is told of that."""
+        code = sharing.code(record)
+        return code, texts.CODE_COPIED.format(count=len(code))
 
     def remember(self, settings: Settings) -> bool:  # noqa: ARG002
         """Store the pilot's progress in the settings; return whether there was any to store."""
@@ -240,19 +251,3 @@ def _advice(env: LanderEnv) -> str:
     if conditions.moves and env.cause[0] in (Cause.SLIDING, Cause.TERRAIN):
         return texts.ADVICE_MOVING
     return texts.ADVICE_WIND if conditions.pushes and env.cause[0] == Cause.TERRAIN else ""
-
-
-class DailyStart(Challenge):
-    """Start of the day, the same for everybody, without a network to help."""
-
-    name = "daily"
-    alone = True
-    title = texts.DAILY
-
-    def __init__(self, day: date) -> None:
-        self.seed = day.toordinal()
-        self.line, self.opening = f"{day:%Y-%m-%d}", texts.DAILY_BEGIN
-
-    def flight(self, seed: int, network: Policy | None) -> Flight:  # noqa: ARG002
-        """Begin a flight with three pads among hills."""
-        return Flight(self.seed, pads=3)

@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING
 from game.audio.flight_sounds import FlightSound
 from game.cockpit import hud
 from game.cockpit.cockpit import Cockpit
+from game.cockpit.map_legend import draw_edge_line
 from game.cockpit.readouts_explained import explain_readouts
 from game.core.pace import SlowMotion
 from game.drawing.canvas import Canvas
 from game.flight.credit import Credit
 from game.flight.difficulty import Difficulty
 from game.flight.flight import Flight, StickHolder
+from game.flight.flight_file import Record
 from game.flight.handicap import OWN
 from game.flight.logbook import Records
 from game.flight.networks import Network, Policy
@@ -21,6 +23,7 @@ from game.flight.skill import Skill
 from game.play import captions
 from game.play.challenge import Challenge, DrawnFlight
 from game.play.ending import FlightEnding
+from game.world.chance_map import ChanceMap
 from game.world.path_preview import PathPreview
 from game.world.scenery import Scenery
 
@@ -46,6 +49,8 @@ class FlownFlight:
         difficulty: its changes of gravity and pace.
         pace: the clock that slows down after a crash.
         ending: the ending, with slow motion and outcome card.
+        record: the record of the flight once it is over; None before, and where none is kept.
+        chance_map: where one could still be saved, while the player wishes to see it.
         waiting: whether the craft still hangs until the pilot's first touch.
 
     """
@@ -64,6 +69,7 @@ class FlownFlight:
         self._context, self._settings = context, context.settings
         self.challenge, self.hands = challenge, hands
         self.waiting = self._held_before = True
+        self.record: Record | None = None
         self._was_over = False  # whether the flight was over before its latest step
         alone = check or (challenge is not None and challenge.alone)
         self._policy = None if alone else policy
@@ -82,6 +88,7 @@ class FlownFlight:
         self.ending = FlightEnding(self.flight, self.pace, calm)
         self._readouts = hud.flight_readouts(self.flight.env)
         self.path_preview = PathPreview(self.flight, self._guide)
+        self.chance_map = ChanceMap()
 
     @property
     def _guide(self) -> Policy | None:
@@ -107,6 +114,9 @@ class FlownFlight:
         """Advance by 1/60 s what moves whether or not anything flies."""
         self.scenery.breathe()
         self.cockpit.ease()
+        meter = self.cockpit.chance_meter
+        if meter.wished and meter.critic is not None and not self.flight.over:
+            self.chance_map.follow(self.flight.env, 0, meter.critic)
 
     def due(self, action: int) -> bool:
         """Count 1/60 s; return whether a step is due: the craft may wait, or slowed time make none due."""
@@ -172,7 +182,11 @@ class FlownFlight:
             course=challenge.name if challenge else "",
             medal=credit.medal,
             pace=credit.pace,
+            guarded=max(0.0, self.cockpit.rescues.throughout),
         )
+        x, y, angle = self.flight.poses.now[0].tolist()
+        self.record = Record(self.flight.recording, entry, (x, y, angle))
+        told = told or (challenge.written(entry) if challenge else "")
         skill.add(entry)
         if told or records.problem:
             context.note(told or records.problem)
@@ -193,6 +207,9 @@ class FlownFlight:
             self.ghost.draw_way(canvas, view)
         if flight.over:
             self.cockpit.track.draw(canvas, view)
+        edge = self.cockpit.chance_meter.wished and not flight.over
+        if edge:
+            self.chance_map.draw_edge(canvas, view, flight.env, self.scenery.clear.head, safe=False)
         self.path_preview.draw(canvas, view, self.scenery.clear.head)
         if self.ghost:
             self.ghost.draw(canvas, view, alpha)
@@ -204,7 +221,11 @@ class FlownFlight:
             self.challenge.draw(canvas, view, flight, self.moment(alpha))
         self.cockpit.draw_top(canvas)
         captions.draw_title(canvas, flight, self.challenge, network, self.hands, self.credit.notice)
+        if edge:
+            draw_edge_line(canvas, self.chance_map)
         hud.draw_readouts(canvas, self._readouts)
         explain_readouts(canvas, flight.env)
         if self.waiting and not (self.challenge and not self.challenge.opening):
-            captions.draw_opening(canvas, self._context.controls, self.challenge, self.path_preview.asks)
+            captions.draw_opening(
+                canvas, self._context.controls, self.challenge, self.path_preview.asks, check=self.credit.check
+            )

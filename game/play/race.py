@@ -11,15 +11,19 @@ from game.flight.replay import FlightReplay
 from game.play.challenge import ContinuedFlight, FlownMission, Race
 
 
-def race(record: Record) -> FlownMission | Race:
-    """Return a race against a recorded flight; a mission's flight is raced as that mission, with its medals."""
+def race(record: Record, rival: str = "") -> FlownMission | Race:
+    """Return a race against a recorded flight, named by its date or as `rival`.
+
+    A mission's flight is raced as that mission, with its medals.
+    """
     mission = MISSIONS.get(record.recording.mission)
-    return FlownMission(mission, record, _name(record)) if mission else Race(record, _name(record))
+    name = rival or _name(record)
+    return FlownMission(mission, record, name) if mission else Race(record, name)
 
 
-def fly_on(record: Record, flight_replay: FlightReplay) -> ContinuedFlight:
+def fly_on(record: Record, flight_replay: FlightReplay, rival: str = "") -> ContinuedFlight:
     """Return a challenge that flies on from a replay's current moment, beside the recorded flight as a ghost."""
-    return ContinuedFlight(flight_replay, _name(record))
+    return ContinuedFlight(flight_replay, rival or _name(record))
 
 
 def _name(record: Record) -> str:

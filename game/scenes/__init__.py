@@ -12,6 +12,7 @@ from game.ui.context import Context
 # The name of each scene that another may lead to: the module in this package, and the class in that.
 ROUTES: Final = {
     "menu": "menu.MenuScene", "play": "play.PlayScene", "missions": "missions.MissionsScene",
+    "days": "days.DaysScene",
     "watch": "watch.WatchScene", "train": "train.TrainScene", "runs": "runs.NetworksScene",
     "digits": "digits.DigitsScene", "digit_training": "digit_training.DigitTrainingScene",
     "digit_inside": "digit_inside.DigitInsideScene", "why_not": "why_not.WhyNotScene",

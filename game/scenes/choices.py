@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from itertools import pairwise
 from typing import Final
 
 import pygame
@@ -12,13 +11,18 @@ from game.cockpit.cockpit import MODES
 from game.core import texts
 from game.core.scene import Pop, Scene
 from game.core.settings import GRAVITY_SHARES, PACES
-from game.drawing.canvas import Canvas
+from game.drawing.canvas import Canvas, Point
+from game.drawing.prose import draw_wrapped
+from game.drawing.shapes import Shape
 from game.drawing.tokens import FAINT, FIGURE, HUMAN, INK, LABEL, MARGIN, MUTE, SMALL, TITLE
+from game.flight import fading
 from game.flight.demonstrations import count_demonstrations
 from game.flight.handicap import HANDS
 from game.flight.logbook import RECENT_OWN
 from game.flight.skill import Skill
 from game.input.controls import Command
+from game.panels.becoming_band import draw_curve
+from game.play.growth import said
 from game.ui.actions import Action, Table
 from game.ui.blurred_picture import BlurredPicture
 from game.ui.context import Context
@@ -31,9 +35,11 @@ _LABELS: Final = 142
 _FIRST: Final = 136
 _ROW: Final = 40
 _HELP: Final = 18  # from the last row to the sentence on the one in focus
-_TOGGLES: Final = 40
-_TOGGLE_ROW: Final = 58
-_CHART: Final = pygame.Rect(800, 152, 372, 176)
+_TOGGLES: Final = 38
+_TOGGLE_ROW: Final = 50
+_CHART: Final = pygame.Rect(800, 152, 372, 150)
+_SHOWN: Final = 60  # latest flights on the chart
+_SKILL_TOGGLES: Final = 512  # below the figures
 
 
 class ChoicesScene(FormScene):
@@ -54,14 +60,20 @@ class ChoicesScene(FormScene):
             self._add_starts()
             self._add_slider("gravity", GRAVITY_SHARES, texts.CHOICES_GRAVITY, lambda: texts.CHOICES_GRAVITY_HELP)
         self._add_slider("pace", PACES, texts.PACE, lambda: texts.CHOICES_PACE_HELP)
-        toggles = {"check_flights": texts.CHOICES_CHECK, "teach": texts.CHOICES_TEACH, "explain": texts.CHOICES_EXPLAIN}
+        toggles = {
+            "teach": texts.CHOICES_TEACH,
+            "explain": texts.CHOICES_EXPLAIN,
+            "edge": texts.CHOICES_EDGE,
+        }
         if self._challenge:
-            toggles = {"explain": texts.CHOICES_EXPLAIN}
+            toggles = {name: toggles[name] for name in ("explain", "edge")}
         top = _FIRST + len(self._rows) * _ROW + _TOGGLES
         for row, (name, (label, hint)) in enumerate(toggles.items()):
-            box = (MARGIN, top + row * _TOGGLE_ROW, _WIDTH, 52)
+            box = (MARGIN, top + row * _TOGGLE_ROW, _WIDTH, 48)
             value = getattr(context.settings, name)
             form.add(Toggle(form.manager, box, label, value, self._changes(name), hint=hint))
+        if not self._challenge:
+            self._add_skill_toggles()
         form.add(TextButton(form.manager, (MARGIN, 624, 96, 32), texts.CHOICES_FLY, Pop, size=18))
 
     def _add_help(self) -> None:
@@ -82,6 +94,23 @@ class ChoicesScene(FormScene):
             lambda index: self._changes("copilot")(MODES[index]),
             lambda: texts.CHOICES_MODES_HELP[_index(MODES, settings.copilot)],
         )
+
+    def _add_skill_toggles(self) -> None:
+        """Add the switches for what follows the player's skill, below its chart."""
+        settings, form = self.context.settings, self.form
+        resting = settings.fade and not fading.active(settings)
+        label, hint = texts.FADE_CHOICE
+        hint = texts.FADE_RESTING if resting else hint
+        box = pygame.Rect(_CHART.left, _SKILL_TOGGLES, _CHART.width, 48)
+        form.add(Toggle(form.manager, box, label, settings.fade, self._switch_fading, hint=hint))
+        label, hint = texts.CHOICES_CHECK
+        box = box.move(0, _TOGGLE_ROW)
+        value = settings.check_flights
+        form.add(Toggle(form.manager, box, label, value, self._changes("check_flights"), hint=hint))
+
+    def _switch_fading(self, on: bool) -> None:
+        fading.switch(self.context.settings, on=on)
+        self.context.apply_settings()
 
     def _add_starts(self) -> None:
         """Add the rows for the next flight's pads and for the handicap on its keys."""
@@ -120,6 +149,13 @@ class ChoicesScene(FormScene):
         self.draw_hints(canvas)
 
     @property
+    def _kind(self) -> str:
+        """Kind of start of the flight below, or of the next one, one of `game.flight.becoming.KINDS`."""
+        if self._challenge:
+            return "missions"
+        return "hills" if self.context.settings.three_pads else "plain"
+
+    @property
     def _box(self) -> tuple[int, int, int, int]:
         """Box of the next row."""
         return MARGIN, _FIRST + len(self._rows) * _ROW, _WIDTH, _ROW - 6
@@ -143,26 +179,35 @@ class ChoicesScene(FormScene):
         return change
 
     def _draw_skill(self, canvas: Canvas) -> None:
-        """Draw the share of landings among the last ten flights without help, after each of them."""
+        """Draw how often the player would land alone, for the kind of start that is chosen."""
         left, top, width, height = _CHART
-        canvas.text(texts.SKILL_TITLE, (left, top - 24), size=LABEL, colour=MUTE, weight="medium")
+        kind, becoming = self._kind, self._skill.becoming
+        canvas.text(
+            f"{texts.BECOMING_TITLE} · {texts.BECOMING_KINDS[kind].upper()}",
+            (left, top - 24), size=LABEL, colour=MUTE, weight="medium", room=width + 40,
+        )  # fmt: skip
         for share in (0.0, 0.5, 1.0):
             y = top + height * (1 - share)
             canvas.line((left, y), (left + width, y), FAINT, alpha=0.7)
-            canvas.text(_percent(share, zero="0 %"), (left + width + 12, y + 4), size=LABEL, colour=MUTE)
-        curve = self._skill.curve[-60:]
-        if not curve:
-            canvas.text(texts.SKILL_NONE, (left, top + height / 2 - 10), size=SMALL, colour=MUTE)
+            canvas.text(str(round(10 * share)), (left + width + 12, y + 4), size=LABEL, colour=MUTE)
+        curve = becoming.curves[kind][-_SHOWN:]
         step = width / max(20, len(curve))
-        places = [(left + step * (number + 0.5), top + height * (1 - share)) for number, share in enumerate(curve)]
-        for start, end in pairwise(places):
-            canvas.line(start, end, HUMAN, 1.5)
-        for (x, _), landed in zip(places, self._skill.own[-60:], strict=True):
-            good = canvas.palette.good if landed else canvas.palette.warn
-            canvas.marker("check" if landed else "cross", (x, top + height + 16), 7, good)
-        if places:
-            canvas.dot(places[-1], 4, HUMAN)
-        self._draw_figures(canvas, top + height + 80)
+
+        def place(number: float, share: float) -> Point:
+            return left + step * (number - 0.5), top + height * (1 - share)
+
+        if curve:
+            draw_curve(canvas, curve, place)
+            for number, entry in enumerate(becoming.flights[kind][-_SHOWN:], 1):
+                if entry.alone:
+                    good = canvas.palette.good if entry.landed else canvas.palette.warn
+                    mark: Shape = "check" if entry.landed else "cross"
+                    canvas.marker(mark, (place(number, 0.0)[0], top + height + 16), 7, good)
+            line = said(becoming.estimate(kind))
+        else:
+            line = texts.BECOMING_NONE
+        draw_wrapped(canvas, line, (left, top + height + 44), width, colour=INK if curve else MUTE, most=2)
+        self._draw_figures(canvas, top + height + 112)
 
     def _draw_figures(self, canvas: Canvas, y: float) -> None:
         left, own = _CHART.left, self._skill.own[-RECENT_OWN:]

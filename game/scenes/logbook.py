@@ -16,16 +16,22 @@ from game.core.scene import Transition, push
 from game.drawing.canvas import Canvas
 from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import HUMAN, LABEL, MARGIN, MUTE, SMALL, TITLE, VIEW_SIZE
+from game.flight import sharing
+from game.flight.becoming import KINDS, Becoming
 from game.flight.flight_file import Entry, Record
-from game.flight.logbook import Records, Totals, best, skill, totals
+from game.flight.logbook import Records, Totals, best, totals
+from game.panels.becoming_band import draw_band
+from game.play.friend import paste
+from game.play.growth import said
 from game.play.race import race
 from game.ui.actions import Action, Table
+from game.ui.clipboard import give
 from game.ui.context import Context
-from game.ui.list_scene import VERB_LINE, ListLayout, ListScene
+from game.ui.list_scene import VERB_LINE, VERB_SIZE, ListLayout, ListScene
 from game.ui.listing import Row
 from game.ui.virtual_pointer import VirtualPointer
 from game.ui.widget import Widget
-from game.ui.widgets import Choice
+from game.ui.widgets import Choice, TextButton
 
 _LEFT: Final = 824
 _LAYOUT: Final = ListLayout(
@@ -39,8 +45,11 @@ _LAYOUT: Final = ListLayout(
     rise=9,
 )
 _WIDTH: Final = VIEW_SIZE[0] - MARGIN - _LEFT
-_CHARTS: Final = (136, 304)
+_KINDS: Final = 98  # the choice of a kind of start, above its chart
+_CHARTS: Final = (136, 330)
 _CHART_HEIGHT: Final = 150
+_ENDS: Final = (2.0, 4.0)  # dashes of the band's ends
+_SAID: Final = 304.0  # the estimate in words, between the charts
 _TOTALS: Final = (146.0, 132.0)  # baseline of their labels, and how far apart they stand
 
 
@@ -55,14 +64,31 @@ class LogbookScene(ListScene[Entry]):
         self._filter = self.form.add(
             Choice(manager, box, "", texts.LOGBOOK_FILTERS, 0, lambda _: self._fill(), size=SMALL)
         )
+        self._kind = self.form.add(
+            Choice(
+                manager,
+                (_LEFT, _KINDS, _WIDTH, 20),
+                "",
+                [texts.BECOMING_KINDS[kind] for kind in KINDS],
+                0,
+                lambda _: self._plot(),
+                size=SMALL,
+            )
+        )
         self._charts = Charts([
-            Chart((_LEFT, _CHARTS[0], _WIDTH, _CHART_HEIGHT), texts.LOGBOOK_SKILL, limits=(0.0, 100.0),
-                  read="{:.0f} %".format, read_x=texts.LOGBOOK_FLIGHT.format),
-            Chart((_LEFT, _CHARTS[1], _WIDTH, _CHART_HEIGHT), texts.LOGBOOK_FUEL, read="{:.1f} s".format,
+            Chart((_LEFT, _CHARTS[0], _WIDTH, _CHART_HEIGHT), texts.BECOMING_TITLE, limits=(0.0, 10.0),
+                  read="{:.1f}".format, read_x=texts.LOGBOOK_FLIGHT.format, empty=texts.BECOMING_NONE),
+            Chart((_LEFT, _CHARTS[1], _WIDTH, _CHART_HEIGHT - 20), texts.LOGBOOK_FUEL, read="{:.1f} s".format,
                   read_x=texts.LOGBOOK_FLIGHT.format),
         ])  # fmt: skip
         self.form.add(VirtualPointer(manager, self._charts.box, self._charts.follow))
+        paste_box = (MARGIN + 130, _LAYOUT.foot, 220, VERB_LINE)
+        self._paste = TextButton(manager, paste_box, texts.CODE_PASTE, lambda: paste(context), size=VERB_SIZE)
         self._reload()
+
+    def _below_list(self) -> list[Widget]:
+        """Return the way back, and beside it the way in for a friend's flight."""
+        return [*super()._below_list(), self._paste]
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Pass the event to the charts and the widgets."""
@@ -90,7 +116,7 @@ class LogbookScene(ListScene[Entry]):
         self._entries = self._records.entries()
         self._kept, self._thrown = self._records.kept(), self._records.thrown()
         self._line = self._records.problem or texts.LOGBOOK_PLACE.format(folder=self._records.folder)
-        self._totals = totals(self._entries)
+        self._totals, self._becoming = totals(self._entries), Becoming(self._entries)
         self._plot()
         self._fill()
 
@@ -104,13 +130,18 @@ class LogbookScene(ListScene[Entry]):
         self._show(shown, self.chosen)
 
     def _plot(self) -> None:
-        own = skill(self._entries)
-        fuel = [entry.fuel if entry.landed else np.nan for entry in self._entries if entry.alone]
-        number, span = np.arange(1, len(own) + 1), (1.0, float(len(own)))
-        share = Series(number, 100 * np.array(own), texts.LOGBOOK_YOU, HUMAN, smooth=False)
-        landings = Series(number, np.array(fuel, float), texts.LOGBOOK_YOU, HUMAN)
-        for chart, series in zip(self._charts.charts, (share, landings), strict=True):
-            chart.set([series], span)
+        """Draw the curve of the chosen kind of start, and the fuel of landings alone from it."""
+        kind = KINDS[self._kind.index]
+        curve, flights = self._becoming.curves[kind], self._becoming.flights[kind]
+        number, span = np.arange(1, len(curve) + 1), (1.0, float(len(curve)))
+        shares = np.array([(each.mean, each.low, each.high) for each in curve]).reshape(-1, 3)
+        fuel = [entry.fuel if entry.landed and entry.alone else np.nan for entry in flights]
+        series = [
+            Series(number, 10 * share, name, HUMAN, dash=dash, smooth=False)
+            for share, name, dash in zip(shares.T, texts.BECOMING_LINES, ((), _ENDS, _ENDS), strict=True)
+        ]
+        self._charts.charts[0].set(series, span)
+        self._charts.charts[1].set([Series(number, np.array(fuel, float), texts.LOGBOOK_YOU, HUMAN)], span)
 
     def _row(self, entry: Entry) -> Row:
         return entry_row(entry)
@@ -122,6 +153,7 @@ class LogbookScene(ListScene[Entry]):
                 [
                     (texts.LOGBOOK_WATCH, self._watch),
                     (texts.LOGBOOK_RACE, self._race),
+                    (texts.CODE_COPY, self._copy),
                     (texts.LOGBOOK_THROW_AWAY, self._throw_away),
                 ]
             )
@@ -152,6 +184,11 @@ class LogbookScene(ListScene[Entry]):
         record = self._read()
         return push("play", record.recording.seed, challenge=race(record)) if record else None
 
+    def _copy(self) -> None:
+        if record := self._read():
+            code = sharing.code(record)
+            give(self.context, code, texts.CODE_COPIED.format(count=len(code)))
+
     def _throw_away(self) -> None:
         if self.chosen and self._replayable:
             self._tell(self._records.throw_away(self.chosen.file), texts.LOGBOOK_THROWN)
@@ -169,7 +206,13 @@ class LogbookScene(ListScene[Entry]):
     def _draw_behind(self, canvas: Canvas) -> None:
         """Draw the totals and the charts."""
         _draw_totals(canvas, self._totals)
+        kind, chart = KINDS[self._kind.index], self._charts.charts[0]
+        curve = self._becoming.curves[kind]
+        draw_band(canvas, curve, lambda number, share: chart.place(number, 10 * share))
         self._charts.draw(canvas)
+        if curve:
+            text = said(self._becoming.estimate(kind))
+            canvas.text(text, (_LEFT, _SAID), size=SMALL, colour=MUTE, room=_WIDTH)
 
     def _draw_chosen(self, canvas: Canvas) -> None:
         """Write below the verbs why a flight does not count, and why it cannot be seen any more."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import datetime
 from collections.abc import Callable
 from typing import Final
 
@@ -19,7 +18,7 @@ from game.drawing.tokens import HUMAN, INK, MARGIN, MEDALS, MUTE, SMALL, TEXT, T
 from game.flight import flight_file
 from game.flight.flight_file import Entry, Record
 from game.flight.logbook import Records, rank
-from game.play.challenge import Challenge, DailyStart, FlownMission
+from game.play.challenge import Challenge, FlownMission
 from game.play.tutorial import Tutorial
 from game.ui.context import Context
 from game.ui.list_scene import ListLayout, ListScene
@@ -74,8 +73,6 @@ class MissionsScene(ListScene[str]):
     def _challenge(self) -> Challenge:
         if self.chosen == FIRST.name:
             return Tutorial()
-        if self.chosen == _DAILY:
-            return DailyStart(datetime.date.today())
         mission, record = MISSIONS[self.chosen], self._rival_record()
         return (
             FlownMission(mission, record, texts.MISSION_GHOSTS[self._chosen_rival]) if record else FlownMission(mission)
@@ -85,8 +82,7 @@ class MissionsScene(ListScene[str]):
         return self._fly()
 
     def _fly(self) -> Transition:
-        challenge = self._challenge()
-        return push("play", challenge.seed if isinstance(challenge, DailyStart) else 0, challenge=challenge)
+        return push("days") if self.chosen == _DAILY else push("play", 0, challenge=self._challenge())
 
     # Ghosts
 

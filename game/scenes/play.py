@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final
 
 import pygame
@@ -9,7 +10,7 @@ import pygame
 from game.core import texts
 from game.core.scene import Pop, Scene, Transition, push
 from game.drawing.canvas import Canvas
-from game.flight import networks
+from game.flight import fading, networks
 from game.flight.credit import Credit
 from game.flight.flight import Flight, StickHolder
 from game.flight.handicap import HANDS, OWN
@@ -18,11 +19,12 @@ from game.flight.skill import Skill
 from game.input.controls import Command, translate
 from game.input.mouse import MouseStick
 from game.panels.explained import Explained
-from game.play import captions
+from game.play import captions, growth
 from game.play.challenge import Challenge, Duel
 from game.play.ending import FlightEnding
 from game.play.flown_flight import FlownFlight
 from game.ui.actions import Action, Run, Table, answering, hints_of
+from game.ui.clipboard import give
 from game.ui.context import Context
 from game.ui.hints import HintRow
 from game.ui.widget import OnPress
@@ -88,8 +90,11 @@ class PlayScene(Scene):
             return None
         if event.type in (pygame.WINDOWFOCUSLOST, pygame.WINDOWFOCUSGAINED):
             self._away = int(event.type == pygame.WINDOWFOCUSLOST)
+        fades = fading.active(self._settings)
         if self.flown.cockpit.take(event):
             self._name_what_lacks()
+            if fades and not fading.active(self._settings):
+                self.context.note(texts.FADE_RESTS)
             return None
         self._mouse.take(event)
         if translate(event) is Command.UNPLUGGED and not (self.waiting or self.flight.over):
@@ -101,7 +106,8 @@ class PlayScene(Scene):
         """What each key does at this moment: those of the card, once it is seen, and those of the flight."""
         explain = self.explained.action()
         if self.ending.shown == 0:
-            return [*self._flight_actions(), Action(Command.CONFIRM, self.ending.hurry), explain]
+            edge = Action(pygame.K_m, self._show_edge)  # by mouse and gamepad it is one of the choices
+            return [*self._flight_actions(), Action(Command.CONFIRM, self.ending.hurry), edge, explain]
         space = [Action(pygame.K_SPACE, self._go_on)] if self.ending.shown >= 1 else []
         return [*self._card_actions(), *self._flight_actions(), Action(Command.CONFIRM, self._go_on), *space, explain]
 
@@ -125,11 +131,22 @@ class PlayScene(Scene):
         }
 
     def _flight_actions(self) -> list[Action]:
-        return captions.flight_actions(self._runs, self.flight, self.challenge, leaves=self._leaves)
+        actions = captions.flight_actions(self._runs, self.flight, self.challenge, leaves=self._leaves)
+        if not (self.credit.check and self.waiting):
+            return actions
+        skip = Action(Command.NEXT, self._skip_check, texts.CHECK_SKIP)
+        return [skip, *(action for action in actions if action.key is not Command.NEXT)]
+
+    def _skip_check(self) -> None:
+        """Fly the same start with help, and be asked again only after as many flights as usual."""
+        self._skill.skip_check()
+        self.retry()
 
     def _card_actions(self) -> list[Action]:
         card = self.ending.card
-        return captions.card_actions(self._go_on, self._runs, self.challenge, good=card.good) if card else []
+        hint = (self.challenge or Challenge).copy_hint
+        copy = [Action(pygame.K_k, self._copy, hint, Command.STEP)] if self.flown.record else []
+        return [*captions.card_actions(self._go_on, self._runs, self.challenge, good=card.good), *copy] if card else []
 
     def update(self) -> Transition | None:
         """Advance by 1/60 s: fly a step, unless the craft waits or slowed time makes none due."""
@@ -189,7 +206,8 @@ class PlayScene(Scene):
             self.flown = FlownFlight(self.context, seed, self.network.policy, self.challenge)
             return
         pads, hands = self._chosen()
-        check = self._settings.check_flights and self._skill.check_due and not self._eased
+        checks = self._settings.check_flights or self._settings.fade
+        check = checks and self._skill.check_due and not self._eased
         hands = OWN if check else hands
         self.flown = FlownFlight(self.context, seed, self.network.policy, pads=pads, hands=hands, check=check)
 
@@ -208,6 +226,18 @@ class PlayScene(Scene):
             self.flown.make_card(self._skill)
             if challenge is None or challenge.kept:
                 self.flown.write_down(self._records, self._skill, self.network)
+                self._grow()
+
+    def _grow(self) -> None:
+        """Let help fade after a free flight, and tell on the card what the flight has shown."""
+        card = self.ending.card
+        if self.challenge or card is None:
+            return
+        before = self._settings.assist
+        lines = growth.follow(self._skill.change, self._settings, check=self.credit.check, landed=card.good)
+        self.ending.card = replace(card, growth=lines)
+        if before != self._settings.assist:
+            self.context.apply_settings()
 
     @property
     def _held(self) -> int:
@@ -241,12 +271,26 @@ class PlayScene(Scene):
             problem = texts.NO_NETWORK.format(problem=self.network.problem)
             self.context.note(texts.FLOWN_ALONE if self.credit.alone else problem)
 
+    def _show_edge(self) -> None:
+        """Show the chance to be saved or hide it, over the sky too; tell why it can't be shown."""
+        self._settings.edge = not self._settings.edge
+        if problem := self.flown.cockpit.chance_meter.problem:
+            self.context.note(problem)
+
     def _name_what_lacks(self) -> None:
         """Tell the player why the dial has no effect, where it has none."""
         if self._settings.assist > 0 and self.flight.shares and self.flight.copilot is None:
             network = self.network
             text = texts.DIAL_NEEDS if network.policy else texts.NO_NETWORK
             self.context.note(text.format(name=network.name, problem=network.problem))
+        elif problem := self.flown.cockpit.lacks:
+            self.context.note(problem)
+
+    def _copy(self) -> None:
+        """Copy what tells a friend of the flight that is over."""
+        if self.flown.record:
+            challenge = self.challenge or Challenge()
+            give(self.context, *challenge.message(self.flown.record))
 
     def _go_on(self) -> Transition | None:
         """After a landing, go to a new start, or leave a challenge with only one; after a crash, retry."""

@@ -10,6 +10,8 @@ from typing import Final
 
 import pygame
 
+from ai.flights.code import code_of
+from ai.flights.shared import SharedFlight
 from ai.lander.environment import Outcome
 from game.audio.flight_sounds import FlightSound
 from game.cockpit import hud
@@ -24,13 +26,18 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, VIEW_SIZE
 from game.export.export import Export
 from game.export.kinds import KINDS
+from game.flight import networks, sharing
 from game.flight.flight import StickHolder
 from game.flight.flight_file import Record
 from game.flight.replay import FlightReplay
 from game.input.controls import Command
+from game.panels import falls
+from game.panels.explained import Explained
 from game.panels.timeline import Timeline, runs
+from game.play.friend import BELOW_CLAIM, Claimed
 from game.play.race import fly_on, race
 from game.ui.actions import Action, Table
+from game.ui.clipboard import give
 from game.ui.context import Context
 from game.ui.form_scene import FormScene
 from game.ui.hints import HintRow
@@ -43,43 +50,56 @@ from game.world.paths import draw_faint
 from game.world.scenery import Scenery
 
 SPEEDS: Final = (0.25, 0.5, 1.0, 2.0)
-_EARTH: Final = (208.0, 268.0)  # points; clear of the words
+_EARTH: Final = (208.0, 306.0)  # points; clear of the words
 _SCOUT: Final = 10  # steps looked ahead in every frame: a few milliseconds
-_STRIP: Final = (MARGIN, 78.0, VIEW_SIZE[0] - 2 * MARGIN, 60.0)
+_STRIP: Final = (MARGIN, 78.0, VIEW_SIZE[0] - 2 * MARGIN, 60.0 + falls.HEIGHT)
 _FIGURE: Final = 88.0  # half of what the seconds take, and who flies
-_VERBS: Final = 149.0
-_CLEAR: Final = ClearArea(head=194.0)  # below the verbs
+_VERBS: Final = 149.0 + falls.HEIGHT
+_FALL: Final = _VERBS + 24.0  # the sentence on the fall
+_CLEAR: Final = ClearArea(head=_FALL + 30.0)  # below it
 _VERB: Final = 20.0
+_FIRST_HINTS: Final = 4  # hints in the first row
 
 
 class ReplayScene(FormScene):
     """Replay of a recorded flight.
 
     Attributes:
+        claimed: a friend's claim, checked by flying it again; None for a flight of the player's own.
         export: the film that is being made of it; None while there is none.
+        falls: where the chance to be saved fell, and by what key.
 
     """
 
     takes_tab = True
 
-    def __init__(self, context: Context, record: Record) -> None:
+    def __init__(self, context: Context, record: Record, friend: SharedFlight | None = None) -> None:
         super().__init__(context)
         self.record = record
         self._pace = SlowMotion()
         self.playback = Playback(self._pace, SPEEDS, self._fly)
         self._warned = False
+        self.explained = Explained()
         self.export: Export | None = None
         self.flight_replay = FlightReplay(self.record)
         self.flight_replay.scout(1)
-        self._scenery = Scenery(self.flight_replay.flight, context.settings.reduced_motion, _CLEAR)
+        self.claimed = Claimed(friend, self.flight_replay) if friend else None
+        clear = BELOW_CLAIM if friend else _CLEAR
+        self._scenery = Scenery(self.flight_replay.flight, context.settings.reduced_motion, clear)
         self._heard = FlightSound(context.sound, self.flight_replay.flight.env, self._pace, warns=False)
         self._build()
+        network = networks.chosen(context.models_dir, context.user_dir, context.settings.model)
+        self.falls.judge(network.policy)
         self._look()
 
     def enter(self) -> None:
         """Show the moment where it was left, stopped."""
         self.playback.stopped = True
         self._scenery.calm = self.context.settings.reduced_motion
+
+    def handle_event(self, event: pygame.event.Event) -> Transition | None:
+        """Explain, or pass the event to the actions and the widgets."""
+        return None if self.explained.handle_event(event) else super().handle_event(event)
 
     def close(self) -> None:
         """Cancel an unfinished film export, and tell the player."""
@@ -99,6 +119,7 @@ class ReplayScene(FormScene):
             step,
             Action(Command.RETRY, self._replay, texts.REPLAY_FROM_START),
             Action(Command.HANDOVER, self._take_over, texts.REPLAY_HINT_TAKE),
+            *([Action(pygame.K_f, self.falls.jump, texts.HINT_FALL)] if self.falls.any else []),
             self.form.goes_back(texts.HINT_BACK),
             *speeds,
             Action(pygame.K_HOME, lambda: self.seek(0)),
@@ -106,20 +127,23 @@ class ReplayScene(FormScene):
         ]
         if on_strip or self.context.controls.gamepad_in_use:
             table += [Action(Command.NEXT, lambda: self._wind(60)), Action(Command.PREVIOUS, lambda: self._wind(-60))]
-        return table
+        return [*table, self.explained.action()]
 
     def hint_rows(self, canvas: Canvas) -> list[HintRow]:
-        """Return the hints on the right of the seconds."""
-        room = VIEW_SIZE[0] / 2 - MARGIN - _FIGURE
-        return [HintRow(self.hints, (VIEW_SIZE[0] - MARGIN, 42), from_right=True, room=room)]
+        """Return the hints on the right of the seconds, in two rows."""
+        room, hints = VIEW_SIZE[0] / 2 - MARGIN - _FIGURE, self.hints
+        rows = ((hints[:_FIRST_HINTS], 38), (hints[_FIRST_HINTS:], 60))
+        return [HintRow(row, (VIEW_SIZE[0] - MARGIN, y), from_right=True, room=room) for row, y in rows if row]
 
     def update(self) -> Transition | None:
         """Advance by as many steps as the chosen speed makes due, and simulate a little further ahead."""
         self.flight_replay.scout(1 if self.flight_replay.touching else _SCOUT)
         self._reward_bar.reached = self.flight_replay.reached
+        self.falls.follow()
+        self.explained.update()
         if self.export:
             self._follow_export(self.export)
-        if self.flight_replay.complete and not self.flight_replay.faithful and not self._warned:
+        if not self.claimed and self.flight_replay.complete and not self.flight_replay.faithful and not self._warned:
             self._warned = True
             self.context.note(texts.REPLAY_OTHER_RULES)
         for _ in range(self.playback.steps()):
@@ -189,7 +213,8 @@ class ReplayScene(FormScene):
         self.form.add(self.playback.row(manager, box))
         rows: list[tuple[str, OnPress]] = [
             (texts.REPLAY_TAKE_OVER, self._take_over),
-            (texts.LOGBOOK_RACE, self._race),
+            (texts.FRIEND_ANSWER if self.claimed else texts.LOGBOOK_RACE, self._race),
+            (texts.CODE_COPY, self._copy),
             (texts.REPLAY_EXPORT, self._begin_or_stop_export),
             (texts.BACK, Pop),
         ]
@@ -200,17 +225,28 @@ class ReplayScene(FormScene):
             words.append(TextButton(manager, (round(x), _VERBS, round(wide) + 2, _VERB), word, press, size=SMALL))
             self.form.add(words[-1])
             x += wide + 28
-        self._export_word = words[2]
+        self._export_word = words[3]
+        self.falls = falls.Falls(self.form, self._reward_bar, self.flight_replay, (MARGIN, _FALL), self.seek)
 
     def _take_over(self) -> Transition | None:
         """Fly on from the moment that is shown."""
         if self.flight_replay.flight.over:
             self.context.note(texts.REPLAY_OVER)
             return None
-        return push("play", self.record.recording.seed, challenge=fly_on(self.record, self.flight_replay))
+        return push("play", self.record.recording.seed, challenge=fly_on(self.record, self.flight_replay, self._rival))
 
     def _race(self) -> Transition:
-        return push("play", self.record.recording.seed, challenge=race(self.record))
+        return push("play", self.record.recording.seed, challenge=race(self.record, self._rival))
+
+    @property
+    def _rival(self) -> str:
+        """Name of a friend's ghost; empty for one of the player's own."""
+        return texts.FRIEND_NAME if self.claimed else ""
+
+    def _copy(self) -> None:
+        """Copy the flight as a code; a friend's as it came, with its own claim."""
+        code = code_of(self.claimed.flight) if self.claimed else sharing.code(self.record)
+        give(self.context, code, texts.CODE_COPIED.format(count=len(code)))
 
     def _begin_or_stop_export(self) -> Transition | None:
         """Ask for the film's format and start the export, or cancel the running one."""
@@ -256,6 +292,8 @@ class ReplayScene(FormScene):
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the moment that is shown, and the strip of time."""
         self.draw_world(canvas, alpha)
+        view = self._scenery.view(canvas.scale, self.playback.between(alpha))
+        self.falls.draw_way(canvas, view, self.flight_replay.path, _CLEAR.head)
         self._draw_words(canvas)
 
     def draw_world(self, canvas: Canvas, alpha: float) -> None:
@@ -267,6 +305,18 @@ class ReplayScene(FormScene):
         hud.draw_readouts(canvas, self._readouts)
 
     def _draw_words(self, canvas: Canvas) -> None:
+        self._draw_title(canvas)
+        self._draw_moment(canvas)
+        self.form.draw(canvas)
+        self.falls.draw(canvas)
+        self.draw_hints(canvas)
+        self.explained.draw(canvas)
+
+    def _draw_title(self, canvas: Canvas) -> None:
+        """Draw which flight it is; of a friend's, the claim, and what comes of checking it."""
+        if self.claimed:
+            self.claimed.draw(canvas)
+            return
         entry = self.record.entry
         when = time.strftime("%Y-%m-%d %H:%M", time.localtime(entry.when))
         mission = texts.MISSIONS.get(self.record.recording.mission)
@@ -276,11 +326,15 @@ class ReplayScene(FormScene):
             title,
             texts.REPLAY_LINE.format(end=texts.OUTCOMES[entry.outcome][0], seconds=entry.seconds, when=when),
         )
+
+    def _draw_moment(self, canvas: Canvas) -> None:
+        """Draw the seconds, and who flies at that moment or how it ended."""
         flight = self.flight_replay.flight
         seconds = f"{self.flight_replay.at * STEP:.2f}"
         middle = VIEW_SIZE[0] / 2
         figure = canvas.text(f"{seconds} s", (middle, 58), size=22, weight="light", align="centre", tabular=True)
-        by = texts.YOU_FLEW if flight.flown_by is StickHolder.HUMAN else texts.NETWORK_FLEW
+        by_hand = flight.flown_by is StickHolder.HUMAN
+        by = (texts.YOU_FLEW if by_hand else texts.NETWORK_FLEW) if not self.claimed else texts.FRIEND_FLEW[by_hand]
         if self.ended:
             by = texts.OUTCOMES[flight.outcome.name][0] if flight.over else by
         canvas.text(by, (middle, 34), size=SMALL, colour=MUTE, align="centre", room=2 * _FIGURE - 16)
@@ -291,8 +345,6 @@ class ReplayScene(FormScene):
         elif self.playback.stopped:
             for x in (figure.left - 20, figure.left - 15):
                 canvas.line((x, 45), (x, 57), INK, 2)
-        self.form.draw(canvas)
-        self.draw_hints(canvas)
 
 
 def _draw_way(canvas: Canvas, view: View, flight_replay: FlightReplay) -> None:

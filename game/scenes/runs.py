@@ -47,6 +47,8 @@ class NetworksScene(ListScene[SavedRun]):
 
     """
 
+    takes_files = True
+
     def __init__(
         self,
         context: Context,

@@ -296,7 +296,7 @@ class WatchScene(FormScene):
         draw_landings(canvas, (MARGIN, 118), self.swarm.landed, self.swarm.lost)
         hud.draw_readouts(canvas, hud.flight_readouts(self.swarm.env, self.shown)[:4], _READOUTS)
         explain_readouts(canvas, self.swarm.env, self.shown, _READOUTS)
-        draw_legend(canvas, world.policy_map, flown)
+        draw_legend(canvas, world, flown)
         self._draw_notice(canvas)
         rows = (self._model_choice, self._count_choice, self._speed_choice, self._map_choice)
         for row, what in zip(rows, texts.EXPLAIN_CHOICES, strict=True):

@@ -22,6 +22,7 @@ from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import COLOUR_SAFE, PALETTE, TEXT_SIZES
 from game.input.controls import Command, translate
+from game.play.friend import arrival
 from game.shell.scene_manager import SceneManager
 from game.shell.window import GameWindow
 from game.ui.notes import Note
@@ -213,7 +214,10 @@ class App:
             pygame.mouse.set_visible(controls.mouse_in_use)
 
     def _pass_on(self, event: pygame.event.Event) -> None:
-        """Run the hint that is clicked, or pass the event to the top scene."""
+        """Run the hint that is clicked, open a friend's flight, or pass the event to the top scene."""
+        if page := arrival(event, self.scenes.top):
+            self.scenes.apply(page)
+            return
         if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
             for row in self.scenes.top.hint_rows(self.canvas):
                 if (hint := row.at(self.canvas, event.pos)) and hint.run:

@@ -38,6 +38,11 @@ class FormScene(Scene):
         super().__init__(context)
         self.form = Form(context, on_back)
 
+    @property
+    def typing(self) -> bool:  # type: ignore[override]
+        """Whether the focused widget takes every key, as a text line does."""
+        return self.form.typing
+
     def actions(self) -> Table:
         """Return what each key does at this moment; an action that is left out does nothing."""
         return [self.form.confirms(texts.HINT_CHOOSE), self.form.goes_back(texts.HINT_BACK)]

@@ -24,7 +24,7 @@ from game.ui.widgets import TextButton
 Item = TypeVar("Item")
 
 VERB_LINE: Final = 36.0  # points from one button to the next
-_VERB: Final = 18.0
+VERB_SIZE: Final = 18.0
 _LINE_ROOM: Final = 700.0
 
 
@@ -79,7 +79,9 @@ class ListScene(FormScene, ABC, Generic[Item]):
             empty=empty, columns=layout.columns, pitch=layout.pitch, size=layout.size,
             numbered=layout.numbered,
         ))  # fmt: skip
-        self._back_button = TextButton(manager, (MARGIN, layout.foot, 72, VERB_LINE), texts.BACK, on_back, size=_VERB)
+        self._back_button = TextButton(
+            manager, (MARGIN, layout.foot, 72, VERB_LINE), texts.BACK, on_back, size=VERB_SIZE
+        )
         self.items: list[Item] = []
         self._verbs: list[Widget] = []
         self._beside: list[Widget] = []  # the verbs, and what is below the list
@@ -155,7 +157,9 @@ class ListScene(FormScene, ABC, Generic[Item]):
         """Return a column of buttons for the chosen item, given their labels and actions."""
         left, top = self._layout.verbs
         return [
-            TextButton(self.form.manager, (left, top + number * VERB_LINE, 220, VERB_LINE), label, press, size=_VERB)
+            TextButton(
+                self.form.manager, (left, top + number * VERB_LINE, 220, VERB_LINE), label, press, size=VERB_SIZE
+            )
             for number, (label, press) in enumerate(rows)
         ]
 

@@ -7,7 +7,7 @@ tilt, turn and speed of the shown lander, and its decisions colour the sky.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -22,7 +22,7 @@ from game.drawing.tokens import Colour
 from game.flight.networks import Policy, decide, work_of
 from game.world.camera import GROUND_LINE, View
 
-OFF, ACTION, SCORE = range(3)
+OFF, ACTION, SCORE, CHANCE = range(4)  # chances are drawn by `game.world.chance_map`
 # Of the six actions, in their order: a hue says which jet fires, and a light one that the main engine burns as well.
 # Blue to yellow stays apart for eyes without the red or the green cones.
 COLOURS: Final[tuple[Colour, ...]] = (
@@ -33,14 +33,16 @@ _SCORES: Final = np.array(
     [(26, 22, 92), (44, 72, 140), (44, 122, 140), (90, 168, 118), (196, 196, 90), (255, 226, 140)]
 )
 _COVER: Final = 0.5  # opacity of the map over the sky
-_HALF: Final = LIMITS.half_width  # metres to either side
-_TOP: Final = 20.0  # metres; above it stand words
+HALF: Final = LIMITS.half_width  # metres to either side
+TOP: Final = 20.0  # metres; above it stand words
 _FADE, _FADE_LOW = 2.5, 0.5  # metres over which it fades out at its top and sides, and at the ground
 _FINER: Final = 2  # by how much a map of actions is drawn finer than it was computed
 _GRIDS: Final = ((65, 29), (33, 15), (17, 8))  # places across and up: the coarser, the larger the network
 _PIECE: Final = 4_700_000  # multiplications in one update: about a third of a millisecond
 _LONGEST: Final = 120  # updates that one whole map should take at most; a coarser grid is used where it would not
 _STEP: Final = 10.0  # the ends of the scale are multiples of it, in points
+
+V = TypeVar("V", Floats, Doubles)
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +69,7 @@ class PolicyMap:
     """Policy map of the sky, computed in pieces; call `follow` once per update.
 
     Attributes:
-        kind: OFF, ACTION or SCORE.
+        kind: OFF, ACTION or SCORE; CHANCE while another map is drawn instead.
         cells: the latest whole map; None before the first.
         scale: lowest and highest score of the colours, in points; None before any.
 
@@ -92,7 +94,7 @@ class PolicyMap:
 
         How much is done in one update follows from the network's size alone.
         """
-        if self.kind == OFF:
+        if self.kind in (OFF, CHANCE):
             return
         work = max(work_of(policy), 1)
         if self._observations is None:
@@ -111,7 +113,7 @@ class PolicyMap:
 
     def draw(self, canvas: Canvas, view: View) -> None:
         """Draw the map over the sky."""
-        if self.kind == OFF or self.cells is None:
+        if self.kind in (OFF, CHANCE) or self.cells is None:
             return
         (left, top), (right, bottom) = view.points(self.cells.places[[0, -1], [0, -1]]).tolist()
         with canvas.unnoted():  # stars shine through it
@@ -154,9 +156,9 @@ class PolicyMap:
         assert self.cells is not None
         colours = self._colours(self.cells)
         up, across = colours.shape[:2]
-        x, y = np.linspace(-_HALF, _HALF, across), np.linspace(_TOP, GROUND_LINE, up)
-        fade = np.minimum((_TOP - y) / _FADE, (y - GROUND_LINE) / _FADE_LOW).clip(0, 1)[:, None]
-        fade = fade * ((_HALF - np.abs(x)) / _FADE).clip(0, 1)
+        x, y = np.linspace(-HALF, HALF, across), np.linspace(TOP, GROUND_LINE, up)
+        fade = np.minimum((TOP - y) / _FADE, (y - GROUND_LINE) / _FADE_LOW).clip(0, 1)[:, None]
+        fade = fade * ((HALF - np.abs(x)) / _FADE).clip(0, 1)
         small = pygame.surfarray.make_surface(np.round(colours).astype(np.uint8).swapaxes(0, 1))
         if self.kind == ACTION:
             small = pygame.transform.box_blur(small, 1)
@@ -175,24 +177,24 @@ class PolicyMap:
         weights = (
             np.eye(len(COLOURS), dtype=np.float32)[decision.action] if decision.values is None else decision.values
         )
-        fine = _between(_between(weights.reshape(*shape, -1)).swapaxes(0, 1)).swapaxes(0, 1)
+        fine = finer(finer(weights.reshape(*shape, -1)).swapaxes(0, 1)).swapaxes(0, 1)
         colours: Doubles = np.array(COLOURS, float)[fine.argmax(axis=-1)]
         return colours
 
 
-def _between(values: Floats) -> Floats:
+def finer(values: V) -> V:
     """Return values (n, ...) with `_FINER` - 1 more between each two neighbours, on a straight line between them."""
     count = (len(values) - 1) * _FINER + 1
     place = np.arange(count) / np.float32(_FINER)
     left = np.minimum(place.astype(int), len(values) - 2)
     share = (place - left).astype(np.float32).reshape(-1, *[1] * (values.ndim - 1))
-    finer: Floats = values[left] + share * (values[left + 1] - values[left])
-    return finer
+    between: V = values[left] + share * (values[left + 1] - values[left])
+    return between
 
 
 def grid_places(across: int, up: int) -> Doubles:
     """Return a grid of places over the sky in metres, (up, across, 2), the highest first."""
-    places = np.meshgrid(np.linspace(-_HALF, _HALF, across), np.linspace(_TOP, GROUND_LINE, up))
+    places = np.meshgrid(np.linspace(-HALF, HALF, across), np.linspace(TOP, GROUND_LINE, up))
     return np.stack(places, axis=-1)
 
 

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from datetime import date
 from functools import partial
 
 import numpy as np
@@ -13,6 +14,7 @@ from ai.lander.missions import MISSIONS
 from game.core.assets import MODELS_DIR
 from game.core.scene import Push, Scene
 from game.exhibits import EXHIBITS, Exhibit
+from game.flight import sharing
 from game.flight.flight_file import Record
 from game.flight.skill import Skill
 from game.learn.path import FIRST, PATH
@@ -20,6 +22,7 @@ from game.play.challenge import FlownMission
 from game.scenes.bindings import BindingsScene
 from game.scenes.chapter import ChapterScene
 from game.scenes.choices import ChoicesScene
+from game.scenes.days import DaysScene
 from game.scenes.dialog import ListDialog, NameDialog, QuestionDialog
 from game.scenes.digit_inside import DigitInsideScene
 from game.scenes.digit_training import DigitTrainingScene
@@ -48,6 +51,13 @@ from tests.support.lessons import lesson_of
 
 Make = Callable[[Context], Scene]
 
+
+def friend(context: Context) -> ReplayScene:
+    """The page of a friend's flight."""
+    flight = sharing.shared(flown(context))
+    return ReplayScene(context, sharing.record_of(flight, time.time()), flight)
+
+
 SCREENS: dict[str, Make] = {
     "MenuScene": MenuScene,
     "MissionsScene": MissionsScene,
@@ -65,10 +75,12 @@ SCREENS: dict[str, Make] = {
     "ChapterScene": ChapterScene,
     "LessonScene": lambda context: LessonScene(context, lesson_of("modern")),
     "LogbookScene": LogbookScene,
+    "DaysScene": lambda context: DaysScene(context, date(2026, 11, 22)),
     "SettingsScene": SettingsScene,
     "BindingsScene": BindingsScene,
     "NetworksScene": NetworksScene,
     "ReplayScene": lambda context: ReplayScene(context, flown(context)),
+    "friend": friend,
 }
 FLOWN: dict[str, Make] = {
     "Play": lambda context: PlayScene(context, 3),

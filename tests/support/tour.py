@@ -22,7 +22,9 @@ from game.exhibits import EXHIBITS
 from game.flight.flight import Flight
 from game.flight.logbook import Records
 from game.learn.path import PATH
-from game.play.challenge import DailyStart, FlownMission
+from game.play.challenge import FlownMission
+from game.play.daily import DailyStart
+from game.play.days import Days
 from game.play.race import race
 from game.scenes.chapter import ChapterScene
 from game.scenes.dialog import ListDialog, NameDialog, QuestionDialog
@@ -96,7 +98,7 @@ def makers(context: Context) -> dict[str, Callable[[], Scene | None]]:
         "PhysicsScene": lambda: PhysicsScene(context, str(rng.choice(list(EXHIBITS)))),
         "PhysicsStepScene": lambda: PhysicsStepScene(context, EXHIBITS[str(rng.choice(list(EXHIBITS)))](9.81)),
         "mission": lambda: PlayScene(context, 0, challenge=FlownMission(missions[rng.integers(len(missions))])),
-        "daily": lambda: PlayScene(context, 1, challenge=DailyStart(date(2026, 1, 1))),
+        "daily": lambda: PlayScene(context, 1, challenge=DailyStart(date(2026, 1, 1), Days(context.user_dir))),
         "race": lambda: replayed(lambda _, record: PlayScene(context, record.recording.seed, challenge=race(record))),
         "LessonScene": lambda: LessonScene(context, lesson_of("modern")),
         "ReplayScene": lambda: replayed(ReplayScene),

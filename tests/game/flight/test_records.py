@@ -16,7 +16,7 @@ from game.flight import flight_file
 from game.flight import logbook as records
 from game.flight.flight import Flight, Recording, StickHolder
 from game.flight.flight_file import Entry, Record, from_text, to_text
-from game.flight.logbook import Records, best, skill, totals
+from game.flight.logbook import Records, best, totals
 from game.scenes.logbook import entry_row
 from game.scenes.missions import _best_by_course
 from tests.support.flights import NOON, fly_out, scripted
@@ -279,14 +279,12 @@ def test_a_flight_from_before_a_mission_was_changed_is_kept_and_counts_no_more(k
     assert not entry().outdated
 
 
-def test_totals_and_skill_are_of_what_was_flown():
+def test_totals_are_of_what_was_flown():
     assert totals([]) == records.Totals()
-    assert skill([]) == []
     outcomes = ["CRASHED", "LANDED", "LANDED", "TIMED_OUT", "LANDED"]
     lines = [entry(outcome) for outcome in outcomes]
     lines.insert(2, entry(alone=False))  # the network's landing says nothing of the person
     assert totals(lines) == records.Totals(6, 4, 60.0, 18.0, 2)
-    assert skill(lines, window=2) == [0.0, 0.5, 1.0, 0.5, 0.5]
 
 
 @given(st.lists(st.sampled_from(range(6)), min_size=1, max_size=300), st.integers(0, 2**40))

@@ -1,5 +1,3 @@
-import pytest
-
 from game.flight.flight_file import Entry
 from game.flight.skill import Skill
 
@@ -33,12 +31,23 @@ def test_every_fifth_flight_is_a_check_and_one_flown_alone_counts_as_such():
     assert [number for number, check in enumerate(due) if check] == [4, 11]
 
 
-def test_it_is_the_share_of_landings_among_the_last_ten_without_help():
-    skill = Skill([])
-    for landed in [False] * 5 + [True] * 10:
-        skill.add(flown(landed, alone=True))
+def test_a_check_that_was_skipped_comes_again_after_as_many_flights():
+    skill = Skill([HELPED] * 4)
+    assert skill.check_due
+    skill.skip_check()
+    due = []
+    for _ in range(5):
+        due.append(skill.check_due)
         skill.add(HELPED)
-    assert skill.curve[4] == 0.0
-    assert skill.curve[9] == pytest.approx(0.5)
-    assert skill.curve[-1] == pytest.approx(1.0)
-    assert len(skill.curve) == 15
+    assert due == [False, False, False, False, True]
+
+
+def test_checks_are_seldom_once_it_is_well_known_how_often_the_player_would_land():
+    skill = Skill([flown(True, alone=True)] * 60 + [HELPED] * 4)
+    estimate = skill.becoming.estimate("plain")
+    assert estimate.high - estimate.low < 0.2
+    due = []
+    for _ in range(6):
+        due.append(skill.check_due)
+        skill.add(HELPED)
+    assert due == [False] * 5 + [True]

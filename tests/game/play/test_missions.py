@@ -5,6 +5,7 @@ import pygame
 import pytest
 
 from ai.agent.agent import DeepQAgent
+from ai.flights.score import landing_score
 from ai.lander.environment import PARAMS, Cause, Outcome
 from ai.lander.missions import MISSIONS
 from game.cockpit.hud import flight_readouts
@@ -19,7 +20,7 @@ from game.flight.difficulty import Difficulty
 from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Record
 from game.flight.logbook import Records
-from game.flight.outcomes import OutcomeCard, flight_figures, landing_score
+from game.flight.outcomes import OutcomeCard, flight_figures
 from game.flight.replay import FlightReplay, ReplayedFlight
 from game.play.challenge import FlownMission
 from game.scenes.logbook import LogbookScene

@@ -16,7 +16,9 @@ from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Entry
 from game.flight.logbook import Records
 from game.flight.replay import FlightReplay
-from game.play.challenge import DailyStart, FlownMission
+from game.play.challenge import FlownMission
+from game.play.daily import DailyStart
+from game.play.days import Days
 from game.play.race import fly_on, race
 from game.play.tutorial import Tutorial
 from game.scenes.choices import ChoicesScene
@@ -59,7 +61,7 @@ def flown_on(context: Context, **more: object) -> PlayScene:
 SCENES: dict[str, Callable[[Context], PlayScene]] = {
     "free": lambda context: PlayScene(context, 4),
     "mission": lambda context: PlayScene(context, 0, challenge=FlownMission(MISSIONS["brake"])),
-    "daily": lambda context: PlayScene(context, 0, challenge=DailyStart(date(2026, 1, 1))),
+    "daily": lambda context: PlayScene(context, 0, challenge=DailyStart(date(2026, 1, 1), Days(context.user_dir))),
     "duel": lambda context: PlayScene(context, 4, rival=Weighs(), rival_name="it"),
     "race": lambda context: raced(recorded(context)),
     "race a mission": lambda context: raced(recorded(context, mission="brake")),

@@ -1,0 +1,37 @@
+"""Recording of a flight: its start and the action of every step, from which the flight follows bit for bit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Final
+
+LONGEST: Final = 120 * 60  # physics steps of a recorded flight, at most
+
+
+class StickHolder(Enum):
+    """Holder of the stick."""
+
+    HUMAN = "human"
+    NETWORK = "network"
+
+
+@dataclass
+class Recording:
+    """Recording of a flight for an exact replay: its start, and the action of every step.
+
+    `hands` says who chose each action: with a shared stick, the person if the action is the one they asked for.
+    `gravity` lists its changes: the first step, and the share of normal gravity.
+    """
+
+    seed: int
+    spawn: str
+    pads: int = 1
+    actions: list[int] = field(default_factory=list)
+    hands: list[StickHolder] = field(default_factory=list)
+    mission: str = ""
+    gravity: list[tuple[int, float]] = field(default_factory=list)
+
+    def gravity_at(self, step: int) -> float:
+        """Return the share of normal gravity during a step."""
+        return next((share for begin, share in reversed(self.gravity) if begin <= step), 1.0)

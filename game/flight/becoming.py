@@ -1,0 +1,75 @@
+"""Who the player is becoming: how often they would land alone, by kind of start, after each of their flights."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Final, NamedTuple
+
+from ai.copilot.alone import Estimate, LandingAlone
+from game.flight.flight_file import Entry
+
+KINDS: Final = ("plain", "hills", "missions")  # keys of `texts.BECOMING_KINDS`
+_MOST: Final = 300  # latest flights of a kind that are looked at: older ones are forgotten anyway
+
+
+class Change(NamedTuple):
+    """What a flight has shown: its kind of start, and the estimates before and after it."""
+
+    kind: str
+    before: Estimate
+    after: Estimate
+
+
+def kind_of(entry: Entry) -> str:
+    """Return the kind of start of a flight, one of `KINDS`."""
+    return "missions" if entry.course else "hills" if entry.pads > 1 else "plain"
+
+
+def tells(entry: Entry) -> bool:
+    """Whether a flight tells how often the player would land alone.
+
+    It does if it was flown alone and counts, or if nothing but a guardian helped, from beginning to end; in missions
+    guardians have not been measured.
+    """
+    if entry.practice:
+        return False
+    return entry.alone or (entry.barred == "helped" and entry.guarded > 0 and not entry.course)
+
+
+class Becoming:
+    """Estimates from the player's flights, oldest first.
+
+    Attributes:
+        flights: for each kind of start, the flights that tell something.
+        curves: the estimate after each of them.
+
+    """
+
+    def __init__(self, entries: Iterable[Entry] = ()) -> None:
+        self._beliefs = {kind: LandingAlone() for kind in KINDS}
+        self.flights: dict[str, list[Entry]] = {kind: [] for kind in KINDS}
+        self.curves: dict[str, list[Estimate]] = {kind: [] for kind in KINDS}
+        told = [entry for entry in entries if tells(entry)]
+        for kind in KINDS:
+            for entry in [entry for entry in told if kind_of(entry) == kind][-_MOST:]:
+                self.add(entry)
+
+    def estimate(self, kind: str) -> Estimate:
+        """Return the latest estimate for a kind of start."""
+        return self._beliefs[kind].estimate
+
+    def add(self, entry: Entry) -> Change | None:
+        """Learn from a flight; return what it has changed, None if it tells nothing."""
+        if not tells(entry):
+            return None
+        kind = kind_of(entry)
+        belief, before = self._beliefs[kind], self.estimate(kind)
+        if entry.alone:
+            belief.add_alone(landed=entry.landed)
+        else:
+            changed = (1.0 - entry.human) * entry.seconds
+            belief.add_helped(landed=entry.landed, changed=changed, assist=entry.guarded)
+        after = belief.estimate
+        self.flights[kind].append(entry)
+        self.curves[kind].append(after)
+        return Change(kind, before, after)

@@ -1,0 +1,95 @@
+"""Flights between friends: a record as a shared flight and back, and reading one from any text or file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Final
+
+from ai.flights.code import CodeError, code_of, codes_in, flight_of
+from ai.flights.recording import StickHolder
+from ai.flights.shared import Claim, SharedFlight
+from ai.flights.verification import Earned
+from ai.lander.environment import Outcome
+from ai.nn.files import read_text
+from engine import DT
+from game.core import texts
+from game.flight import flight_file
+from game.flight.flight_file import Entry, Record
+
+DROPPED: Final = 1_000_000  # bytes of a file that is dropped on the window, at most
+
+
+def shared(record: Record) -> SharedFlight:
+    """Return a record as it is sent to a friend."""
+    entry = record.entry
+    claim = Claim(Outcome[entry.outcome], entry.score, record.end)
+    return SharedFlight(record.recording, claim, entry.course, entry.bar if not entry.alone else "")
+
+
+def code(record: Record) -> str:
+    """Return a record as a code for a message."""
+    return code_of(shared(record))
+
+
+def record_of(flight: SharedFlight, when: float, real: Earned | None = None) -> Record:
+    """Return the record of a shared flight: as it is claimed, or as it is `real`, once it has been flown again."""
+    recording, claim = flight.recording, flight.claim
+    outcome, points, end = (real.outcome, real.points, real.end) if real else (claim.outcome, claim.points, claim.end)
+    by_hand = recording.hands.count(StickHolder.HUMAN) / len(recording.hands) if recording.hands else 1.0
+    entry = Entry(
+        when, outcome.name, real.seconds if real else len(recording.actions) * DT, real.fuel if real else 0.0, 0.0,
+        round(by_hand, 4), pads=recording.pads, score=points, course=flight.course, barred=flight.barred,
+        medal=real.medal if real else 0, rules=flight_file.rules_of(recording.mission),
+    )  # fmt: skip
+    return Record(recording, entry, end)
+
+
+def flights_in(text: str) -> Iterator[SharedFlight | str]:
+    """Yield the flights of a text, a flight's file or any text with codes; for one that is refused, the reason."""
+    if text.lstrip("\ufeff \t\r\n").startswith("{"):
+        try:
+            yield shared(flight_file.from_text(text.lstrip("\ufeff")))
+        except ValueError as error:
+            yield str(error)
+        return
+    found = False
+    for each in codes_in(text):
+        found = True
+        try:
+            yield flight_of(each)
+        except CodeError as error:
+            yield texts.CODE_REFUSED[error.kind]
+    if not found:
+        yield texts.CODE_REFUSED["none"]
+
+
+def flight_in(text: str) -> SharedFlight:
+    """Return the first flight of a text; raises ValueError, which says why there is none."""
+    flight = next(flights_in(text))
+    if isinstance(flight, str):
+        raise ValueError(flight)
+    return flight
+
+
+def flight_in_file(path: Path) -> SharedFlight:
+    """Return the first flight of a file of any kind; raises ValueError, which says why there is none."""
+    try:
+        return flight_in(read_text(path, DROPPED))
+    except OSError as error:
+        raise ValueError(error.strerror or str(error)) from error
+    except UnicodeDecodeError as error:
+        raise ValueError(texts.CODE_REFUSED["none"]) from error
+
+
+def words(outcome: Outcome, points: int) -> str:
+    """Return in words what a flight has earned, or claims."""
+    return texts.EARNED[outcome.name].format(points=points)
+
+
+def where(flight: SharedFlight) -> str:
+    """Return where a flight was flown: a mission, the start of the day, or the kind of a free flight."""
+    if flight.course == "daily":
+        return texts.DAILY
+    mission = texts.MISSIONS.get(flight.recording.mission)
+    return mission[0] if mission else texts.COURSE_FREE[flight.recording.pads]

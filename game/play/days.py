@@ -1,0 +1,136 @@
+"""Days: the player's first attempt at each start of the day, kept beside the logbook, and their best flight of a day.
+
+A line is written when an attempt begins and another when it ends, so that leaving an attempt does not undo it.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from datetime import date, datetime
+from pathlib import Path
+from typing import Annotated, Final
+
+from ai.lander.environment import Outcome
+from ai.nn.files import parse_json, read_end
+from ai.nn.schema import Count, OneOf, Sized, read_as
+from game.core import texts
+from game.flight import sharing
+from game.flight.flight_file import Entry, Record
+from game.flight.logbook import Records
+
+FILE_NAME: Final = "days.jsonl"
+COURSE: Final = "daily"  # in the logbook
+_LARGEST: Final = 2_000_000  # last bytes that are read: decades
+_AROUND: Final = 40 * 3600.0  # seconds from a day's noon within which its flights were flown
+_MOST_READ: Final = 10  # files that are read to find the best flight of a day
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """First attempt at a start of the day.
+
+    Attributes:
+        day: the day, as in 2026-11-22.
+        outcome: name of an Outcome; FLYING if it was left before its end.
+        score: points.
+        barred: why it does not count as the player's own, as in the logbook; empty if it does.
+        file: name of the flight's file.
+
+    """
+
+    day: Annotated[str, Sized(10, 10)]
+    outcome: Annotated[str, OneOf(Outcome.__members__)] = Outcome.FLYING.name
+    score: Count = 0
+    barred: Annotated[str, Sized(40)] = ""
+    file: Annotated[str, Sized(255)] = ""
+
+    @property
+    def line(self) -> str:
+        """The result in a line for a message, which tells nothing of the way."""
+        return line(self.day, Outcome[self.outcome], self.score, "eased" if self.barred else "first")
+
+
+def line(day: str, outcome: Outcome, points: int, attempt: str) -> str:
+    """Return a result of a day in a line for a message; `attempt` is a key of `texts.DAILY_ATTEMPTS`."""
+    landed = outcome is Outcome.LANDED
+    end = texts.DAILY_LANDED.format(points=points) if landed else sharing.words(outcome, points)
+    return texts.DAILY_LINE.format(day=day, end=end, attempt=texts.DAILY_ATTEMPTS[attempt])
+
+
+class Days:
+    """First attempts in the player's folder.
+
+    Attributes:
+        attempts: by day; do not write to it.
+        problem: why the last call failed, in part or in whole; empty if it did not.
+
+    """
+
+    def __init__(self, user_dir: Path) -> None:
+        self._path, self._records = user_dir / FILE_NAME, Records(user_dir)
+        self.problem = ""
+        self.attempts: Mapping[str, Attempt] = self._read()
+
+    def _read(self) -> dict[str, Attempt]:
+        found: dict[str, Attempt] = {}
+        damaged = 0
+        try:
+            text = read_end(self._path, _LARGEST).decode(errors="replace")
+        except FileNotFoundError:
+            return found
+        except OSError as error:
+            self.problem = texts.FLIGHTS_UNREADABLE.format(path=self._path, reason=error.strerror or error)
+            return found
+        for row in text.splitlines():
+            try:
+                attempt = read_as(Attempt, parse_json(row))
+                date.fromisoformat(attempt.day)
+            except ValueError:
+                damaged += bool(row.strip())
+                continue
+            before = found.get(attempt.day)
+            if before is None or before.outcome == Outcome.FLYING.name:  # a later attempt is practice
+                found[attempt.day] = attempt
+        if damaged:
+            self.problem = texts.DAYS_DAMAGED.format(count=damaged, path=self._path)
+        return found
+
+    def note(self, attempt: Attempt) -> None:
+        """Note that a day's first attempt has begun, or ended."""
+        self.problem, self.attempts = "", {**self.attempts, attempt.day: attempt}
+        try:
+            self._path.parent.mkdir(parents=True, exist_ok=True)
+            with self._path.open("ab") as file:
+                file.write(b"\n" + json.dumps(asdict(attempt)).encode() + b"\n")
+        except OSError as error:
+            self.problem = texts.DAYS_NOT_KEPT.format(reason=error.strerror or error)
+
+    def best_flight(self, day: date) -> Record | None:
+        """Return the player's best flight of a day that can be replayed; None if there is none."""
+        noon = datetime(day.year, day.month, day.day, 12).timestamp()
+        kept = self._records.kept()
+
+        def fits(entry: Entry) -> bool:
+            return entry.course == COURSE and entry.file in kept and abs(entry.when - noon) < _AROUND
+
+        flown = sorted(filter(fits, self._records.entries()), key=lambda entry: (not entry.landed, -entry.score))
+        for entry in flown[:_MOST_READ]:
+            try:
+                record = self._records.read(entry.file)
+            except ValueError:  # the logbook says what is wrong with it
+                continue
+            if record.recording.seed == day.toordinal():
+                return record
+        return None
+
+    def first_flight(self, day: date) -> Record | None:
+        """Return the flight of a day's first attempt; None if there is none, or it cannot be read any more."""
+        attempt = self.attempts.get(day.isoformat())
+        if attempt is None or attempt.file not in self._records.kept():
+            return None
+        try:
+            return self._records.read(attempt.file)
+        except ValueError:
+            return None

@@ -1,0 +1,105 @@
+"""The command `verify`: flights of files and codes are flown again, many at once, and what each earned is printed.
+
+It opens no window and loads no pygame.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Iterator
+from itertools import islice
+from pathlib import Path
+from typing import Any, Final
+
+from ai.cli.command_line import readable
+from ai.flights.shared import SharedFlight
+from ai.flights.verification import Earned, is_true, verified
+from ai.nn.files import brief, read_text
+from game.core import texts
+from game.flight import sharing
+
+_LARGEST: Final = 64_000_000  # bytes of a file
+_PORTION: Final = 4_096  # flights that are held at a time, whatever the number of all
+_SUFFIXES: Final = (".json", ".txt")  # of what is read in a folder
+
+
+def verify(arguments: argparse.Namespace) -> int:
+    """Print what every flight really earned; return 0 if all claims are true, 1 if one is wrong or refused."""
+    counts = {"true": 0, "wrong": 0, "refused": 0}
+    listed: list[dict[str, Any]] = []
+    flights = _flights(arguments.files)
+    while portion := list(islice(flights, _PORTION)):
+        sound = [flight for _, flight in portion if isinstance(flight, SharedFlight)]
+        real = dict(verified(sound))
+        number = 0
+        for place, flight in portion:
+            if isinstance(flight, SharedFlight):
+                row, line = _judged(place, flight, real[number])
+                number += 1
+            else:
+                row, line = _refused(place, flight)
+            counts[row["verdict"]] += 1
+            if arguments.json:
+                listed.append(row)
+            else:
+                print(readable(line))
+    if arguments.json:
+        print(json.dumps({"flights": listed, **counts}, indent=1))
+    else:
+        print(texts.VERIFY_SUM.format(**counts), file=sys.stderr if counts["true"] == 0 else sys.stdout)
+    return int(counts["true"] == 0 or counts["wrong"] + counts["refused"] > 0)
+
+
+def _judged(place: str, flight: SharedFlight, real: Earned) -> tuple[dict[str, Any], str]:
+    """Return a flight's row and its line."""
+    claim, steps = flight.claim, len(flight.recording.actions)
+    row = {
+        "place": place, "verdict": "true" if is_true(claim, steps, real) else "wrong", "where": sharing.where(flight),
+        "outcome": real.outcome.name, "points": real.points, "medal": real.medal, "seconds": round(real.seconds, 3),
+        "fuel": round(real.fuel, 3), "claimed": {"outcome": claim.outcome.name, "points": claim.points},
+    }  # fmt: skip
+    told, claimed = sharing.words(real.outcome, real.points), sharing.words(claim.outcome, claim.points)
+    text = texts.VERIFY_TRUE if row["verdict"] == "true" else texts.VERIFY_WRONG
+    if text is texts.VERIFY_WRONG and told == claimed:
+        text = texts.VERIFY_WRONG_END
+    return row, text.format(place=place, earned=told, claim=claimed)
+
+
+def _refused(place: str, why: str) -> tuple[dict[str, Any], str]:
+    why = brief(why)
+    return {"place": place, "verdict": "refused", "reason": why}, texts.VERIFY_REFUSED.format(place=place, reason=why)
+
+
+def _flights(paths: list[Path]) -> Iterator[tuple[str, SharedFlight | str]]:
+    """Yield every flight, or why it is refused, and its place: the file, and the number of its code there."""
+    for path in paths:
+        try:
+            files = _files(path)
+        except OSError as error:
+            yield str(path), error.strerror or str(error)
+            continue
+        for file in files:
+            yield from _flights_of(file)
+
+
+def _files(path: Path) -> list[Path]:
+    """Return the files that a path names: itself, or all in a folder that may hold flights."""
+    if not path.is_dir():
+        return [path]
+    return sorted(file for file in path.iterdir() if file.suffix in _SUFFIXES and file.is_file())
+
+
+def _flights_of(file: Path) -> Iterator[tuple[str, SharedFlight | str]]:
+    try:
+        text = read_text(file, _LARGEST)
+    except OSError as error:
+        yield str(file), error.strerror or str(error)
+        return
+    except UnicodeDecodeError:
+        yield str(file), texts.CODE_REFUSED["none"]
+        return
+    alone = text.count("tranq-") < 2
+    for number, flight in enumerate(sharing.flights_in(text), 1):
+        yield str(file) if alone else f"{file}:{number}", flight

@@ -1,0 +1,78 @@
+import json
+from dataclasses import asdict
+
+import pytest
+
+from ai.copilot.alone import LandingAlone
+from game.core import texts
+from game.flight.becoming import KINDS, Becoming, kind_of
+from game.flight.flight_file import Entry
+from game.flight.logbook import LOGBOOK, Records
+
+
+def flown(*, landed: bool = True, **more) -> Entry:
+    return Entry(0.0, "LANDED" if landed else "CRASHED", 10.0, 3.0, 0.4, more.pop("human", 1.0), **more)
+
+
+def alone(*, landed: bool = True, **more) -> Entry:
+    return flown(landed=landed, alone=True, **more)
+
+
+def guarded(**more) -> Entry:
+    return flown(barred="helped", guarded=0.4, **more)
+
+
+def test_kinds_of_starts_have_estimates_of_their_own():
+    assert set(KINDS) == set(texts.BECOMING_KINDS)
+    assert [kind_of(each) for each in (alone(), alone(pads=3), alone(course="night"))] == list(KINDS)
+    becoming = Becoming([alone()] * 10 + [alone(landed=False, pads=3)] * 10)
+    assert becoming.estimate("plain").mean > 0.8
+    assert becoming.estimate("hills").mean < 0.2
+    assert not becoming.estimate("missions").known
+    assert [len(becoming.curves[kind]) for kind in KINDS] == [10, 10, 0]
+
+
+@pytest.mark.parametrize("entry", [
+    flown(barred="helped"),  # by tolerance, or by a guardian without a critic
+    flown(barred="handed_over", guarded=0.4),
+    flown(barred="hands"),
+    guarded(course="night"),
+    alone(gravity=0.8),
+    guarded(pace=0.5),
+])  # fmt: skip
+def test_other_flights_tell_nothing(entry: Entry):
+    becoming = Becoming([entry])
+    assert becoming.add(entry) is None
+    assert not any(becoming.curves.values())
+
+
+def test_a_flight_that_the_guardian_left_alone_is_a_good_sign_and_one_it_changed_a_bad_one():
+    becoming = Becoming()
+    good = becoming.add(guarded(human=0.98))
+    assert good is not None
+    assert good.after.mean > good.before.mean
+    bad = becoming.add(guarded(human=0.6))
+    assert bad is not None
+    assert bad.after.mean < bad.before.mean
+    assert (bad.after.alone, bad.after.helped) == (0, 2)
+
+
+def test_the_estimate_is_that_of_the_model():
+    belief = LandingAlone()
+    belief.add_alone(landed=True)
+    belief.add_helped(landed=True, changed=0.2 * 10.0, assist=0.4)
+    assert Becoming([alone(), guarded(human=0.8)]).estimate("plain") == belief.estimate
+
+
+def test_an_old_logbook_gives_estimates_from_what_it_holds(tmp_path):
+    lines = [asdict(alone()) for _ in range(8)]
+    for line in lines:
+        del line["guarded"]
+    records = Records(tmp_path)
+    records.folder.mkdir()
+    (records.folder / "x").unlink(missing_ok=True)
+    records.logbook.write_text("".join(json.dumps(line) + "\n" for line in lines))
+    assert records.logbook.name == LOGBOOK.rsplit("/")[-1]
+    entries = records.entries()
+    assert not records.problem
+    assert Becoming(entries).estimate("plain").alone == 8

@@ -1,0 +1,91 @@
+"""The command `verify`: files, codes and folders, true claims, wrong ones, and what is no flight at all."""
+
+import json
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from ai.lander.environment import Outcome
+from game.core.assets import ASSETS_DIR
+from game.flight import flight_file, sharing
+from tranquility.__main__ import main
+
+ROOT = Path(__file__).parents[3]
+FALL = ASSETS_DIR / "flights" / "fall.json"
+
+
+@pytest.fixture(scope="module")
+def record():
+    return flight_file.read(FALL)
+
+
+def code(record, **changed):
+    return sharing.code(replace(record, entry=replace(record.entry, **changed)))
+
+
+def test_the_flights_that_come_with_the_game_earn_what_they_claim(capsys):
+    assert main(["verify", str(ASSETS_DIR / "flights")]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) == len(list((ASSETS_DIR / "flights").glob("*.json"))) + 1
+    assert lines[-1] == "11 true, 0 wrong, 0 refused"
+
+
+def test_each_code_of_a_text_is_judged_by_itself(tmp_path, capsys, record):
+    best = record.entry.score
+    file = tmp_path / "codes.txt"
+    file.write_text("\n".join([
+        "Here they are:", code(record), code(record, score=best + 9), code(record, outcome="CRASHED", score=0),
+        f"> “{code(record)}”", code(record)[:-6],
+    ]))  # fmt: skip
+    assert main(["verify", str(file), "--json"]) == 1
+    told = json.loads(capsys.readouterr().out)
+    assert [row["verdict"] for row in told["flights"]] == ["true", "wrong", "wrong", "true", "refused"]
+    assert (told["true"], told["wrong"], told["refused"]) == (2, 2, 1)
+    assert [row["points"] for row in told["flights"][:4]] == [best] * 4
+    assert told["flights"][0]["medal"] == record.entry.medal
+    assert main(["verify", str(file)]) == 1
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[1] == f"{file}:2: landed, {best} points  (WRONG, it claims: landed, {best + 9} points)"
+
+
+def test_an_end_elsewhere_than_claimed_is_said_to_be_wrong(tmp_path, capsys, record):
+    file = tmp_path / "one.json"
+    file.write_text(flight_file.to_text(replace(record, end=(9.0, 9.0, 0.0))))
+    assert main(["verify", str(file)]) == 1
+    assert "it ends elsewhere than it claims" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    "content", [b"", b"hello", b"\xff\xfe\x00", b"{", b'{"format": "tranquility flight"}', b"tranq-0"]
+)
+def test_what_is_no_flight_is_refused_in_a_sentence(tmp_path, capsys, content):
+    file = tmp_path / "strange.txt"
+    file.write_bytes(content)
+    assert main(["verify", str(file), str(tmp_path / "gone.txt")]) == 1
+    out, err = capsys.readouterr()
+    assert [": refused, " in line for line in out.splitlines()] == [True, True]
+    assert err.strip() == "0 true, 0 wrong, 2 refused"
+
+
+def test_a_record_of_ours_comes_back_from_its_code(record):
+    flight = sharing.flight_in(f"look: {sharing.code(record)} !")
+    assert flight.recording == record.recording
+    back = sharing.record_of(flight, 5.0)
+    assert back.recording == record.recording
+    assert (back.entry.outcome, back.entry.score) == (Outcome.LANDED.name, record.entry.score)
+    assert back.end == pytest.approx(record.end, abs=1e-4)
+    assert flight_file.from_text(flight_file.to_text(back)) == back
+
+
+def test_no_window_is_needed():
+    program = """
+import sys
+from tranquility.__main__ import main
+code = main(["verify", sys.argv[1]])
+sys.exit(code + 10 * any(name in sys.modules for name in ("pygame", "pygame_gui", "PIL")))
+"""
+    done = subprocess.run([sys.executable, "-c", program, str(FALL)], cwd=ROOT, capture_output=True, check=False)
+    assert done.returncode == 0, done.stderr

@@ -1,0 +1,198 @@
+"""The start of the day: the first attempt counts and is kept, later ones are practice beside a ghost."""
+
+import time
+from collections.abc import Callable
+from datetime import date, timedelta
+
+import pygame
+import pytest
+
+from ai.lander.environment import Outcome
+from ai.lander.pilots import ScriptedPilot
+from game.core import texts
+from game.core.scene import Scene
+from game.flight.flight import Flight
+from game.flight.logbook import Records
+from game.play.daily import DailyStart
+from game.play.days import FILE_NAME, Attempt, Days
+from game.scenes.days import DaysScene
+from game.scenes.missions import MissionsScene
+from game.scenes.play import PlayScene
+from game.scenes.replay import ReplayScene
+from game.ui.context import Context
+from tests.support.driver import Driver
+from tests.support.flights import kept, play
+
+Open = Callable[..., Driver]
+TODAY = date.today()
+YESTERDAY = TODAY - timedelta(days=1)
+
+
+def day_scene(context: Context) -> Scene:
+    return DaysScene(context, TODAY)
+
+
+def flown(day: date) -> Flight:
+    """A flight of a day's start by the scripted pilot, as if by hand."""
+    flight, pilot = Flight(day.toordinal(), pads=3), ScriptedPilot()
+    while not flight.over:
+        flight.step(int(pilot.act(flight.observation)[0]))
+    return flight
+
+
+def crash(driver: Driver) -> PlayScene:
+    """Touch a key, fall, and wait for the card."""
+    driver.frames(3)
+    scene = play(driver)
+    driver.key(pygame.K_UP)
+    while not scene.flight.over:
+        driver.skip(10)
+    driver.skip(240)
+    return scene
+
+
+def attempt(context: Context, day: date = TODAY) -> Attempt | None:
+    return Days(context.user_dir).attempts.get(day.isoformat())
+
+
+@pytest.fixture
+def clipboard(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    held = [""]
+    monkeypatch.setattr(pygame.scrap, "put_text", held.append)
+    return held
+
+
+def test_the_missions_lead_to_the_day(open_game: Open):
+    driver = open_game(MissionsScene)
+    driver.frames(2)
+    driver.keys(pygame.K_END, pygame.K_RETURN)
+    assert driver.top_name == "DaysScene"
+
+
+def test_the_first_attempt_counts_and_a_second_is_practice(open_game: Open, context: Context):
+    driver = open_game(day_scene)
+    driver.frames(2)
+    driver.press_on(texts.DAYS_FLY)
+    driver.frames(30)
+    assert play(driver).credit.counts
+    assert attempt(context) is None  # it hangs, and nothing has begun
+    scene = crash(driver)
+    first = attempt(context)
+    assert first
+    assert (first.outcome, first.barred) == (scene.flight.outcome.name, "")
+    assert Records(context.user_dir).read(first.file).recording == scene.flight.recording
+    driver.key(pygame.K_r)
+    driver.frames(3)
+    again = play(driver)
+    assert again.credit.bar == "day_again"
+    assert again.credit.notice == texts.NOT_COUNTED["day_again"]
+    assert again.flown.ghost.name == texts.DAILY_GHOST_TODAY
+    crash(driver)
+    assert attempt(context) == first
+    entries = Records(context.user_dir).entries()
+    assert [entry.alone for entry in entries] == [True, False]
+
+
+def test_leaving_the_first_attempt_ends_it(open_game: Open, context: Context):
+    driver = open_game(day_scene)
+    driver.frames(2)
+    driver.press_on(texts.DAYS_FLY)
+    driver.frames(3)
+    driver.key(pygame.K_UP)
+    driver.frames(20)
+    driver.key(pygame.K_r)
+    driver.frames(3)
+    assert play(driver).credit.bar == "day_again"
+    assert attempt(context) == Attempt(TODAY.isoformat())
+    crash(driver)
+    assert attempt(context) == Attempt(TODAY.isoformat())  # practice changes nothing
+    driver = open_game(day_scene)
+    driver.frames(2)
+    assert isinstance(driver.top, DaysScene)
+    assert driver.top.items[0] == TODAY
+    assert driver.widget(texts.DAYS_FLY_AGAIN)
+
+
+def test_a_day_of_the_past_is_flown_beside_ones_best_flight_of_it(open_game: Open, context: Context):
+    record = kept(context, flown(YESTERDAY), time.time() - 24 * 3600, alone=True, course="daily")
+    days = Days(context.user_dir)
+    days.note(Attempt(YESTERDAY.isoformat(), record.entry.outcome, record.entry.score, "", record.entry.file))
+    driver = open_game(day_scene)
+    driver.frames(2)
+    driver.key(pygame.K_DOWN)
+    driver.frames(2)
+    driver.press_on(texts.DAYS_FLY_PAST)
+    driver.frames(2)
+    scene = play(driver)
+    assert scene.credit.bar == "day_past"
+    assert scene.flight.recording.seed == YESTERDAY.toordinal()
+    assert scene.flown.ghost.name == texts.DAILY_GHOST
+    crash(driver)
+    assert attempt(context) is None
+    assert attempt(context, YESTERDAY).outcome == Outcome.LANDED.name
+
+
+def test_the_best_flight_of_a_day_is_a_landing_of_that_day(context: Context):
+    for day in (YESTERDAY, TODAY):
+        kept(context, flown(day), time.time(), alone=True, course="daily")
+    found = Days(context.user_dir).best_flight(TODAY)
+    assert found.recording.seed == TODAY.toordinal()
+    assert Days(context.user_dir).best_flight(TODAY - timedelta(days=9)) is None
+
+
+def test_the_line_to_paste_tells_nothing_of_the_way(open_game: Open, context: Context, clipboard: list[str]):
+    driver = open_game(lambda context: PlayScene(context, 0, challenge=DailyStart(TODAY, Days(context.user_dir))))
+    crash(driver)
+    driver.key(pygame.K_k)
+    assert clipboard[-1] == f"Tranquility {TODAY} · crashed · first attempt"
+    assert driver.said == texts.CODE_LINE_COPIED.format(line=clipboard[-1])
+    driver.key(pygame.K_r)
+    crash(driver)
+    driver.key(pygame.K_k)
+    assert clipboard[-1] == f"Tranquility {TODAY} · crashed · practice"
+    landed = Attempt("2026-11-22", "LANDED", 84)
+    assert landed.line == "Tranquility 2026-11-22 · landed · 84 points · first attempt"
+    assert Attempt("2026-11-22", "LANDED", 84, "practice").line.endswith("first attempt, made easier")
+
+
+def test_everything_of_a_day_can_be_copied_and_watched(open_game: Open, context: Context, clipboard: list[str]):
+    record = kept(context, flown(TODAY), time.time(), alone=True, course="daily")
+    told = Attempt(TODAY.isoformat(), record.entry.outcome, record.entry.score, "", record.entry.file)
+    Days(context.user_dir).note(told)
+    driver = open_game(day_scene)
+    driver.frames(2)
+    driver.press_on(texts.DAYS_COPY)
+    assert clipboard[-1] == told.line
+    driver.press_on(texts.CODE_COPY)
+    assert clipboard[-1].startswith("tranq-")
+    driver.press_on(texts.LOGBOOK_WATCH)
+    driver.frames(2)
+    assert isinstance(driver.top, ReplayScene)
+
+
+def test_a_damaged_line_is_counted_and_the_rest_is_read(open_game: Open, context: Context):
+    days = Days(context.user_dir)
+    days.note(Attempt("2026-01-01", "LANDED", 50))
+    with (context.user_dir / FILE_NAME).open("a") as file:
+        file.write('{"day": "2026-99-99"}\nhello\n{"day": "2026-01-02", "outcome": "CRASHED"}\n')
+    again = Days(context.user_dir)
+    assert [each.outcome for each in again.attempts.values()] == ["LANDED", "CRASHED"]
+    assert again.problem == texts.DAYS_DAMAGED.format(count=2, path=context.user_dir / FILE_NAME)
+    driver = open_game(day_scene)
+    driver.frames(2)
+    assert driver.said == again.problem
+
+
+def test_a_first_attempt_that_has_ended_is_never_replaced(context: Context):
+    days = Days(context.user_dir)
+    for each in (Attempt("2026-01-01"), Attempt("2026-01-01", "CRASHED"), Attempt("2026-01-01", "LANDED", 99)):
+        days.note(each)
+    assert Days(context.user_dir).attempts["2026-01-01"].outcome == "CRASHED"
+
+
+def test_a_disk_that_cannot_be_written_is_told(open_game: Open, context: Context):
+    context.user_dir.mkdir(parents=True, exist_ok=True)
+    (context.user_dir / FILE_NAME).mkdir()
+    driver = open_game(lambda context: PlayScene(context, 0, challenge=DailyStart(TODAY, Days(context.user_dir))))
+    crash(driver)
+    assert texts.DAYS_NOT_KEPT.partition("{")[0] in driver.said

@@ -1,0 +1,262 @@
+"""A friend's flight comes in by paste and by drop at any screen, is checked, raced, taken over and answered."""
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+
+import pygame
+import pytest
+
+from game.core import texts
+from game.core.assets import ASSETS_DIR
+from game.flight import flight_file, sharing
+from game.flight.flight_file import Record
+from game.play.challenge import ContinuedFlight, FlownMission, Race
+from game.scenes.digit_training import DigitTrainingScene
+from game.scenes.logbook import LogbookScene
+from game.scenes.menu import MenuScene
+from game.scenes.play import PlayScene
+from game.scenes.replay import ReplayScene
+from game.scenes.runs import NetworksScene
+from game.ui.context import Context
+from tests.support.driver import Driver
+from tests.support.flights import kept, play, scripted
+
+Open = Callable[..., Driver]
+
+
+@pytest.fixture
+def record(context: Context) -> Record:
+    return kept(context, scripted(), alone=True)
+
+
+@pytest.fixture
+def clipboard(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """What is in the clipboard: the last text."""
+    held = [""]
+    monkeypatch.setattr(pygame.scrap, "put_text", held.append)
+    monkeypatch.setattr(pygame.scrap, "get_text", lambda: held[-1])
+    return held
+
+
+def page(driver: Driver) -> ReplayScene:
+    assert isinstance(driver.top, ReplayScene)
+    assert driver.top.claimed
+    return driver.top
+
+
+def paste(driver: Driver, text: str, clipboard: list[str]) -> None:
+    clipboard.append(text)
+    driver.frames(2)
+    driver.key(pygame.K_v, pygame.KMOD_LCTRL)
+    driver.frames(2)
+
+
+@pytest.mark.parametrize("scene", [MenuScene, LogbookScene, PlayScene, NetworksScene, DigitTrainingScene])
+def test_a_code_is_pasted_at_any_screen(open_game: Open, record: Record, clipboard: list[str], scene):
+    driver = open_game(scene)
+    paste(driver, f"Beat this: “{sharing.code(record)}”", clipboard)
+    assert page(driver).record.recording == record.recording
+    driver.key(pygame.K_ESCAPE)
+    assert isinstance(driver.top, scene)
+
+
+def test_the_logbook_has_a_word_for_it(open_game: Open, record: Record, clipboard: list[str]):
+    driver = open_game(LogbookScene)
+    driver.frames(2)
+    driver.press_on(texts.CODE_PASTE)
+    assert driver.said == texts.CODE_PASTE_EMPTY
+    clipboard.append(sharing.code(record))
+    driver.press_on(texts.CODE_PASTE)
+    assert page(driver).claimed
+
+
+@pytest.mark.parametrize("scene", [MenuScene, PlayScene, NetworksScene])
+def test_a_file_is_dropped_at_any_screen(open_game: Open, context: Context, record: Record, tmp_path, scene):
+    code = tmp_path / "from a friend.txt"
+    code.write_text(sharing.code(record))
+    for path in (code, context.user_dir / "flights" / record.entry.file):
+        driver = open_game(scene)
+        driver.frames(2)
+        driver.post(pygame.DROPFILE, file=str(path))
+        assert page(driver).record.recording == record.recording
+        driver.key(pygame.K_ESCAPE)
+        driver.frames(2)
+        assert isinstance(driver.top, scene)
+
+
+def test_a_text_is_dropped_too(open_game: Open, record: Record):
+    driver = open_game()
+    driver.post(pygame.DROPTEXT, text=sharing.code(record))
+    assert page(driver)
+
+
+@pytest.mark.parametrize(
+    ("content", "why"),
+    [
+        (b"tranq-000-over", texts.CODE_REFUSED["damaged"]),
+        (b"tranq-000", texts.CODE_REFUSED["cut"]),
+        (b"hello", texts.CODE_REFUSED["none"]),
+        (b"\xff\xfe", texts.CODE_REFUSED["none"]),
+        (b"x" * 2_000_000, ""),
+    ],
+)
+def test_what_is_no_flight_is_refused_in_a_sentence(open_game: Open, tmp_path, content, why):
+    driver = open_game()
+    path = tmp_path / "strange.bin"
+    path.write_bytes(content)
+    driver.post(pygame.DROPFILE, file=str(path))
+    assert driver.top_name == "MenuScene"
+    assert driver.said.startswith("strange.bin: ")
+    assert why in driver.said
+
+
+def test_a_folder_and_a_file_that_is_gone_are_refused(open_game: Open, tmp_path):
+    driver = open_game()
+    for path in (tmp_path, tmp_path / "gone"):
+        driver.post(pygame.DROPFILE, file=str(path))
+        assert driver.said.startswith(f"{path.name}: ")
+
+
+def test_pasting_what_is_no_code_is_refused(open_game: Open, clipboard: list[str]):
+    driver = open_game()
+    paste(driver, "tranq-000", clipboard)
+    assert driver.said == texts.CODE_PASTE_REFUSED.format(reason=texts.CODE_REFUSED["cut"])
+
+
+def test_a_letter_alone_pastes_nothing(open_game: Open, record: Record, clipboard: list[str]):
+    clipboard.append(sharing.code(record))
+    driver = open_game()
+    driver.key(pygame.K_v)
+    assert driver.top_name == "MenuScene"
+
+
+def test_a_true_claim_is_said_to_be_true(open_game: Open, record: Record, written: list[str]):
+    driver = open_game()
+    driver.post(pygame.DROPTEXT, text=sharing.code(record))
+    claimed = page(driver).claimed
+    driver.frames(2)
+    assert claimed.true is None
+    assert claimed.words.startswith(texts.FRIEND_CHECKING.partition("{")[0])
+    driver.frames(200)
+    assert claimed.true
+    assert texts.FRIEND_TRUE in written
+    assert texts.FRIEND_LINE.format(where=texts.COURSE_FREE[1], claim=f"landed, {record.entry.score} points") in written
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"score": 999}, "wrong. It really landed"),
+        ({"outcome": "CRASHED", "score": 0}, "wrong. It really landed"),
+        (None, texts.FRIEND_WRONG_END),
+    ],
+)
+def test_a_wrong_claim_is_said_to_be_wrong(open_game: Open, record: Record, changed, words):
+    if changed is None:
+        told = replace(record, end=(5.0, 5.0, 0.0))
+    else:
+        told = replace(record, entry=replace(record.entry, **changed))
+    driver = open_game()
+    driver.post(pygame.DROPTEXT, text=sharing.code(told))
+    driver.frames(200)
+    assert page(driver).claimed.true is False
+    assert words in page(driver).claimed.words
+
+
+def test_a_flight_without_a_step_is_shown(open_game: Open, record: Record):
+    recording = replace(record.recording, actions=[], hands=[])
+    driver = open_game()
+    driver.post(pygame.DROPTEXT, text=sharing.code(replace(record, recording=recording)))
+    driver.frames(5)
+    assert page(driver).claimed.true is False
+
+
+def test_it_is_answered_and_the_answer_is_a_code_of_ones_own(open_game: Open, record: Record, clipboard: list[str]):
+    driver = open_game()
+    driver.post(pygame.DROPTEXT, text=sharing.code(record))
+    driver.frames(2)
+    driver.press_on(texts.FRIEND_ANSWER)
+    driver.frames(3)
+    scene = play(driver)
+    assert isinstance(scene.challenge, Race)
+    assert scene.flown.ghost.name == texts.FRIEND_NAME
+    driver.key(pygame.K_UP)
+    while not scene.flight.over:
+        driver.skip(10)
+    driver.skip(240)
+    driver.key(pygame.K_k)
+    assert driver.said == texts.CODE_COPIED.format(count=len(clipboard[-1]))
+    answer = sharing.flight_in(clipboard[-1])
+    assert answer.recording == scene.flight.recording
+    assert answer.recording.seed == record.recording.seed
+    assert answer.claim.outcome.name == scene.flight.outcome.name
+
+
+def test_it_is_taken_over_at_the_moment_that_is_shown(open_game: Open, record: Record):
+    driver = open_game()
+    driver.post(pygame.DROPTEXT, text=sharing.code(record))
+    driver.frames(60)
+    at = page(driver).flight_replay.at
+    driver.key(pygame.K_TAB)
+    driver.frames(2)
+    scene = play(driver)
+    assert isinstance(scene.challenge, ContinuedFlight)
+    assert len(scene.flight.recording.actions) == at > 0
+    assert scene.flown.ghost.name == texts.FRIEND_NAME
+
+
+def test_a_missions_flight_is_answered_as_that_mission(open_game: Open, context: Context):
+    record = kept(context, scripted(0, mission="fall"), course="fall")
+    driver = open_game()
+    driver.post(pygame.DROPTEXT, text=sharing.code(record))
+    driver.frames(2)
+    driver.press_on(texts.FRIEND_ANSWER)
+    assert isinstance(play(driver).challenge, FlownMission)
+
+
+def test_a_friends_code_is_sent_on_as_it_came(open_game: Open, record: Record, clipboard: list[str]):
+    code = sharing.code(replace(record, entry=replace(record.entry, score=999)))
+    driver = open_game()
+    driver.post(pygame.DROPTEXT, text=code)
+    driver.frames(2)
+    driver.press_on(texts.CODE_COPY)
+    assert clipboard[-1] == code
+
+
+def test_a_flight_of_the_logbook_is_copied(open_game: Open, record: Record, clipboard: list[str]):
+    driver = open_game(LogbookScene)
+    driver.frames(2)
+    driver.press_on(texts.CODE_COPY)
+    assert sharing.flight_in(clipboard[-1]).recording == record.recording
+
+
+def test_without_a_clipboard_the_code_is_written_to_a_file(
+    open_game: Open, context: Context, record: Record, monkeypatch: pytest.MonkeyPatch
+):
+    def broken(*_: object) -> None:
+        raise pygame.error("no clipboard")
+
+    monkeypatch.setattr(pygame.scrap, "put_text", broken)
+    monkeypatch.setattr(pygame.scrap, "get_text", broken)
+    driver = open_game(LogbookScene)
+    driver.frames(2)
+    driver.press_on(texts.CODE_COPY)
+    (path,) = (context.user_dir / "codes").iterdir()
+    assert driver.said == texts.CODE_NO_CLIPBOARD.format(path=path)
+    assert sharing.flight_in_file(path).recording == record.recording
+    driver.press_on(texts.CODE_PASTE)
+    assert driver.said == texts.CODE_PASTE_EMPTY
+
+
+def test_a_flight_file_of_an_older_version_is_shown_too(open_game: Open, tmp_path):
+    values = json.loads((ASSETS_DIR / "flights" / "fall.json").read_text())
+    values["version"] = 1
+    values.pop("gravity", None)
+    path = tmp_path / "old.json"
+    path.write_text(json.dumps(values))
+    driver = open_game()
+    driver.post(pygame.DROPFILE, file=str(path))
+    driver.frames(200)
+    assert page(driver).claimed.true
+    assert flight_file.read(path).recording.mission == "fall"
