@@ -98,7 +98,10 @@ class Sound:
 
     def follow(self, settings: Settings) -> None:
         """Take the volumes from the settings, squared: loudness is heard in ratios, so half way up is a gain of 1/4."""
-        self._volumes = {group: getattr(settings, f"{group}_volume") ** 2 for group in GROUPS}
+        master = 0.0 if settings.muted else settings.master_volume
+        self._volumes = {group: (master * getattr(settings, f"{group}_volume")) ** 2 for group in GROUPS}
+        if settings.muted:
+            self._fade_out()
 
     def handle_event(self, event: pygame.event.Event) -> None:
         """Mute while the window has no focus; follow devices that are plugged in or removed."""

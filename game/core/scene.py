@@ -21,8 +21,11 @@ class Scene:
 
     Attributes:
         context: the shared services.
+        takes_switch: whether a press of the one switch is the scene's own now, and chooses nothing on it.
 
     """
+
+    takes_switch = False
 
     def __init__(self, context: Context) -> None:
         self.context = context
@@ -42,6 +45,10 @@ class Scene:
 
     def update(self) -> Transition | None:
         """Advance by exactly one physics step of 1/60 s."""
+        return None
+
+    def pause(self) -> Transition | None:
+        """Pause, because a player has held the one switch for long while `takes_switch`."""
         return None
 
     def hint_rows(self, canvas: Canvas) -> Sequence[HintRow]:  # noqa: ARG002

@@ -10,19 +10,20 @@ import numpy as np
 
 from ai.common.decision import Decision
 from ai.common.environment import Doubles, Floats
-from ai.lander.environment import LanderEnv, Outcome
-from ai.lander.missions import STARTS
-from ai.lander.pilots import COAST
+from ai.lander.environment import Outcome
+from ai.lander.pilots import COAST, ScriptedPilot
+from game.flight.easing import AS_IT_IS, Easing
 from game.flight.handicap import OWN, Handicap
 from game.flight.networks import Policy, QPolicy, decide
 from game.flight.poses import Poses
-from game.flight.surface import ground_of
+from game.flight.stick import Shares, thrust
 
 if TYPE_CHECKING:
     from ai.copilot.copilot import CoPilot, SharedDecision
 
 # Physics steps per decision of a network, here as in training.
 DECISION_STEPS: Final = 4
+_STEERING: Final = ScriptedPilot()  # fires the jets for a person who flies with one switch
 
 
 class StickHolder(Enum):
@@ -37,7 +38,8 @@ class Recording:
     """Recording of a flight for an exact replay: its start, and the action of every step.
 
     `hands` says who chose each action: with a shared stick, the person if the action is the one they asked for.
-    `gravity` lists its changes: the first step, and the share of normal gravity.
+    `gravity` lists its changes: the first step, and the share of normal gravity. `shares` has the shares of thrust
+    of each step, by its number, in which an engine gave less than all of it.
     """
 
     seed: int
@@ -47,6 +49,8 @@ class Recording:
     hands: list[StickHolder] = field(default_factory=list)
     mission: str = ""
     gravity: list[tuple[int, float]] = field(default_factory=list)
+    shares: dict[int, Shares] = field(default_factory=dict)
+    easing: Easing = AS_IT_IS
 
     def gravity_at(self, step: int) -> float:
         """Return the share of normal gravity during a step."""
@@ -64,8 +68,10 @@ class Flight:
         hands: handicap of the keys, a name of `game.flight.handicap.HANDS`.
         mission: name of one of `ai.lander.missions.STARTS`, which sets the start and the conditions; empty for none.
         shares: whether the network may share the stick, and not only take it.
+        easing: changes of the rules that give the pilot more room.
 
     Attributes:
+        steered: whether the jets are fired for the person, who has the main engine alone: one switch is enough.
         copilot: shares the stick while its assist is above 0; None if the network has no Q-values.
         decision: the co-pilot's latest decision; None while it does not share the stick.
         alone: latest decision of the network while it flies alone; None otherwise.
@@ -84,15 +90,13 @@ class Flight:
         hands: str = OWN,
         mission: str = "",
         shares: bool = True,
+        easing: Easing = AS_IT_IS,
     ) -> None:
-        if mission:
-            self.env = STARTS[mission].begin()
-        else:
-            self.env = LanderEnv(1, seed, spawn, frame_skip=1, ground=ground_of(seed, pads))
-            self.env.reset()
+        self.env = easing.begin_mission(mission) if mission else easing.begin(seed, spawn, pads)
         self.observation: Floats = self.env.observe()
         self.hand, self.shares = StickHolder.HUMAN, shares
-        self.recording = Recording(seed, spawn, pads, mission=mission)
+        self.recording = Recording(seed, spawn, pads, mission=mission, easing=easing)
+        self.steered = False
         self.poses = Poses(self.env)
         self.asked, self.overridden = COAST, False
         self.decision: SharedDecision | None = None
@@ -136,6 +140,7 @@ class Flight:
         self.recording.hands[:] = source.hands[:step]
         self._yours = self.recording.hands.count(StickHolder.HUMAN)
         self.recording.gravity[:] = [change for change in source.gravity if change[0] <= step]
+        self.recording.shares = {at: shares for at, shares in source.shares.items() if at < step}
         self._pull(self.recording.gravity_at(step))
         self.rest()
 
@@ -183,15 +188,18 @@ class Flight:
         self._held_for, self.decision, self.alone = 0, None, None  # the new pilot decides at once
         return True
 
-    def step(self, held: int) -> None:
-        """Advance by 1/60 s; `held` is the action that the keys ask for."""
+    def step(self, held: int, shares: Shares | None = None) -> None:
+        """Advance by 1/60 s; `held` is the action that the stick asks for, with `shares` of thrust or all of it."""
         self.overridden = False
         if self.over:
             self.poses.take()
             return
         action, by = self._choose(held)
-        self.env.fly(np.array([action]))
+        shares = self._shares(action, by, held, shares)
+        self.env.fly(np.array([action]), thrust(shares))
         self.observation = self.env.observe()
+        if shares is not None:
+            self.recording.shares[len(self.recording.actions)] = shares
         self.recording.actions.append(action)
         self.recording.hands.append(by)
         self._yours += by is StickHolder.HUMAN
@@ -199,11 +207,17 @@ class Flight:
         if self.outcome is Outcome.LANDED:
             self.env.target = self.env.landed_on
 
+    def _shares(self, action: int, by: StickHolder, held: int, shares: Shares | None) -> Shares | None:
+        """Return the shares of thrust of the next step: the person's, if their own action is flown as they asked."""
+        return shares if by is StickHolder.HUMAN and action == held else None
+
     def _choose(self, held: int) -> tuple[int, StickHolder]:
         """Return the action of the next step, and who chose it."""
         if self.hand is StickHolder.NETWORK:
             self.asked = COAST
             return self._ask_network(), StickHolder.NETWORK
+        if self.steered:
+            held = held - held % 3 + int(_STEERING.act(self.observation)[0]) % 3
         self.asked = self._hands.ask(held, self.observation)
         if not self.shared:
             self.decision = None

@@ -15,7 +15,7 @@ class OutcomeCard:
     """Contents of an outcome card: good or not, the reason, figures as label, value, unit, and advice.
 
     For a shared flight, `stepped_in` is how often the co-pilot intervened. `medal` is 3 for gold, 2, 1, 0 for none.
-    `left` is the card's left edge.
+    `assists` says what made the flight easier. `left` is the card's left edge.
     """
 
     good: bool
@@ -24,6 +24,7 @@ class OutcomeCard:
     figures: tuple[tuple[str, str, str], ...]
     human: float
     advice: str = ""
+    assists: str = ""
     score: str = ""
     medal: int = 0
     stepped_in: int | None = None

@@ -8,16 +8,22 @@ from typing import Final
 import numpy as np
 
 from ai.lander.environment import LanderEnv
-from ai.lander.ground import Ground, hilly
+from ai.lander.ground import PADS, Ground, Pad, hilly
+from ai.lander.rules import PARAMS
 
 _PROFILE_REACH: Final = 30.0  # metres to both sides for which the ground's height is cached
 _PROFILE_STEP: Final = 0.02
 
 
 @lru_cache(maxsize=8)
-def ground_of(seed: int, pads: int) -> Ground:
-    """Return the ground of a flight: a plain with one pad, or hills with a pad of every size."""
-    return Ground.flat() if pads == 1 else hilly(np.random.default_rng(seed))
+def ground_of(seed: int, pads: int, width: float = 1.0) -> Ground:
+    """Return the ground of a flight: a plain with one pad, or hills with a pad of every size.
+
+    Pads are `width` times as wide as they usually are.
+    """
+    if pads == 1:
+        return Ground((Pad(0.0, PARAMS.pad_top, width * PARAMS.pad_width),), base=PARAMS.ground)
+    return hilly(np.random.default_rng(seed), [(width * wide, factor) for wide, factor in PADS])
 
 
 def surface_height(env: LanderEnv, x: float) -> float:

@@ -35,6 +35,7 @@ class Command(Enum):
     MODE = auto()
     FULLSCREEN = auto()
     SCREENSHOT = auto()
+    MUTE = auto()
     UNPLUGGED = auto()  # not a press: the gamepad in use was unplugged
 
 
@@ -44,6 +45,7 @@ class Held(Enum):
     MAIN = auto()
     LEFT = auto()
     RIGHT = auto()
+    FINE = auto()  # not an engine: while it is held, jets give a part of their thrust
 
 
 Meaning = Command | Held
@@ -81,6 +83,7 @@ KEYS: Final[Table] = {
     Held.MAIN: (pygame.K_UP, pygame.K_SPACE, pygame.K_w),
     Held.LEFT: (pygame.K_LEFT, pygame.K_a),
     Held.RIGHT: (pygame.K_RIGHT, pygame.K_d),
+    Held.FINE: (pygame.K_LSHIFT, pygame.K_RSHIFT),
     Command.HANDOVER: (pygame.K_TAB,),
     Command.RETRY: (pygame.K_r,),
     Command.PAUSE: (pygame.K_p,),
@@ -93,11 +96,13 @@ KEYS: Final[Table] = {
     Command.PREVIOUS: (pygame.K_b, pygame.K_PAGEUP),
     Command.FULLSCREEN: (pygame.K_F11,),
     Command.SCREENSHOT: (pygame.K_F12,),
+    Command.MUTE: (pygame.K_F10,),
 }
 BUTTONS: Final[Table] = {
     Held.MAIN: (pygame.CONTROLLER_BUTTON_A, TRIGGER_RIGHT, pygame.CONTROLLER_BUTTON_DPAD_UP),
     Held.LEFT: (pygame.CONTROLLER_BUTTON_DPAD_LEFT,),
     Held.RIGHT: (pygame.CONTROLLER_BUTTON_DPAD_RIGHT,),
+    Held.FINE: (TRIGGER_LEFT,),
     Command.HANDOVER: (pygame.CONTROLLER_BUTTON_Y,),
     Command.RETRY: (pygame.CONTROLLER_BUTTON_X,),
     Command.PAUSE: (),
@@ -110,6 +115,7 @@ BUTTONS: Final[Table] = {
     Command.PREVIOUS: (pygame.CONTROLLER_BUTTON_LEFTSHOULDER,),
     Command.FULLSCREEN: (),
     Command.SCREENSHOT: (),
+    Command.MUTE: (),
 }
 # Letters that move in menus unless they are bound to something else.
 _SPARE_KEYS: Final[Mapping[int, Command]] = {

@@ -12,6 +12,7 @@ from game.core import texts
 from game.core.settings import Settings
 from game.drawing.canvas import Canvas
 from game.flight.credit import Credit
+from game.flight.easing import AS_IT_IS
 from game.flight.flight import Flight, Recording
 from game.flight.flight_file import Record
 from game.flight.networks import Policy
@@ -58,6 +59,8 @@ class Challenge:
         goal: goal of the flight, for the corner as well.
         opening: text while the craft hangs and waits; empty to leave the middle free.
         through: whether the challenge is finished and free flights follow.
+        eases: whether the player's easing applies to its flights.
+        easing: the easing of its next flight.
 
     """
 
@@ -67,6 +70,8 @@ class Challenge:
     bar = ""
     alone = False
     through = False
+    eases = False
+    easing = AS_IT_IS
     next_hint = ""
     title = line = goal = opening = ""
 
@@ -179,13 +184,16 @@ class ContinuedFlight(Challenge):
 
 def _as_begun(recording: Recording, seed: int, network: Policy | None) -> Flight:
     """Return a flight at the start of a recorded one."""
-    return Flight(seed, network, recording.spawn, pads=recording.pads, mission=recording.mission)
+    return Flight(
+        seed, network, recording.spawn, pads=recording.pads, mission=recording.mission, easing=recording.easing
+    )
 
 
 class FlownMission(Challenge):
     """A mission of the campaign, beside a ghost: a recorded flight or, without one, the network."""
 
     title = texts.MISSION
+    eases = True
 
     def __init__(self, mission: Mission, rival: Record | None = None, rival_name: str = texts.MISSION_RIVAL) -> None:
         self.mission, self.name = mission, mission.name
@@ -195,7 +203,7 @@ class FlownMission(Challenge):
 
     def flight(self, seed: int, network: Policy | None) -> Flight:
         """Begin a flight of the mission."""
-        return Flight(seed, network, mission=self.name)
+        return Flight(seed, network, mission=self.name, easing=self.easing)
 
     def ghost(self, seed: int, network: Policy | None) -> Ghost | None:
         """Begin the rival on the same mission."""
@@ -247,6 +255,7 @@ class DailyStart(Challenge):
 
     name = "daily"
     alone = True
+    eases = True
     title = texts.DAILY
 
     def __init__(self, day: date) -> None:
@@ -255,4 +264,4 @@ class DailyStart(Challenge):
 
     def flight(self, seed: int, network: Policy | None) -> Flight:  # noqa: ARG002
         """Begin a flight with three pads among hills."""
-        return Flight(self.seed, pads=3)
+        return Flight(self.seed, pads=3, easing=self.easing)
