@@ -118,7 +118,7 @@ BUTTONS: Final[Table] = {
     Command.MUTE: (),
 }
 # Meanings that give way: a key bound elsewhere is taken from them, also by settings saved before they existed.
-_GIVE_WAY: Final = frozenset({Held.FINE, Command.MUTE})
+GIVE_WAY: Final = frozenset({Held.FINE, Command.MUTE})
 # Letters that move in menus unless they are bound to something else.
 _SPARE_KEYS: Final[Mapping[int, Command]] = {
     pygame.K_w: Command.UP, pygame.K_s: Command.DOWN, pygame.K_a: Command.LEFT, pygame.K_d: Command.RIGHT,
@@ -202,7 +202,7 @@ class Bindings:
     def bereft(self, meaning: Meaning, code: int) -> Meaning | None:
         """Return the meaning that would lose its last key if `code` were bound to `meaning`; None if there is none."""
         owner = self._owner(meaning, code)
-        if owner is None or owner in self.device.fixed or owner in _GIVE_WAY or self._left(owner, meaning, code):
+        if owner is None or owner in self.device.fixed or owner in GIVE_WAY or self._left(owner, meaning, code):
             return None
         return owner
 
@@ -228,7 +228,7 @@ class Bindings:
     def _left(self, loser: Meaning, meaning: Meaning, code: int) -> tuple[int, ...]:
         """Return the keys of `loser` once `meaning` has taken one from it, and given up its own."""
         left = _without(self.table[loser], {code})
-        if loser in _GIVE_WAY:
+        if loser in GIVE_WAY:
             return left
         return left or tuple(each for each in self.table[meaning] if each != code and self.may(loser, each))
 
@@ -255,7 +255,7 @@ class Bindings:
 
     def _lacks(self, meaning: Meaning) -> bool:
         """Whether a meaning with a default key has no key left."""
-        return meaning not in _GIVE_WAY and bool(self.device.standard[meaning]) and not self.codes(meaning)
+        return meaning not in GIVE_WAY and bool(self.device.standard[meaning]) and not self.codes(meaning)
 
     def to_dict(self) -> dict[str, list[str]]:
         """Return the changes from the defaults, as names for the settings file."""

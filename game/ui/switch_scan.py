@@ -35,11 +35,16 @@ class Stop:
 
 
 class SwitchScan:
-    """Scanning of one window; call `update` in every step, and `take` for every event."""
+    """Scanning of one window; call `update` in every step, and `take` for every event.
+
+    Attributes:
+        index: number of the choice that is marked, counted on and on.
+
+    """
 
     def __init__(self, context: Context) -> None:
         self._context = context
-        self._index = self._since = self._held = 0
+        self.index = self._since = self._held = 0
         self._mouse_still, self._mouse_down = _STILL, False
         self._scene: Scene | None = None
 
@@ -63,13 +68,13 @@ class SwitchScan:
         self._mouse_still += 1
         self._since += 1
         if scene is not self._scene:
-            self._scene, self._index, self._since = scene, 0, 0
+            self._scene, self.index, self._since = scene, 0, 0
         if scene.takes_switch:
-            self._index = self._since = 0
+            self.index = self._since = 0
             return self._hold(scene)
         self._held = 0
         if self._since >= DWELL:
-            self._index, self._since = self._index + 1, 0
+            self.index, self._since = self.index + 1, 0
         self._mark(scene, canvas)
         return None
 
@@ -81,11 +86,11 @@ class SwitchScan:
             self._mouse_down = event.type == pygame.MOUSEBUTTONDOWN
         if not (self._context.settings.one_switch and not scene.takes_switch and self._is_press(event, scene)):
             return False, None
-        if self._since < _LEAST and self._index == 0:
+        if self._since < _LEAST and self.index == 0:
             return True, None  # the press that led here is still being let go
         stops = self.stops(scene, canvas)
         self._since = 0
-        return True, self._choose(scene, stops[self._index % len(stops)]) if stops else None
+        return True, self._choose(scene, stops[self.index % len(stops)]) if stops else None
 
     def draw(self, scene: Scene, canvas: Canvas) -> None:
         """Mark what the switch would choose, and how long it still would."""
@@ -94,7 +99,7 @@ class SwitchScan:
         stops = self.stops(scene, canvas)
         if not stops:
             return
-        box = stops[self._index % len(stops)].box.inflate(16, 6)
+        box = stops[self.index % len(stops)].box.inflate(16, 6)
         canvas.outline(box, 8, HUMAN, 1.5)
         if not self._context.settings.reduced_motion:
             left = 1 - self._since / DWELL
@@ -111,7 +116,7 @@ class SwitchScan:
     def _mark(self, scene: Scene, canvas: Canvas) -> None:
         """Move the focus to what is marked."""
         stops = self.stops(scene, canvas)
-        stop = stops[self._index % len(stops)] if stops else None
+        stop = stops[self.index % len(stops)] if stops else None
         if stop and stop.widget and isinstance(form := getattr(scene, "form", None), Form) and not form.typing:
             form.focus(stop.widget)
             if isinstance(stop.widget, Listing) and self._since == 0:

@@ -17,6 +17,7 @@ from game.flight.flight_file import Record
 from game.flight.skill import Skill
 from game.learn.path import FIRST, PATH
 from game.play.challenge import FlownMission
+from game.scenes.assists import AssistsScene
 from game.scenes.bindings import BindingsScene
 from game.scenes.chapter import ChapterScene
 from game.scenes.choices import ChoicesScene
@@ -67,6 +68,7 @@ SCREENS: dict[str, Make] = {
     "LogbookScene": LogbookScene,
     "SettingsScene": SettingsScene,
     "BindingsScene": BindingsScene,
+    "AssistsScene": AssistsScene,
     "NetworksScene": NetworksScene,
     "ReplayScene": lambda context: ReplayScene(context, flown(context)),
 }
