@@ -8,6 +8,7 @@ from game.core import texts
 from game.core.settings import Settings
 from game.flight.flight import Flight
 
+_NAMES: Final = ("toggle_thrust", "one_switch", "wider_pads", "untimed", "pace")  # in the order they are told
 # Assists that change how the pilot's own hands are read, and nothing about the flight: it counts like any other.
 _OWN_HANDS: Final = frozenset({"toggle_thrust"})
 
@@ -40,7 +41,7 @@ class Assists:
     def used(self) -> list[str]:
         """Names of the assists of the steps flown and, while the flight lasts, of the next step."""
         used = self._used if self._flight.over else self._used | self._chosen
-        return [name for name in texts.ASSIST_WORDS if name in used]
+        return [name for name in _NAMES if name in used]
 
     @property
     def apart(self) -> bool:

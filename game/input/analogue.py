@@ -24,6 +24,7 @@ STICK_COMMANDS: Final[dict[Command, tuple[int, int]]] = {
 }
 STICK_PUSHED: Final = 20000
 STICK_RELEASED: Final = 12000
+STICK_USED: Final = 11000  # beyond which a gamepad counts as used, by any of its sticks
 TRIGGER_PRESSED: Final = 8000
 TRIGGER_RELEASED: Final = 5000
 _FARTHEST: Final = 32767

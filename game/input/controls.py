@@ -259,6 +259,8 @@ class Controls:
         pad.axes.move(event.axis, event.value)
         if event.axis in TRIGGERS:
             self._pull(event, pad, TRIGGERS[event.axis])
+        elif abs(event.value) > analogue.STICK_USED:
+            self._use(event)
         for command, (axis, direction) in analogue.STICK_COMMANDS.items():
             if axis != event.axis:
                 continue

@@ -222,7 +222,7 @@ class FlownMission(Challenge):
         if not card.good:
             return replace(card, advice=_advice(flight.env) or card.advice)
         if not credit.counts:
-            return replace(card, score=card.score if credit.bar == "practice" else texts.MEDALS[0])
+            return replace(card, score=card.score if credit.bar in ("practice", "assists") else texts.MEDALS[0])
         medal = credit.medal
         return replace(card, score=texts.MEDALS[medal], medal=medal, reason=self._missing(medal, flight))
 

@@ -37,8 +37,7 @@ _BACK: Final = 624
 _SAMPLES: Final = {"effects": "touchdown", "altitude": altitude_key(9)}
 _KEYS_LEFT: Final = 704
 _KEYS_ROW: Final = 31
-_KEYS_WORD: Final = 512
-_SECOND_LEFT: Final = 984  # of the words in two columns
+_KEYS_WORD: Final = 500
 _KEYS: Final = (
     Held.MAIN, Held.LEFT, Held.RIGHT, Held.FINE, Command.HANDOVER, Command.RETRY, Command.PAUSE, Command.CHOICES,
     Command.FULLSCREEN, Command.SCREENSHOT, Command.MUTE,
@@ -89,8 +88,7 @@ class SettingsScene(FormScene):
         if self._progress.restorable:
             links.append((texts.PROGRESS_RESTORE, self._restore))
         for number, (label, press) in enumerate(links):
-            row, column = divmod(number, 2)
-            box = ((_KEYS_LEFT, _SECOND_LEFT)[column], _KEYS_WORD + row * 40, 232, 32)
+            box = (_KEYS_LEFT, _KEYS_WORD + number * _KEYS_ROW, 280, 28)
             self.form.add(TextButton(self.form.manager, box, label, press, size=TEXT + 1))
 
     def update(self) -> Transition | None:
@@ -142,7 +140,9 @@ class SettingsScene(FormScene):
             texts.PROGRESS_FLIGHTS.format(count=told.flights), texts.PROGRESS_MEDALS.format(count=told.medals),
             texts.PROGRESS_CHAPTERS.format(count=told.chapters), texts.PROGRESS_STAYS,
         ])  # fmt: skip
-        answers = [(texts.PROGRESS_YES, self._reset), (texts.PROGRESS_NO, lambda: None)]
+        answers: list[tuple[str, Callable[[], None]]] = [
+            (texts.PROGRESS_NO, lambda: None), (texts.PROGRESS_YES, self._reset),
+        ]  # fmt: skip
         return Push(QuestionDialog(self, texts.PROGRESS_QUESTION, more, answers, height=212))
 
     def _reset(self) -> None:

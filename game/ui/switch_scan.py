@@ -19,7 +19,7 @@ from game.ui.listing import Listing
 from game.ui.widget import Widget
 
 DWELL: Final = 75  # steps for which each choice is marked
-HELD: Final = 240  # steps that the switch is held to pause a flight
+HELD: Final = 180  # steps that the switch is held to pause a flight
 _STILL: Final = 90  # steps since the mouse moved after which its button is the switch, wherever it points
 _LEAST: Final = 12  # steps between two choices: a hand that trembles presses once
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 
+import numpy as np
 import pygame
 import pytest
 
@@ -48,7 +49,7 @@ def test_the_mouse_switches_them_too(open_game: Open, context: Context):
 def test_it_is_reached_from_settings_and_from_the_pause(open_game: Open, context: Context):
     settle(context)
     player = Player(open_game(SettingsScene), "keys")
-    player.choose(texts.ASSISTS_OPEN)
+    player.choose_beside(texts.ASSISTS_OPEN)
     assert player.top_name == "AssistsScene"
     player = Player(open_game(PlayScene, 3), "pad")
     player.frames(2)
@@ -188,6 +189,7 @@ def test_the_whole_way_with_one_switch(open_game: Open, context: Context):
         assert texts.ASSIST_WORDS["one_switch"] in play.ending.card.assists
         switch.choose(texts.CARD_FIRST[True])
         assert play.flight is not flight
+        play.flight.env.begin_at(0, np.array([0.0, 12.0, 0.0, -4.0, 0.0, 0.0]))
         switch.hold(True)
         game.skip(HELD + 10)
         assert game.top_name == "PauseScene", device

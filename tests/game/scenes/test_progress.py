@@ -44,19 +44,19 @@ def test_progress_is_put_away_after_a_question_and_brought_back(open_game: Open,
     fly(context)
     before = files(context)
     player = Player(open_game(SettingsScene), device)
-    player.choose(texts.PROGRESS_RESET)
+    player.choose_beside(texts.PROGRESS_RESET)
     assert player.top_name == "QuestionDialog"
     assert texts.PROGRESS_FLIGHTS.format(count=2) in player.top.more
     player.choose(texts.PROGRESS_NO)
     assert files(context) == before
-    player.choose(texts.PROGRESS_RESET)
+    player.choose_beside(texts.PROGRESS_RESET)
     player.choose(texts.PROGRESS_YES)
     player.frames(3)
     assert files(context) == {}
     assert Records(context.user_dir).entries() == []
     saved = player.saved()
     assert (saved["learnt"], saved["chapter"], saved["tutored"], saved["wider_pads"]) == ({}, "", False, True)
-    player.choose(texts.PROGRESS_RESTORE)
+    player.choose_beside(texts.PROGRESS_RESTORE)
     player.frames(3)
     assert files(context) == before
     assert player.saved()["learnt"] == {"neuron": 3}
