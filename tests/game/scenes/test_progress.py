@@ -111,8 +111,8 @@ def test_one_volume_turns_all_others_down_and_mute_turns_all_off():
         (Settings(effects_volume=1.0, muted=True), 0.0),
     ):
         sound.follow(settings)
-        assert sound.volumes["effects"] == pytest.approx(gain)
-        assert set(sound.volumes.values()) == {0.0} or not settings.muted
+        assert sound.gains["effects"] == pytest.approx(gain)
+        assert set(sound.gains.values()) == {0.0} or not settings.muted
 
 
 @pytest.mark.parametrize("scene", [MenuScene, SettingsScene, lambda context: PlayScene(context, 3)])
