@@ -16,8 +16,10 @@ from itertools import groupby
 from typing import Any, Final
 
 from ai.flights import key_presses, letters
+from ai.flights.easing import AS_IT_IS, Easing
 from ai.flights.recording import LONGEST, Recording, StickHolder
 from ai.flights.shared import Claim, SharedFlight
+from ai.flights.stick import STEPS, Shares
 from ai.lander.environment import Outcome
 from ai.lander.missions import MISSIONS
 from ai.lander.spawns import SPAWNS
@@ -33,6 +35,7 @@ _LONGEST_NAME: Final = 40  # bytes
 _MOST_CHANGES: Final = 1_000  # of gravity
 _GRAVITY: Final = (0.01, 10.0)  # share of normal gravity
 _GRID: Final = 10_000  # parts of a metre and a radian in which the last pose is told
+_SIDES: Final = 2 * STEPS + 1  # shares of the jets that there are
 _ALIEN: Final = re.compile(r"[^0-9A-Za-z-]+")
 
 
@@ -126,10 +129,11 @@ def _made(
     gravity: list[tuple[int, float]] | None = None,
     course: str = "",
     barred: str = "",
+    **eased: Any,
 ) -> SharedFlight:
     """Return a flight of what the sections hold."""
     seed, spawn, pads, mission = start
-    recording = Recording(seed, spawn, pads, actions, hands, mission, gravity or [])
+    recording = Recording(seed, spawn, pads, actions, hands, mission, gravity or [], **eased)
     return SharedFlight(recording, claim, course or mission, barred)
 
 
@@ -260,6 +264,40 @@ def _read_claim(reader: _Reader, found: dict[str, Any]) -> None:
     found["claim"] = Claim(outcome, points, (x, y, angle))
 
 
+def _pack_shares(flight: SharedFlight) -> bytes:
+    shares, steps = flight.recording.shares, len(flight.recording.actions)
+    if not shares:
+        return b""
+    rows = ((each, len(list(same))) for each, same in groupby(shares.get(step) for step in range(steps)))
+    return b"".join(_varint(_pair(each)) + _varint(length) for each, length in rows)
+
+
+def _pair(shares: Shares | None) -> int:
+    """Return shares of thrust as one number; 0 for all of the action's."""
+    return 0 if shares is None else 1 + shares[0] * _SIDES + shares[1] + STEPS
+
+
+def _read_shares(reader: _Reader, found: dict[str, Any]) -> None:
+    total, step, shares = len(found["actions"]), 0, dict[int, Shares]()
+    while reader.left:
+        pair, length = reader.number((STEPS + 1) * _SIDES), reader.number(total - step)
+        if pair:
+            main, side = divmod(pair - 1, _SIDES)
+            shares |= dict.fromkeys(range(step, step + length), (main, side - STEPS))
+        step += length
+    found["shares"] = shares
+
+
+def _pack_easing(flight: SharedFlight) -> bytes:
+    easing = flight.recording.easing
+    return b"" if easing == AS_IT_IS else _varint(easing.wider_pads + 2 * easing.untimed)
+
+
+def _read_easing(reader: _Reader, found: dict[str, Any]) -> None:
+    bits = reader.number(3)
+    found["easing"] = Easing(bool(bits & 1), bool(bits & 2))
+
+
 def _pack_course(flight: SharedFlight) -> bytes:
     return _named(flight.course) if flight.course != flight.recording.mission else b""
 
@@ -282,6 +320,8 @@ _SECTIONS: Final[dict[int, tuple[Callable[[SharedFlight], bytes], Callable[[_Rea
     3: (_pack_hands, _read_hands),
     4: (_pack_gravity, _read_gravity),
     5: (_pack_claim, _read_claim),
+    6: (_pack_shares, _read_shares),
+    7: (_pack_easing, _read_easing),
     OPTIONAL: (_pack_course, _read_course),
     OPTIONAL + 1: (_pack_barred, _read_barred),
 }

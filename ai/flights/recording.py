@@ -6,7 +6,10 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Final
 
-LONGEST: Final = 120 * 60  # physics steps of a recorded flight, at most
+from ai.flights.easing import AS_IT_IS, UNHURRIED, Easing
+from ai.flights.stick import Shares
+
+LONGEST: Final = round(UNHURRIED) * 60  # physics steps of a recorded flight, at most
 
 
 class StickHolder(Enum):
@@ -21,7 +24,8 @@ class Recording:
     """Recording of a flight for an exact replay: its start, and the action of every step.
 
     `hands` says who chose each action: with a shared stick, the person if the action is the one they asked for.
-    `gravity` lists its changes: the first step, and the share of normal gravity.
+    `gravity` lists its changes: the first step, and the share of normal gravity. `shares` has the shares of thrust
+    of each step, by its number, in which an engine gave less than all of it. `easing` is what gave the pilot more room.
     """
 
     seed: int
@@ -31,6 +35,8 @@ class Recording:
     hands: list[StickHolder] = field(default_factory=list)
     mission: str = ""
     gravity: list[tuple[int, float]] = field(default_factory=list)
+    shares: dict[int, Shares] = field(default_factory=dict)
+    easing: Easing = AS_IT_IS
 
     def gravity_at(self, step: int) -> float:
         """Return the share of normal gravity during a step."""

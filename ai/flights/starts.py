@@ -7,25 +7,34 @@ from functools import lru_cache
 
 import numpy as np
 
-from ai.lander.environment import LanderEnv
-from ai.lander.ground import Ground, hilly
-from ai.lander.missions import STARTS
+from ai.flights.recording import Recording
+from ai.lander.environment import LIMITS, LanderEnv
+from ai.lander.ground import PADS, Ground, Pad, hilly
+from ai.lander.rules import PARAMS
 
 
 @lru_cache(maxsize=8)
-def ground_of(seed: int, pads: int) -> Ground:
-    """Return the ground of a flight: a plain with one pad, or hills with a pad of every size."""
-    return Ground.flat() if pads == 1 else hilly(np.random.default_rng(seed))
+def ground_of(seed: int, pads: int, width: float = 1.0) -> Ground:
+    """Return the ground of a flight: a plain with one pad, or hills with a pad of every size.
 
-
-def begun(seeds: Sequence[int], spawn: str, pads: int = 1, mission: str = "") -> LanderEnv:
-    """Return landers at the starts of flights, one for each seed, one physics step to a decision.
-
-    A mission sets everything by itself. With several pads the ground is that of the first seed, so all must be equal.
+    Pads are `width` times as wide as they usually are.
     """
-    if mission:
-        return STARTS[mission].begin(len(seeds))
-    env = LanderEnv(len(seeds), 0, spawn, frame_skip=1, ground=ground_of(seeds[0], pads))
+    if pads == 1:
+        return Ground((Pad(0.0, PARAMS.pad_top, width * PARAMS.pad_width),), base=PARAMS.ground)
+    return hilly(np.random.default_rng(seed), [(width * wide, factor) for wide, factor in PADS])
+
+
+def begun(start: Recording, seeds: Sequence[int] = ()) -> LanderEnv:
+    """Return landers at the start of a recorded flight, one physics step to a decision.
+
+    There is one for each of `seeds`, by default for the recording's own. A mission sets everything by itself. With
+    several pads the ground is that of the first seed, so all must be equal.
+    """
+    seeds, easing = seeds or (start.seed,), start.easing
+    if start.mission:
+        return easing.mission(start.mission).begin(len(seeds))
+    ground = ground_of(seeds[0], start.pads, easing.pads)
+    env = LanderEnv(len(seeds), 0, start.spawn, frame_skip=1, ground=ground, limits=easing.limits(LIMITS))
     for slot, seed in enumerate(seeds):  # as each would draw alone
         env.draw_from(slot, np.random.default_rng(seed).spawn(1)[0])
     env.reset()

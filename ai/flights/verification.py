@@ -9,10 +9,12 @@ from typing import Final
 
 import numpy as np
 
+from ai.common.environment import Doubles, Ints
 from ai.flights.recording import Recording
 from ai.flights.score import landing_score
 from ai.flights.shared import Claim, End, SharedFlight
 from ai.flights.starts import begun
+from ai.flights.stick import STEPS, full
 from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.missions import MISSIONS
 from engine import DT
@@ -78,13 +80,13 @@ def verified(flights: Sequence[SharedFlight]) -> Iterator[tuple[int, Earned]]:
 def _together(recording: Recording) -> object:
     """Return what flights must share to be flown in one environment."""
     seed = recording.seed if recording.pads > 1 else 0
-    return recording.mission, recording.spawn, recording.pads, seed, tuple(recording.gravity)
+    return recording.mission, recording.spawn, recording.pads, seed, tuple(recording.gravity), recording.easing
 
 
 def fly_again(recordings: Sequence[Recording]) -> list[Earned]:
     """Fly recordings of one ground and gravity again at once; return what each earned."""
     like = recordings[0]
-    env = begun([each.seed for each in recordings], like.spawn, like.pads, like.mission)
+    env = begun(like, [each.seed for each in recordings])
     lengths = np.array([len(each.actions) for each in recordings])
     actions = np.zeros((lengths.max(), len(recordings)), dtype=np.intp)
     for slot, each in enumerate(recordings):
@@ -94,6 +96,14 @@ def fly_again(recordings: Sequence[Recording]) -> list[Earned]:
     for step, row in enumerate(actions):
         if step in gravity:
             env.gravity = gravity[step] * env.params.gravity
-        env.fly(row)
+        env.fly(row, _shares(recordings, step, row))
         found |= {slot: earned(env, like.mission, slot) for slot in np.flatnonzero(lengths == step + 1).tolist()}
     return [found[slot] for slot in range(len(recordings))]
+
+
+def _shares(recordings: Sequence[Recording], step: int, actions: Ints) -> Doubles | None:
+    """Return the shares of thrust (n, 2) of a step; None if every engine gave all of it."""
+    if not any(step in each.shares for each in recordings):
+        return None
+    told = zip(recordings, actions.tolist(), strict=True)
+    return np.array([each.shares.get(step) or full(action) for each, action in told]) / STEPS

@@ -32,7 +32,9 @@ class Craft:
 
     Attributes:
         actions: what each was last told to do, 0 to 5, (n,).
-        steps, main_steps, side_steps: physics steps of 1/60 s flown, with the main engine and with a jet, (n,).
+        shares: with which shares of thrust, (n, 2): of the main engine, 0 to 1, and of the jets, -1, left, to 1, right.
+        steps: physics steps of 1/60 s flown, (n,).
+        main_steps, side_steps: the same with the main engine and with a jet, each step by its share of thrust, (n,).
         target: the number of the pad that readings are relative to, (n,).
 
     """
@@ -43,14 +45,13 @@ class Craft:
         self._build_world()
         self.actions: Ints = np.zeros(num_envs, dtype=np.intp)
         self.steps: Ints = np.zeros(num_envs, dtype=np.intp)
-        self.main_steps: Ints = np.zeros(num_envs, dtype=np.intp)
-        self.side_steps: Ints = np.zeros(num_envs, dtype=np.intp)
+        self.shares: Doubles = np.zeros((num_envs, 2))
+        self.main_steps: Doubles = np.zeros(num_envs)
+        self.side_steps: Doubles = np.zeros(num_envs)
         self.target: Ints = np.zeros(num_envs, dtype=np.intp)
 
     def _build_world(self) -> None:
         params = self.params
-        self._up = params.main_thrust * np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0])  # thrust of every action, N
-        self._aside = params.side_thrust * np.array([0.0, -1.0, 1.0, 0.0, -1.0, 1.0])  # along the craft's right
         surface: dict[str, Any] = {"restitution": params.restitution, "friction": params.friction}
         self.world = World(gravity=(0.0, -params.gravity), batch=self.num_envs, iterations=5)
         foot_x, foot_y = FOOT_CENTRE
@@ -128,6 +129,14 @@ class Craft:
         return np.where(self.fuel < self.conditions.tank, 3 * main + self.actions % 3, 0)
 
     @property
+    def thrust(self) -> Doubles:
+        """Shares of thrust (n, 2) that take effect: zero where there is no fuel, or an engine does not work."""
+        if not self.conditions.fails:
+            return self.shares
+        works = np.stack([self.conditions.main_works(self.time), np.ones(self.num_envs, dtype=bool)], axis=1)
+        return np.where(works & (self.fuel < self.conditions.tank)[:, None], self.shares, 0.0)
+
+    @property
     def pad_width(self) -> Doubles:
         """Width of the target pad, metres, (n,)."""
         return self.ground.widths[self.target]
@@ -187,8 +196,8 @@ class Craft:
     def _move(self, flying: Bools, touching: bool = True) -> None:
         """Apply thrust and wind, and step the worlds; without `touching`, nothing collides."""
         state, body = self.world.state, self.lander.index
-        actions = self.fired
-        up, aside = self._up[actions], self._aside[actions]
+        main, side = self.thrust.T
+        up, aside = self.params.main_thrust * main, self.params.side_thrust * side
         cos, sin = state.cos[:, body], state.sin[:, body]
         state.force[:, body, 0] = aside * cos - up * sin
         state.force[:, body, 1] = aside * sin + up * cos
@@ -199,5 +208,5 @@ class Craft:
             self._move_pads()
         self.world.step(touching)
         self.steps += flying
-        self.main_steps += flying & (actions >= 3)
-        self.side_steps += flying & (actions % 3 > 0)
+        self.main_steps += flying * main
+        self.side_steps += flying * np.abs(side)

@@ -19,6 +19,7 @@ from ai.lander.ground import Ground
 from ai.lander.rewards import FEET_STEPS_PAID, REWARDS, TILT_ALLOWED, RewardWeights, Situation, SituationChange
 from ai.lander.rules import (
     ACTION_NAMES,
+    ACTION_SHARES,
     FEATURE_NAMES,
     FOOT_CENTRE,
     FOOT_SIZE,
@@ -47,7 +48,7 @@ __all__ = [
     "LanderEnv", "LanderParams", "Limits", "Outcome", "engines_switched",
 ]  # fmt: skip
 
-_COUNTERS: Final = ("outcome", "cause", "actions", "contacts", "impact", "steps", "main_steps", "side_steps",
+_COUNTERS: Final = ("outcome", "cause", "actions", "shares", "contacts", "impact", "steps", "main_steps", "side_steps",
                     "touched", "_still", "_feet_steps")  # fmt: skip
 
 
@@ -189,9 +190,16 @@ class LanderEnv(Craft):
             components=components,
         )
 
-    def fly(self, actions: Any) -> None:
-        """Fly one decision as `step` does, without computing rewards; raises as that does."""
+    def fly(self, actions: Any, shares: Doubles | None = None) -> None:
+        """Fly one decision as `step` does, without computing rewards; raises as that does.
+
+        Engines give these `shares` of thrust, (n, 2), instead of all that the actions ask for: of the main engine
+        0 to 1, of the jets -1, left, to 1, right. The actions then only say what was meant. Raises ValueError for
+        shares outside.
+        """
         self._take(actions)
+        if shares is not None:
+            self.shares = self._checked(shares)
         for _ in range(self.frame_skip):
             flying = self.outcome == Outcome.FLYING
             if flying.any():
@@ -203,7 +211,7 @@ class LanderEnv(Craft):
         For looking ahead: the same as `step`, bit for bit, as long as nothing touches, but without outcomes and
         rewards, and `actions` (n,) are not checked.
         """
-        self.actions = actions
+        self.actions, self.shares = actions, ACTION_SHARES.take(actions, axis=0)
         flying = self.outcome == Outcome.FLYING
         for _ in range(self.frame_skip):
             self._move(flying, touching=False)
@@ -292,6 +300,15 @@ class LanderEnv(Craft):
         if not self._started:
             raise RuntimeError("reset() must come before the first step()")
         self.actions = actions.astype(np.intp)
+        self.shares = ACTION_SHARES.take(self.actions, axis=0)
+
+    def _checked(self, shares: Doubles) -> Doubles:
+        """Return shares of thrust as doubles; raises ValueError for those that no engine has."""
+        shares = np.array(shares, dtype=float)
+        lowest, highest = (0.0, -1.0), (1.0, 1.0)
+        if shares.shape != (self.num_envs, 2) or not ((shares >= lowest) & (shares <= highest)).all():
+            raise ValueError(f"shares of thrust are {self.num_envs} rows, main 0 to 1 and side -1 to 1")
+        return shares
 
     def _fly(self, flying: Bools) -> None:
         """One physics step of the slots that fly: push, move, judge."""

@@ -16,6 +16,8 @@ ACTION_NAMES: Final = ("coast", "left", "right", "main", "main + left", "main + 
 FEATURE_NAMES: Final = ("x", "y", "vx", "vy", "sin θ", "cos θ", "ω", "left foot", "right foot")
 # A pad six metres wide spans about two units: near it, small differences must look large to a network.
 OBSERVATION_SCALE: Final = np.array([0.3, 0.3, 0.5, 0.5, 1.0, 1.0, 1.0, 1.0, 1.0])
+# Shares of thrust of every action, (6, 2): of the main engine, and of the jets along the craft's right.
+ACTION_SHARES: Final = np.array([[0.0, 0.0], [0.0, -1.0], [0.0, 1.0], [1.0, 0.0], [1.0, -1.0], [1.0, 1.0]])
 # Swaps left and right: multiply an observation by this, and swap its two contacts.
 MIRROR_SIGNS: Final = np.array([-1, 1, -1, 1, -1, 1, -1, 1, 1], dtype=np.float32)
 MIRROR_FEATURES: Final = np.array([0, 1, 2, 3, 4, 5, 6, 8, 7])
@@ -107,3 +109,14 @@ def engines_switched(held: Ints, actions: Ints) -> Ints:
     """Return how many engines, of main and jets, go on or off between two actions, each (n,)."""
     switched: Ints = ((held >= 3) != (actions >= 3)) * 1 + ((held % 3) != (actions % 3))
     return switched
+
+
+def nearest_action(main: float, side: float) -> int:
+    """Return the action nearest to shares of thrust, `main` 0 to 1 and `side` -1, left, to 1, right.
+
+    Any thrust at all counts as an action: a pilot who asks for a little has not let go of the stick.
+    """
+    burns, turns = main >= 0.5, abs(side) >= 0.5
+    if not burns and not turns:
+        burns, turns = main > 0 and main >= abs(side), abs(side) > main
+    return 3 * burns + turns * (1 if side < 0 else 2)

@@ -53,6 +53,7 @@ class Sound:
     Attributes:
         ready: whether a device is open.
         problem: why no device is open; empty if one is.
+        gains: gain of each group of sounds, 0 to 1.
 
     """
 
@@ -60,7 +61,7 @@ class Sound:
         self.ready, self.problem = False, ""
         self._instruments = instruments
         self._loops = [key for key, instrument in instruments.items() if instrument.loops]
-        self._volumes = dict.fromkeys(GROUPS, 1.0)
+        self.gains = dict.fromkeys(GROUPS, 1.0)
         self._waves: dict[str, NDArray[np.int16]] = {}
         self._sounds: dict[str, pygame.mixer.Sound] = {}
         self._asked: dict[str, float] = {}
@@ -98,7 +99,10 @@ class Sound:
 
     def follow(self, settings: Settings) -> None:
         """Take the volumes from the settings, squared: loudness is heard in ratios, so half way up is a gain of 1/4."""
-        self._volumes = {group: getattr(settings, f"{group}_volume") ** 2 for group in GROUPS}
+        master = 0.0 if settings.muted else settings.master_volume
+        self.gains = {group: (master * getattr(settings, f"{group}_volume")) ** 2 for group in GROUPS}
+        if settings.muted:
+            self._fade_out()
 
     def handle_event(self, event: pygame.event.Event) -> None:
         """Mute while the window has no focus; follow devices that are plugged in or removed."""
@@ -116,7 +120,7 @@ class Sound:
     @_while_open
     def play(self, key: str, volume: float = 1.0, pan: float = 0.0) -> None:
         """Play a short sound once; `volume` is 0 to 1, `pan` from -1, left, to 1, right."""
-        gain = volume * self._volumes[self._instruments[key].group]
+        gain = volume * self.gains[self._instruments[key].group]
         since = self._step - self._begun.get(key, -_APART)
         sound = self._sound(key)
         if self._muted or gain < _SILENT or since < _APART or sound is None:
@@ -145,7 +149,7 @@ class Sound:
 
     def _keep_going(self, number: int, key: str) -> None:
         """Play a loop at its level, on a channel of its own."""
-        gain = self._levels[key] * self._volumes[self._instruments[key].group]
+        gain = self._levels[key] * self.gains[self._instruments[key].group]
         channel, sound = pygame.mixer.Channel(number), self._sound(key)
         if sound is None:
             self._levels[key] = 0.0

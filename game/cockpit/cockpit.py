@@ -106,7 +106,7 @@ class Cockpit:
     def card(self, best: int, view: View) -> OutcomeCard:
         """Return the outcome card of the finished flight; `best` is the score to beat without help."""
         credit, card = self.credit, outcome_card(self._flight.env, self._flight.share)
-        card = replace(card, score=credit.score(best), reason=credit.reason(card.reason))
+        card = replace(card, score=credit.score(best), reason=credit.reason(card.reason), assists=credit.assists)
         if not credit.helped:
             return card
         left = self.track.beside((CARD.left, _CARD_LEFT, _CARD_RIGHT), CARD, view)

@@ -16,7 +16,8 @@ Why = tuple[str, str, str]  # a title, and two lines
 
 def dial_words(assist: float, copilot: CoPilot | None) -> str:
     """Say when a guardian at that assist, 0 to 1, steps in; empty for a co-pilot of another kind."""
-    from ai.copilot.copilot import Mode, guardian_margin, required_chance
+    from ai.copilot.copilot import Mode, guardian_margin
+    from ai.copilot.guardian import required_chance
 
     if copilot is None or copilot.mode is not Mode.GUARDIAN:
         return ""

@@ -42,6 +42,7 @@ Lamp = tuple[Shape, Colour, float]  # shape, colour and strength of the glow
 
 # Four columns on the left, two on the right: the landing pad stands in the middle.
 COLUMNS: Final = (64.0, 186.0, 308.0, 430.0, 1002.0, 1124.0)
+THRUST_COLUMN: Final = 880.0
 _LABEL_LINE: Final = 663.0
 _FIGURE_LINE: Final = 697.0
 _BAR: Final = (92.0, 2.0)
@@ -114,6 +115,12 @@ def _fuel(env: LanderEnv, slot: int) -> Readout:
         return Readout(texts.FUEL_USED, f"{burnt:.1f}", "s")
     left = max(0.0, tank - burnt)
     return Readout(texts.FUEL_LEFT, f"{left:.1f}", "s", left / tank, within=None if left > 0.2 * tank else False)
+
+
+def thrust_readout(env: LanderEnv, slot: int = 0) -> Readout:
+    """Return the read-out of the main engine's share of thrust, for those who fly with shares."""
+    share = float(env.thrust[slot, 0])
+    return Readout(texts.THRUST, f"{100 * share:.0f}", "%", share)
 
 
 def draw_readouts(canvas: Canvas, readouts: Sequence[Readout], columns: Sequence[float] = COLUMNS) -> None:
@@ -234,7 +241,7 @@ def draw_card(
     """Draw the outcome card, `shown` 0 to 1 of the way in, with its advice if wanted, and a rival's figures."""
     drop = 10 * (1 - shown)
     left, top, width = card.left + 32, CARD.top - drop, CARD.width - 64
-    lower = _ADVICE_ROW if advise and card.advice else 0
+    lower = _lower(card, advise)
     canvas.panel((card.left, top, CARD.width, CARD.height + lower + _below(card, rival=rival is not None)))
     colour = canvas.palette.good if card.good else canvas.palette.warn
     canvas.glow((left + 10, top + 44), 30, colour, 0.5 * shown)
@@ -244,8 +251,8 @@ def draw_card(
     for lamp in range(card.medal):
         canvas.dot((score.left - 14 - 13 * lamp, top + 47), 4, MEDALS[card.medal])
     canvas.text(card.reason, (left, top + 86), size=TEXT, colour=INK, room=width)
-    if lower:
-        canvas.text(card.advice, (left, top + 110), size=SMALL, colour=MUTE, room=width)
+    for row, (line, shade) in enumerate(_below_reason(card, advise)):
+        canvas.text(line, (left, top + 110 + row * _ADVICE_ROW), size=SMALL, colour=shade, room=width)
     top += lower
     column = width / len(card.figures)
     for number, (label, value, unit) in enumerate(card.figures):
@@ -276,7 +283,7 @@ def draw_card(
 
 def card_row(card: OutcomeCard, hints: list[Hint], shown: float, advise: bool, *, rival: bool) -> HintRow:
     """Return the row of hints at the foot of that card."""
-    lower = _ADVICE_ROW * bool(advise and card.advice) + _below(card, rival=rival)
+    lower = _lower(card, advise) + _below(card, rival=rival)
     place = (card.left + 32, CARD.top - 10 * (1 - shown) + lower + 244)
     return HintRow(hints, place, room=CARD.width - 64)
 
@@ -284,6 +291,16 @@ def card_row(card: OutcomeCard, hints: list[Hint], shown: float, advise: bool, *
 def _below(card: OutcomeCard, *, rival: bool) -> int:
     """Return how many points of rows a card has more than the usual ones."""
     return _RIVAL_ROWS * rival + _GROWTH_ROW * len(card.growth)
+
+
+def _below_reason(card: OutcomeCard, advise: bool) -> list[tuple[str, Colour]]:
+    """Return the lines below a card's reason: advice, if wanted, and the assists of the flight."""
+    return [(words, colour) for words, colour in ((card.advice * advise, MUTE), (card.assists, HUMAN)) if words]
+
+
+def _lower(card: OutcomeCard, advise: bool) -> int:
+    """Return how many points lower those lines move all that is below them."""
+    return _ADVICE_ROW * len(_below_reason(card, advise))
 
 
 def _draw_rival(canvas: Canvas, rival: RivalOutcome, labels: Sequence[str], corner: Point, width: float) -> None:

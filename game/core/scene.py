@@ -23,10 +23,11 @@ class Scene:
         context: the shared services.
         takes_files: whether files can be dropped here that are no flights.
         typing: whether a text is being typed, which then takes what is pasted.
+        takes_switch: whether a press of the one switch is the scene's own now, and chooses nothing on it.
 
     """
 
-    takes_files = typing = False
+    takes_files = typing = takes_switch = False
 
     def __init__(self, context: Context) -> None:
         self.context = context
@@ -46,6 +47,10 @@ class Scene:
 
     def update(self) -> Transition | None:
         """Advance by exactly one physics step of 1/60 s."""
+        return None
+
+    def pause(self) -> Transition | None:
+        """Pause, because a player has held the one switch for long while `takes_switch`."""
         return None
 
     def hint_rows(self, canvas: Canvas) -> Sequence[HintRow]:  # noqa: ARG002

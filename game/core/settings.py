@@ -19,7 +19,7 @@ DAMAGED_NAME: Final = "settings.damaged.json"
 _LARGEST: Final = 1_000_000  # bytes
 # Limits of the player's factors for gravity and for the pace of time.
 GRAVITY_SHARES: Final = (0.6, 1.4)
-PACES: Final = (0.5, 1.0)
+PACES: Final = (0.2, 1.0)
 
 
 @dataclass
@@ -31,6 +31,8 @@ class Settings:
     colour_safe: bool = False
     show_hints: bool = True
     text_size: str = "normal"  # a name of game.drawing.tokens.TEXT_SIZES
+    muted: bool = False  # whether nothing is heard at all
+    master_volume: Share = 1.0  # factor on all other volumes
     effects_volume: Share = 0.9
     interface_volume: Share = 0.7
     ambience_volume: Share = 0.7
@@ -48,6 +50,11 @@ class Settings:
     edge: bool = False  # whether the chance to be saved is shown, over the sky and while flying alone
     gravity: Annotated[float, Within(*GRAVITY_SHARES)] = 1.0  # share of normal gravity in free flights
     pace: Annotated[float, Within(*PACES)] = 1.0  # time scale of a flight
+    analogue: bool = True  # whether sticks and triggers give a share of thrust, and not all or none
+    toggle_thrust: bool = False  # whether a press switches the main engine on or off, instead of holding it
+    one_switch: bool = False  # whether a single key or button flies, and chooses in menus
+    wider_pads: bool = False  # whether pads are half as wide again
+    untimed: bool = False  # whether a flight may take as long as it likes
     keys: dict[str, Any] = field(default_factory=dict)  # changed keys, as game.input.bindings writes them
     buttons: dict[str, Any] = field(default_factory=dict)  # the same for gamepads
     all_knobs: bool = False  # whether Train shows all knobs, and not three

@@ -96,6 +96,9 @@ def _draw_mouse(
     corner = "border_top_left_radius"
     if button == "right":
         half.right, corner = box.right, "border_top_right_radius"
+    elif button == "middle":  # the wheel
+        half = half.inflate(-0.5 * half.width, -0.3 * half.height)
+        half.centerx, corner = box.centerx, "border_top_left_radius"
     pygame.draw.rect(surface, colour, half, **{corner: round_})
     pygame.draw.rect(surface, colour, box, stroke, border_radius=round_)
 

@@ -48,7 +48,7 @@ class Credit:
 
     Args:
         flight: the flight.
-        difficulty: its changes of gravity and pace.
+        difficulty: its changes of gravity, and its assists.
         challenge: the challenge it belongs to; None for a free flight.
         hands: handicap of its keys, a name of `game.flight.handicap.HANDS`.
         check: whether it is a check flight.
@@ -129,11 +129,13 @@ class Credit:
             return "helped"
         if flight.share < 1.0 or flight.hand is StickHolder.NETWORK:
             return "handed_over"
-        return "practice" if self._difficulty.practice else ""
+        if self._difficulty.practice:
+            return "practice"
+        return "assists" if self._difficulty.assists.apart else ""
 
     @property
     def counts(self) -> bool:
-        """Whether the person flew all of it without help, handicap or changed difficulty."""
+        """Whether the person flew all of it without help, handicap, changed gravity or assists that set it apart."""
         return not self.bar
 
     @property
@@ -151,7 +153,7 @@ class Credit:
     def score(self, best: int) -> str:
         """Return the text for the score of a flight that is over; `best` is the score to beat, 0 for none."""
         if self._difficulty.practice:
-            return self._difficulty.words
+            return texts.PRACTICE
         points = landing_score(self._flight.env)
         beaten = self.counts and points > best > 0
         return (texts.SCORE_BEST if beaten else texts.SCORE).format(count=points) if points else ""
@@ -164,7 +166,12 @@ class Credit:
     @property
     def pace(self) -> float:
         """Slowest pace of time during the flight."""
-        return self._difficulty.slowest
+        return self._difficulty.assists.slowest
+
+    @property
+    def assists(self) -> str:
+        """The assists of the flight in words; empty without any."""
+        return self._difficulty.assists.line
 
 
 def who_flew(share: float) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Final
 
+from ai.flights.easing import AS_IT_IS
 from ai.flights.score import landing_score
 from game.core.lock import held
 from game.flight.flight import Flight, StickHolder
@@ -23,6 +24,8 @@ def add_demonstration(flight: Flight, folder: Path) -> bool:
 
     env, recording = flight.env, flight.recording
     pad = int(env.landed_on[0])
+    if recording.shares or recording.easing != AS_IT_IS:  # not what a network's six actions can repeat, or its own pad
+        return False
     if pad < 0 or landing_score(env) < _LEAST_SCORE * env.ground.pads[pad].factor:
         return False
     begins = takeover([hand is StickHolder.HUMAN for hand in recording.hands])

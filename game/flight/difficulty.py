@@ -1,47 +1,50 @@
-"""Difficulty of a flight: changes of gravity and of the pace of time."""
+"""Difficulty of a flight: changes of gravity, and assists."""
 
 from __future__ import annotations
 
 from game.core import texts
 from game.core.settings import Settings
+from game.flight.assists import Assists
 from game.flight.flight import Flight
 
 
 class Difficulty:
-    """Difficulty of one flight, from the settings. In a mission only the pace can be chosen.
+    """Difficulty of one flight, from the settings. Gravity can be chosen in free flights alone.
 
     Attributes:
-        slowest: slowest pace so far in the flight.
+        assists: what makes it easier to fly.
 
     """
 
     def __init__(self, settings: Settings, flight: Flight, *, free: bool) -> None:
         self._settings, self._flight, self._free = settings, flight, free
-        self.slowest = 1.0
+        self.assists = Assists(settings, flight)
 
     def heed(self) -> None:
         """Apply the player's settings to the next step."""
         if self._free:
             self._flight.set_gravity(self._settings.gravity)
-        self.slowest = min(self.slowest, self._settings.pace)
+        self.assists.heed()
 
     @property
     def practice(self) -> bool:
-        """Whether the flight is not to be ranked, or will not be after its next step."""
-        return self.slowest != 1 or bool(self._flight.recording.gravity) or bool(self._eased)
+        """Whether the flight is not to be ranked, or will not be after its next step, for its gravity is another."""
+        return bool(self._flight.recording.gravity) or self._gravity != 1
 
     @property
     def words(self) -> str:
         """Sentence on what differs from normal, now or before; empty if nothing does."""
-        return texts.DIAL_JOIN.join([texts.PRACTICE, *self._eased]) if self.practice else ""
+        words = [self.assists.line] if self.assists.line else []
+        if self.practice:
+            words.insert(0, texts.PRACTICE)
+        if self._gravity != 1:
+            words.insert(1, texts.PRACTICE_GRAVITY.format(percent=round(100 * self._gravity)))
+        return texts.DIAL_JOIN.join(words)
 
     @property
-    def _eased(self) -> list[str]:
-        """Differences in the next step; after the flight, the last step's gravity and the slowest pace."""
-        over, recording = self._flight.over, self._flight.recording
-        gravity = self._settings.gravity if self._free and not over else recording.gravity_at(len(recording.actions))
-        shares = (
-            (texts.PRACTICE_GRAVITY, gravity),
-            (texts.PRACTICE_PACE, self.slowest if over else self._settings.pace),
-        )
-        return [text.format(percent=round(100 * share)) for text, share in shares if share != 1]
+    def _gravity(self) -> float:
+        """Share of normal gravity in the next step; after the flight, in the last."""
+        recording = self._flight.recording
+        if self._free and not self._flight.over:
+            return self._settings.gravity
+        return recording.gravity_at(len(recording.actions))

@@ -8,10 +8,12 @@ import numpy as np
 
 from ai.common.decision import Decision
 from ai.common.environment import Doubles, Floats
+from ai.flights.easing import AS_IT_IS, Easing
 from ai.flights.recording import Recording, StickHolder
 from ai.flights.starts import begun
+from ai.flights.stick import Shares, thrust
 from ai.lander.environment import Outcome
-from ai.lander.pilots import COAST
+from ai.lander.pilots import COAST, ScriptedPilot
 from game.flight.handicap import OWN, Handicap
 from game.flight.networks import Policy, QPolicy, decide
 from game.flight.poses import Poses
@@ -23,6 +25,7 @@ __all__ = ["DECISION_STEPS", "Flight", "Recording", "StickHolder"]
 
 # Physics steps per decision of a network, here as in training.
 DECISION_STEPS: Final = 4
+_STEERING: Final = ScriptedPilot()  # fires the jets for a person who flies with one switch
 
 
 class Flight:
@@ -36,8 +39,10 @@ class Flight:
         hands: handicap of the keys, a name of `game.flight.handicap.HANDS`.
         mission: name of one of `ai.lander.missions.STARTS`, which sets the start and the conditions; empty for none.
         shares: whether the network may share the stick, and not only take it.
+        easing: changes of the rules that give the pilot more room.
 
     Attributes:
+        steered: whether the jets are fired for the person, who has the main engine alone: one switch is enough.
         copilot: shares the stick while its assist is above 0; None if the network has no Q-values.
         decision: the co-pilot's latest decision; None while it does not share the stick.
         alone: latest decision of the network while it flies alone; None otherwise.
@@ -56,11 +61,13 @@ class Flight:
         hands: str = OWN,
         mission: str = "",
         shares: bool = True,
+        easing: Easing = AS_IT_IS,
     ) -> None:
-        self.env = begun([seed], spawn, pads, mission)
+        self.recording = Recording(seed, spawn, pads, mission=mission, easing=easing)
+        self.env = begun(self.recording)
         self.observation: Floats = self.env.observe()
         self.hand, self.shares = StickHolder.HUMAN, shares
-        self.recording = Recording(seed, spawn, pads, mission=mission)
+        self.steered = False
         self.poses = Poses(self.env)
         self.asked, self.overridden = COAST, False
         self.decision: SharedDecision | None = None
@@ -109,6 +116,7 @@ class Flight:
         self.recording.hands[:] = source.hands[:step]
         self._yours = self.recording.hands.count(StickHolder.HUMAN)
         self.recording.gravity[:] = [change for change in source.gravity if change[0] <= step]
+        self.recording.shares = {at: shares for at, shares in source.shares.items() if at < step}
         self._pull(self.recording.gravity_at(step))
         self.rest()
 
@@ -156,15 +164,18 @@ class Flight:
         self._held_for, self.decision, self.alone = 0, None, None  # the new pilot decides at once
         return True
 
-    def step(self, held: int) -> None:
-        """Advance by 1/60 s; `held` is the action that the keys ask for."""
+    def step(self, held: int, shares: Shares | None = None) -> None:
+        """Advance by 1/60 s; `held` is the action that the stick asks for, with `shares` of thrust or all of it."""
         self.overridden = False
         if self.over:
             self.poses.take()
             return
         action, by = self._choose(held)
-        self.env.fly(np.array([action]))
+        shares = self._shares(action, by, held, shares)
+        self.env.fly(np.array([action]), thrust(shares))
         self.observation = self.env.observe()
+        if shares is not None:
+            self.recording.shares[len(self.recording.actions)] = shares
         self.recording.actions.append(action)
         self.recording.hands.append(by)
         self._yours += by is StickHolder.HUMAN
@@ -172,11 +183,17 @@ class Flight:
         if self.outcome is Outcome.LANDED:
             self.env.target = self.env.landed_on
 
+    def _shares(self, action: int, by: StickHolder, held: int, shares: Shares | None) -> Shares | None:
+        """Return the shares of thrust of the next step: the person's, if their own action is flown as they asked."""
+        return shares if by is StickHolder.HUMAN and action == held else None
+
     def _choose(self, held: int) -> tuple[int, StickHolder]:
         """Return the action of the next step, and who chose it."""
         if self.hand is StickHolder.NETWORK:
             self.asked = COAST
             return self._ask_network(), StickHolder.NETWORK
+        if self.steered:
+            held = held - held % 3 + int(_STEERING.act(self.observation)[0]) % 3
         self.asked = self._hands.ask(held, self.observation)
         if not self.shared:
             self.decision = None

@@ -15,7 +15,9 @@ from itertools import groupby
 from pathlib import Path
 from typing import Annotated, Any, Final
 
+from ai.flights.easing import AS_IT_IS, Easing
 from ai.flights.recording import LONGEST, Recording, StickHolder
+from ai.flights.stick import STEPS, Shares
 from ai.lander.environment import NUM_ACTIONS, Outcome
 from ai.lander.missions import MISSIONS
 from ai.lander.spawns import SPAWNS
@@ -25,10 +27,11 @@ from game.core import texts
 from game.core.settings import GRAVITY_SHARES
 
 FORMAT: Final = "tranquility flight"
-VERSION: Final = 4
-# Version 1 had no changes of gravity, 2 no rules of missions, 3 no reason why a flight does not count.
-_READS: Final = (1, 2, 3, 4)
-_LARGEST: Final = 1_000_000  # bytes
+VERSION: Final = 5
+# Version 1 had no changes of gravity, 2 no rules of missions, 3 no reason why a flight does not count, 4 no shares
+# of thrust and no easing.
+_READS: Final = (1, 2, 3, 4, 5)
+_LARGEST: Final = 2_000_000  # bytes
 _LONGEST_NAME: Final = 255  # characters, as in the name of a file
 _MOST: Final = 32_503_680_000 - 1  # limit of any figure; as a date the year 2999, the last on some systems
 
@@ -141,6 +144,8 @@ class _FlightFile:
     end: tuple[float, float, float]
     entry: Entry
     gravity: tuple[tuple[_Number, Annotated[float, Within(*GRAVITY_SHARES)]], ...] = ()
+    shares: str = ""
+    easing: Easing = AS_IT_IS
 
 
 def read(path: Path) -> Record:
@@ -171,6 +176,7 @@ def to_text(record: Record) -> str:
         "format": FORMAT, "version": VERSION, "seed": recording.seed, "spawn": recording.spawn,
         "pads": recording.pads, "mission": recording.mission, "actions": _packed(recording.actions),
         "hands": _packed(hand.value for hand in recording.hands), "gravity": recording.gravity,
+        "shares": _packed_shares(recording), "easing": asdict(recording.easing),
         "end": record.end, "entry": asdict(record.entry),
     }, indent=1) + "\n"  # fmt: skip
 
@@ -192,7 +198,10 @@ def from_text(text: str) -> Record:
     steps = [step for step, _ in file.gravity]
     if steps != sorted(set(steps)):
         raise ValueError(texts.FLIGHT_GRAVITY)
-    recording = Recording(file.seed, file.spawn, file.pads, actions, hands, file.mission, list(file.gravity))
+    recording = Recording(
+        file.seed, file.spawn, file.pads, actions, hands, file.mission, list(file.gravity),
+        _unpacked_shares(file.shares, len(actions)), file.easing,
+    )  # fmt: skip
     return Record(recording, file.entry, file.end)
 
 
@@ -208,3 +217,26 @@ def _unpacked(text: str) -> list[str]:
     if any(count < 1 for count in counts) or sum(counts) > LONGEST:
         raise ValueError(texts.FLIGHT_ACTIONS)
     return [word for (word, _), count in zip(runs, counts, strict=True) for _ in range(count)]
+
+
+def _packed_shares(recording: Recording) -> str:
+    """Return the shares of thrust of every step, as "main,side" or "-" for all of the action's; empty if all are."""
+    if not recording.shares:
+        return ""
+    shares = (recording.shares.get(step) for step in range(len(recording.actions)))
+    return _packed("-" if each is None else f"{each[0]},{each[1]}" for each in shares)
+
+
+def _unpacked_shares(text: str, steps: int) -> dict[int, Shares]:
+    """Decode the output of `_packed_shares`; raises ValueError for bad input."""
+    words = _unpacked(text)
+    shares: dict[int, Shares] = {}
+    for step, word in enumerate(words):
+        if word != "-":
+            main, side = (int(share) for share in word.split(","))
+            shares[step] = main, side
+    if (words and len(words) != steps) or not all(
+        0 <= main <= STEPS and -STEPS <= side <= STEPS for main, side in shares.values()
+    ):
+        raise ValueError(texts.FLIGHT_ACTIONS)
+    return shares

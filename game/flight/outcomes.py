@@ -16,7 +16,8 @@ class OutcomeCard:
 
     For a shared flight, `stepped_in` is how often the co-pilot intervened, and `saved` how often it saved the person;
     None for a flight without a guardian that could tell, or without a landing. `medal` is 3 for gold, 2, 1, 0 for none.
-    `left` is the card's left edge. `growth` are lines on what the flight has shown of the person's own skill.
+    `assists` says what made the flight easier. `left` is the card's left edge. `growth` are lines on what the flight
+    has shown of the person's own skill.
     """
 
     good: bool
@@ -25,6 +26,7 @@ class OutcomeCard:
     figures: tuple[tuple[str, str, str], ...]
     human: float
     advice: str = ""
+    assists: str = ""
     score: str = ""
     medal: int = 0
     stepped_in: int | None = None

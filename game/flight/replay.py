@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 
 from ai.common.environment import Doubles, Floats
+from ai.flights.stick import Shares
 from ai.flights.verification import Earned, earned
 from ai.lander.pilots import COAST
 from game.flight.flight import DECISION_STEPS, Flight, Recording, StickHolder
@@ -20,7 +21,9 @@ class ReplayedFlight(Flight):
     """Flight that repeats recorded actions and ignores the keys; it stops at the end of the flight or recording."""
 
     def __init__(self, source: Recording) -> None:
-        super().__init__(source.seed, spawn=source.spawn, pads=source.pads, mission=source.mission)
+        super().__init__(
+            source.seed, spawn=source.spawn, pads=source.pads, mission=source.mission, easing=source.easing
+        )
         self._source = source
 
     @property
@@ -33,6 +36,10 @@ class ReplayedFlight(Flight):
         """Who chose the action of the last step; before the first step, that of the first."""
         hands = self._source.hands
         return hands[min(max(self.at - 1, 0), len(hands) - 1)] if hands else self.hand
+
+    def _shares(self, action: int, by: StickHolder, held: int, shares: Shares | None) -> Shares | None:  # noqa: ARG002
+        """Return the recorded shares of thrust of the next step."""
+        return self._source.shares.get(self.at)
 
     def _choose(self, held: int) -> tuple[int, StickHolder]:  # noqa: ARG002
         """Return the recorded action of the next step, and who chose it."""

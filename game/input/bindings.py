@@ -35,6 +35,7 @@ class Command(Enum):
     MODE = auto()
     FULLSCREEN = auto()
     SCREENSHOT = auto()
+    MUTE = auto()
     UNPLUGGED = auto()  # not a press: the gamepad in use was unplugged
 
 
@@ -44,6 +45,7 @@ class Held(Enum):
     MAIN = auto()
     LEFT = auto()
     RIGHT = auto()
+    FINE = auto()  # not an engine: while it is held, jets give a part of their thrust
 
 
 Meaning = Command | Held
@@ -81,6 +83,7 @@ KEYS: Final[Table] = {
     Held.MAIN: (pygame.K_UP, pygame.K_SPACE, pygame.K_w),
     Held.LEFT: (pygame.K_LEFT, pygame.K_a),
     Held.RIGHT: (pygame.K_RIGHT, pygame.K_d),
+    Held.FINE: (pygame.K_LSHIFT, pygame.K_RSHIFT),
     Command.HANDOVER: (pygame.K_TAB,),
     Command.RETRY: (pygame.K_r,),
     Command.PAUSE: (pygame.K_p,),
@@ -93,11 +96,13 @@ KEYS: Final[Table] = {
     Command.PREVIOUS: (pygame.K_b, pygame.K_PAGEUP),
     Command.FULLSCREEN: (pygame.K_F11,),
     Command.SCREENSHOT: (pygame.K_F12,),
+    Command.MUTE: (pygame.K_F10,),
 }
 BUTTONS: Final[Table] = {
     Held.MAIN: (pygame.CONTROLLER_BUTTON_A, TRIGGER_RIGHT, pygame.CONTROLLER_BUTTON_DPAD_UP),
     Held.LEFT: (pygame.CONTROLLER_BUTTON_DPAD_LEFT,),
     Held.RIGHT: (pygame.CONTROLLER_BUTTON_DPAD_RIGHT,),
+    Held.FINE: (TRIGGER_LEFT,),
     Command.HANDOVER: (pygame.CONTROLLER_BUTTON_Y,),
     Command.RETRY: (pygame.CONTROLLER_BUTTON_X,),
     Command.PAUSE: (),
@@ -110,14 +115,14 @@ BUTTONS: Final[Table] = {
     Command.PREVIOUS: (pygame.CONTROLLER_BUTTON_LEFTSHOULDER,),
     Command.FULLSCREEN: (),
     Command.SCREENSHOT: (),
+    Command.MUTE: (),
 }
+# Meanings that give way: a key bound elsewhere is taken from them, also by settings saved before they existed.
+GIVE_WAY: Final = frozenset({Held.FINE, Command.MUTE})
 # Letters that move in menus unless they are bound to something else.
 _SPARE_KEYS: Final[Mapping[int, Command]] = {
-    pygame.K_w: Command.UP,
-    pygame.K_s: Command.DOWN,
-    pygame.K_a: Command.LEFT,
-    pygame.K_d: Command.RIGHT,
-}
+    pygame.K_w: Command.UP, pygame.K_s: Command.DOWN, pygame.K_a: Command.LEFT, pygame.K_d: Command.RIGHT,
+}  # fmt: skip
 # Keys that screens, lists and text lines use themselves, and modifier keys.
 _TAKEN_KEYS: Final = frozenset({
     pygame.K_SPACE, pygame.K_TAB, pygame.K_DELETE, pygame.K_HOME, pygame.K_END, pygame.K_F2, pygame.K_z,
@@ -160,13 +165,9 @@ class Device:
 
 KEYBOARD: Final = Device(KEYS, FIXED_KEYS, _SPARE_KEYS, _TAKEN_KEYS, _ENGINE_KEYS, _named("K_"))
 PAD: Final = Device(
-    BUTTONS,
-    FIXED_BUTTONS,
-    {},
-    frozenset(),
-    _ENGINE_BUTTONS,
+    BUTTONS, FIXED_BUTTONS, {}, frozenset(), _ENGINE_BUTTONS,
     {**_named("CONTROLLER_BUTTON_"), "triggerleft": TRIGGER_LEFT, "triggerright": TRIGGER_RIGHT},
-)
+)  # fmt: skip
 
 
 class Bindings:
@@ -201,7 +202,7 @@ class Bindings:
     def bereft(self, meaning: Meaning, code: int) -> Meaning | None:
         """Return the meaning that would lose its last key if `code` were bound to `meaning`; None if there is none."""
         owner = self._owner(meaning, code)
-        if owner is None or owner in self.device.fixed or self._left(owner, meaning, code):
+        if owner is None or owner in self.device.fixed or owner in GIVE_WAY or self._left(owner, meaning, code):
             return None
         return owner
 
@@ -227,6 +228,8 @@ class Bindings:
     def _left(self, loser: Meaning, meaning: Meaning, code: int) -> tuple[int, ...]:
         """Return the keys of `loser` once `meaning` has taken one from it, and given up its own."""
         left = _without(self.table[loser], {code})
+        if loser in GIVE_WAY:
+            return left
         return left or tuple(each for each in self.table[meaning] if each != code and self.may(loser, each))
 
     def reset(self, meaning: Meaning | None = None) -> None:
@@ -252,7 +255,7 @@ class Bindings:
 
     def _lacks(self, meaning: Meaning) -> bool:
         """Whether a meaning with a default key has no key left."""
-        return bool(self.device.standard[meaning]) and not self.codes(meaning)
+        return meaning not in GIVE_WAY and bool(self.device.standard[meaning]) and not self.codes(meaning)
 
     def to_dict(self) -> dict[str, list[str]]:
         """Return the changes from the defaults, as names for the settings file."""

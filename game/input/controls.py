@@ -10,28 +10,11 @@ import pygame
 
 from game.core import texts
 from game.core.settings import Settings
-from game.input import signs
+from game.input import analogue, signs
 from game.input.bindings import KEYBOARD, PAD, TRIGGERS, Bindings, Command, Held, Meaning
 
 __all__ = ["Command", "Controls", "Held", "presses_main", "translate"]
 
-# Axis, direction, how far out of 32767 it must be pushed.
-AXES: Final[dict[Held, tuple[int, int, int]]] = {
-    Held.LEFT: (pygame.CONTROLLER_AXIS_LEFTX, -1, 11000),
-    Held.RIGHT: (pygame.CONTROLLER_AXIS_LEFTX, 1, 11000),
-}
-STICK_COMMANDS: Final[dict[Command, tuple[int, int]]] = {
-    Command.LEFT: (pygame.CONTROLLER_AXIS_LEFTX, -1),
-    Command.RIGHT: (pygame.CONTROLLER_AXIS_LEFTX, 1),
-    Command.UP: (pygame.CONTROLLER_AXIS_LEFTY, -1),
-    Command.DOWN: (pygame.CONTROLLER_AXIS_LEFTY, 1),
-    Command.SLOWER: (pygame.CONTROLLER_AXIS_RIGHTX, -1),
-    Command.FASTER: (pygame.CONTROLLER_AXIS_RIGHTX, 1),
-}
-STICK_PUSHED: Final = 20000
-STICK_RELEASED: Final = 12000
-TRIGGER_PRESSED: Final = 8000
-TRIGGER_RELEASED: Final = 5000
 # Signs of stick movements, in addition to the buttons.
 _STICK_SIGNS: Final[dict[Meaning, int]] = {
     Held.LEFT: signs.TURN,
@@ -39,6 +22,7 @@ _STICK_SIGNS: Final[dict[Meaning, int]] = {
     Command.SLOWER: signs.STICK_LEFT,
     Command.FASTER: signs.STICK_RIGHT,
 }
+_MOUSE_SIGNS: Final = {Held.MAIN: signs.MOUSE_LEFT, Held.FINE: signs.MOUSE_MIDDLE}
 # Keypad keys that type a character.
 _KEYPAD: Final = frozenset({code for name, code in KEYBOARD.names.items() if name[:2] == "kp"} - {pygame.K_KP_ENTER})
 _KEY_NAMES: Final = {code: name for name, code in KEYBOARD.names.items()}
@@ -82,7 +66,7 @@ def _types(event: pygame.event.Event) -> bool:
 @dataclass
 class _Pad:
     buttons: set[int] = field(default_factory=set)
-    axes: dict[int, int] = field(default_factory=dict)
+    axes: analogue.Axes = field(default_factory=analogue.Axes)
     pushed: set[Command] = field(default_factory=set)
     device: Any = None  # SDL closes a gamepad without references
     family: signs.Family = "xbox"
@@ -122,18 +106,28 @@ class Controls:
     @property
     def main(self) -> bool:
         """Whether the main engine's control is held."""
-        return self._held(Held.MAIN)
+        return self.holds(Held.MAIN)
 
     @property
     def steer(self) -> int:
         """Steering: 0 for none or both, 1 for left, 2 for right."""
-        left, right = self._held(Held.LEFT), self._held(Held.RIGHT)
+        left, right = self.holds(Held.LEFT), self.holds(Held.RIGHT)
         return 0 if left == right else (1 if left else 2)
 
     @property
     def action(self) -> int:
         """The lander's action: 3 · main + steer."""
         return 3 * self.main + self.steer
+
+    @property
+    def shares(self) -> tuple[float, float]:
+        """Shares of thrust that sticks and triggers ask for: main engine 0 to 1, jets -1, left, to 1, right."""
+        return analogue.shares([pad.axes for pad in self._pads.values()], self.buttons)
+
+    @property
+    def switch(self) -> bool:
+        """Whether the one switch is held that flies and chooses: any key or button of the main engine, or Confirm's."""
+        return self.main or self._down(self.keys.codes(Command.CONFIRM), self.buttons.codes(Command.CONFIRM))
 
     # Names
 
@@ -143,7 +137,7 @@ class Controls:
         While the mouse is in use, flight controls are shown as mouse buttons.
         """
         if isinstance(meaning, Held) and self.mouse_in_use:
-            return self.gamepad_sign(signs.MOUSE_LEFT if meaning is Held.MAIN else signs.MOUSE_RIGHT)
+            return self.gamepad_sign(_MOUSE_SIGNS.get(meaning, signs.MOUSE_RIGHT))
         buttons = self.gamepad_signs(meaning) if self.gamepad_in_use else []
         return next(iter(buttons or self.key_names(meaning)), texts.BINDINGS_NONE)
 
@@ -222,14 +216,17 @@ class Controls:
             return None
         return _command(event, self.keys, self.buttons)
 
-    def _held(self, held: Held) -> bool:
-        if not self._keys.isdisjoint(self.keys.codes(held)):
+    def holds(self, held: Held, *, axes: bool = True) -> bool:
+        """Whether a control is held; without `axes`, by a key or a button, and not by a stick or trigger."""
+        buttons = set(self.buttons.codes(held)) - (set() if axes else set(TRIGGERS.values()))
+        if self._down(self.keys.codes(held), buttons):
             return True
-        buttons = self.buttons.codes(held)
-        axis, direction, threshold = AXES.get(held, (-1, 0, 0))
-        return any(
-            not pad.buttons.isdisjoint(buttons) or direction * pad.axes.get(axis, 0) > threshold
-            for pad in self._pads.values()
+        axis, direction, threshold = analogue.AXES.get(held, (-1, 0, 0))
+        return axes and any(direction * pad.axes.value(axis) > threshold for pad in self._pads.values())
+
+    def _down(self, keys: Iterable[int], buttons: Iterable[int]) -> bool:
+        return not self._keys.isdisjoint(keys) or any(
+            not pad.buttons.isdisjoint(buttons) for pad in self._pads.values()
         )
 
     def _use(self, event: pygame.event.Event) -> None:
@@ -259,27 +256,29 @@ class Controls:
 
     def _move(self, event: pygame.event.Event) -> None:
         pad = self._pad(event)
-        pad.axes[event.axis] = event.value
+        pad.axes.move(event.axis, event.value)
         if event.axis in TRIGGERS:
             self._pull(event, pad, TRIGGERS[event.axis])
-        for command, (axis, direction) in STICK_COMMANDS.items():
+        elif abs(event.value) > analogue.STICK_USED:
+            self._use(event)
+        for command, (axis, direction) in analogue.STICK_COMMANDS.items():
             if axis != event.axis:
                 continue
             push = direction * event.value
-            if push > STICK_PUSHED and command not in pad.pushed:
+            if push > analogue.STICK_PUSHED and command not in pad.pushed:
                 pad.pushed.add(command)
                 event.command = command
                 self._use(event)
-            elif push < STICK_RELEASED:
+            elif push < analogue.STICK_RELEASED:
                 pad.pushed.discard(command)
 
     def _pull(self, event: pygame.event.Event, pad: _Pad, trigger: int) -> None:
         """Treat a trigger's axis as a button."""
-        if event.value > TRIGGER_PRESSED and trigger not in pad.buttons:
+        if event.value > analogue.TRIGGER_PRESSED and trigger not in pad.buttons:
             pad.buttons.add(trigger)
             event.command, event.trigger = None if self.listening else self.buttons.command(trigger), trigger
             self._use(event)
-        elif event.value < TRIGGER_RELEASED:
+        elif event.value < analogue.TRIGGER_RELEASED:
             pad.buttons.discard(trigger)
 
 

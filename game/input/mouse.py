@@ -1,4 +1,7 @@
-"""Mouse flight controls: the left button fires the main engine, the right one turns towards the pointer."""
+"""Mouse flight controls: the left button fires the main engine, the right one turns towards the pointer.
+
+While the middle button is held, too, the jets turn the craft finely.
+"""
 
 from __future__ import annotations
 
@@ -6,8 +9,8 @@ from typing import Final
 
 import pygame
 
-_FIRE, _TURN = 1, 3
-_BUTTONS: Final = (_FIRE, _TURN)
+_FIRE, _FINE, _TURN = 1, 2, 3
+_BUTTONS: Final = (_FIRE, _FINE, _TURN)
 
 
 class MouseStick:
@@ -21,6 +24,16 @@ class MouseStick:
     def holds(self) -> bool:
         """Whether a mouse button is held down."""
         return bool(self._down)
+
+    @property
+    def fires(self) -> bool:
+        """Whether the left button is held down."""
+        return _FIRE in self._down
+
+    @property
+    def fine(self) -> bool:
+        """Whether the middle button is held down."""
+        return _FINE in self._down
 
     def take(self, event: pygame.event.Event) -> None:
         """Process one event, its position in points."""
@@ -38,7 +51,6 @@ class MouseStick:
         """Release both buttons, because their release will not be reported."""
         self._down.clear()
 
-    def action(self, craft: float) -> int:
-        """Return the lander's action, 3 · main + steer, for a craft drawn at the x coordinate `craft`, in points."""
-        steer = (1 if self._x < craft else 2) if _TURN in self._down else 0
-        return 3 * (_FIRE in self._down) + steer
+    def side(self, craft: float) -> int:
+        """Return where a craft drawn at the x coordinate `craft`, in points, is to turn: -1 left, 1 right, or 0."""
+        return (-1 if self._x < craft else 1) if _TURN in self._down else 0

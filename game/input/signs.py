@@ -13,7 +13,7 @@ import pygame
 Family = Literal["xbox", "playstation", "nintendo"]
 FAMILIES: Final[tuple[Family, ...]] = ("xbox", "playstation", "nintendo")
 # Numbers after the buttons, which have SDL's, and the triggers, 32 and 33 (see `game.input.bindings`).
-TURN, STICK_LEFT, STICK_RIGHT, CROSS, MOUSE_LEFT, MOUSE_RIGHT = 40, 41, 42, 43, 44, 45
+TURN, STICK_LEFT, STICK_RIGHT, CROSS, MOUSE_LEFT, MOUSE_RIGHT, MOUSE_MIDDLE = 40, 41, 42, 43, 44, 45, 46
 
 FIRST: Final = 0xE000
 FAMILY: Final = 0x100
@@ -42,6 +42,7 @@ _XBOX: Final[dict[int, tuple[str, str]]] = {
     CROSS: ("cross", "all"),
     MOUSE_LEFT: ("mouse", "left"),
     MOUSE_RIGHT: ("mouse", "right"),
+    MOUSE_MIDDLE: ("mouse", "middle"),
 }
 SIGNS: Final[dict[Family, dict[int, tuple[str, str]]]] = {
     "xbox": _XBOX,

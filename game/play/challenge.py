@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Final
 
+from ai.flights.easing import AS_IT_IS
 from ai.lander.environment import Cause, LanderEnv, Outcome
 from ai.lander.missions import Mission
 from game.core import texts
@@ -59,6 +60,8 @@ class Challenge:
         goal: goal of the flight, for the corner as well.
         opening: text while the craft hangs and waits; empty to leave the middle free.
         through: whether the challenge is finished and free flights follow.
+        eases: whether the player's easing applies to its flights.
+        easing: the easing of its next flight.
 
     """
 
@@ -68,6 +71,8 @@ class Challenge:
     bar = ""
     alone = False
     through = False
+    eases = False
+    easing = AS_IT_IS
     next_hint = ""
     copy_hint = texts.CODE_HINT_COPY
     title = line = goal = opening = ""
@@ -190,13 +195,16 @@ class ContinuedFlight(Challenge):
 
 def _as_begun(recording: Recording, seed: int, network: Policy | None) -> Flight:
     """Return a flight at the start of a recorded one."""
-    return Flight(seed, network, recording.spawn, pads=recording.pads, mission=recording.mission)
+    return Flight(
+        seed, network, recording.spawn, pads=recording.pads, mission=recording.mission, easing=recording.easing
+    )
 
 
 class FlownMission(Challenge):
     """A mission of the campaign, beside a ghost: a recorded flight or, without one, the network."""
 
     title = texts.MISSION
+    eases = True
 
     def __init__(self, mission: Mission, rival: Record | None = None, rival_name: str = texts.MISSION_RIVAL) -> None:
         self.mission, self.name = mission, mission.name
@@ -206,7 +214,7 @@ class FlownMission(Challenge):
 
     def flight(self, seed: int, network: Policy | None) -> Flight:
         """Begin a flight of the mission."""
-        return Flight(seed, network, mission=self.name)
+        return Flight(seed, network, mission=self.name, easing=self.easing)
 
     def ghost(self, seed: int, network: Policy | None) -> Ghost | None:
         """Begin the rival on the same mission."""
@@ -225,7 +233,7 @@ class FlownMission(Challenge):
         if not card.good:
             return replace(card, advice=_advice(flight.env) or card.advice)
         if not credit.counts:
-            return replace(card, score=card.score if credit.bar == "practice" else texts.MEDALS[0])
+            return replace(card, score=card.score if credit.bar in ("practice", "assists") else texts.MEDALS[0])
         medal = credit.medal
         return replace(card, score=texts.MEDALS[medal], medal=medal, reason=self._missing(medal, flight))
 

@@ -30,6 +30,7 @@ class DailyStart(Challenge):
 
     name = COURSE
     alone = True
+    eases = True
     title = texts.DAILY
     copy_hint = texts.DAILY_HINT_COPY
 
@@ -50,7 +51,7 @@ class DailyStart(Challenge):
         """Begin a flight with three pads among hills."""
         self._begun = False
         self._look()
-        return Flight(self.seed, pads=3)
+        return Flight(self.seed, pads=3, easing=self.easing)
 
     def ghost(self, seed: int, network: Policy | None) -> Ghost | None:  # noqa: ARG002
         """Begin the player's best flight of that day as a ghost, in practice only."""

@@ -12,6 +12,7 @@ from game.cockpit.map_legend import draw_edge_line
 from game.cockpit.readouts_explained import explain_readouts
 from game.core.pace import SlowMotion
 from game.drawing.canvas import Canvas
+from game.flight.assists import eased
 from game.flight.credit import Credit
 from game.flight.difficulty import Difficulty
 from game.flight.flight import Flight, StickHolder
@@ -46,7 +47,7 @@ class FlownFlight:
     Attributes:
         flight: the flight itself.
         credit: who flies it, and whether it counts as the player's own.
-        difficulty: its changes of gravity and pace.
+        difficulty: its changes of gravity, and its assists.
         pace: the clock that slows down after a crash.
         ending: the ending, with slow motion and outcome card.
         record: the record of the flight once it is over; None before, and where none is kept.
@@ -73,9 +74,7 @@ class FlownFlight:
         self._was_over = False  # whether the flight was over before its latest step
         alone = check or (challenge is not None and challenge.alone)
         self._policy = None if alone else policy
-        self.flight = (
-            challenge.flight(seed, self._policy) if challenge else Flight(seed, self._policy, pads=pads, hands=hands)
-        )
+        self.flight = self._begin(seed, pads)
         self.difficulty = Difficulty(self._settings, self.flight, free=not challenge)
         self.credit = Credit(self.flight, self.difficulty, challenge, hands, check=check)
         self.cockpit = Cockpit(self.flight, self._settings, self.credit)
@@ -86,9 +85,18 @@ class FlownFlight:
         self.pace = SlowMotion()
         self._heard = FlightSound(context.sound, self.flight.env, self.pace)
         self.ending = FlightEnding(self.flight, self.pace, calm)
-        self._readouts = hud.flight_readouts(self.flight.env)
+        self._readouts, self._thrust = hud.flight_readouts(self.flight.env), hud.thrust_readout(self.flight.env)
         self.path_preview = PathPreview(self.flight, self._guide)
         self.chance_map = ChanceMap()
+
+    def _begin(self, seed: int, pads: int) -> Flight:
+        """Return the flight at its start, eased as the player has chosen, where that may be."""
+        easing, challenge = eased(self._settings), self.challenge
+        if challenge is None:
+            return Flight(seed, self._policy, pads=pads, hands=self.hands, easing=easing)
+        if challenge.eases:
+            challenge.easing = easing
+        return challenge.flight(seed, self._policy)
 
     @property
     def _guide(self) -> Policy | None:
@@ -142,7 +150,7 @@ class FlownFlight:
         """Make ready for the flight's next step; after the end, only what still moves goes on."""
         self._was_over = self.flight.over
         if not self._was_over:  # at the end, the figures stay those of the last moment before
-            self._readouts = hud.flight_readouts(self.flight.env)
+            self._readouts, self._thrust = hud.flight_readouts(self.flight.env), hud.thrust_readout(self.flight.env)
             self.difficulty.heed()
         self.cockpit.help()
 
@@ -223,7 +231,10 @@ class FlownFlight:
         captions.draw_title(canvas, flight, self.challenge, network, self.hands, self.credit.notice)
         if edge:
             draw_edge_line(canvas, self.chance_map)
-        hud.draw_readouts(canvas, self._readouts)
+        if flight.recording.shares:
+            hud.draw_readouts(canvas, [*self._readouts, self._thrust], (*hud.COLUMNS, hud.THRUST_COLUMN))
+        else:
+            hud.draw_readouts(canvas, self._readouts)
         explain_readouts(canvas, flight.env)
         if self.waiting and not (self.challenge and not self.challenge.opening):
             captions.draw_opening(

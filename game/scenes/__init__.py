@@ -19,7 +19,8 @@ ROUTES: Final = {
     "dream": "dream.DreamScene", "quiz": "quiz.QuizScene", "physics": "physics.PhysicsScene",
     "physics_step": "physics_step.PhysicsStepScene",
     "logbook": "logbook.LogbookScene", "replay": "replay.ReplayScene", "settings": "settings.SettingsScene",
-    "bindings": "bindings.BindingsScene", "choices": "choices.ChoicesScene", "pause": "pause.PauseScene",
+    "bindings": "bindings.BindingsScene", "choices": "choices.ChoicesScene", "assists": "assists.AssistsScene",
+    "pause": "pause.PauseScene",
     "learn": "learn.LearnScene", "chapter": "chapter.ChapterScene", "lesson": "lesson.LessonScene",
     "error_screen": "error_screen.ErrorScene",
 }  # fmt: skip

@@ -21,7 +21,7 @@ from game.ui.widget import PointsManager, Widget, mix
 from game.ui.widgets import TextButton
 
 _FIRST: Final = 144
-_ROW: Final = 31
+_ROW: Final = 28
 _KEYS: Final = 400
 _BUTTONS: Final = 800
 _CELL: Final = 352

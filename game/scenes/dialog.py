@@ -38,10 +38,11 @@ class Dialog(FormScene):
 
     height = 164
 
-    def __init__(self, below: Scene, question: str, more: str = "") -> None:
+    def __init__(self, below: Scene, question: str, more: str = "", height: int | None = None) -> None:
         super().__init__(below.context)
+        height = height or self.height
         self._below, self._question, self.more = below, question, more
-        self.box = pygame.Rect(_LEFT, (720 - self.height) // 2 - 16, _WIDTH, self.height)
+        self.box = pygame.Rect(_LEFT, (720 - height) // 2 - 16, _WIDTH, height)
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the scene below, dimmed, and the question."""
@@ -79,9 +80,14 @@ class QuestionDialog(Dialog):
     """Dialog with a few answers: any of them closes it and runs its action."""
 
     def __init__(
-        self, below: Scene, question: str, more: str, answers: Sequence[tuple[str, Callable[[], None]]]
+        self,
+        below: Scene,
+        question: str,
+        more: str,
+        answers: Sequence[tuple[str, Callable[[], None]]],
+        height: int | None = None,
     ) -> None:
-        super().__init__(below, question, more)
+        super().__init__(below, question, more, height)
         self.add_words([(label, _closing(deed)) for label, deed in answers])
 
 

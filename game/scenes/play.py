@@ -11,17 +11,18 @@ from game.core import texts
 from game.core.scene import Pop, Scene, Transition, push
 from game.drawing.canvas import Canvas
 from game.flight import fading, networks
+from game.flight.assists import eased, sets_apart
 from game.flight.credit import Credit
 from game.flight.flight import Flight, StickHolder
 from game.flight.handicap import HANDS, OWN
 from game.flight.logbook import Records
 from game.flight.skill import Skill
 from game.input.controls import Command, translate
-from game.input.mouse import MouseStick
 from game.panels.explained import Explained
 from game.play import captions, growth
 from game.play.challenge import Challenge, Duel
 from game.play.ending import FlightEnding
+from game.play.flight_controls import FlightControls
 from game.play.flown_flight import FlownFlight
 from game.ui.actions import Action, Run, Table, answering, hints_of
 from game.ui.clipboard import give
@@ -54,7 +55,7 @@ class PlayScene(Scene):
     ) -> None:
         super().__init__(context)
         self.challenge = Duel(rival, rival_name) if rival else challenge
-        self._mouse = MouseStick()
+        self._stick = FlightControls(context.controls, context.settings)
         self.explained = Explained(flies=True)
         self._away = 0  # steps since the window was left; 0 while it is in use
         self._controls, self._settings, self._sound = context.controls, context.settings, context.sound
@@ -72,12 +73,15 @@ class PlayScene(Scene):
     def enter(self) -> None:
         """Resume the paused flight, unless choices made meanwhile require a new one."""
         self.flown.set_calm(self._settings.reduced_motion)
-        if self.waiting and not self.challenge and self._chosen() != (self.flight.recording.pads, self.flown.hands):
+        recording, challenge = self.flight.recording, self.challenge
+        other = not challenge and self._chosen() != (recording.pads, self.flown.hands)
+        eases = (not challenge or challenge.eases) and eased(self._settings) != recording.easing
+        if self.waiting and (other or eases):
             self.retry()
 
     def exit(self) -> None:
         """Keep the flight for the return, and save the dial's setting."""
-        self._mouse.release()
+        self._stick.release()
         self.context.apply_settings()
 
     def retry(self) -> None:
@@ -96,9 +100,9 @@ class PlayScene(Scene):
             if fades and not fading.active(self._settings):
                 self.context.note(texts.FADE_RESTS)
             return None
-        self._mouse.take(event)
+        self._stick.take(event)
         if translate(event) is Command.UNPLUGGED and not (self.waiting or self.flight.over):
-            return self._pause()
+            return self.pause()
         action = answering(self.actions(), event)
         return action.run() if action else None
 
@@ -126,7 +130,7 @@ class PlayScene(Scene):
             Command.HANDOVER: self._hand_over,
             Command.CHOICES: self._choose,
             Command.NEXT: self._begin_elsewhere,
-            Command.PAUSE: Pop if self._leaves else self._pause,
+            Command.PAUSE: Pop if self._leaves else self.pause,
             Command.RETRY: self.retry,
         }
 
@@ -148,20 +152,25 @@ class PlayScene(Scene):
         copy = [Action(pygame.K_k, self._copy, hint, Command.STEP)] if self.flown.record else []
         return [*captions.card_actions(self._go_on, self._runs, self.challenge, good=card.good), *copy] if card else []
 
+    @property
+    def takes_switch(self) -> bool:  # type: ignore[override]
+        """Whether the one switch flies."""
+        return not self.flight.over
+
     def update(self) -> Transition | None:
         """Advance by 1/60 s: fly a step, unless the craft waits or slowed time makes none due."""
         self.flown.breathe()
         self.explained.update()
         self._away += self._away > 0
         if self._away > _AWAY_STEPS and not self.flight.over:
-            return self._pause()
-        action = self._held
+            return self.pause()
+        action, shares = self._stick.read(self.flown.scenery.across)
         due = self.flown.due(action)
         if self.waiting:
             return None
         if due:
             self.flown.prepare()
-            self.flight.step(action)
+            self.flight.step(action, shares)
             self.flown.follow()
             self._follow_flight()
         self.flown.sound()
@@ -176,7 +185,7 @@ class PlayScene(Scene):
         self.ending.draw(canvas, self.flown.ghost, self._settings.show_hints)
         for row in of_card:
             row.draw(canvas)
-        if not self._mouse.holds:  # a mouse that flies asks for nothing
+        if not self._stick.mouse_flies:  # a mouse that flies asks for nothing
             self.explained.draw(canvas)
 
     # The flight
@@ -202,6 +211,7 @@ class PlayScene(Scene):
         return self.flown.waiting
 
     def _begin(self, seed: int) -> None:
+        self._stick.begin()
         if self.challenge:
             self.flown = FlownFlight(self.context, seed, self.network.policy, self.challenge)
             return
@@ -239,12 +249,6 @@ class PlayScene(Scene):
         if before != self._settings.assist:
             self.context.apply_settings()
 
-    @property
-    def _held(self) -> int:
-        """The action that keys, pads or the mouse ask for."""
-        mouse = self._mouse
-        return self._controls.action or (mouse.action(self.flown.scenery.across) if mouse.holds else 0)
-
     def _chosen(self) -> tuple[int, str]:
         """Return the number of pads and the handicap, as chosen by the player."""
         hands = self._settings.hands
@@ -252,8 +256,8 @@ class PlayScene(Scene):
 
     @property
     def _eased(self) -> bool:
-        """Whether the player has changed gravity or pace; such flights do not count towards their skill."""
-        return self._settings.gravity != 1 or self._settings.pace != 1
+        """Whether gravity is changed or assists are chosen; such flights do not count towards the player's skill."""
+        return self._settings.gravity != 1 or sets_apart(self._settings)
 
     def _load_network(self) -> None:
         context = self.context
@@ -329,7 +333,8 @@ class PlayScene(Scene):
         """Whether Escape goes straight back: in a challenge that has not begun or is over, where nothing is lost."""
         return self.challenge is not None and (self.waiting or self.flight.over)
 
-    def _pause(self) -> Transition:
+    def pause(self) -> Transition:
+        """Pause the flight."""
         self._away = 0
         return push("pause", self, retry=self.retry, more=self._pause_words)
 
@@ -337,7 +342,8 @@ class PlayScene(Scene):
         words: list[tuple[str, OnPress]] = [(texts.PAUSE_NETWORK.format(name=self.network.name), self._open_networks)]
         if self.challenge and self.challenge.next_hint:
             words.append((texts.TUTORIAL_LEAVE, self._leave_challenge))
-        return [*words, (texts.PAUSE_CHOICES if self.challenge is None else texts.PACE, self._choose)]
+        words.append((texts.PAUSE_CHOICES if self.challenge is None else texts.PACE, self._choose))
+        return [*words, (texts.ASSISTS_OPEN, lambda: push("assists"))]
 
     def _choose(self) -> Transition | None:
         """Open the choices for the next flights; in a challenge, few can be changed."""

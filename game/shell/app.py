@@ -26,6 +26,7 @@ from game.play.friend import arrival
 from game.shell.scene_manager import SceneManager
 from game.shell.window import GameWindow
 from game.ui.notes import Note
+from game.ui.switch_scan import SwitchScan
 
 if TYPE_CHECKING:
     from game.core.scene import Scene
@@ -49,6 +50,7 @@ class App:
 
     Attributes:
         notes: the note over all scenes.
+        scan: what marks one choice after the other for those who play with one switch.
         canvas: canvas of the window.
         scenes: stack of scenes.
 
@@ -71,6 +73,7 @@ class App:
         self._clock = pygame.time.Clock()
         self._steps = FixedStep()
         self.notes = Note()
+        self.scan = SwitchScan(context)
         self._mouse: tuple[tuple[int, int], ...] = ()  # the mouse's last position, in the window and on the desktop
         self._settled = 0.0  # time at which the window has kept its size long enough for a redraw
         self.settings_writer = SettingsWriter(context.settings_file, context.settings)
@@ -114,6 +117,7 @@ class App:
             if problem := self.settings_writer.problem():
                 self.notes.show(problem)
             self._guarded(self.scenes.update)
+            self._guarded(lambda: self.scenes.apply(self.scan.update(self.scenes.top, self.canvas)))
             self.context.sound.update()
         if self.scenes.running and not self.window.minimised and time_now >= self._settled:
             self.draw()
@@ -189,8 +193,9 @@ class App:
         elif not self.context.controls.mouse_in_use:
             self.canvas.pointer = None
         match translate(event):
-            case Command.FULLSCREEN:
-                self.context.toggle_full_screen()
+            case Command.FULLSCREEN | Command.MUTE as command:
+                toggle = self.context.toggle_mute if command is Command.MUTE else self.context.toggle_full_screen
+                toggle()
             case Command.SCREENSHOT:
                 self._save_screenshot()
             case _:
@@ -215,6 +220,10 @@ class App:
 
     def _pass_on(self, event: pygame.event.Event) -> None:
         """Run the hint that is clicked, open a friend's flight, or pass the event to the top scene."""
+        chosen, transition = self.scan.take(event, self.scenes.top, self.canvas)
+        if chosen:
+            self.scenes.apply(transition)
+            return
         if page := arrival(event, self.scenes.top):
             self.scenes.apply(page)
             return
@@ -239,6 +248,7 @@ class App:
         """Draw one frame: the scenes, and the note over them."""
         self.canvas.turn_page()
         self._guarded(lambda: self.scenes.draw(self.canvas, self._steps.alpha))
+        self._guarded(lambda: self.scan.draw(self.scenes.top, self.canvas))
         self.notes.draw(self.canvas)
         self.window.flip()
 

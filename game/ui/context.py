@@ -10,6 +10,7 @@ import numpy as np
 import pygame
 
 from game.audio.mixer import Sound
+from game.core import texts
 from game.core.assets import ASSETS_DIR, MODELS_DIR
 from game.core.settings import Settings, SettingsFile
 from game.input.controls import Controls
@@ -49,6 +50,12 @@ class Context:
         """Switch between the full screen and a window."""
         self.settings.full_screen = not self.settings.full_screen
         self.apply_settings()
+
+    def toggle_mute(self) -> None:
+        """Switch all sound off or on, and say so."""
+        self.settings.muted = not self.settings.muted
+        self.apply_settings()
+        self.note(texts.SOUND_NOW_OFF if self.settings.muted else texts.SOUND_NOW_ON)
 
     @property
     def settings_file(self) -> SettingsFile:

@@ -97,6 +97,10 @@ class Widget(UIElement):
         """Go one step left (-1) or right (1); false if the widget has no such steps."""
         return False
 
+    def advance(self) -> None:
+        """Change by one step for a player with one switch, and begin anew after the last."""
+        self.shift(1)
+
     def drag(self, x: float) -> None:
         """Follow the mouse while its button is held."""
 

@@ -159,6 +159,13 @@ class Slider(Widget):
             self._set_fraction(self.fraction + direction / 20)
         return True
 
+    def advance(self) -> None:
+        """Move the handle one step to the right, or from the right end to the left one."""
+        if self.value >= self.limits[1]:
+            self.set(self.limits[0])
+        else:
+            self.shift(1)
+
     def drag(self, x: float) -> None:
         """Move the handle to the mouse."""
         left, right = self._track

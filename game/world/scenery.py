@@ -17,7 +17,7 @@ from game.world.landscape.backdrop import EARTH, landscape
 from game.world.landscape.ground import draw_ground
 from game.world.landscape.themes import LOOKS, look_of
 from game.world.particles import DUST
-from game.world.stage import Stage
+from game.world.stage import Stage, flames
 
 _EDGE, _LOWEST = 24.0, 620.0  # points that a mark keeps from the sides, and its lowest row, above the read-outs
 
@@ -75,8 +75,7 @@ class Scenery:
         flight = self._flight
         self.stage.forget()
         self._callouts.forget()
-        action = 0 if flight.over else int(flight.env.fired[0])
-        self.stage.thrust[0] = action >= 3, action % 3 == 2, action % 3 == 1
+        self.stage.thrust[0] = 0.0 if flight.over else flames(flight.env)[0]
         self.stage.blue[:] = flight.flown_by is StickHolder.NETWORK
         self.cut()
 

@@ -33,6 +33,12 @@ _FLASH_STEPS: Final = 24
 _JOLT: Final = 11.0  # points, of the hardest blow
 
 
+def flames(env: LanderEnv) -> Doubles:
+    """Return the thrust of each nozzle, 0 to 1: main engine, left-hand jet, right-hand jet, (n, 3)."""
+    main, side = env.thrust.T
+    return np.stack([main, np.maximum(side, 0.0), np.maximum(-side, 0.0)], axis=1)
+
+
 class Stage:
     """The flames, dust and light around the landers of one environment; call `follow` once after every step.
 
@@ -76,10 +82,8 @@ class Stage:
         """
         env = self._env
         flying = env.outcome == Outcome.FLYING
-        fired = env.fired
-        main, steer = fired >= 3, fired % 3
-        wanted = np.stack([main, steer == 2, steer == 1], axis=1) & flying[:, None]
-        self.thrust += np.where(wanted, _IGNITE, _DIE) * (wanted - self.thrust)
+        wanted = flames(env) * flying[:, None]
+        self.thrust += np.where(wanted > self.thrust, _IGNITE, _DIE) * (wanted - self.thrust)
         self.blue += (1.0 if self.calm else 0.14) * (networks - self.blue)
         self._flicker += 1
         self.flash = np.maximum(self.flash - 1, 0)

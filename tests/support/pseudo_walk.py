@@ -240,6 +240,21 @@ def in_code(driver: Driver) -> None:
     driver.frames(5)
 
 
+def half_way(driver: Driver) -> None:
+    """Fly with a trigger pulled half way."""
+    driver.frames(2)
+    driver.axis(pygame.CONTROLLER_AXIS_TRIGGERRIGHT, 14000)
+    driver.frames(40)
+
+
+def reset(driver: Driver) -> None:
+    """Put progress away."""
+    driver.press_on(texts.PROGRESS_RESET)
+    driver.frames(3)
+    driver.press_on(texts.PROGRESS_YES)
+    driver.frames(5)
+
+
 class Blank(Scene):
     """Nothing, for a dialog to stand over."""
 
@@ -260,6 +275,10 @@ STATES: dict[str, tuple[str, dict[str, object], Happens]] = {
     "a mission's crash": ("mission", {}, crashed),
     "sharing the stick": ("Play", {"assist": 0.6, "three_pads": True}, shared),
     "practice": ("Play", {"gravity": 0.8, "pace": 0.7, "hands": "laggy"}, shared),
+    "assists": ("Play", {"wider_pads": True, "untimed": True, "pace": 0.5, "toggle_thrust": True}, crashed),
+    "a share of thrust": ("Play", {}, half_way),
+    "one switch": ("MenuScene", {"one_switch": True}, lambda driver: driver.skip(30)),
+    "bringing it back": ("SettingsScene", {}, reset),
     "the tutorial": ("tutorial", {"tutored": False}, lambda _: None),
     "an error": ("error", {}, lambda _: None),
     "a message": ("MenuScene", {}, told),

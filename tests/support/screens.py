@@ -19,6 +19,7 @@ from game.flight.flight_file import Record
 from game.flight.skill import Skill
 from game.learn.path import FIRST, PATH
 from game.play.challenge import FlownMission
+from game.scenes.assists import AssistsScene
 from game.scenes.bindings import BindingsScene
 from game.scenes.chapter import ChapterScene
 from game.scenes.choices import ChoicesScene
@@ -78,6 +79,7 @@ SCREENS: dict[str, Make] = {
     "DaysScene": lambda context: DaysScene(context, date(2026, 11, 22)),
     "SettingsScene": SettingsScene,
     "BindingsScene": BindingsScene,
+    "AssistsScene": AssistsScene,
     "NetworksScene": NetworksScene,
     "ReplayScene": lambda context: ReplayScene(context, flown(context)),
     "friend": friend,

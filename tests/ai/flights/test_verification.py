@@ -16,7 +16,7 @@ from ai.lander.pilots import ScriptedPilot
 
 def flown(seed, pads=1, mission="", gravity=()):
     """A flight by the scripted pilot, with a true claim."""
-    env, pilot, actions = begun([seed], "random", pads, mission), ScriptedPilot(), []
+    env, pilot, actions = begun(Recording(seed, "random", pads, mission=mission)), ScriptedPilot(), []
     while env.outcome[0] == Outcome.FLYING:
         if len(actions) in dict(gravity):
             env.gravity = dict(gravity)[len(actions)] * env.params.gravity
@@ -39,7 +39,7 @@ def test_each_earns_the_same_in_any_company_bit_for_bit():
 
 @pytest.mark.parametrize(("pads", "mission"), [(1, ""), (3, ""), (1, "wind")])
 def test_flights_begin_as_they_always_did(pads, mission):
-    env = begun([7], "random", pads, mission)
+    env = begun(Recording(7, "random", pads, mission=mission))
     before = STARTS[mission].begin() if mission else LanderEnv(1, 7, "random", frame_skip=1, ground=env.ground)
     if not mission:
         before.reset()

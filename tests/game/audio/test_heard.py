@@ -52,7 +52,7 @@ def test_the_mouse_is_heard_when_it_presses_not_when_it_passes(sound: Listener, 
     assert sound.heard() == []
     game.click((100, 244))
     assert sound.heard() == ["adjust"]
-    game.click((900, 620))  # nothing is there
+    game.click((1100, 620))  # nothing is there
     assert sound.heard() == []
 
 

@@ -189,7 +189,7 @@ def test_a_recording_says_what_a_step_was_flown_under():
     assert [recording.gravity_at(step) for step in (0, 4, 5, 8, 9, 99)] == [1.0, 1.0, 0.8, 0.8, 1.0, 1.0]
 
 
-def test_time_slowed_down_flies_the_same_flight_more_slowly_and_as_practice(open_game: Open, context: Context):
+def test_time_slowed_down_flies_the_same_flight_more_slowly_and_as_an_assist(open_game: Open, context: Context):
     context.settings.pace = 0.5
     context.settings_file.save(context.settings)
     player = Player(open_game(PlayScene, 0, challenge=FlownMission(MISSIONS["fall"])), "keys")
@@ -206,7 +206,8 @@ def test_time_slowed_down_flies_the_same_flight_more_slowly_and_as_practice(open
     [entry] = Records(context.user_dir).entries()
     assert entry.landed
     assert (entry.pace, entry.practice, entry.alone, entry.medal) == (0.5, True, False, 0)
-    assert texts.PRACTICE in play.ending.card.score
+    assert entry.bar == "assists"
+    assert texts.ASSIST_HALF_SPEED in play.ending.card.assists
     record = Records(context.user_dir).read(entry.file)
     again = ReplayedFlight(record.recording)
     while not again.over:

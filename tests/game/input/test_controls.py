@@ -4,7 +4,7 @@ import pytest
 
 from game.core.settings import Settings
 from game.drawing.glyphs import SIGN
-from game.input.bindings import FIXED_KEYS, KEYBOARD, KEYS, PAD, Bindings, Command, Held
+from game.input.bindings import FIXED_KEYS, GIVE_WAY, KEYBOARD, KEYS, PAD, Bindings, Command, Held
 from game.input.controls import Controls, key_name, presses_main, translate
 from game.input.signs import family_of, sign
 
@@ -175,7 +175,8 @@ def test_what_would_be_left_without_a_key_keeps_it():
 
 def lacking(bindings: Bindings) -> list[object]:
     standard = bindings.device.standard
-    return [meaning for meaning in bindings.table if standard[meaning] and not bindings.codes(meaning)]
+    meanings = set(bindings.table) - GIVE_WAY
+    return [meaning for meaning in meanings if standard[meaning] and not bindings.codes(meaning)]
 
 
 @pytest.mark.parametrize("device", [KEYBOARD, PAD])
@@ -283,3 +284,13 @@ def test_space_confirms_as_the_main_engine_does():
     space = pygame.event.Event(pygame.KEYDOWN, key=pygame.K_SPACE, mod=0)
     assert presses_main(space)
     assert translate(space) is None
+
+
+def test_new_keys_give_way_to_those_a_player_has_chosen_before_they_existed():
+    keys, pad = Bindings(KEYBOARD), Bindings(PAD)
+    keys.follow({"main": ["lshift"], "retry": ["rshift"], "next": ["f10"]})
+    pad.follow({"left": ["triggerleft"]})
+    assert (keys.codes(Held.MAIN), keys.codes(Held.FINE)) == ((pygame.K_LSHIFT,), ())
+    assert (keys.command(pygame.K_F10), keys.codes(Command.MUTE)) == (Command.NEXT, ())
+    assert pad.codes(Held.LEFT) == (32,)
+    assert pad.codes(Held.FINE) == ()

@@ -1,0 +1,98 @@
+"""Axes of a gamepad: what its sticks and triggers do as buttons, and how far they are pushed, as shares of thrust."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Final
+
+import pygame
+
+from game.input.bindings import TRIGGERS, Bindings, Command, Held
+
+# Axis, direction, how far out of 32767 it must be pushed.
+AXES: Final[dict[Held, tuple[int, int, int]]] = {
+    Held.LEFT: (pygame.CONTROLLER_AXIS_LEFTX, -1, 11000),
+    Held.RIGHT: (pygame.CONTROLLER_AXIS_LEFTX, 1, 11000),
+}
+STICK_COMMANDS: Final[dict[Command, tuple[int, int]]] = {
+    Command.LEFT: (pygame.CONTROLLER_AXIS_LEFTX, -1),
+    Command.RIGHT: (pygame.CONTROLLER_AXIS_LEFTX, 1),
+    Command.UP: (pygame.CONTROLLER_AXIS_LEFTY, -1),
+    Command.DOWN: (pygame.CONTROLLER_AXIS_LEFTY, 1),
+    Command.SLOWER: (pygame.CONTROLLER_AXIS_RIGHTX, -1),
+    Command.FASTER: (pygame.CONTROLLER_AXIS_RIGHTX, 1),
+}
+STICK_PUSHED: Final = 20000
+STICK_RELEASED: Final = 12000
+STICK_USED: Final = 11000  # beyond which a gamepad counts as used, by any of its sticks
+TRIGGER_PRESSED: Final = 8000
+TRIGGER_RELEASED: Final = 5000
+_FARTHEST: Final = 32767
+# Shares of the whole way within which a control is at rest, and beyond which it is pushed as far as it goes.
+_STICK: Final = (0.16, 0.95)
+_TRIGGER: Final = (0.06, 0.95)
+_CURVE: Final = 1.5  # a stick near its rest turns the craft more finely
+_TURN: Final = pygame.CONTROLLER_AXIS_LEFTX
+_RISE: Final = pygame.CONTROLLER_AXIS_RIGHTY
+
+
+class Axes:
+    """Axes of one gamepad: where each was last reported to be.
+
+    Most triggers rest at 0. Some rest at the far end of the other side, which shows in the first value below 0.
+    """
+
+    def __init__(self) -> None:
+        self._values: dict[int, int] = {}
+        self._below_zero: set[int] = set()
+
+    def move(self, axis: int, value: int) -> None:
+        """Take a reported value, -32768 to 32767."""
+        self._values[axis] = value
+        if axis in TRIGGERS and value < 0:
+            self._below_zero.add(axis)
+
+    def value(self, axis: int) -> int:
+        """Return the last value of an axis; 0 for one that was never reported."""
+        return self._values.get(axis, 0)
+
+    def clear(self) -> None:
+        """Let go of everything."""
+        self._values.clear()
+
+    def stick(self, axis: int) -> float:
+        """Return how far a stick is pushed along an axis, -1 to 1."""
+        value = self.value(axis) / _FARTHEST
+        pushed: float = _beyond(abs(value), _STICK) ** _CURVE
+        return pushed if value > 0 else -pushed
+
+    def trigger(self, axis: int) -> float:
+        """Return how far a trigger is pulled, 0 to 1."""
+        if axis not in self._values:
+            return 0.0
+        value = self._values[axis] / _FARTHEST
+        return _beyond((value + 1) / 2 if axis in self._below_zero else value, _TRIGGER)
+
+
+def shares(pads: Iterable[Axes], buttons: Bindings) -> tuple[float, float]:
+    """Return the shares of thrust that all gamepads ask for: main engine, 0 to 1, and jets, -1, left, to 1, right.
+
+    The left stick turns, the right one pushed up is the throttle, and so are triggers bound to the engines.
+    """
+    main = side = 0.0
+    for axes in pads:
+        pulled = {
+            held: max(
+                (axes.trigger(axis) for axis, code in TRIGGERS.items() if code in buttons.codes(held)), default=0.0
+            )
+            for held in (Held.MAIN, Held.LEFT, Held.RIGHT)
+        }
+        main = max(main, pulled[Held.MAIN], -axes.stick(_RISE))
+        side = max(side, axes.stick(_TURN) + pulled[Held.RIGHT] - pulled[Held.LEFT], key=abs)
+    return main, side
+
+
+def _beyond(value: float, zone: tuple[float, float]) -> float:
+    """Return the share of the way between the ends of a zone, 0 to 1."""
+    rest, end = zone
+    return min(max((value - rest) / (end - rest), 0.0), 1.0)

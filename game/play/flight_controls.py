@@ -1,0 +1,73 @@
+"""Flight controls: what the player's keys, gamepads and mouse ask of the craft, as they wish to be read."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import pygame
+
+from ai.flights.stick import Stick, pushed
+from game.core.settings import Settings
+from game.input.controls import Controls, Held
+from game.input.mouse import MouseStick
+
+FINE: Final = 0.25  # share of their thrust that jets give while the craft is turned finely
+
+
+class FlightControls:
+    """Flight controls of one player; call `read` once in every step."""
+
+    def __init__(self, controls: Controls, settings: Settings) -> None:
+        self._controls, self._settings = controls, settings
+        self._mouse = MouseStick()
+        self._latched = self._held_before = False
+
+    @property
+    def mouse_flies(self) -> bool:
+        """Whether a mouse button is held down."""
+        return self._mouse.holds
+
+    @property
+    def switch(self) -> bool:
+        """Whether the one switch is held: a key, a button, or the mouse's left one."""
+        return self._controls.switch or self._mouse.fires
+
+    def take(self, event: pygame.event.Event) -> None:
+        """Process one event, its position in points."""
+        self._mouse.take(event)
+        if event.type == pygame.WINDOWFOCUSLOST:
+            self._latched = False
+
+    def begin(self) -> None:
+        """Switch a latched engine off, for another flight."""
+        self._latched = False
+
+    def release(self) -> None:
+        """Let go of the mouse, and of a latched engine."""
+        self._mouse.release()
+        self._latched = False
+
+    def read(self, craft: float) -> Stick:
+        """Return the stick in this step, for a craft drawn at the x coordinate `craft`, in points."""
+        if self._settings.one_switch:
+            return Stick(3 * self.switch)
+        main, side = self._thrust(craft)
+        if self._controls.holds(Held.FINE) or self._mouse.fine:
+            side *= FINE
+        return pushed(main, side)
+
+    def _thrust(self, craft: float) -> tuple[float, float]:
+        """Return the shares of thrust asked for, of the main engine and, -1 to 1, of the jets."""
+        controls, settings = self._controls, self._settings
+        throttle, stick = controls.shares if settings.analogue else (0.0, 0.0)
+        axes = not settings.analogue
+        main = float(controls.holds(Held.MAIN, axes=axes) or self._mouse.fires) or throttle
+        left, right = controls.holds(Held.LEFT, axes=axes), controls.holds(Held.RIGHT, axes=axes)
+        side = (right - left) or stick or self._mouse.side(craft)
+        return self._latch(controls.main or self._mouse.fires) if settings.toggle_thrust else main, side
+
+    def _latch(self, held: bool) -> float:
+        """Switch the main engine on or off at each new press; return its share of thrust."""
+        self._latched ^= held and not self._held_before
+        self._held_before = held
+        return float(self._latched)

@@ -1,0 +1,159 @@
+"""Flights with shares of thrust, wider pads and no time limit: flown again bit for bit, from their files too."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from ai.flights.easing import UNHURRIED, WIDER, Easing
+from ai.flights.stick import STEPS, full, pushed
+from ai.lander.environment import Outcome
+from ai.lander.missions import MISSIONS
+from ai.lander.pilots import ScriptedPilot
+from game.flight import flight_file
+from game.flight.flight import Flight, Recording, StickHolder
+from game.flight.flight_file import Record
+from game.flight.logbook import describe
+from game.flight.replay import FlightReplay, ReplayedFlight
+from tests.support.one_switch import one_switch
+
+
+def record_of(flight: Flight) -> Record:
+    x, y, angle = flight.poses.now[0].tolist()
+    return Record(flight.recording, describe(flight, 1.0), (x, y, angle))
+
+
+def analogue(flight: Flight, most: int = 1500) -> Flight:
+    """Fly with the scripted pilot's wishes, but throttle and stick between nothing and all."""
+    pilot, rng = ScriptedPilot(), np.random.default_rng(1)
+    for _ in range(most):
+        if flight.over:
+            break
+        wish = int(pilot.act(flight.observation)[0])
+        main, side = full(wish)
+        stick = pushed(main / STEPS * rng.uniform(0.5, 1.0), side / STEPS * rng.uniform(0.1, 1.0))
+        flight.step(*stick)
+    return flight
+
+
+@pytest.mark.parametrize("easing", [Easing(), Easing(wider_pads=True, untimed=True)])
+@pytest.mark.parametrize(("pads", "mission"), [(1, ""), (3, ""), (1, "wind")])
+def test_an_analogue_flight_is_flown_again_bit_for_bit(pads: int, mission: str, easing: Easing):
+    flight = analogue(Flight(3, pads=pads, mission=mission, easing=easing))
+    assert len(set(flight.recording.shares.values())) > 20
+    record = flight_file.from_text(flight_file.to_text(record_of(flight)))
+    assert record.recording == flight.recording
+    again = ReplayedFlight(record.recording)
+    while not again.over and again.at < len(record.recording.actions):
+        again.step(0)
+    assert again.poses.now.tobytes() == flight.poses.now.tobytes()
+    assert again.env.fuel == flight.env.fuel
+    assert again.recording == flight.recording
+
+
+def test_an_analogue_replay_goes_to_any_moment():
+    flight_replay = FlightReplay(record_of(analogue(Flight(3), 200)))
+    seen = [flight_replay.flight.env.velocity[0].tolist()]
+    for _ in range(120):
+        flight_replay.step()
+        seen.append(flight_replay.flight.env.velocity[0].tolist())
+    for step in (95, 30, 100, 1, 120, 0, 61):
+        flight_replay.seek(step)
+        assert flight_replay.flight.env.velocity[0].tolist() == seen[step]
+
+
+def test_whole_thrust_leaves_no_trace_in_the_recording():
+    flight, plain = Flight(3), Flight(3)
+    for action in [3, 4, 0, 5, 2, 1] * 10:
+        flight.step(*pushed(*(share / STEPS for share in full(action))))
+        plain.step(action)
+    assert flight.recording == plain.recording
+    assert flight.recording.shares == {}
+
+
+def test_a_co_pilot_that_steps_in_flies_its_own_action_in_full(monkeypatch: pytest.MonkeyPatch):
+    flight = Flight(3)
+    monkeypatch.setattr(Flight, "shared", property(lambda _: True))
+    for own, flown in ((4, 4), (4, 3)):
+        monkeypatch.setattr(flight, "_ask_copilot", lambda flown=flown: flown)
+        flight.step(own, (9, -5))
+        step = len(flight.recording.actions) - 1
+        assert flight.env.shares.tolist() == ([[9 / STEPS, -5 / STEPS]] if own == flown else [[1.0, 0.0]])
+        assert (step in flight.recording.shares) is (own == flown)
+
+
+shares = st.tuples(st.integers(0, STEPS), st.integers(-STEPS, STEPS))
+
+
+@given(
+    st.lists(st.tuples(st.integers(0, 5), st.none() | shares), min_size=1, max_size=200), st.booleans(), st.booleans()
+)
+@settings(max_examples=40, deadline=None)
+def test_any_shares_survive_their_file(steps: list, wider: bool, untimed: bool):
+    recording = Recording(
+        4, "hard", 3, [action for action, _ in steps], [StickHolder.HUMAN] * len(steps),
+        shares={number: share for number, (_, share) in enumerate(steps) if share}, easing=Easing(wider, untimed),
+    )  # fmt: skip
+    record = record_of(Flight(3))
+    text = flight_file.to_text(Record(recording, record.entry, record.end))
+    assert flight_file.from_text(text).recording == recording
+
+
+@pytest.mark.parametrize(
+    "spoilt", ["17,0*5", "1,-17*5", "-1,0*5", "1*5", "1,2,3*5", "-*4", "-*6", "a,b*5", "-*99999999999"]
+)
+def test_shares_that_make_no_sense_are_refused(tmp_path, spoilt: str):
+    flight = Flight(3)
+    for _ in range(5):
+        flight.step(3)
+    path = tmp_path / "flight.json"
+    path.write_text(flight_file.to_text(record_of(flight)).replace('"shares": ""', f'"shares": "{spoilt}"'))
+    with pytest.raises(ValueError, match=r"flight\.json"):
+        flight_file.read(path)
+
+
+def test_a_file_of_the_version_before_is_read_unchanged():
+    flight = Flight(3)
+    for _ in range(60):
+        flight.step(3)
+    text = (
+        flight_file.to_text(record_of(flight)).replace('"version": 5', '"version": 4').replace(' "shares": "",\n', "")
+    )
+    begin = text.index(' "easing"')
+    old = text[:begin] + text[text.index("},", begin) + 3 :]
+    assert "easing" not in old
+    assert flight_file.from_text(old).recording == flight.recording
+
+
+def test_wider_pads_are_half_as_wide_again_and_nothing_else_moves():
+    for pads in (1, 3):
+        plain, wide = Flight(3, pads=pads), Flight(3, pads=pads, easing=Easing(wider_pads=True))
+        assert wide.env.ground.widths == pytest.approx(WIDER * plain.env.ground.widths)
+        assert np.array_equal(wide.env.ground.middles, plain.env.ground.middles)
+        assert np.array_equal(wide.env.position, plain.env.position)
+
+
+@pytest.mark.parametrize("name", MISSIONS)
+def test_missions_can_be_eased_too(name: str):
+    env = Flight(0, mission=name, easing=Easing(True, True)).env
+    assert env.ground.widths[0] == pytest.approx(WIDER * MISSIONS[name].pad.width)
+    assert env.limits.time == UNHURRIED
+    assert env.limits.touch_speed == MISSIONS[name].limits.touch_speed
+
+
+def test_without_a_time_limit_a_flight_outlasts_it_and_can_be_read_back():
+    flight = Flight(3, easing=Easing(untimed=True))
+    pilot = ScriptedPilot()
+    for _ in range(60 * 40):  # hovering
+        flight.step(3 * bool(flight.env.velocity[0, 1] < 0) + int(pilot.act(flight.observation)[0]) % 3)
+    assert flight.outcome is Outcome.FLYING
+    assert flight.env.time[0] > 39
+    record = flight_file.from_text(flight_file.to_text(record_of(flight)))
+    assert record.recording == flight.recording
+
+
+@pytest.mark.parametrize("wider", [False, True])
+def test_a_slow_hand_with_one_switch_lands(wider: bool):
+    """A fifth of a second late, five decisions a second, and nothing but the engine: the jets steer by themselves."""
+    landed = [one_switch(Flight(seed, easing=Easing(wider_pads=wider))).outcome for seed in range(6)]
+    assert landed == [Outcome.LANDED] * 6

@@ -1,0 +1,231 @@
+"""Assists: chosen on their page, told on the card, kept apart in the logbook; and one switch for the whole game."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.flights.easing import UNHURRIED
+from ai.lander.environment import Outcome
+from ai.lander.missions import MISSIONS
+from game.core import texts
+from game.flight.logbook import Records, best
+from game.play.challenge import FlownMission
+from game.scenes.assists import HANDS, ROOM, AssistsScene
+from game.scenes.menu import MenuScene
+from game.scenes.play import PlayScene
+from game.scenes.settings import SettingsScene
+from game.ui.context import Context
+from game.ui.switch_scan import DWELL, HELD, SwitchScan
+from tests.support.driver import Driver
+from tests.support.one_switch import SlowSwitch
+from tests.support.player import DEVICES, Player
+from tests.support.screens import settle
+
+Open = Callable[..., Driver]
+
+
+@pytest.mark.parametrize("device", DEVICES)
+def test_every_assist_is_switched_and_saved_by_each_device(open_game: Open, context: Context, device: str):
+    settle(context)
+    player = Player(open_game(AssistsScene), device)
+    before = {name: getattr(context.settings, name) for name in (*HANDS, *ROOM)}
+    for name in (*ROOM, "analogue", "toggle_thrust", "one_switch"):  # the last one makes the keys a switch
+        player.choose(texts.ASSISTS[name][0])
+    saved = player.saved()
+    assert {name: saved[name] for name in before} == {name: not value for name, value in before.items()}
+
+
+def test_the_mouse_switches_them_too(open_game: Open, context: Context):
+    settle(context)
+    game = open_game(AssistsScene)
+    game.click(game.widget(texts.ASSISTS["wider_pads"][0]).box.center)
+    game.frames(2)
+    assert context.settings.wider_pads
+    assert game.saved()["wider_pads"]
+
+
+def test_it_is_reached_from_settings_and_from_the_pause(open_game: Open, context: Context):
+    settle(context)
+    player = Player(open_game(SettingsScene), "keys")
+    player.choose_beside(texts.ASSISTS_OPEN)
+    assert player.top_name == "AssistsScene"
+    player = Player(open_game(PlayScene, 3), "pad")
+    player.frames(2)
+    player.press("main")
+    player.frames(5)
+    player.press("pause")
+    player.choose(texts.ASSISTS_OPEN)
+    assert player.top_name == "AssistsScene"
+    player.press("back")
+    assert player.top_name == "PauseScene"
+
+
+def test_a_landing_with_assists_is_told_kindly_and_kept_apart(open_game: Open, context: Context):
+    settle(context, wider_pads=True, untimed=True, pace=0.5)
+    player = Player(open_game(PlayScene, 0, challenge=FlownMission(MISSIONS["fall"])), "keys")
+    play = player.top
+    assert play.flight.env.limits.time == UNHURRIED
+    assert play.flight.env.ground.widths.tolist() == [9.0]
+    player.frames(2)
+    player.fly(most=7200)
+    player.frames(200)
+    card = play.ending.card
+    assert card.good
+    assert card.assists == texts.ASSISTS_USED.format(
+        assists=", ".join([texts.ASSIST_WORDS["wider_pads"], texts.ASSIST_WORDS["untimed"], texts.ASSIST_HALF_SPEED])
+    )
+    [entry] = Records(context.user_dir).entries()
+    assert (entry.landed, entry.alone, entry.bar, entry.medal) == (True, False, "assists", 0)
+    assert best([entry]) == []
+    again = Records(context.user_dir).read(entry.file)
+    assert again.recording == play.flight.recording
+    assert again.recording.easing.wider_pads
+
+
+def test_a_press_for_thrust_is_named_and_counts_like_any_other(open_game: Open, context: Context):
+    settle(context, toggle_thrust=True)
+    game = open_game(PlayScene, 3)
+    game.frames(3)
+    game.key(pygame.K_UP)
+    play = game.top
+    while not play.flight.over:
+        game.skip(10)
+    game.skip(200)
+    assert set(play.flight.recording.actions[2:]) == {3}  # it stayed on
+    assert texts.ASSIST_WORDS["toggle_thrust"] in play.ending.card.assists
+    assert play.credit.counts
+
+
+def test_without_assists_the_card_says_nothing_of_them(open_game: Open, context: Context):
+    settle(context)
+    game = open_game(PlayScene, 3)
+    game.frames(3)
+    game.key(pygame.K_UP)
+    while game.top.ending.card is None:
+        game.skip(10)
+    assert game.top.ending.card.assists == ""
+
+
+def test_wider_pads_chosen_before_the_first_touch_are_there_at_once(open_game: Open, context: Context):
+    settle(context)
+    game = open_game(PlayScene, 3)
+    game.frames(3)
+    play = game.top
+    game.key(pygame.K_ESCAPE)
+    context.settings.wider_pads = True
+    game.key(pygame.K_ESCAPE)
+    game.frames(2)
+    assert game.top is play
+    assert play.waiting
+    assert play.flight.env.ground.widths.tolist() == [9.0]
+
+
+# One switch
+
+
+class Switch:
+    """The one thing the player can press, on one device."""
+
+    def __init__(self, game: Driver, device: str) -> None:
+        self.game, self.device, self.down = game, device, False
+
+    def hold(self, down: bool) -> None:
+        if down == self.down:
+            return
+        self.down = down
+        if self.device == "keys":
+            event = pygame.Event(pygame.KEYDOWN if down else pygame.KEYUP, key=pygame.K_SPACE, mod=0)
+        elif self.device == "pad":
+            kind = pygame.CONTROLLERBUTTONDOWN if down else pygame.CONTROLLERBUTTONUP
+            event = pygame.Event(kind, button=pygame.CONTROLLER_BUTTON_A, instance_id=0)
+        else:
+            kind = pygame.MOUSEBUTTONDOWN if down else pygame.MOUSEBUTTONUP
+            event = pygame.Event(kind, button=1, pos=self.game.to_window((640, 600)))
+        pygame.event.post(event)
+
+    def press(self) -> None:
+        self.hold(True)
+        self.game.frames(2)
+        self.hold(False)
+        self.game.frames(2)
+
+    def choose(self, words: str, most: int = 40) -> None:
+        """Wait until that is marked, and press."""
+        app = self.game.app
+        for _ in range(most):
+            stops = app.scan.stops(self.game.top, app.canvas)
+            stop = stops[app.scan.index % len(stops)]
+            name = stop.hint.meaning if stop.hint else stop.widget.label
+            if name == words:
+                self.game.skip(14)  # a hand needs a moment
+                self.press()
+                return
+            self.game.skip(DWELL)
+        raise AssertionError(f"{words} is never marked")
+
+
+def test_the_whole_way_with_one_switch(open_game: Open, context: Context):
+    """From the menu to a flight, a landing by a slow hand, the card, another start, the pause, and back to the menu."""
+    for device in ("keys", "pad", "mouse"):
+        settle(context, one_switch=True)
+        game = open_game(MenuScene)
+        game.frames(5)
+        game.skip(100)
+        switch = Switch(game, device)
+        switch.choose(texts.MENU["play"][0])
+        play = game.top
+        assert isinstance(play, PlayScene), device
+        game.skip(5)
+        hand = SlowSwitch()
+        flight = play.flight
+        while not flight.over:
+            switch.hold(hand.held(flight) or (play.waiting and not switch.down))
+            game.skip(1)
+        switch.hold(False)
+        assert flight.outcome is Outcome.LANDED, device
+        game.skip(200)
+        assert texts.ASSIST_WORDS["one_switch"] in play.ending.card.assists
+        switch.choose(texts.CARD_FIRST[True])
+        assert play.flight is not flight
+        play.flight.env.begin_at(0, np.array([0.0, 12.0, 0.0, -4.0, 0.0, 0.0]))
+        switch.hold(True)
+        game.skip(HELD + 10)
+        assert game.top_name == "PauseScene", device
+        switch.hold(False)
+        game.skip(30)
+        switch.choose(texts.PAUSE_LEAVE)
+        assert game.top_name == "MenuScene", device
+
+
+def test_one_switch_turns_a_slider_round_and_every_assist_off_again(open_game: Open, context: Context):
+    settle(context, one_switch=True, pace=0.9)
+    game = open_game(AssistsScene)
+    game.skip(20)
+    switch = Switch(game, "keys")
+    for pace in (1.0, 0.2):
+        switch.choose(texts.PACE)
+        assert context.settings.pace == pytest.approx(pace)
+    switch.choose(texts.ASSISTS["one_switch"][0])
+    assert not context.settings.one_switch
+    game.key(pygame.K_SPACE)  # an ordinary press again
+    assert context.settings.one_switch
+
+
+def test_a_mouse_that_moves_still_clicks_beside_it(open_game: Open, context: Context):
+    settle(context, one_switch=True)
+    game = open_game(AssistsScene)
+    game.skip(20)
+    game.click(game.widget(texts.ASSISTS["untimed"][0]).box.center)
+    game.frames(2)
+    assert context.settings.untimed
+
+
+def test_without_the_assist_nothing_scans(open_game: Open, context: Context):
+    settle(context)
+    game = open_game(MenuScene)
+    first = game.form.focused
+    game.skip(3 * DWELL)
+    assert game.form.focused is first
+    assert isinstance(game.app.scan, SwitchScan)
