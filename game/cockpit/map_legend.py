@@ -26,6 +26,7 @@ def draw_legend(canvas: Canvas, policy_map: PolicyMap, flown: int) -> None:
     """Draw what the colours of the sky mean; the action `flown` now by the shown lander stands out."""
     if policy_map.kind == OFF:
         return
+    canvas = canvas.at(-1, -1)
     actions = policy_map.kind == ACTION
     title, what = texts.MAP_TITLES[policy_map.kind - 1], texts.EXPLAIN_MAP[policy_map.kind - 1]
     canvas.text(title, (_LEFT, _TOP), size=SMALL, room=_ROOM)

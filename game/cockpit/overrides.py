@@ -23,7 +23,7 @@ _SAMPLES: Final = 120  # decisions on the line, eight seconds
 _STRIP: Final = (VIEW_SIZE[0] / 2 - 90, 77.0, 180.0)  # left, middle, width
 _DOTS: Final = 6  # for an engine that was asked for and not fired
 _SIGN: Final = 9.0  # from the middle of a sign to the words beside it
-_LOWEST: Final = 620.0  # row above the read-outs
+_FOOT: Final = 100.0  # points above the lower edge, for the read-outs
 _YOURS, _HANDED, _CHANGED = range(3)
 
 
@@ -97,7 +97,7 @@ class Overrides:
         metre = view.pixels_per_metre / view.scale
         right = x + 1.5 * metre + canvas.text_width(self._word, size=SMALL) + 2 * _SIGN < clear.right
         x += (1.5 if right else -1.5) * metre
-        y = min(max(y - 0.4 * metre, clear.head), _LOWEST)
+        y = min(max(y - 0.4 * metre, clear.head), canvas.view.bottom - _FOOT)
         canvas.marker("diamond", (x, y), 8, NET, strength)
         canvas.text(self._word, (x + (_SIGN if right else -_SIGN), y + 4), size=SMALL, colour=NET,
                     align="left" if right else "right", alpha=strength)  # fmt: skip

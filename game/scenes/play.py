@@ -42,6 +42,8 @@ class PlayScene(Scene):
 
     """
 
+    fills = True
+
     def __init__(
         self,
         context: Context,
@@ -107,7 +109,7 @@ class PlayScene(Scene):
 
     def hint_rows(self, canvas: Canvas) -> list[HintRow]:
         """Return the hints of the flight, and those of the card."""
-        rows = [captions.flight_row(hints_of(self._flight_actions(), self._controls))]
+        rows = [captions.flight_row(hints_of(self._flight_actions(), self._controls), canvas.view)]
         if self.ending.card and self.ending.shown > 0:
             hints = hints_of(self._card_actions(), self._controls)
             rows.append(self.ending.hint_row(hints, self.flown.ghost, self._settings.show_hints))

@@ -78,7 +78,7 @@ class App:
         self._follow_window()
         context.note = self.notes.show
         context.apply_settings = self.apply_settings
-        context.in_window = self.canvas.in_window
+        context.in_window, context.view = self.canvas.in_window, self.canvas.view
         self._look()
         context.sound.follow(context.settings)
         context.controls.follow(context.settings)

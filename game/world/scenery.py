@@ -8,7 +8,6 @@ from ai.common.environment import Doubles
 from ai.lander.environment import Outcome
 from game.core.clock import STEP
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import VIEW_SIZE
 from game.flight.flight import Flight, StickHolder
 from game.world import framing
 from game.world.callouts import Callouts
@@ -19,7 +18,7 @@ from game.world.landscape.themes import LOOKS, look_of
 from game.world.particles import DUST
 from game.world.stage import Stage
 
-_EDGE, _LOWEST = 24.0, 620.0  # points that a mark keeps from the sides, and its lowest row, above the read-outs
+_EDGE, _FOOT = 24.0, 100.0  # points that a mark keeps from the sides, and from the lower edge with its read-outs
 
 
 class Scenery:
@@ -111,7 +110,7 @@ class Scenery:
         env = self._flight.env
         moon = landscape(canvas.surface.get_size(), self._calm, self._look)
         moon.draw(canvas, self._camera, self._time, alpha, earth)
-        view = self.view(canvas.scale, alpha)
+        view = self.view(canvas.scale, alpha).filling(canvas)
         draw_ground(canvas, view, env.ground, self._time, float(env.pad_shift[0]))
         if env.conditions.pushes and not self._calm:
             self.stage.wind.draw(canvas.surface, view, alpha)
@@ -121,7 +120,7 @@ class Scenery:
 
         A craft that has left the area is not drawn; a cross marks where it left.
         """
-        view, pose = self.view(canvas.scale, alpha), self._flight.poses.at(alpha)[0]
+        view, pose = self.view(canvas.scale, alpha).filling(canvas), self._flight.poses.at(alpha)[0]
         if self._flight.outcome is Outcome.OUT_OF_BOUNDS:
             mark_lost(canvas, view, pose)
             return
@@ -136,6 +135,10 @@ class Scenery:
 def mark_lost(canvas: Canvas, view: View, pose: Doubles) -> None:
     """Mark where a craft has left the area, or the nearest place that is clear of text."""
     x, y = view.points(pose[:2]).tolist()
-    place = (min(max(x, _EDGE), VIEW_SIZE[0] - _EDGE), min(max(y, framing.ALL.head), _LOWEST))
+    seen = canvas.view
+    place = (
+        min(max(x, seen.left + _EDGE), seen.right - _EDGE),
+        min(max(y, seen.top + framing.ALL.head), seen.bottom - _FOOT),
+    )
     canvas.glow(place, 18, canvas.palette.warn, 0.5)
     canvas.marker("cross", place, 12, canvas.palette.warn)
