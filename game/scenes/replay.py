@@ -60,7 +60,7 @@ class ReplayScene(FormScene):
 
     """
 
-    takes_tab = True
+    fills = takes_tab = True
 
     def __init__(self, context: Context, record: Record) -> None:
         super().__init__(context)
@@ -71,6 +71,7 @@ class ReplayScene(FormScene):
         self.export: Export | None = None
         self.flight_replay = FlightReplay(self.record)
         self.flight_replay.scout(1)
+        self.form.anchor = (0, -1)
         self._scenery = Scenery(self.flight_replay.flight, context.settings.reduced_motion, _CLEAR)
         self._heard = FlightSound(context.sound, self.flight_replay.flight.env, self._pace, warns=False)
         self._build()
@@ -110,8 +111,9 @@ class ReplayScene(FormScene):
 
     def hint_rows(self, canvas: Canvas) -> list[HintRow]:
         """Return the hints on the right of the seconds."""
-        room = VIEW_SIZE[0] / 2 - MARGIN - _FIGURE
-        return [HintRow(self.hints, (VIEW_SIZE[0] - MARGIN, 42), from_right=True, room=room)]
+        right, top = canvas.view.right - MARGIN, canvas.view.top
+        room = right - VIEW_SIZE[0] / 2 - _FIGURE
+        return [HintRow(self.hints, (right, top + 42), from_right=True, room=room)]
 
     def update(self) -> Transition | None:
         """Advance by as many steps as the chosen speed makes due, and simulate a little further ahead."""
@@ -279,6 +281,7 @@ class ReplayScene(FormScene):
         flight = self.flight_replay.flight
         seconds = f"{self.flight_replay.at * STEP:.2f}"
         middle = VIEW_SIZE[0] / 2
+        canvas = canvas.at(0, -1)
         figure = canvas.text(f"{seconds} s", (middle, 58), size=22, weight="light", align="centre", tabular=True)
         by = texts.YOU_FLEW if flight.flown_by is StickHolder.HUMAN else texts.NETWORK_FLEW
         if self.ended:

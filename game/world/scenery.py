@@ -15,6 +15,7 @@ from game.world.camera import Camera, CameraTarget, ClearArea, View
 from game.world.landscape.backdrop import EARTH, landscape
 from game.world.landscape.ground import draw_ground
 from game.world.landscape.themes import LOOKS, look_of
+from game.world.pad_factors import PadFactors
 from game.world.particles import DUST
 from game.world.stage import Stage
 
@@ -39,6 +40,7 @@ class Scenery:
         chance = np.random.default_rng(flight.recording.seed)
         self.stage = Stage(flight.env, chance, reduced_motion, LOOKS[self._look].on_dust(DUST), LOOKS[self._look].light)
         self._callouts = Callouts(flight.env, reduced_motion)
+        self._factors = PadFactors(flight)
         self._time = 0.0
         self._camera = Camera()
         self.cut()
@@ -74,6 +76,7 @@ class Scenery:
         flight = self._flight
         self.stage.forget()
         self._callouts.forget()
+        self._factors.forget()
         action = 0 if flight.over else int(flight.env.fired[0])
         self.stage.thrust[0] = action >= 3, action % 3 == 2, action % 3 == 1
         self.stage.blue[:] = flight.flown_by is StickHolder.NETWORK
@@ -89,6 +92,7 @@ class Scenery:
         flight = self._flight
         self.stage.follow(np.array([flight.flown_by is StickHolder.NETWORK]), np.array([ended]))
         self._callouts.follow()
+        self._factors.follow(self._calm)
         if self._calm:
             return
         self._camera.shake(self.stage.jolt)
@@ -116,11 +120,14 @@ class Scenery:
             self.stage.wind.draw(canvas.surface, view, alpha)
 
     def draw_craft(self, canvas: Canvas, alpha: float, words: bool = True) -> None:
-        """Draw the craft with its flames and dust; `words` is whether to draw the callouts too.
+        """Draw the factors of the pads over the paths, and the craft with its flames and dust.
+
+        `words` is whether to draw the callouts too.
 
         A craft that has left the area is not drawn; a cross marks where it left.
         """
         view, pose = self.view(canvas.scale, alpha).filling(canvas), self._flight.poses.at(alpha)[0]
+        self._factors.draw(canvas, view, pose)
         if self._flight.outcome is Outcome.OUT_OF_BOUNDS:
             mark_lost(canvas, view, pose)
             return
