@@ -118,8 +118,9 @@ def _fuel(env: LanderEnv, slot: int) -> Readout:
 
 def draw_readouts(canvas: Canvas, readouts: Sequence[Readout], columns: Sequence[float] = COLUMNS) -> None:
     """Draw read-outs side by side: the bar shows the distance from the limit, a mark by the label on which side."""
-    width, height = canvas.surface.get_width(), canvas.size[1] - canvas.px(_SHADE_TOP)
-    canvas.surface.blit(_shade((width, height)), (0, canvas.surface.get_height() - height))
+    if canvas.whole is canvas:  # a page has no world behind it
+        width, height = canvas.surface.get_width(), canvas.size[1] - canvas.px(_SHADE_TOP)
+        canvas.surface.blit(_shade((width, height)), (0, canvas.surface.get_height() - height))
     for x, readout in zip(columns, readouts, strict=True):
         _draw_readout(column(canvas, x), x, readout)
 
