@@ -178,6 +178,7 @@ class App:
                 self._follow_window()
             case pygame.WINDOWSIZECHANGED | pygame.WINDOWDISPLAYCHANGED:
                 if self.window.size != self._attached_size:
+                    self.window.stay_legible()
                     self._follow_window()
                     self._settled = self._last + _SETTLE
         if not self.scenes.running:
