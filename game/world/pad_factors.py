@@ -51,7 +51,8 @@ class PadFactors:
         if flight.shared and flight.decision is not None:
             likely: Doubles = flight.decision.likely[0]
             return likely
-        return np.eye(len(flight.env.ground.pads))[int(flight.env.target[0])]
+        aimed_at: Doubles = np.eye(len(flight.env.ground.pads))[int(flight.env.target[0])]
+        return aimed_at
 
     def draw(self, canvas: Canvas, view: View, craft: Doubles) -> None:
         """Write each factor above its pad; one to which the craft at (x, y) comes near gives way."""
