@@ -9,7 +9,7 @@ import pygame
 from game.cockpit.hud import Lamp, draw_title
 from game.core import texts
 from game.core.settings import Settings
-from game.drawing.canvas import Canvas, Now
+from game.drawing.canvas import Canvas, Now, moved
 from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NET, SMALL, VIEW_SIZE
 from game.flight.credit import FlownBy
 from game.input.controls import Command, translate
@@ -24,19 +24,23 @@ _EASE: Final = 0.2
 
 
 class AssistDial:
-    """Dial for `settings.assist`; the handle moves to the network's end while the network has the stick."""
+    """Dial for `settings.assist`; the handle moves to the network's end while the network has the stick.
 
-    def __init__(self, settings: Settings) -> None:
-        self._settings = settings
+    It stands at the upper edge of the `view`, all that the window shows, in points.
+    """
+
+    def __init__(self, settings: Settings, view: pygame.FRect) -> None:
+        self._settings, self._view = settings, view
         self._shown = settings.assist
         self._dragged = False
 
     def take(self, event: pygame.event.Event) -> bool:
         """Turn the dial by an event, a mouse's in points; return whether the event was meant for it."""
+        hold = _HOLD.move(moved(self._view, 0, -1))
         match event.type:
             case pygame.MOUSEWHEEL:
                 self._turn(self._settings.assist + _WHEEL_STEP * event.y)
-            case pygame.MOUSEBUTTONDOWN if event.button == 1 and _HOLD.collidepoint(event.pos):
+            case pygame.MOUSEBUTTONDOWN if event.button == 1 and hold.collidepoint(event.pos):
                 self._dragged = True
                 self._drag(event.pos[0])
             case pygame.MOUSEMOTION if self._dragged:
@@ -62,6 +66,7 @@ class AssistDial:
 
         `means` says, for those who ask, what the dial means now. Returns the text's width in points.
         """
+        canvas = canvas.at(0, -1)
         width = draw_title(canvas, text, lamp)
         left, right = _TRACK
         for word, x, align in zip(texts.DIAL_ENDS, (left - 10, right + 10), ("right", "left"), strict=True):

@@ -20,7 +20,7 @@ from game.cockpit.recent_line import RecentLine
 from game.cockpit.track import FlownPath
 from game.core import texts
 from game.core.settings import Settings
-from game.drawing.canvas import Canvas
+from game.drawing.canvas import PAGE, Canvas, moved
 from game.drawing.tokens import MARGIN, VIEW_SIZE
 from game.flight.chances import Rescues
 from game.flight.credit import Credit
@@ -40,7 +40,7 @@ _CARD_RIGHT: Final = float(VIEW_SIZE[0] - MARGIN - CARD.width)
 class Cockpit:
     """Cockpit of one flight; call `help` before every step, `follow` after it.
 
-    Where `credit` allows no help, the dial is disabled.
+    Where `credit` allows no help, the dial is disabled. `view` is all that the window shows, in points.
 
     Attributes:
         track: the path that was flown.
@@ -51,9 +51,9 @@ class Cockpit:
 
     """
 
-    def __init__(self, flight: Flight, settings: Settings, credit: Credit) -> None:
-        self._flight, self._settings, self.credit = flight, settings, credit
-        self._dial = AssistDial(settings)
+    def __init__(self, flight: Flight, settings: Settings, credit: Credit, view: pygame.FRect = PAGE) -> None:
+        self._flight, self._settings, self.credit, self._view = flight, settings, credit, view
+        self._dial = AssistDial(settings, view)
         self.overrides, self.rescues, self._recent = Overrides(), Rescues(), RecentLine()
         self.chance_meter = ChanceMeter(flight, settings, wishes=not credit.alone)
         self.track = FlownPath(flight)
@@ -119,8 +119,15 @@ class Cockpit:
 
     @property
     def clear(self) -> ClearArea:
-        """The part of the screen for the flight, beside the panel that explains it."""
-        return ClearArea(right=PANEL.left - 16.0) if self._explains else ClearArea()
+        """The part of the page for the flight, beside the panel that explains it."""
+        right = PANEL.left - 16.0 + moved(self._view, 1, -1)[0]
+        return ClearArea(right=min(right, ClearArea.right)) if self._explains else ClearArea()
+
+    @property
+    def free(self) -> ClearArea:
+        """The part of the whole view for words beside the craft."""
+        right = PANEL.left - 16.0 + moved(self._view, 1, -1)[0] if self._explains else self._view.right
+        return ClearArea(self._view.left, right, self._view.top + ClearArea.head)
 
     @property
     def _explains(self) -> bool:
@@ -129,23 +136,24 @@ class Cockpit:
     def draw_panel(self, canvas: Canvas, view: View, pose: Doubles) -> None:
         """Draw the panel that explains the flight; hide it while the craft flies behind it."""
         if self._explains and not self._meets(view, pose):
-            self.copilot_panel.draw(canvas, self._flight.share)
+            self.copilot_panel.draw(canvas.at(1, -1), self._flight.share)
 
     def _meets(self, view: View, pose: Doubles) -> bool:
         """Return whether the craft is behind the panel, which happens only where the camera can't keep it clear."""
         around = 2 * _CRAFT * view.pixels_per_metre / view.scale
         lower = PADS_HIGH if len(self._flight.env.ground.pads) > 1 else 0
         panel = pygame.Rect(PANEL.topleft, (PANEL.width, PANEL.height + lower))
+        panel.move_ip(moved(self._view, 1, -1))
         return bool(panel.inflate(around, around).collidepoint(view.points(pose[:2]).tolist()))
 
     def draw_beside(self, canvas: Canvas, view: View, pose: Doubles) -> None:
         """Draw the override beside the craft: the difference between the action asked for and the one flown."""
         if not self._flight.over:
-            self.overrides.draw_word(canvas, view, pose, self.clear)
+            self.overrides.draw_word(canvas, view, pose, self.free)
 
     def draw_top(self, canvas: Canvas) -> None:
         """Draw who flies, and the line of who flew in the last seconds."""
-        flight, credit, meter = self._flight, self.credit, self.chance_meter
+        flight, credit, meter, canvas = self._flight, self.credit, self.chance_meter, canvas.at(0, -1)
         lamp = self.overrides.lamp(flight)
         if flight.shares and not credit.alone:
             width = self._dial.draw(canvas, credit.header, credit.stick, lamp, self._dial_means)

@@ -29,6 +29,7 @@ _FIGURE: Final = 52  # room for an input's figure
 
 def draw_decision(canvas: Canvas, decision: Decision) -> None:
     """Draw the decision of one lander exactly as it was made: nothing is recomputed or eased."""
+    canvas = canvas.at(1, -1)
     left, top, width = PANEL.left + _LEFT, PANEL.top, PANEL.width - 2 * _LEFT
     canvas.panel(PANEL, _COVER)
     values = QValues.of(decision)

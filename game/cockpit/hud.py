@@ -125,17 +125,27 @@ def thrust_readout(env: LanderEnv, slot: int = 0) -> Readout:
 
 def draw_readouts(canvas: Canvas, readouts: Sequence[Readout], columns: Sequence[float] = COLUMNS) -> None:
     """Draw read-outs side by side: the bar shows the distance from the limit, a mark by the label on which side."""
-    top = canvas.px(_SHADE_TOP)
-    canvas.surface.blit(_shade((canvas.size[0], canvas.size[1] - top)), (0, top))
+    if canvas.whole is canvas:  # a page has no world behind it
+        width, height = canvas.surface.get_width(), canvas.size[1] - canvas.px(_SHADE_TOP)
+        canvas.surface.blit(_shade((width, height)), (0, canvas.surface.get_height() - height))
     for x, readout in zip(columns, readouts, strict=True):
-        colour = INK if readout.within is None else canvas.palette.good if readout.within else canvas.palette.warn
-        shows = readout.label, readout.figure, readout.unit, readout.within
-        box = (x - _ASIDE, _LABEL_LINE - _ABOVE, *_WORDS)
-        _FIGURES.draw(canvas, box, shows, partial(_paint_readout, readout=readout, colour=colour))
-        if readout.fill is not None:
-            canvas.bar((x, _BAR_TOP, *_BAR), readout.fill, colour)
-        if readout.limit is not None:
-            canvas.line((x + readout.limit * _BAR[0], _BAR_TOP - 3), (x + readout.limit * _BAR[0], _BAR_TOP + 5), INK)
+        _draw_readout(column(canvas, x), x, readout)
+
+
+def column(canvas: Canvas, x: float) -> Canvas:
+    """Return the canvas for the read-out whose column begins at x: beside the nearer side, at the lower edge."""
+    return canvas.at(-1 if x < VIEW_SIZE[0] / 2 else 1, 1)
+
+
+def _draw_readout(canvas: Canvas, x: float, readout: Readout) -> None:
+    colour = INK if readout.within is None else canvas.palette.good if readout.within else canvas.palette.warn
+    shows = readout.label, readout.figure, readout.unit, readout.within
+    box = (x - _ASIDE, _LABEL_LINE - _ABOVE, *_WORDS)
+    _FIGURES.draw(canvas, box, shows, partial(_paint_readout, readout=readout, colour=colour))
+    if readout.fill is not None:
+        canvas.bar((x, _BAR_TOP, *_BAR), readout.fill, colour)
+    if readout.limit is not None:
+        canvas.line((x + readout.limit * _BAR[0], _BAR_TOP - 3), (x + readout.limit * _BAR[0], _BAR_TOP + 5), INK)
 
 
 def readout_box(x: float) -> tuple[float, float, float, float]:
@@ -167,6 +177,7 @@ def _paint_readout(canvas: Canvas, readout: Readout, colour: Colour) -> None:
 def draw_title(canvas: Canvas, text: str, lamp: Lamp, reach: float = 16.0) -> float:
     """Write who flies, with a lamp before it that shines to `reach` points; return the text's width in points."""
     shape, colour, glow = lamp
+    canvas = canvas.at(0, -1)
     middle = VIEW_SIZE[0] / 2
     width = canvas.text(text, (middle + 9, 41), size=TEXT, align="centre", room=_TITLE_ROOM).width
     spot = lamp_spot(width)
@@ -182,6 +193,7 @@ def lamp_spot(width: float) -> Point:
 
 def draw_hand(canvas: Canvas, text: str, colour: Colour) -> None:
     """Draw who flies at the top, over a line in their colour."""
+    canvas = canvas.at(0, -1)
     half = max(90.0, draw_title(canvas, text, ("circle", colour, 0.8), reach=14.0) / 2 + 14)
     line = (VIEW_SIZE[0] / 2 - half, 54, 2 * half, 2)
     canvas.pill(line, FAINT, 0.5)
@@ -190,6 +202,7 @@ def draw_hand(canvas: Canvas, text: str, colour: Colour) -> None:
 
 def draw_corner(canvas: Canvas, small: str, large: str, asked: str = "") -> None:
     """Draw the flight's name and its goal in the top left corner."""
+    canvas = canvas.at(-1, -1)
     canvas.text(small, (MARGIN, 38), size=SMALL, colour=MUTE)
     canvas.text(large, (MARGIN, 58), size=TEXT)
     canvas.text(asked, (MARGIN, 78), size=SMALL, colour=MUTE)
@@ -318,6 +331,7 @@ def _draw_rival(canvas: Canvas, rival: RivalOutcome, labels: Sequence[str], corn
 
 def draw_opening(canvas: Canvas, hints: Sequence[Hint], line: str, paths: Sequence[tuple[str, Colour]]) -> None:
     """Draw the controls and the legend of the dotted paths in the middle, while the craft hangs and waits."""
+    canvas = canvas.at(0, -1)
     middle = VIEW_SIZE[0] / 2
     canvas.text(line, (middle, 122), size=TEXT, colour=MUTE, align="centre")
     row = HintRow(hints, (0, 150), size=TEXT)

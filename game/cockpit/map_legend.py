@@ -32,6 +32,7 @@ def draw_legend(canvas: Canvas, world: Watched, flown: int) -> None:
     policy_map = world.policy_map
     if policy_map.kind == OFF:
         return
+    canvas = canvas.at(-1, -1)
     actions = policy_map.kind == ACTION
     title, what = texts.MAP_TITLES[policy_map.kind - 1], texts.EXPLAIN_MAP[policy_map.kind - 1]
     canvas.text(title, (_LEFT, _TOP), size=SMALL, room=_ROOM)

@@ -19,7 +19,7 @@ _LASTS: Final = 40  # steps that a message stays after the last override: long e
 _FADES: Final = 14
 _DOTS: Final = 6  # for an engine that was asked for and not fired
 _SIGN: Final = 9.0  # from the middle of a sign to the words beside it
-_LOWEST: Final = 620.0  # row above the read-outs
+_FOOT: Final = 100.0  # points above the lower edge, for the read-outs
 
 
 class Overrides:
@@ -73,7 +73,7 @@ class Overrides:
         metre = view.pixels_per_metre / view.scale
         right = x + 1.5 * metre + canvas.text_width(self._word, size=SMALL) + 2 * _SIGN < clear.right
         x += (1.5 if right else -1.5) * metre
-        y = min(max(y - 0.4 * metre, clear.head), _LOWEST)
+        y = min(max(y - 0.4 * metre, clear.head), canvas.view.bottom - _FOOT)
         canvas.marker("diamond", (x, y), 8, NET, strength)
         canvas.text(self._word, (x + (_SIGN if right else -_SIGN), y + 4), size=SMALL, colour=NET,
                     align="left" if right else "right", alpha=strength)  # fmt: skip

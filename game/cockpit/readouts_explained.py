@@ -15,7 +15,9 @@ from game.drawing.canvas import Canvas
 def explain_readouts(canvas: Canvas, env: LanderEnv, slot: int = 0, columns: Sequence[float] = hud.COLUMNS) -> None:
     """Explain the first read-outs of `hud.flight_readouts`, as many as there are columns."""
     for number, x in enumerate(columns):
-        canvas.explain(hud.readout_box(x), texts.EXPLAIN_READOUTS[number], partial(_now, env, slot, number))
+        hud.column(canvas, x).explain(
+            hud.readout_box(x), texts.EXPLAIN_READOUTS[number], partial(_now, env, slot, number)
+        )
 
 
 def _now(env: LanderEnv, slot: int, number: int) -> str:

@@ -21,6 +21,7 @@ _STRONGEST, _CALM = 0.6, 0.05  # m/s²
 
 def draw_surroundings(canvas: Canvas, env: LanderEnv) -> None:
     """Draw a row for each condition in which this flight differs from one on the moon."""
+    canvas = canvas.at(-1, -1)
     for number, (text, wind, warns) in enumerate(surroundings(env)):
         y = _FIRST + number * _ROW
         x = float(MARGIN)

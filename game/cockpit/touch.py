@@ -16,8 +16,8 @@ import pygame
 from ai.common.environment import Doubles
 from ai.lander.environment import LanderEnv
 from game.core import texts
-from game.drawing.canvas import Align, Canvas, Point
-from game.drawing.tokens import HUMAN, INK, NIGHT0, SMALL, VIEW_SIZE
+from game.drawing.canvas import PAGE, Align, Canvas, Point
+from game.drawing.tokens import HUMAN, INK, NIGHT0, SMALL
 from game.input.controls import Command, Controls, translate
 from game.ui.held_directions import HeldDirections
 from game.ui.hints import Hint
@@ -35,7 +35,7 @@ _REACH: Final = 16.0  # points from a knob within which it is taken
 _PACE: Final = (0.05, math.radians(1.0), 0.05)  # metres, radians and m/s in an update, while an arrow is held
 _TURNS: Final = {pygame.K_q: 1, pygame.K_e: -1}
 _SHOULDERS: Final = {Command.PREVIOUS: 1, Command.NEXT: -1}
-_SKY: Final = pygame.Rect(40, 100, VIEW_SIZE[0] - 80, 510)  # where the focus on it is seen
+_ASIDE, _HEAD, _FOOT = 40, 100, 110  # points from the edges of the view, within which the focus on it is seen
 
 
 class Touched(Protocol):
@@ -77,9 +77,16 @@ class Hand(Widget):
 
     """
 
-    def __init__(self, manager: PointsManager, lander: Touched, clear: pygame.Rect, size: Callable[[], float]) -> None:
-        super().__init__(manager, _SKY, texts.TOUCH_LANDER)
-        self._lander, self._clear, self._size = lander, clear, size
+    def __init__(
+        self,
+        manager: PointsManager,
+        lander: Touched,
+        clear: pygame.Rect,
+        size: Callable[[], float],
+        view: pygame.FRect = PAGE,
+    ) -> None:
+        super().__init__(manager, clear, texts.TOUCH_LANDER)
+        self._lander, self._clear, self._size, self._view = lander, clear, size, view
         self.part, self.dragging = PLACE, False
         self._grip: Point = (0.0, 0.0)  # from the mouse to what it holds, in points
         self._held = HeldDirections()
@@ -90,7 +97,13 @@ class Hand(Widget):
     def box(self) -> pygame.Rect:
         """The box of the ring, kept where it is seen, for the focus to find."""
         (x, y), size = self.middle, self.radius
-        return pygame.Rect(x - size, y - size, 2 * size, 2 * size).clamp(_SKY)
+        return pygame.Rect(x - size, y - size, 2 * size, 2 * size).clamp(self._sky)
+
+    @property
+    def _sky(self) -> pygame.Rect:
+        """The sky that is seen between words and read-outs."""
+        left, top, width, height = self._view
+        return pygame.Rect(left + _ASIDE, top + _HEAD, width - 2 * _ASIDE, height - _HEAD - _FOOT)
 
     @property
     def middle(self) -> Point:

@@ -66,7 +66,7 @@ class FlownPath:
         if shown >= 1:
             for place in self._marked():
                 spot = view.points(place).tolist()
-                if spot[1] > ClearArea.head:
+                if spot[1] > canvas.view.top + ClearArea.head:
                     canvas.marker("diamond", spot, 8, NET)
 
     def _marked(self) -> list[Doubles]:

@@ -137,7 +137,7 @@ class Watched:
 
     def nearest(self, point: tuple[float, float]) -> int | None:
         """Return the lander nearest to a point of the canvas; None if none is close."""
-        distance = np.hypot(*(self.env.position - self.camera.view(1.0).metres(point)).T)
+        distance = np.hypot(*(self.env.position - self.hand_view().metres(point)).T)
         slot = int(distance.argmin())
         return slot if distance[slot] <= _CLICK_REACH else None
 
@@ -160,7 +160,7 @@ class Watched:
 
     def hand_view(self) -> View:
         """Return the view, in points."""
-        return self.camera.view(1.0)
+        return self.camera.view(1.0).lowered(self._context.view)
 
     def take_hold(self) -> None:
         """Stop, so that the lander can be touched."""
@@ -194,7 +194,7 @@ class Watched:
     def draw(self, canvas: Canvas, between: float) -> None:
         """Draw the world, the map and the swarm."""
         calm = self._context.settings.reduced_motion
-        view, size = self.camera.view(canvas.scale, between), SIZES[self.env.num_envs]
+        view, size = self.camera.view(canvas.scale, between).filling(canvas), SIZES[self.env.num_envs]
         landscape(canvas.surface.get_size(), calm).draw(canvas, self.camera, self._time, between)
         self.policy_map.draw(canvas, view)
         if self._maps_chances:

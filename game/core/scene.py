@@ -24,10 +24,12 @@ class Scene:
         takes_files: whether files can be dropped here that are no flights.
         typing: whether a text is being typed, which then takes what is pasted.
         takes_switch: whether a press of the one switch is the scene's own now, and chooses nothing on it.
+        fills: whether it is laid out for the whole view, which changes with the window; otherwise for a page of
+            1280 × 720 points, in the middle of the window.
 
     """
 
-    takes_files = typing = takes_switch = False
+    takes_files = typing = takes_switch = fills = False
 
     def __init__(self, context: Context) -> None:
         self.context = context
@@ -59,6 +61,14 @@ class Scene:
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw between the last two steps (alpha 0 to 1). Changes nothing but pixels."""
+
+    def draw_on(self, canvas: Canvas, alpha: float) -> None:
+        """Draw into the whole window, or onto its page where the scene is laid out for that."""
+        if self.fills:
+            self.draw(canvas.whole, alpha)
+        else:
+            canvas.whole.clear_around()
+            self.draw(canvas.whole.page, alpha)
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""The drawing surface of every scene: a 16:9 view, laid out in points, drawn in the window's own pixels."""
+"""The drawing surface of every scene: laid out in points, drawn in the window's own pixels, up to its edges."""
 
 from __future__ import annotations
 
@@ -27,6 +27,8 @@ LEAST: Final = 1.0 if texts.LANGUAGE == ENGLISH else 0.7
 
 _PARTS: Final = re.compile(r"\d|\D+")  # single digits, and the text between them
 
+PAGE: Final = pygame.FRect((0, 0), VIEW_SIZE)  # in points
+
 Point = tuple[float, float]
 Now = Callable[[], str]
 Align = Literal["left", "centre", "right"]
@@ -41,18 +43,24 @@ class Explanation(NamedTuple):
 
 
 class Canvas:
-    """Drawing surface of 1280 × 720 points, as large as fits into the window, centred in it.
+    """Drawing surface of a window, with a page of 1280 × 720 points, as large as fits, in its middle.
 
-    Positions and lengths are points unless a name says pixels. Nothing is scaled after drawing:
-    another window size is drawn anew, and shapes and strings are cached per size.
+    Positions and lengths are points unless a name says pixels. The page's top left corner is (0, 0); a window of
+    another shape than the page's shows more on two sides, as far as `view` reaches: points there are negative, or
+    beyond 1280 × 720. Nothing is scaled after drawing: another window size is drawn anew, and shapes and strings are
+    cached per size.
 
     Attributes:
-        surface: the view, in the window's pixels; what lies outside it is clipped.
+        surface: what is drawn on, in the window's pixels; what lies outside it is clipped.
         scale: pixels per point.
-        size: the view's width and height in pixels.
+        view: all that is seen, in points: the page, and what the window shows beside or above and below it.
+        origin: where the page's top left corner lies on the surface, in pixels.
+        moved: how far the page was moved to an edge of the view by `at`, in points.
+        size: the page's width and height in pixels.
+        offset: where the page's top left corner lies in the window, in pixels.
         palette: the player's colours for within and beyond limits.
         pointer: position of the mouse in points; None while it is not in use.
-        words: boxes of words, widgets and panels of the last frame with a margin, in pixels.
+        words: boxes of words, widgets and panels of the last frame with a margin, in the window's pixels.
         explained: areas of this frame that can be explained, in the order in which they were drawn.
 
     """
@@ -60,6 +68,10 @@ class Canvas:
     def __init__(self, window: pygame.Surface, palette: Palette = PALETTE) -> None:
         self.palette = palette
         self.scale = 0.0
+        self.view = PAGE.copy()
+        self._whole: Canvas | None = None
+        self._corner = (0, 0)  # of the surface in the window, in pixels
+        self.moved: Point = (0.0, 0.0)
         self.pointer: Point | None = None
         self.words: list[pygame.Rect] = []
         self._covered: deque[pygame.Rect] = deque(maxlen=_MOST_WORDS)  # boxes noted in this frame
@@ -67,7 +79,7 @@ class Canvas:
         self.attach(window)
 
     def attach(self, window: pygame.Surface) -> None:
-        """Draw into this window from now on, letterboxed."""
+        """Draw into this window from now on."""
         width, height = window.get_size()
         scale = max(min(width / VIEW_SIZE[0], height / VIEW_SIZE[1]), 0.01)
         self.size = (max(1, round(VIEW_SIZE[0] * scale)), max(1, round(VIEW_SIZE[1] * scale)))
@@ -77,17 +89,70 @@ class Canvas:
             shapes.forget()
         self.scale = scale
         window.fill(NIGHT0)
-        view = pygame.Rect(self.offset, self.size).clip(window.get_rect())
-        self.surface = window.subsurface(view)
+        self.surface, self.origin = window, self.offset
+        self.view.update(-self.offset[0] / scale, -self.offset[1] / scale, width / scale, height / scale)
+
+    @property
+    def whole(self) -> Canvas:
+        """The canvas of the whole window, of which this one may be the page."""
+        return self._whole or self
+
+    @property
+    def page(self) -> Canvas:
+        """The page alone, as a canvas of 1280 × 720 points that clips what lies outside it; points stay the same."""
+        if self.surface.get_size() == self.size:
+            return self
+        page = copy(self)
+        page._whole, page._corner, page.origin = self, self.offset, (0, 0)
+        page.view = PAGE.copy()
+        page.surface = self.surface.subsurface(pygame.Rect(self.offset, self.size).clip(self.surface.get_rect()))
+        return page
+
+    def at(self, across: int, down: int) -> Canvas:
+        """Return this canvas with its page moved to an edge of the view: -1 left or top, 1 right or bottom, 0 neither.
+
+        What is laid out beside an edge of the page is drawn on it, and stands beside that edge of the window.
+        """
+        if self.view == PAGE:
+            return self
+        x, y = moved(self.view, across, down)
+        canvas = copy(self)
+        canvas.origin = self.origin[0] + self.px(x), self.origin[1] + self.px(y)
+        canvas.view = self.view.move(-x, -y)
+        canvas._whole, canvas.moved = self.whole, (self.moved[0] + x, self.moved[1] + y)
+        canvas.pointer = None if self.pointer is None else (self.pointer[0] - x, self.pointer[1] - y)
+        return canvas
+
+    def clear_around(self) -> None:
+        """Fill what the window shows beside, above and below the page."""
+        page = pygame.Rect(self.offset, self.size)
+        if self.surface.get_size() != page.size:
+            width, height = self.surface.get_size()
+            for bar in (
+                (0, 0, width, page.top),
+                (0, page.bottom, width, height - page.bottom),
+                (0, 0, page.left, height),
+                (page.right, 0, width - page.right, height),
+            ):
+                self.surface.fill(NIGHT0, bar)
 
     def px(self, points: float) -> int:
-        """Return a length or position in whole pixels."""
+        """Return a length in whole pixels."""
         return round(points * self.scale)
 
     def rect(self, x: float, y: float, width: float, height: float) -> pygame.Rect:
         """Return a rectangle in pixels; rectangles adjacent in points stay adjacent in pixels."""
         left, top = self.px(x), self.px(y)
-        return pygame.Rect(left, top, self.px(x + width) - left, self.px(y + height) - top)
+        size = self.px(x + width) - left, self.px(y + height) - top
+        return pygame.Rect((left + self.origin[0], top + self.origin[1]), size)
+
+    def pixels(self, point: Point) -> Point:
+        """Return the place of a point on the surface, in pixels."""
+        return self.origin[0] + point[0] * self.scale, self.origin[1] + point[1] * self.scale
+
+    def points(self, place: Point) -> Point:
+        """Return the point at a place on the surface, in pixels."""
+        return (place[0] - self.origin[0]) / self.scale, (place[1] - self.origin[1]) / self.scale
 
     def sheet(self, width: float, height: float) -> Canvas:
         """Return a canvas of that size on its own transparent surface, to be drawn once and copied often.
@@ -96,7 +161,7 @@ class Canvas:
         """
         sheet = copy(self)
         sheet.size = (max(1, math.ceil(width * self.scale)), max(1, math.ceil(height * self.scale)))
-        sheet.offset = (0, 0)
+        sheet._own()
         sheet._covered, sheet.explained = deque(maxlen=0), deque(maxlen=0)
         sheet.surface = pygame.Surface(sheet.size, pygame.SRCALPHA)
         return sheet
@@ -104,17 +169,24 @@ class Canvas:
     def picture(self, width: float, height: float) -> Canvas:
         """Return a canvas at the same scale on its own opaque surface, to be copied as often as it is drawn."""
         picture = copy(self)
+        picture._own()
         picture._covered = deque(maxlen=0)
         picture.surface = pygame.Surface(self.rect(0, 0, width, height).size)
         return picture
 
+    def _own(self) -> None:
+        """Begin at the corner of a surface of its own, which is no part of the window."""
+        self.offset = self.origin = self._corner = (0, 0)
+        self.moved = (0.0, 0.0)
+        self.view, self._whole = PAGE.copy(), None
+
     def lay(self, sheet: Canvas, x: float, y: float) -> None:
         """Copy a sheet onto the canvas, with its top left corner at (x, y) in points."""
-        self.cover(self.surface.blit(sheet.surface, (self.px(x), self.px(y))))
+        self.cover(self.surface.blit(sheet.surface, self.rect(x, y, 0, 0)))
 
     def cover(self, area: pygame.Rect) -> None:
-        """Note an area in pixels that holds something to read, for stars and notes to avoid."""
-        self._covered.append(area)
+        """Note an area of the surface, in pixels, that holds something to read, for stars and notes to avoid."""
+        self._covered.append(area.move(self._corner))
 
     @contextmanager
     def unnoted(self) -> Iterator[None]:
@@ -135,7 +207,7 @@ class Canvas:
 
     def explain(self, box: pygame.typing.RectLike, what: str, now: Now = str) -> None:
         """Note what stands in a box, in points, and a function that says what it means now, for those who ask."""
-        self.explained.append(Explanation(pygame.FRect(box), what, now))
+        self.explained.append(Explanation(pygame.FRect(box).move(self.moved), what, now))
 
     def to_points(self, window_position: Point) -> Point:
         """Convert a position from the window's pixels, such as the mouse's, to points."""
@@ -145,7 +217,7 @@ class Canvas:
     def in_window(self, rect: pygame.typing.RectLike) -> pygame.Rect:
         """Convert a rectangle from points to the window's pixels."""
         box = pygame.FRect(rect)
-        return self.rect(box.x, box.y, box.width, box.height).move(self.offset)
+        return self.rect(box.x, box.y, box.width, box.height).move(self._corner)
 
     # Text
 
@@ -173,7 +245,8 @@ class Canvas:
         pixels = self._pixels(string, size, weight, tabular, room)
         width = self._width(string, pixels, weight, tabular)
         shift = {"left": 0.0, "centre": 0.5, "right": 1.0}[align]
-        x, y = position[0] * self.scale - shift * width, self.px(position[1])
+        left, top = self.origin
+        x, y = left + position[0] * self.scale - shift * width, top + self.px(position[1])
         if tabular:
             self._write_digits(string, (x, y), pixels, weight, colour, alpha)
         elif string:
@@ -182,7 +255,7 @@ class Canvas:
         if alpha > _FAINT_WORDS:
             self.cover(pygame.Rect(x, y - above, width, above + below))
         scale = self.scale
-        return pygame.FRect(x / scale, (y - above) / scale, width / scale, (above + below) / scale)
+        return pygame.FRect((x - left) / scale, (y - above - top) / scale, width / scale, (above + below) / scale)
 
     def text_width(
         self, string: str, *, size: float = TEXT, weight: Weight = "regular", tabular: bool = False
@@ -233,7 +306,7 @@ class Canvas:
     def line(self, a: Point, b: Point, colour: Colour, width: float = 1.0, alpha: float = 1.0) -> None:
         """Draw an anti-aliased line; vertical and horizontal ones are sharp."""
         thickness = max(1, self.px(width))
-        start, end = (a[0] * self.scale, a[1] * self.scale), (b[0] * self.scale, b[1] * self.scale)
+        start, end = self.pixels(a), self.pixels(b)
         if a[0] == b[0] or a[1] == b[1]:
             self._straight(start, end, colour, thickness, alpha)
         elif alpha >= 1:
@@ -275,7 +348,7 @@ class Canvas:
         self._shape(shape, centre, size / 2, colour, alpha)
 
     def _shape(self, shape: shapes.Shape, centre: Point, radius: float, colour: Colour, alpha: float) -> None:
-        x, y = centre[0] * self.scale, centre[1] * self.scale
+        x, y = self.pixels(centre)
         column, row = math.floor(x), math.floor(y)
         quarters = (int(4 * (x - column)), int(4 * (y - row)))
         surface = shapes.shape(shape, round(4 * radius * self.scale) / 4, colour, quarters)
@@ -336,5 +409,14 @@ class Canvas:
         level = round(32 * min(max(strength, 0.0), 4.0))
         if pixels > 0 and level > 0:
             surface = shapes.glow(pixels if pixels < 24 else 4 * round(pixels / 4), colour, level)
-            corner = (self.px(centre[0]) - surface.width // 2, self.px(centre[1]) - surface.height // 2)
+            x, y = self.rect(*centre, 0, 0).topleft
+            corner = (x - surface.width // 2, y - surface.height // 2)
             self.surface.blit(surface, corner, special_flags=pygame.BLEND_RGB_ADD)
+
+
+def moved(view: pygame.FRect, across: int, down: int) -> Point:
+    """Return how far a page is moved to an edge of the view, or two, in points; see `Canvas.at`."""
+    return (
+        (0.0, view.right - VIEW_SIZE[0], view.left)[across],
+        (0.0, view.bottom - VIEW_SIZE[1], view.top)[down],
+    )

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from functools import lru_cache
+from itertools import product
 
 import numpy as np
 import pygame
@@ -17,7 +19,8 @@ class NightSky:
     """Still night sky, repainted only when the window's size changes, or when words appear or vanish over a star."""
 
     def __init__(self, rng: np.random.Generator, ember: float = 1.0, stars: int = 260) -> None:
-        self._places = rng.random((stars, 2)) * VIEW_SIZE
+        self._page = rng.random((stars, 2)) * VIEW_SIZE
+        self._places = self._page  # and again beside or above and below the page, where the view reaches beyond it
         self._brightness = rng.random(stars) ** 4
         self._ember = ember
         self._painted: pygame.Surface | None = None
@@ -26,11 +29,15 @@ class NightSky:
 
     def draw(self, canvas: Canvas, time: float = 0.0) -> None:  # noqa: ARG002
         """Draw the sky over the whole view. It does not change with time."""
+        canvas = canvas.whole
         size, shown = canvas.surface.get_size(), self._shown
         fits = self._painted is not None and self._painted.get_size() == size
+        if not fits:
+            self._places = _spread(self._page, canvas.view)
         if not fits or canvas.words != self._words:
             self._words = canvas.words
-            shown = np.flatnonzero(beside(self._places * canvas.scale, canvas.words)).tolist()
+            pixels = self._places * canvas.scale + canvas.origin
+            shown = np.flatnonzero(beside(pixels, canvas.words)).tolist()
         if self._painted is None or not fits or shown != self._shown:
             self._painted, self._shown = _paint_night(size, self._ember).copy(), shown
             canvas.surface.blit(self._painted, (0, 0))
@@ -39,13 +46,24 @@ class NightSky:
         canvas.surface.blit(self._painted, (0, 0))
 
     def _add_stars(self, canvas: Canvas) -> None:
-        for (x, y), brightness in zip(self._places[self._shown], self._brightness[self._shown], strict=True):
-            fade = float(1 - y / VIEW_SIZE[1])
+        bright = self._brightness[np.array(self._shown, np.intp) % len(self._brightness)]
+        for (x, y), brightness in zip(self._places[self._shown], bright, strict=True):
+            fade = min(max(float(1 - (y - canvas.view.top) / canvas.view.height), 0.0), 1.0)
             level = (0.25 + 0.75 * float(brightness)) * fade
             shade = 120 + round(120 * float(brightness))
             canvas.dot((x, y), 0.5 + 0.7 * float(brightness), (shade, shade, min(255, shade + 12)), level)
             if brightness > 0.75:
                 canvas.glow((x, y), 9, (150, 170, 220), 0.35 * level)
+
+
+def _spread(places: Doubles, view: pygame.FRect) -> Doubles:
+    """Return the places of stars on a page, (n, 2), and copies of it side by side as far as the view reaches.
+
+    Those of the page come first, and every copy has as many, in the same order.
+    """
+    across, down = (math.ceil(-start / length) for start, length in zip(view.topleft, VIEW_SIZE, strict=True))
+    pages = sorted(product(range(-across, across + 1), range(-down, down + 1)), key=lambda page: page != (0, 0))
+    return np.concatenate([places + np.multiply(page, VIEW_SIZE) for page in pages])
 
 
 @lru_cache(maxsize=4)

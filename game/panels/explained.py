@@ -14,15 +14,15 @@ from game.charts.tooltip import TooltipRow, draw_tooltip
 from game.core import texts
 from game.drawing.canvas import Canvas, Explanation, Point
 from game.drawing.prose import wrapped
-from game.drawing.tokens import INK, LABEL, VIEW_SIZE
+from game.drawing.tokens import INK, LABEL
 from game.input.controls import Command, translate
 from game.ui.actions import Action
 
 _REST: Final = 24  # updates for which the mouse rests before a tooltip is shown
 _AGAIN: Final = 6  # and before the next one
 _WIDTH: Final = 250.0  # points of a line
-_WITHIN: Final = pygame.Rect(8, 8, VIEW_SIZE[0] - 16, VIEW_SIZE[1] - 16)
-_HEAD, _FOOT = 72.0, 600.0  # rows of points above and below which an area stands at the head or foot
+_MARGIN: Final = 8.0  # points from the edges of the view
+_HEAD, _FOOT = 72.0, 120.0  # points from the upper and the lower edge within which an area stands at the head or foot
 _ASIDE: Final = 12.0
 _BEFORE: Final = frozenset({Command.LEFT, Command.UP, Command.PREVIOUS})
 _AFTER: Final = frozenset({Command.RIGHT, Command.DOWN, Command.NEXT})
@@ -99,13 +99,14 @@ def _draw(canvas: Canvas, area: Explanation) -> None:
     what = wrapped(canvas, area.what, LABEL, _WIDTH)
     now = wrapped(canvas, area.now(), LABEL, _WIDTH)
     rows = [TooltipRow(line, "") for line in now if line]
-    box, within = area.box, pygame.FRect(_WITHIN)
+    box, view = area.box, canvas.view
+    within = view.inflate(-2 * _MARGIN, -2 * _MARGIN)
     place: Point = (box.right, box.centery)
-    if box.bottom < _HEAD:
+    if box.bottom < view.top + _HEAD:
         within.height -= box.bottom + 6 - within.top
-        within.bottom, place = _WITHIN.bottom, (box.left - _ASIDE, 0)
-    elif box.top > _FOOT:
-        within.height, place = box.top - 6 - within.top, (box.left - _ASIDE, VIEW_SIZE[1])
+        within.bottom, place = view.bottom - _MARGIN, (box.left - _ASIDE, view.top)
+    elif box.top > view.bottom - _FOOT:
+        within.height, place = box.top - 6 - within.top, (box.left - _ASIDE, view.bottom)
     elif box.right + _WIDTH + 40 > within.right:
         within.width, place = box.left - 6 - within.left, (box.left, box.centery)
     with canvas.unnoted():

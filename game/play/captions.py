@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
+import pygame
+
 from game.cockpit import hud
 from game.cockpit.surroundings import draw_surroundings
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import HUMAN, MARGIN, NET, VIEW_SIZE
+from game.drawing.tokens import HUMAN, MARGIN, NET
 from game.flight.flight import Flight, StickHolder
 from game.flight.handicap import OWN
 from game.flight.networks import Network
@@ -75,9 +77,9 @@ def flight_actions(
     return [Action(command, run, hints.get(command, "")) for command, run in runs.items()]
 
 
-def flight_row(hints: list[Hint]) -> HintRow:
-    """Return the row of hints in the upper right corner of a flight."""
-    return HintRow(hints, (VIEW_SIZE[0] - MARGIN, 42), from_right=True, room=_KEYS_ROOM)
+def flight_row(hints: list[Hint], view: pygame.FRect) -> HintRow:
+    """Return the row of hints in the upper right corner of the view."""
+    return HintRow(hints, (view.right - MARGIN, view.top + 42), from_right=True, room=_KEYS_ROOM)
 
 
 def card_actions(go_on: Run, runs: Mapping[Command, Run], challenge: Challenge | None, *, good: bool) -> list[Action]:

@@ -77,7 +77,7 @@ class FlownFlight:
         self.flight = self._begin(seed, pads)
         self.difficulty = Difficulty(self._settings, self.flight, free=not challenge)
         self.credit = Credit(self.flight, self.difficulty, challenge, hands, check=check)
-        self.cockpit = Cockpit(self.flight, self._settings, self.credit)
+        self.cockpit = Cockpit(self.flight, self._settings, self.credit, context.view)
         self.ghost = challenge.ghost(seed, self._policy) if challenge else None
         told = not challenge or bool(challenge.opening)
         calm = self._settings.reduced_motion
@@ -203,13 +203,13 @@ class FlownFlight:
 
     def moment(self, alpha: float) -> DrawnFlight:
         """Return the moment that a challenge draws over, once the fraction `alpha` of a step has passed."""
-        controls, clear = self._context.controls, self.cockpit.clear
+        controls, clear = self._context.controls, self.cockpit.free
         return DrawnFlight(alpha, controls, clear, self.waiting, self.waiting and self._held_before)
 
     def draw(self, canvas: Canvas, alpha: float, network: Network) -> None:
         """Draw the world, the craft and the read-outs; `network` is the one whose name the title tells."""
         alpha = self.pace.between(alpha)
-        view, flight = self.scenery.view(canvas.scale, alpha), self.flight
+        view, flight = self.scenery.view(canvas.scale, alpha).filling(canvas), self.flight
         self.scenery.draw_land(canvas, alpha)
         if self.ghost:
             self.ghost.draw_way(canvas, view)

@@ -14,7 +14,7 @@ from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.rules import tenths
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import NET, VIEW_SIZE
+from game.drawing.tokens import NET
 from game.flight.flight import Flight
 from game.flight.outcomes import RivalOutcome, flight_figures
 from game.world import lander as art
@@ -74,8 +74,8 @@ class Ghost:
 
 def _point_to(canvas: Canvas, x: float, y: float) -> None:
     """Draw a mark at the edge of the view, towards a ghost outside it."""
-    edge = pygame.FRect(0, 0, *VIEW_SIZE).inflate(-2 * _EDGE, -2 * _EDGE)
-    if not -_HIDDEN <= x <= VIEW_SIZE[0] + _HIDDEN or not -_HIDDEN <= y <= VIEW_SIZE[1] + _HIDDEN:
+    edge, near = canvas.view.inflate(-2 * _EDGE, -2 * _EDGE), canvas.view.inflate(2 * _HIDDEN, 2 * _HIDDEN)
+    if not near.left <= x <= near.right or not near.top <= y <= near.bottom:
         spot = (min(max(x, edge.left), edge.right), min(max(y, edge.top), edge.bottom))
         canvas.glow(spot, 14, NET, 0.5)
         canvas.marker("diamond", spot, 9, NET, 0.9)

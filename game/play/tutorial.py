@@ -48,7 +48,7 @@ _BESIDE: Final = 1.6  # metres from the middle of a craft to the text beside it
 _EDGE: Final = 24.0
 _SIZE: Final = TEXT + 2
 _WHY: Final = 22.0  # from the instruction to the reason for a restart
-_ROWS: Final = (104.0, 600.0)  # points, between which the text stays
+_FOOT: Final = 120.0  # points above the lower edge, for the read-outs
 
 
 @dataclass(frozen=True)
@@ -333,8 +333,8 @@ class Tutorial(Challenge):
         width = max(canvas.text_width(words, size=_SIZE) + tick, canvas.text_width(why, size=SMALL))
         right = float(view.points((x + _BESIDE, y))[0])
         left = float(view.points((x - _BESIDE, y))[0]) - width - 28
-        at = right if right + width + 28 + _EDGE < scene.clear.right else max(left, _EDGE)
-        row = min(max(float(view.points((x, y))[1]), _ROWS[0]), _ROWS[1])
+        at = right if right + width + 28 + _EDGE < scene.clear.right else max(left, scene.clear.left + _EDGE)
+        row = min(max(float(view.points((x, y))[1]), scene.clear.head), canvas.view.bottom - _FOOT)
         canvas.panel((at, row - 18, width + 28, 36 + (_WHY if why else 0)))
         at += 14
         canvas.text(why, (at, row + 6 + _WHY), size=SMALL, colour=MUTE)

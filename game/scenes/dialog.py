@@ -46,8 +46,9 @@ class Dialog(FormScene):
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the scene below, dimmed, and the question."""
-        self._below.draw(canvas, 1.0)
-        canvas.fill(canvas.surface.get_rect(), NIGHT0, 0.8)
+        whole = canvas.whole
+        self._below.draw_on(whole, 1.0)
+        whole.fill(whole.surface.get_rect(), NIGHT0, 0.8)
         canvas.panel(self.box, 1.0)
         canvas.outline(self.box, 8, FAINT)
         left, top = self.box.left + _MARGIN, self.box.top

@@ -30,6 +30,8 @@ ROWS: Final = ("play", "missions", "watch", "train", "digits", "learn", "physics
 class MenuScene(FormScene):
     """Main menu, the first screen."""
 
+    fills = True
+
     def __init__(self, context: Context) -> None:
         super().__init__(context, self._back)
         self._background = MenuBackground(context)

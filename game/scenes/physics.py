@@ -241,9 +241,9 @@ class PhysicsScene(FormScene):
     # The picture
 
     def _draw_ground(self, canvas: Canvas, view: View) -> None:
-        width, height = VIEW_SIZE
-        canvas.fill(canvas.rect(0, _GROUND, width, height - _GROUND), NIGHT0, 0.55)
-        canvas.line((0, _GROUND), (width, _GROUND), MUTE, 1)
+        whole, seen = canvas.whole, canvas.whole.view
+        whole.fill(whole.rect(seen.left, _GROUND, seen.width, seen.bottom - _GROUND), NIGHT0, 0.55)
+        whole.line((seen.left, _GROUND), (seen.right, _GROUND), MUTE, 1)
         for start, end in self.exhibit.rules:
             (left, y), (right, _) = view.points((start, end)).tolist()
             canvas.line((left, y), (right, y), FAINT, 1)

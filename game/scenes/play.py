@@ -45,6 +45,8 @@ class PlayScene(Scene):
 
     """
 
+    fills = True
+
     def __init__(
         self,
         context: Context,
@@ -117,7 +119,7 @@ class PlayScene(Scene):
 
     def hint_rows(self, canvas: Canvas) -> list[HintRow]:
         """Return the hints of the flight, and those of the card."""
-        rows = [captions.flight_row(hints_of(self._flight_actions(), self._controls))]
+        rows = [captions.flight_row(hints_of(self._flight_actions(), self._controls), canvas.view)]
         if self.ending.card and self.ending.shown > 0:
             hints = hints_of(self._card_actions(), self._controls)
             rows.append(self.ending.hint_row(hints, self.flown.ghost, self._settings.show_hints))

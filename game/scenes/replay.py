@@ -71,7 +71,7 @@ class ReplayScene(FormScene):
 
     """
 
-    takes_tab = True
+    fills = takes_tab = True
 
     def __init__(self, context: Context, record: Record, friend: SharedFlight | None = None) -> None:
         super().__init__(context)
@@ -83,6 +83,7 @@ class ReplayScene(FormScene):
         self.export: Export | None = None
         self.flight_replay = FlightReplay(self.record)
         self.flight_replay.scout(1)
+        self.form.anchor = (0, -1)
         self.claimed = Claimed(friend, self.flight_replay) if friend else None
         clear = BELOW_CLAIM if friend else _CLEAR
         self._scenery = Scenery(self.flight_replay.flight, context.settings.reduced_motion, clear)
@@ -131,9 +132,10 @@ class ReplayScene(FormScene):
 
     def hint_rows(self, canvas: Canvas) -> list[HintRow]:
         """Return the hints on the right of the seconds, in two rows."""
-        room, hints = VIEW_SIZE[0] / 2 - MARGIN - _FIGURE, self.hints
+        right, top = canvas.view.right - MARGIN, canvas.view.top
+        room, hints = right - VIEW_SIZE[0] / 2 - _FIGURE, self.hints
         rows = ((hints[:_FIRST_HINTS], 38), (hints[_FIRST_HINTS:], 60))
-        return [HintRow(row, (VIEW_SIZE[0] - MARGIN, y), from_right=True, room=room) for row, y in rows if row]
+        return [HintRow(row, (right, top + y), from_right=True, room=room) for row, y in rows if row]
 
     def update(self) -> Transition | None:
         """Advance by as many steps as the chosen speed makes due, and simulate a little further ahead."""
@@ -300,7 +302,7 @@ class ReplayScene(FormScene):
         """Draw the moment that is shown, the way there and on, and its figures."""
         between = self.playback.between(alpha)
         self._scenery.draw_land(canvas, between, _EARTH)
-        _draw_way(canvas, self._scenery.view(canvas.scale, between), self.flight_replay)
+        _draw_way(canvas, self._scenery.view(canvas.scale, between).filling(canvas), self.flight_replay)
         self._scenery.draw_craft(canvas, between)
         hud.draw_readouts(canvas, self._readouts)
 
@@ -332,6 +334,7 @@ class ReplayScene(FormScene):
         flight = self.flight_replay.flight
         seconds = f"{self.flight_replay.at * STEP:.2f}"
         middle = VIEW_SIZE[0] / 2
+        canvas = canvas.at(0, -1)
         figure = canvas.text(f"{seconds} s", (middle, 58), size=22, weight="light", align="centre", tabular=True)
         by_hand = flight.flown_by is StickHolder.HUMAN
         by = (texts.YOU_FLEW if by_hand else texts.NETWORK_FLEW) if not self.claimed else texts.FRIEND_FLEW[by_hand]

@@ -272,11 +272,13 @@ class TrainScene(SplitTrainingScene):
 
     def _draw_display(self, canvas: Canvas, alpha: float) -> None:
         """Draw the swarm and the charts, or the ground of the large network."""
+        whole, view = canvas.whole, canvas.whole.view
         if self.inside.large:
             edited = self.lander_run.edits.holds and self.moment is None  # then the swarm is seen behind the network
             if edited:
                 self.swarm.draw(canvas, alpha, paused=self.lander_run.state is WorkerState.PAUSED)
-            canvas.fill(canvas.rect(0, 0, DISPLAY_WIDTH, VIEW_SIZE[1]), NIGHT0, _BEHIND if edited else 1.0)
+            area = whole.rect(view.left, view.top, DISPLAY_WIDTH - view.left, view.height)
+            whole.fill(area, NIGHT0, _BEHIND if edited else 1.0)
             return
         if self.split_view.shown:
             self.split_view.draw(canvas, alpha)
@@ -284,8 +286,8 @@ class TrainScene(SplitTrainingScene):
             self.rewind.swarm.draw(canvas, alpha, paused=True)
         else:
             self.swarm.draw(canvas, alpha, paused=self.lander_run.state is WorkerState.PAUSED)
-        canvas.fill(canvas.rect(0, _FLOOR, DISPLAY_WIDTH, VIEW_SIZE[1] - _FLOOR), NIGHT0)
-        canvas.line((0, _FLOOR), (DISPLAY_WIDTH, _FLOOR), LINE)
+        whole.fill(whole.rect(view.left, _FLOOR, DISPLAY_WIDTH - view.left, view.bottom - _FLOOR), NIGHT0)
+        whole.line((view.left, _FLOOR), (DISPLAY_WIDTH, _FLOOR), LINE)
         self._draw_title(canvas)
         self.training_charts.draw(canvas)
         self.captions.draw(canvas, self.training_charts.charts.charts)

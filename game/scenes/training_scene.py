@@ -184,7 +184,8 @@ class TrainingScene(FormScene, ABC, Generic[Run]):
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the display, and the panel beside it."""
         self._draw_display(canvas, alpha)
-        canvas.fill(canvas.rect(DISPLAY_WIDTH, 0, VIEW_SIZE[0] - DISPLAY_WIDTH, VIEW_SIZE[1]), PANEL)
+        whole, view = canvas.whole, canvas.whole.view
+        whole.fill(whole.rect(DISPLAY_WIDTH, view.top, view.right - DISPLAY_WIDTH, view.height), PANEL)
         self._draw_panel(canvas)
         if problem := self._run.problem:
             corner, most = self._problem_at

@@ -19,7 +19,7 @@ from game.cockpit.watched import SIZES, Watched
 from game.core import texts
 from game.core.scene import Transition, push
 from game.drawing import typeface
-from game.drawing.canvas import Canvas
+from game.drawing.canvas import Canvas, moved
 from game.drawing.tokens import HUMAN, MARGIN, MUTE, NET, SMALL, TEXT, VIEW_SIZE
 from game.flight import networks
 from game.flight.swarm import Swarm
@@ -58,8 +58,11 @@ class WatchScene(FormScene):
 
     """
 
+    fills = True
+
     def __init__(self, context: Context, count: int = 1, seed: int | None = None) -> None:
         super().__init__(context)
+        self.form.anchor = (-1, 1)
         self._count = COUNTS.index(count)
         self.world = Watched(context)
         self.playback = self.world.playback
@@ -76,7 +79,7 @@ class WatchScene(FormScene):
         self._speed_choice = self.form.add(self.playback.row(self.form.manager, self._row_box(2, self.playback.words)))
         self._map_choice = self._map_row()
         self.form.add(self._map_choice)
-        self.hand = self.form.add(Hand(self.form.manager, self.world, _TOUCHED, lambda: self.world.size))
+        self.hand = self.form.add(Hand(self.form.manager, self.world, _TOUCHED, lambda: self.world.size, context.view))
         self._seed = int(context.rng.integers(2**31)) if seed is None else seed
         self._choose_network(wanted)
         if self.problem:
@@ -143,13 +146,14 @@ class WatchScene(FormScene):
 
     def hint_rows(self, canvas: Canvas) -> list[HintRow]:
         """Return the hints in two rows: what can be done with the lander, on the right of who flies; and the rest."""
-        room = VIEW_SIZE[0] / 2 - 36 - canvas.text_width(self._said, size=TEXT) / 2 - 40
+        view = canvas.view
+        right, top = view.right - 36, view.top
+        room = right - VIEW_SIZE[0] / 2 - canvas.text_width(self._said, size=TEXT) / 2 - 40
         hints = self.hints
         undo = self.world.can_untouch and not (self.context.controls.gamepad_in_use or self.hand.typing)
         first = 4 if undo else 3
-        right = VIEW_SIZE[0] - 36
         return [
-            HintRow(row, (right, y), from_right=True, room=room)
+            HintRow(row, (right, top + y), from_right=True, room=room)
             for row, y in ((hints[:first], 42), (hints[first:], 66))
             if row
         ]
@@ -188,7 +192,8 @@ class WatchScene(FormScene):
 
     def _pick(self, point: tuple[float, float]) -> bool:
         """Show the decisions of the lander nearest to a point of the canvas, if one is close."""
-        if COUNTS[self._count] == 1 or PANEL.collidepoint(point) or (slot := self.world.nearest(point)) is None:
+        panel = PANEL.move(moved(self.context.view, 1, -1))
+        if COUNTS[self._count] == 1 or panel.collidepoint(point) or (slot := self.world.nearest(point)) is None:
             return False
         self.world.shown = slot
         return True
@@ -290,17 +295,18 @@ class WatchScene(FormScene):
     def _draw_words(self, canvas: Canvas, flown: int) -> None:
         count, world = COUNTS[self._count], self.world
         hud.draw_corner(canvas, texts.WATCH_TITLE, texts.WATCH_LANDERS.format(count=count))
-        canvas.explain((MARGIN - 4, 24, 120, 42), texts.EXPLAIN_WATCH)
+        left, middle = canvas.at(-1, -1), canvas.at(0, -1)
+        left.explain((MARGIN - 4, 24, 120, 42), texts.EXPLAIN_WATCH)
         hud.draw_hand(canvas, self._said, NET)
-        canvas.explain((VIEW_SIZE[0] / 2 - 110, 24, 220, 34), texts.EXPLAIN_FLIES, self._who)
-        draw_landings(canvas, (MARGIN, 118), self.swarm.landed, self.swarm.lost)
+        middle.explain((VIEW_SIZE[0] / 2 - 110, 24, 220, 34), texts.EXPLAIN_FLIES, self._who)
+        draw_landings(left, (MARGIN, 118), self.swarm.landed, self.swarm.lost)
         hud.draw_readouts(canvas, hud.flight_readouts(self.swarm.env, self.shown)[:4], _READOUTS)
         explain_readouts(canvas, self.swarm.env, self.shown, _READOUTS)
         draw_legend(canvas, world, flown)
-        self._draw_notice(canvas)
+        self._draw_notice(middle)
         rows = (self._model_choice, self._count_choice, self._speed_choice, self._map_choice)
         for row, what in zip(rows, texts.EXPLAIN_CHOICES, strict=True):
-            canvas.explain(row.box, what)
+            canvas.at(*self.form.anchor).explain(row.box, what)
         self.form.draw(canvas)
         if self._settings.show_hints or self.context.controls.mouse_in_use:  # for the mouse, they are what it presses
             self.draw_hints(canvas)

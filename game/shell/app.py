@@ -82,7 +82,7 @@ class App:
         self._follow_window()
         context.note = self.notes.show
         context.apply_settings = self.apply_settings
-        context.in_window = self.canvas.in_window
+        context.in_window, context.view = self.canvas.in_window, self.canvas.view
         self._look()
         context.sound.follow(context.settings)
         context.controls.follow(context.settings)
@@ -183,6 +183,7 @@ class App:
                 self._follow_window()
             case pygame.WINDOWSIZECHANGED | pygame.WINDOWDISPLAYCHANGED:
                 if self.window.size != self._attached_size:
+                    self.window.stay_legible()
                     self._follow_window()
                     self._settled = self._last + _SETTLE
         if not self.scenes.running:

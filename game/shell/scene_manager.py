@@ -75,7 +75,7 @@ class SceneManager:
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the top scene, and the fading picture of the one before."""
-        self.top.draw(canvas, alpha)
+        self.top.draw_on(canvas, alpha)
         if self._lingering and self._lingering.get_size() == canvas.surface.get_size():
             canvas.surface.blit(self._lingering, (0, 0))
 

@@ -61,6 +61,13 @@ class GameWindow:
     def size(self, size: tuple[int, int]) -> None:
         self._window.size = size
 
+    def stay_legible(self) -> None:
+        """Ask for the least size at which text can be read, where a window manager has made the window smaller."""
+        width, height = self.size
+        least = max(width, MINIMUM_SIZE[0]), max(height, MINIMUM_SIZE[1])
+        if least != (width, height) and not self._full_screen:
+            self.size = least
+
     @property
     def position(self) -> tuple[int, int]:
         """Position of the window's top left corner on the desktop, in pixels."""

@@ -18,12 +18,13 @@ class BlurredPicture:
 
     def draw(self, canvas: Canvas) -> None:
         """Draw the picture over the whole window."""
-        if self._picture is None or self._picture.get_size() != canvas.surface.get_size():
-            self._picture = self._paint(canvas)
-        canvas.surface.blit(self._picture, (0, 0))
+        whole = canvas.whole
+        if self._picture is None or self._picture.get_size() != whole.surface.get_size():
+            self._picture = self._paint(whole)
+        whole.surface.blit(self._picture, (0, 0))
 
     def _paint(self, canvas: Canvas) -> pygame.Surface:
-        self._below.draw(canvas, 1.0)
+        self._below.draw_on(canvas, 1.0)
         width, height = canvas.surface.get_size()
         small = pygame.transform.smoothscale(canvas.surface, (max(1, width // 4), max(1, height // 4)))
         soft = pygame.transform.gaussian_blur(small, max(1, canvas.px(3)))

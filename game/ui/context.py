@@ -13,6 +13,7 @@ from game.audio.mixer import Sound
 from game.core import texts
 from game.core.assets import ASSETS_DIR, MODELS_DIR
 from game.core.settings import Settings, SettingsFile
+from game.drawing.tokens import VIEW_SIZE
 from game.input.controls import Controls
 
 
@@ -32,6 +33,7 @@ class Context:
         note: shows a short message near the top of the window for a few seconds.
         apply_settings: applies the settings to the window and the sound, and saves them.
         in_window: converts a rectangle from points to the window's pixels.
+        view: all that the window shows, in points; the same rectangle as the canvas's, which changes with the window.
 
     """
 
@@ -45,6 +47,7 @@ class Context:
     note: Callable[[str], None] = _ignore
     apply_settings: Callable[[], None] = lambda: None
     in_window: Callable[[pygame.typing.RectLike], pygame.Rect] = pygame.Rect
+    view: pygame.FRect = field(default_factory=lambda: pygame.FRect((0, 0), VIEW_SIZE))
 
     def toggle_full_screen(self) -> None:
         """Switch between the full screen and a window."""

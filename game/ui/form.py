@@ -9,7 +9,7 @@ import pygame
 
 from game.core import texts
 from game.core.scene import Transition
-from game.drawing.canvas import Canvas
+from game.drawing.canvas import Canvas, moved
 from game.input.controls import Command, Controls, presses_main, translate
 from game.ui import focus
 from game.ui.actions import Action, Table, answering
@@ -24,6 +24,7 @@ _ARROWS: Final = {
     Command.LEFT: focus.LEFT,
     Command.RIGHT: focus.RIGHT,
 }
+_MOUSE: Final = (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP)
 # Steps a held direction waits before it repeats, and between repeats.
 _REPEAT_AFTER: Final = 24
 _REPEAT_EVERY: Final = 4
@@ -38,8 +39,11 @@ class Form:
 
     Attributes:
         used: whether a widget used the last event, or it moved the focus.
+        anchor: edges of the view beside which the form stands, as in `Canvas.at`; (0, 0) for the page in the middle.
 
     """
+
+    anchor = (0, 0)
 
     def __init__(self, context: Context, on_back: OnPress = lambda: None) -> None:
         self.manager = PointsManager()
@@ -115,6 +119,9 @@ class Form:
     def handle_event(self, event: pygame.event.Event, actions: Table = ()) -> Transition | None:
         """Take one event, the mouse's in points; `actions` come after the focused widget, and before the form's own."""
         self.used = True
+        if event.type in _MOUSE and self.anchor != (0, 0):
+            (x, y), (right, down) = event.pos, moved(self._context.view, *self.anchor)
+            event = pygame.event.Event(event.type, {**event.dict, "pos": (x - right, y - down)})
         return self._sounding(lambda: self._take(event, actions))
 
     def confirm(self) -> Transition | None:
@@ -136,7 +143,7 @@ class Form:
         return self.focused.press() if self.focused else None
 
     def _take(self, event: pygame.event.Event, actions: Table) -> Transition | None:
-        if event.type in (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP):
+        if event.type in _MOUSE:
             return self._handle_mouse(event)
         if event.type == pygame.MOUSEWHEEL:
             under = next((w for w in self.widgets if w.hover_point(*self.manager.mouse_position)), None)
@@ -176,6 +183,7 @@ class Form:
 
     def draw(self, canvas: Canvas) -> None:
         """Draw the widgets."""
+        canvas = canvas.at(*self.anchor)
         for widget in self.widgets:
             widget.paint(canvas)
 

@@ -19,7 +19,6 @@ _HEIGHT: Final = 32  # of one line
 _LINE: Final = 18  # from one to the next
 _TOPS: Final = (68, 640, 104, 24, 600, 140, 560, 176, 520, 212, 480, 248, 440)  # where its top may be, the best first
 _SHIFTS: Final = (0, -200, 200)  # horizontal shift, if there is no room in the middle
-_VIEW: Final = pygame.FRect(0, 0, *VIEW_SIZE)
 _PLACES: Final = tuple((VIEW_SIZE[0] / 2 + shift, top) for shift, top in product(_SHIFTS, _TOPS))
 _COVER: Final = 0.96  # opacity of the panel, over any background
 
@@ -60,8 +59,9 @@ class Note:
     def _box_at(self, canvas: Canvas, place: tuple[float, float]) -> pygame.FRect:
         lines = wrapped(canvas, self.text, SMALL, _WIDEST)
         width = max(canvas.text_width(line, size=SMALL) for line in lines) + 32
-        box = pygame.FRect(place[0] - width / 2, place[1], width, _HEIGHT + _LINE * (len(lines) - 1))
-        return box.clamp(_VIEW) if width < _VIEW.w else box
+        view, high = canvas.view, _HEIGHT + _LINE * (len(lines) - 1)
+        box = pygame.FRect(place[0] - width / 2, view.top + place[1], width, high)
+        return box.clamp(view) if width < view.w else box
 
     def _covers(self, canvas: Canvas, at: tuple[float, float]) -> int:
         """Return the number of pixels of noted words, widgets and panels that a note at a place would hide."""

@@ -11,7 +11,7 @@ from ai.common.environment import Doubles
 from ai.lander.environment import LanderEnv, Outcome
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import INK, SMALL, VIEW_SIZE
+from game.drawing.tokens import INK, SMALL
 from game.flight.outcomes import crash_reason
 from game.world.camera import View
 from game.world.craft import foot_place
@@ -22,7 +22,7 @@ _REASON: Final = (6, 200, 20)
 _GLOW: Final = 110  # steps that the light on the deck takes to spread and fade
 _ABOVE: Final = 2.0  # metres from the middle of a craft to the words
 _EDGE: Final = 24.0  # points that words keep from the edges of the view, and from the read-outs
-_ROWS: Final = (96.0, 600.0)  # the rows between which words may stand
+_HEAD, _FOOT = 96.0, 120.0  # points that words keep from the upper edge, and from the lower one
 
 
 class Callouts:
@@ -92,8 +92,9 @@ class Callouts:
     def _write(self, canvas: Canvas, view: View, pose: Doubles, text: str, shown: float, *, crash: bool) -> None:
         x, y = view.points((pose[0], pose[1] + _ABOVE)).tolist()
         width = canvas.text_width(text, size=SMALL, weight="medium") + 22
-        x = min(max(x, _EDGE + width / 2), VIEW_SIZE[0] - _EDGE - width / 2)
-        y = min(max(y, _ROWS[0]), _ROWS[1]) - 6 * (1 - shown)
+        seen = canvas.view
+        x = min(max(x, seen.left + _EDGE + width / 2), seen.right - _EDGE - width / 2)
+        y = min(max(y, seen.top + _HEAD), seen.bottom - _FOOT) - 6 * (1 - shown)
         if crash:
             canvas.panel((x - width / 2 - 12, y - 20, width + 24, 30), 0.8 * shown)
             canvas.marker("cross", (x - width / 2 + 4, y - 5), 10, canvas.palette.warn, shown)

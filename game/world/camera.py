@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Final
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import numpy.typing as npt
 
 from game.core.clock import STEP
 from game.drawing.tokens import VIEW_SIZE
+
+if TYPE_CHECKING:
+    import pygame
+
+    from game.drawing.canvas import Canvas
 
 Metres = npt.NDArray[np.float64]
 Pixels = npt.NDArray[np.float64]
@@ -39,12 +44,26 @@ class View:
 
     `scale` is the canvas's pixels per point; at a zoom of 1 the whole width of the world is seen. `closest` is the
     greatest zoom that there will be, 0 for this one: what is painted once and then scaled is painted for that.
+
+    A shot is made for the page of a canvas; `filling` shows it in the whole view, with the ground at its lower edge,
+    and more of the world beside and above. `origin` is where the corner of the page lies on the surface, in pixels;
+    `lower` is how far the shot is moved down from the page, in points.
     """
 
     scale: float
     centre: tuple[float, float] = HOME
     zoom: float = 1.0
     closest: float = 0.0
+    origin: tuple[int, int] = (0, 0)
+    lower: float = 0.0
+
+    def filling(self, canvas: Canvas) -> View:
+        """Return this view as it fills that canvas."""
+        return replace(self.lowered(canvas.view), scale=canvas.scale, origin=canvas.origin)
+
+    def lowered(self, seen: pygame.FRect) -> View:
+        """Return this view with its ground at the lower edge of all that is seen, in points."""
+        return replace(self, lower=seen.bottom - VIEW_SIZE[1])
 
     @property
     def pixels_per_metre(self) -> float:
@@ -58,7 +77,7 @@ class View:
 
     def pixels(self, position: npt.ArrayLike) -> Pixels:
         """Turn world positions (..., 2) into pixels of the view."""
-        return self._project(position, self.pixels_per_metre, self.scale)
+        return self._project(position, self.pixels_per_metre, self.scale) + self.origin
 
     def points(self, position: npt.ArrayLike) -> Pixels:
         """Turn world positions (..., 2) into points of the canvas."""
@@ -66,12 +85,13 @@ class View:
 
     def metres(self, point: npt.ArrayLike) -> Metres:
         """Turn points of the canvas (..., 2), such as the mouse's, into world positions."""
-        from_middle = np.asarray(point, dtype=float) - np.array(VIEW_SIZE) / 2
+        from_middle = np.asarray(point, dtype=float) - np.array(VIEW_SIZE) / 2 - (0, self.lower)
         return self.centre + from_middle * (1, -1) / (POINTS_PER_METRE * self.zoom)
 
     def _project(self, position: npt.ArrayLike, per_metre: float, scale: float) -> Pixels:
         from_centre = np.asarray(position, dtype=float) - self.centre
-        return from_centre * (per_metre, -per_metre) + np.array(VIEW_SIZE) * (scale / 2)
+        middle = VIEW_SIZE[0] / 2, VIEW_SIZE[1] / 2 + self.lower
+        return from_centre * (per_metre, -per_metre) + np.multiply(middle, scale)
 
 
 @dataclass(frozen=True)

@@ -52,8 +52,7 @@ def draw_craft(
         nozzle = place(*art.NOZZLE)
         heart = place(art.NOZZLE[0], art.NOZZLE[1] - 0.35)
         scale = canvas.scale
-        spot = (heart[0] / scale, heart[1] / scale)
-        canvas.glow(spot, 2.3 * metre / scale, fire, 0.42 * main)
+        canvas.glow(canvas.points(heart), 2.3 * metre / scale, fire, 0.42 * main)
         fire_kind = NET_PLUME if blue > 0.5 else HUMAN_PLUME
         _burn(surface, fire_kind, metre, angle, main, flicker // 2, nozzle, floor)
     craft, corner = art.turned(image, view.painted_per_metre * size, angle, (middle_x, middle_y), scaling(view))
@@ -62,8 +61,7 @@ def draw_craft(
         if force > 0.06:
             outward = angle + (math.pi / 2 if side else -math.pi / 2)
             _burn(surface, JET, metre, outward, force, flicker // 2 + side, place(*art.JETS[side]), floor)
-    tip_x, tip_y = place(*art.ANTENNA_TIP)
-    tip = (tip_x / canvas.scale, tip_y / canvas.scale)
+    tip = canvas.points(place(*art.ANTENNA_TIP))
     owner = mix(HUMAN, NET, round(blue * 8) / 8)
     canvas.glow(tip, 0.45 * metre / canvas.scale, owner, 1.0)
     canvas.dot(tip, max(1.0, 0.07 * metre / canvas.scale), mix(owner, (255, 255, 255), 0.35))

@@ -27,6 +27,7 @@ def draw_dotted(
     canvas: Canvas, view: View, path: Doubles, colour: Colour, start: float = 1.6, head: float = 0.0
 ) -> None:
     """Draw a path (k, 2) as dots that fade along the way, from `start` metres on, below the uppermost `head` points."""
+    head += canvas.view.top
     if len(path) < 2:
         return
     lengths = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
@@ -86,6 +87,7 @@ class Trails:
 
     def draw(self, canvas: Canvas, view: View, shown: int, head: float = 0.0) -> None:
         """Draw the trails of finished flights, newest brightest, and that of slot `shown` so far, below the `head`."""
+        top = canvas.view.top + head
         for rank, trail in enumerate(reversed(self._done)):
             strength = 0.55 * self._fade**rank * max(0.0, 1 - trail.age / 40)
             landed = trail.outcome == Outcome.LANDED
@@ -93,7 +95,7 @@ class Trails:
             if strength > 0.06:
                 draw_faint(canvas.surface, view.pixels(trail.points), colour, strength, head * canvas.scale)
                 end = view.points(trail.points[-1]).tolist()
-                if not landed and end[1] > head:
+                if not landed and end[1] > top:
                     canvas.marker("cross", end, 7, colour, min(1.0, strength * 1.8))
         way = self._open[shown]
         if len(way) > 1:

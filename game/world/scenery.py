@@ -8,7 +8,6 @@ from ai.common.environment import Doubles
 from ai.lander.environment import Outcome
 from game.core.clock import STEP
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import VIEW_SIZE
 from game.flight.flight import Flight, StickHolder
 from game.world import framing
 from game.world.callouts import Callouts
@@ -16,10 +15,11 @@ from game.world.camera import Camera, CameraTarget, ClearArea, View
 from game.world.landscape.backdrop import EARTH, landscape
 from game.world.landscape.ground import draw_ground
 from game.world.landscape.themes import LOOKS, look_of
+from game.world.pad_factors import PadFactors
 from game.world.particles import DUST
 from game.world.stage import Stage, flames
 
-_EDGE, _LOWEST = 24.0, 620.0  # points that a mark keeps from the sides, and its lowest row, above the read-outs
+_EDGE, _FOOT = 24.0, 100.0  # points that a mark keeps from the sides, and from the lower edge with its read-outs
 
 
 class Scenery:
@@ -40,6 +40,7 @@ class Scenery:
         chance = np.random.default_rng(flight.recording.seed)
         self.stage = Stage(flight.env, chance, reduced_motion, LOOKS[self._look].on_dust(DUST), LOOKS[self._look].light)
         self._callouts = Callouts(flight.env, reduced_motion)
+        self._factors = PadFactors(flight)
         self._time = 0.0
         self._camera = Camera()
         self.cut()
@@ -75,6 +76,7 @@ class Scenery:
         flight = self._flight
         self.stage.forget()
         self._callouts.forget()
+        self._factors.forget()
         self.stage.thrust[0] = 0.0 if flight.over else flames(flight.env)[0]
         self.stage.blue[:] = flight.flown_by is StickHolder.NETWORK
         self.cut()
@@ -89,6 +91,7 @@ class Scenery:
         flight = self._flight
         self.stage.follow(np.array([flight.flown_by is StickHolder.NETWORK]), np.array([ended]))
         self._callouts.follow()
+        self._factors.follow(self._calm)
         if self._calm:
             return
         self._camera.shake(self.stage.jolt)
@@ -110,17 +113,20 @@ class Scenery:
         env = self._flight.env
         moon = landscape(canvas.surface.get_size(), self._calm, self._look)
         moon.draw(canvas, self._camera, self._time, alpha, earth)
-        view = self.view(canvas.scale, alpha)
+        view = self.view(canvas.scale, alpha).filling(canvas)
         draw_ground(canvas, view, env.ground, self._time, float(env.pad_shift[0]))
         if env.conditions.pushes and not self._calm:
             self.stage.wind.draw(canvas.surface, view, alpha)
 
     def draw_craft(self, canvas: Canvas, alpha: float, words: bool = True) -> None:
-        """Draw the craft with its flames and dust; `words` is whether to draw the callouts too.
+        """Draw the factors of the pads over the paths, and the craft with its flames and dust.
+
+        `words` is whether to draw the callouts too.
 
         A craft that has left the area is not drawn; a cross marks where it left.
         """
-        view, pose = self.view(canvas.scale, alpha), self._flight.poses.at(alpha)[0]
+        view, pose = self.view(canvas.scale, alpha).filling(canvas), self._flight.poses.at(alpha)[0]
+        self._factors.draw(canvas, view, pose)
         if self._flight.outcome is Outcome.OUT_OF_BOUNDS:
             mark_lost(canvas, view, pose)
             return
@@ -135,6 +141,10 @@ class Scenery:
 def mark_lost(canvas: Canvas, view: View, pose: Doubles) -> None:
     """Mark where a craft has left the area, or the nearest place that is clear of text."""
     x, y = view.points(pose[:2]).tolist()
-    place = (min(max(x, _EDGE), VIEW_SIZE[0] - _EDGE), min(max(y, framing.ALL.head), _LOWEST))
+    seen = canvas.view
+    place = (
+        min(max(x, seen.left + _EDGE), seen.right - _EDGE),
+        min(max(y, seen.top + framing.ALL.head), seen.bottom - _FOOT),
+    )
     canvas.glow(place, 18, canvas.palette.warn, 0.5)
     canvas.marker("cross", place, 12, canvas.palette.warn)

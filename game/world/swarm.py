@@ -102,8 +102,10 @@ class LearningSwarm:
     def draw(self, canvas: Canvas, alpha: float, paused: bool = False) -> None:
         """Draw the moon, the pad and the landers."""
         view = View(canvas.scale, self._centre, self._share)
-        moon = _moon(canvas.size, self._share)
-        canvas.surface.blit(moon, (0, 0))
+        whole = canvas.whole
+        left, top = (round(-start * whole.scale) for start in whole.view.topleft)
+        moon = _moon(canvas.size, self._share, (left, top))
+        whole.surface.blit(moon, (0, 0))
         draw_pad(canvas, view, (0.0, PARAMS.pad_top), PARAMS.pad_width, self._time)
         if self.swarm_state is None:
             return
@@ -117,7 +119,7 @@ class LearningSwarm:
         chosen = self.chosen if self.chosen is not None and self.chosen < count else None
         if chosen is not None:
             marked[chosen] = True
-        canvas.surface.set_clip(canvas.rect(0, 0, VIEW_SIZE[0] * self._share, moon.get_height() / canvas.scale))
+        canvas.surface.set_clip(canvas.rect(0, 0, VIEW_SIZE[0] * self._share, (moon.get_height() - top) / canvas.scale))
         self._trails.draw(canvas, view, CAREFUL)
         shown = ~marked & ~wrecked
         draw_fires(canvas, view, poses[shown & self._burning()], self._frame, size)
@@ -155,9 +157,9 @@ class LearningSwarm:
 
 
 @lru_cache(maxsize=2)
-def _moon(size: tuple[int, int], share: float) -> pygame.Surface:
-    """Return the landscape behind the swarm, darkened towards its lower edge."""
-    small = (round(size[0] * share), round(size[1] * share))
+def _moon(size: tuple[int, int], share: float, beyond: tuple[int, int]) -> pygame.Surface:
+    """Return the landscape behind the swarm, dimmed; `beyond` is how far it reaches beside and above its page."""
+    small = (round(size[0] * share) + 2 * beyond[0], round(size[1] * share) + beyond[1])
     picture = pygame.Surface(small)
     Backdrop(small, np.random.default_rng(_MOON), reduced_motion=True).paint(picture, earth=_EARTH)
     veil = pygame.Surface(small)

@@ -11,12 +11,11 @@ import pygame
 import pytest
 
 from game.drawing import typeface
-from game.drawing.canvas import Canvas
-from game.drawing.tokens import TEXT, TITLE, VIEW_SIZE
+from game.drawing.canvas import PAGE, Canvas
+from game.drawing.tokens import TEXT, TITLE
 
 # A capital's height and what hangs below the line, in sizes of the type: where ink is.
 ABOVE, BELOW = 0.72, 0.2
-_VIEW = pygame.FRect((0, 0), VIEW_SIZE)
 _SEEN = 0.05  # alpha from which something is seen
 _EXACT = 1.06  # letters have whole pixels, so a text that was fitted may still be a little wider than its room
 
@@ -28,7 +27,7 @@ class Note:
     text: str
     box: pygame.FRect
     room: float = math.inf
-    within: pygame.FRect = field(default_factory=_VIEW.copy)
+    within: pygame.FRect = field(default_factory=PAGE.copy)
     code: bool = False  # whether it is a piece of our own code, which is the same in every language
 
 
@@ -67,13 +66,14 @@ class Written:
                 code = more.get("weight") == "code"
                 size = box.height * TEXT / sum(typeface.extent(TEXT, "regular"))
                 top, height = position[1] - ABOVE * size, ABOVE * size + BELOW * min(size, TITLE)
-                note = Note(string, pygame.FRect(box.x, top, box.width, height), more.get("room", math.inf), code=code)
+                ink = pygame.FRect(box.x, top, box.width, height).move(canvas.moved)
+                note = Note(string, ink, more.get("room", math.inf), canvas.whole.view.copy(), code)
                 self.page(canvas).notes.append(note)
             return box
 
         def noted_panel(canvas: Canvas, rect: pygame.typing.RectLike, *more: Any) -> None:
             panel(canvas, rect, *more)
-            self.page(canvas).panels.append(pygame.FRect(rect))
+            self.page(canvas).panels.append(pygame.FRect(rect).move(canvas.moved))
 
         def noted_sheet(canvas: Canvas, width: float, height: float) -> Canvas:
             made = sheet(canvas, width, height)
@@ -83,8 +83,9 @@ class Written:
         def noted_lay(canvas: Canvas, laid: Canvas, x: float, y: float) -> None:
             lay(canvas, laid, x, y)
             page, size = self.page(canvas), (laid.size[0] / laid.scale, laid.size[1] / laid.scale)
+            x, y = x + canvas.moved[0], y + canvas.moved[1]
             for note in self.page(laid).notes:
-                within = pygame.FRect((x, y), size) if note.within == _VIEW else note.within.move(x, y)
+                within = pygame.FRect((x, y), size) if note.within == laid.view else note.within.move(x, y)
                 page.notes.append(replace(note, box=note.box.move(x, y), within=within))
             page.panels += [each.move(x, y) for each in self.page(laid).panels]
 
@@ -92,8 +93,9 @@ class Written:
             patch(Canvas, name, method)
 
     def page(self, canvas: Canvas) -> Page:
-        """Return what stands on a canvas."""
-        return self._pages.setdefault(id(canvas), (canvas, Page()))[1]
+        """Return what stands on a canvas, or on the one of which it is the page."""
+        whole = canvas.whole
+        return self._pages.setdefault(id(whole), (whole, Page()))[1]
 
     def turn(self, canvas: Canvas) -> Page:
         """Forget what stands on a canvas, and return the empty page."""
@@ -101,12 +103,12 @@ class Written:
         return self.page(canvas)
 
 
-def misplaced(page: Page) -> Iterator[tuple[str, str]]:
+def misplaced(page: Page, view: pygame.FRect = PAGE) -> Iterator[tuple[str, str]]:
     """Yield each text that leaves its place or meets another, and where it goes."""
     for number, note in enumerate(page.notes):
         ends = note.box.midleft, note.box.midright
         around = [panel for panel in page.panels if any(map(panel.collidepoint, ends))]
-        if not _VIEW.contains(note.box):
+        if note.within == view and not view.contains(note.box):
             yield note.text, "leaves the view"
         elif not note.within.inflate(2, 2).contains(note.box):
             yield note.text, "is cut off"

@@ -11,7 +11,6 @@ from ai.common.environment import Doubles
 from ai.lander.ground import Ground
 from game.drawing.canvas import Canvas
 from game.drawing.paint import Picture, bell, clouds, layer
-from game.drawing.tokens import INK, SMALL
 from game.world.camera import LAND_REACH, WORLD_WIDTH, View
 from game.world.landscape.pad import draw_pad
 from game.world.landscape.sheet import WorldPicture
@@ -28,7 +27,7 @@ _LIP: Final = 0.3  # metres that a knoll is lower than its pad
 
 
 def draw_ground(canvas: Canvas, view: View, ground: Ground, time: float, shift: float = 0.0) -> None:
-    """Draw hills, if any, and pads, `shift` metres to the right; of several pads, each with its score factor."""
+    """Draw hills, if any, and pads, `shift` metres to the right."""
     if ground.hills:
         sheet, corner = paint_hills(ground, round((_DETAIL if view.closest else 1.0) * view.painted_per_metre, 3))
         sheet.draw(canvas.surface, view, corner)
@@ -36,9 +35,6 @@ def draw_ground(canvas: Canvas, view: View, ground: Ground, time: float, shift: 
     for pad in ground.pads:
         floor = pad.top - _LIP if several else ground.base
         draw_pad(canvas, view, (pad.x + shift, pad.top), pad.width, time, floor)
-        if several:
-            spot = view.points((pad.right + shift + 0.3, floor - 0.05)).tolist()
-            canvas.text(f"×{pad.factor}", spot, size=SMALL, colour=INK, weight="medium", alpha=0.8)
 
 
 @lru_cache(maxsize=2)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Final
 
@@ -13,7 +14,7 @@ from game.drawing.paint import Picture, bell, clouds, light, mix, opaque, ramp, 
 from game.drawing.sky import beside
 from game.drawing.tokens import DUSK, EMBER, NIGHT0, NIGHT1
 
-# Where things stand, as shares of the view.
+# Where things stand, as shares of the page at the lower edge of the view, and across as shares of the view.
 HORIZON: Final = 0.80
 SUN: Final = (0.77, 0.835)
 _BAND: Final = (0.30, -0.42, 0.085)  # the Milky Way: height at the left edge, slope, half width
@@ -21,26 +22,39 @@ _GLOW: Final = (232, 142, 90)
 _CORE: Final = (255, 204, 138)
 
 
+def page_of(size: tuple[int, int]) -> tuple[int, int]:
+    """Return the size of the page of 16:9 in a view of `size` pixels; beside it is more land, above it more sky."""
+    width, height = size
+    page = round(height * 16 / 9), round(width * 9 / 16)
+    return tuple(part if part < whole - 2 else whole for part, whole in zip(page, size, strict=True))  # type: ignore[return-value]
+
+
+def _top(size: tuple[int, int]) -> float:
+    """Return the upper edge of a view of `size` pixels, as a share of the page's height: 0, or less for a high one."""
+    return 1 - size[1] / page_of(size)[1]
+
+
 def paint_sky(size: tuple[int, int], rng: np.random.Generator) -> pygame.Surface:
     """Return the part of the sky that never moves: night, glow and faint stars."""
     width, height = -(-size[0] // 2), -(-size[1] // 2)  # too smooth to need every pixel
     warm = mix(DUSK, EMBER, 0.14)
+    top = _top(size)
     night = [
-        (0.0, NIGHT0),
+        (top, NIGHT0),
         (0.30, NIGHT0),
         (0.58, NIGHT1),
         (0.73, mix(NIGHT1, DUSK, 0.8)),
     ]
-    column = ramp(height, [*night, (HORIZON, warm), (1.0, warm)])
+    column = ramp(height, [((share - top) / (1 - top), c) for share, c in (*night, (HORIZON, warm), (1.0, warm))])
     picture = np.repeat(column[:, None, :], width, axis=1)
-    shine(picture, _milky_way((width, height), rng), (150, 165, 215))
-    x, y = SUN[0] * width, SUN[1] * height
+    shine(picture, _milky_way((width, height), top, rng), (150, 165, 215))
+    x, y = SUN[0] * width, (SUN[1] - top) / (1 - top) * height
     for colour, strength, across, up in (
         (mix(DUSK, EMBER, 0.45), 0.34, 0.50, 0.28),
         (_GLOW, 0.50, 0.25, 0.155),
         (_CORE, 0.32, 0.12, 0.075),
     ):
-        glow = np.outer(bell(height, y, up * height), bell(width, x, across * width))
+        glow = np.outer(bell(height, y, up / (1 - top) * height), bell(width, x, across * width))
         shine(picture, strength * glow, colour)
     places, light = _far_stars(size, rng)
     sky = opaque(picture.repeat(2, 1).repeat(2, 0)[: size[1], : size[0]], rng)
@@ -49,14 +63,14 @@ def paint_sky(size: tuple[int, int], rng: np.random.Generator) -> pygame.Surface
     return sky
 
 
-def _milky_way(size: tuple[int, int], rng: np.random.Generator) -> Picture:
+def _milky_way(size: tuple[int, int], top: float, rng: np.random.Generator) -> Picture:
     """Return a faint slanting band of unresolved light, (rows, columns) in 0 to about 0.1."""
     width, height = size
-    rows = np.linspace(0, 1, height, dtype=np.float32)[:, None]
+    rows = np.linspace(top, 1, height, dtype=np.float32)[:, None]
     columns = np.linspace(0, 1, width, dtype=np.float32)[None, :]
     start, slope, half = _BAND
     across = (rows - start - slope * (columns - 0.5)) / half
-    dust = clouds((height, width), rng, (5, 9), octaves=4)
+    dust = clouds((height, width), rng, (5 * (1 - top), 9), octaves=4)
     band = np.exp(-((across + 0.7 * dust) ** 2)) * np.clip(0.55 + 0.8 * dust, 0, 1.2)
     lane = 1 - 0.6 * np.exp(-(((across + 0.1 + 1.1 * dust) / 0.28) ** 2))
     glow: Picture = 0.062 * band * lane * np.clip((HORIZON - rows) / 0.35, 0, 1)
@@ -69,14 +83,17 @@ def _far_stars(size: tuple[int, int], rng: np.random.Generator) -> tuple[tuple[I
     The glow hides those near the horizon. None is bright enough to be read as a dot, so they stay behind text.
     """
     width, height = size
+    top = _top(size)
     count = round(width * height / 640)
     across = rng.uniform(0, 1, count)
     spread = rng.uniform(-1, 1, count) * HORIZON
     start, slope, half = _BAND
     in_band = rng.random(count) < 0.4
-    down = np.where(in_band, start + slope * (across - 0.5) + half * 0.8 * rng.standard_normal(count), np.abs(spread))
-    seen = (down > 0) & (down < HORIZON)
-    rows, columns = (down[seen] * (height - 1)).astype(int), (across[seen] * (width - 1)).astype(int)
+    down = np.where(in_band, start + slope * (across - 0.5) + half * 0.8 * rng.standard_normal(count),
+                    top + np.abs(spread) * ((HORIZON - top) / HORIZON))  # fmt: skip
+    seen = (down > top) & (down < HORIZON)
+    rows = ((down[seen] - top) / (1 - top) * (height - 1)).astype(int)
+    columns = (across[seen] * (width - 1)).astype(int)
     brightness = 52 * rng.random(seen.sum()) ** 2.7 * np.clip((HORIZON - 0.06 - down[seen]) / 0.3, 0, 1) + 3
     tint = 1 + 0.16 * rng.uniform(-1, 1, (seen.sum(), 1)) * np.array((1.0, 0.1, -1.0))
     return (columns, rows), brightness[:, None] * tint
@@ -88,12 +105,13 @@ class NearStars:
     LEVELS: Final = 6
 
     def __init__(self, size: tuple[int, int], rng: np.random.Generator, still: bool) -> None:
-        width, height = size
-        count = 130
+        width, height = size[0], page_of(size)[1]
+        count = round(130 * width * size[1] / math.prod(page_of(size)))
         self._still = still
-        self._place = rng.uniform((-0.03, -0.03), (1.03, HORIZON - 0.06), (count, 2)) * (width, height)
+        place = rng.uniform((-0.03, _top(size) - 0.03), (1.03, HORIZON - 0.06), (count, 2)) * (width, height)
         size_of = rng.random(count) ** 2.6
-        size_of *= np.clip((HORIZON - 0.05 - self._place[:, 1] / height) / 0.25, 0.15, 1)
+        size_of *= np.clip((HORIZON - 0.05 - place[:, 1] / height) / 0.25, 0.15, 1)
+        self._place = place + np.array((0, size[1] - height))
         self._depth = 0.01 + 0.025 * size_of
         self._phase = rng.uniform(0, 2 * np.pi, count)
         self._rate = rng.uniform(0.5, 1.6, count)

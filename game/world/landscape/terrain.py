@@ -12,7 +12,7 @@ import pygame
 from game.drawing.paint import Picture, bell, clouds, layer, mix, profile, shine
 from game.drawing.tokens import DUSK, NIGHT0, NIGHT1, VIEW_SIZE, Colour
 from game.world.camera import LAND_REACH, POINTS_PER_METRE, VIEW_BOTTOM, WORLD_WIDTH
-from game.world.landscape.sky import SUN
+from game.world.landscape.sky import SUN, page_of
 
 # The row at which the plain ends, as a share of the view's height.
 PLAIN_HORIZON: Final = 0.856
@@ -52,7 +52,7 @@ def paint_ridge(size: tuple[int, int], ridge: Ridge, rng: np.random.Generator) -
     """Return a ridge as a layer wider than the view by its margins, and the row of its top edge."""
     view_width, height = size
     width = round(view_width * (1 + 2 * MARGIN))
-    wave = profile(width, rng, ridge.humps, octaves=7, gain=ridge.rough)
+    wave = profile(width, rng, ridge.humps * view_width / page_of(size)[0], octaves=7, gain=ridge.rough)
     valley = bell(width, (SUN[0] + MARGIN) * view_width, 0.24 * view_width)  # so that the dawn stays visible
     crest = height * (ridge.crest - ridge.relief * (wave * (1 - 0.6 * valley) + 0.25 - ridge.valley * valley))
     top, bottom = int(crest.min()) - 2, round(height * (PLAIN_HORIZON + 0.045))
@@ -104,16 +104,16 @@ def _relief(depth: Picture, height: int, rng: np.random.Generator) -> Picture:
 def paint_plain(size: tuple[int, int], rng: np.random.Generator, margin: float = MARGIN) -> tuple[pygame.Surface, int]:
     """Return the plain with its craters and stones, wider than the view by its margins, and the row of its top."""
     view_width, height = size
-    width = round(view_width * (1 + 2 * margin))
-    edge = height * (PLAIN_HORIZON + 0.006 * profile(width, rng, 6.5 * width / view_width, octaves=6))
+    width, page_width = round(view_width * (1 + 2 * margin)), page_of(size)[0]
+    edge = height * (PLAIN_HORIZON + 0.006 * profile(width, rng, 6.5 * width / page_width, octaves=6))
     top = int(edge.min()) - 2
     bottom = height + round((_FOOT if margin == MARGIN else _WIDE_FOOT) * height)
     rows = np.arange(top, bottom, dtype=np.float32)[:, None] + 0.5
     near = np.clip((rows - height * PLAIN_HORIZON) / (height * (1 - PLAIN_HORIZON)), 0, 1.6)
     sunward, glow = _sunlight(width, view_width, margin)
-    bumps = _plain_noise(near[:, 0], width, view_width, rng) * 0.5
-    for _ in range(round(48 * (1 + 2 * margin))):
-        _sink_crater(bumps, near[:, 0], view_width, rng)
+    bumps = _plain_noise(near[:, 0], width, page_width, rng) * 0.5
+    for _ in range(round(48 * width / page_width)):
+        _sink_crater(bumps, near[:, 0], page_width, rng)
     lean = np.diff(bumps, axis=1, append=bumps[:, -1:]) * (height / 720) * -1.0 * -sunward
     far, close = mix(NIGHT1, DUSK, 0.55), mix(NIGHT0, NIGHT1, 0.25)
     lit = np.clip(lean, -1, 1)
@@ -126,16 +126,16 @@ def paint_plain(size: tuple[int, int], rng: np.random.Generator, margin: float =
     depth = rows - edge
     rim = np.exp(-np.clip(depth, 0, None) / (1.3 * height / 720)) * (0.10 + 0.42 * glow)
     shine(picture, rim, _WARM)
-    _scatter_stones(picture, near[:, 0], sunward, glow, view_width, rng)
+    _scatter_stones(picture, near[:, 0], sunward, glow, page_width, rng)
     return layer(picture, np.clip(depth + 0.5, 0, 1), rng), top
 
 
-def _plain_noise(near: Picture, width: int, view_width: int, rng: np.random.Generator) -> Picture:
+def _plain_noise(near: Picture, width: int, page_width: int, rng: np.random.Generator) -> Picture:
     """Return the texture of a rolling surface seen at a low angle: fine far away, coarse in front."""
     field = _hummocks(int(rng.integers(2**31)))
     side = len(field)
     scale = 0.16 + near
-    across = ((np.arange(width) - width / 2)[None, :] * (0.574 * 1280 / view_width / scale[:, None]) + side / 2) % side
+    across = ((np.arange(width) - width / 2)[None, :] * (0.574 * 1280 / page_width / scale[:, None]) + side / 2) % side
     down = (210 * np.log(scale) + 500) % side
     seen: Picture = field[down.astype(np.intp)[:, None], across.astype(np.intp)]
     return seen * (0.35 + 0.65 * near)[:, None]
@@ -147,11 +147,11 @@ def _hummocks(seed: int) -> Picture:
     return clouds((512, 512), np.random.default_rng(seed), (30, 30), octaves=5, gain=0.62) * 2.2
 
 
-def _sink_crater(bumps: Picture, near: Picture, view_width: int, rng: np.random.Generator) -> None:
+def _sink_crater(bumps: Picture, near: Picture, page_width: int, rng: np.random.Generator) -> None:
     rows, columns = bumps.shape
     row = int(rng.random() ** 0.8 * rows)
     scale = 0.16 + near[row]
-    radius = view_width * (0.004 + 0.030 * rng.random() ** 3.2) * scale
+    radius = page_width * (0.004 + 0.030 * rng.random() ** 3.2) * scale
     aspect = 0.20 + 0.06 * scale
     x = rng.uniform(0, columns)
     left, right = max(0, int(x - 2 * radius)), min(columns, int(x + 2 * radius) + 1)
@@ -166,11 +166,11 @@ def _sink_crater(bumps: Picture, near: Picture, view_width: int, rng: np.random.
 
 
 def _scatter_stones(
-    picture: Picture, near: Picture, sunward: Picture, glow: Picture, view_width: int, rng: np.random.Generator
+    picture: Picture, near: Picture, sunward: Picture, glow: Picture, page_width: int, rng: np.random.Generator
 ) -> None:
     rows, columns = picture.shape[:2]
-    unit = view_width / 1280
-    for _ in range(round(139 * columns / view_width)):
+    unit = page_width / 1280
+    for _ in range(round(139 * columns / page_width)):
         row, column = int(rng.uniform(0.10, 1) ** 0.9 * rows), int(rng.uniform(0, columns))
         radius = unit * (0.16 + near[min(row, rows - 1)]) * (1.0 + 3.6 * rng.random() ** 5)
         half = int(radius * 4) + 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 from typing import Final
 
@@ -56,10 +57,14 @@ class Wind:
         place = self._start.copy()
         place[:, 0] = (place[:, 0] + gone) % _WIDTH - _WIDTH / 2
         length = np.abs(speed) * _TRAIL * view.pixels_per_metre / view.scale
+        reach = abs(view.centre[0]) + surface.get_width() / (2 * view.pixels_per_metre)
+        apart = _WIDTH * view.pixels_per_metre
+        copies = math.ceil(max(0.0, reach / _WIDTH - 0.5))  # on either side, in a view wider than the dust
         trails = []
         for (x, y), points, near in zip(view.pixels(place).tolist(), length.tolist(), self._near.tolist(), strict=True):
             trail = _trail(max(1, round(points / _STEPS)), view.scale, self._dust, round(3 * near))
-            trails.append((trail, (round(x - trail.get_width() / 2), round(y))))
+            left = x - trail.get_width() / 2
+            trails += [(trail, (round(left + apart * copy), round(y))) for copy in range(-copies, copies + 1)]
         surface.fblits(trails)
 
 

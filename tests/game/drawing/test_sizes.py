@@ -1,9 +1,13 @@
 """At any size of the window, the picture is sharp and the mouse meets what it sees."""
 
+from itertools import product
+
 import pygame
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
-from game.drawing.canvas import Canvas
+from game.drawing.canvas import PAGE, Canvas
 from game.drawing.tokens import VIEW_SIZE
 from game.scenes.settings import SettingsScene
 from game.ui.context import Context
@@ -24,16 +28,49 @@ def test_points_and_pixels_lead_to_each_other(size: tuple[int, int]):
 
 
 @pytest.mark.parametrize("size", SIZES)
-def test_the_view_fits_in_the_middle_and_is_drawn_in_the_windows_own_pixels(size: tuple[int, int]):
+def test_the_page_fits_in_the_middle_and_is_drawn_in_the_windows_own_pixels(size: tuple[int, int]):
     window = pygame.Surface(size)
-    canvas = Canvas(window)
-    left, top = canvas.surface.get_abs_offset()
-    assert canvas.surface.get_abs_parent() is window  # nothing is scaled on its way to the screen
-    width, height = canvas.surface.get_size()
+    page = Canvas(window).page
+    left, top = page.surface.get_abs_offset()
+    assert (
+        page.surface is window or page.surface.get_abs_parent() is window
+    )  # nothing is scaled on its way to the screen
+    width, height = page.surface.get_size()
     assert abs(2 * left + width - size[0]) <= 1
     assert abs(2 * top + height - size[1]) <= 1
     assert width == size[0] or height == size[1]
     assert width / height == pytest.approx(16 / 9, rel=0.01)
+
+
+@settings(deadline=None, max_examples=25)
+@given(st.integers(320, 4000), st.integers(320, 4000))
+def test_the_view_reaches_to_the_edges_of_any_window_with_the_page_in_its_middle(width: int, height: int):
+    canvas = Canvas(pygame.Surface((width, height)))
+    view, pixel = canvas.view, 1 / canvas.scale
+    assert view.inflate(2 * pixel, 2 * pixel).contains(PAGE)
+    assert view.center == pytest.approx(PAGE.center, abs=2 * pixel)
+    assert canvas.in_window(view) == pygame.Rect(0, 0, width, height)
+    for across, down in product((-1, 0, 1), repeat=2):
+        moved = canvas.at(across, down)
+        corner = canvas.points(moved.pixels((0, 0)))  # of the moved page, on the canvas
+        wanted = (
+            (0.0, view.right - 1280, view.left)[across],
+            (0.0, view.bottom - 720, view.top)[down],
+        )
+        assert corner == pytest.approx(wanted, abs=2 * pixel)
+        assert moved.at(across, down).origin == pytest.approx(moved.origin, abs=1)
+        assert moved.points((0, 0)) == pytest.approx(moved.view.topleft, abs=2 * pixel)  # the window's corner
+
+
+def test_what_is_drawn_on_a_page_and_on_the_whole_window_meets():
+    canvas = Canvas(pygame.Surface((1000, 1000)))
+    canvas.page.dot((100, 100), 4, (255, 0, 0))
+    x, y = (round(place) for place in canvas.pixels((100, 100)))
+    assert canvas.surface.get_at((x, y))[0] > 200
+    boxes = canvas.text("words", (300, 200)), canvas.page.text("words", (300, 200))
+    assert boxes[0].topleft == pytest.approx(boxes[1].topleft, abs=0.01)
+    canvas.turn_page()
+    assert canvas.words[0] == canvas.words[1]
 
 
 @pytest.mark.parametrize("size", SIZES)
