@@ -49,8 +49,7 @@ class Craft:
 
     def _build_world(self) -> None:
         params = self.params
-        self._up = params.main_thrust * np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0])  # thrust of every action, N
-        self._aside = params.side_thrust * np.array([0.0, -1.0, 1.0, 0.0, -1.0, 1.0])  # along the craft's right
+        self._aside = params.side_thrust * np.array([0.0, -1.0, 1.0, 0.0, -1.0, 1.0])  # N, along the craft's right
         surface: dict[str, Any] = {"restitution": params.restitution, "friction": params.friction}
         self.world = World(gravity=(0.0, -params.gravity), batch=self.num_envs, iterations=5)
         foot_x, foot_y = FOOT_CENTRE
@@ -188,7 +187,7 @@ class Craft:
         """Apply thrust and wind, and step the worlds; without `touching`, nothing collides."""
         state, body = self.world.state, self.lander.index
         actions = self.fired
-        up, aside = self._up[actions], self._aside[actions]
+        up, aside = self.params.main_thrust * (actions >= 3), self._aside[actions]
         cos, sin = state.cos[:, body], state.sin[:, body]
         state.force[:, body, 0] = aside * cos - up * sin
         state.force[:, body, 1] = aside * sin + up * cos

@@ -212,7 +212,7 @@ class LanderEnv(Craft):
     def observe(self, pad: Any = None) -> Floats:
         """Return every lander's observation (n, 9) of its target, or of another `pad`, one number or (n,)."""
         pad = self.target if pad is None else np.asarray(pad)
-        pads = len(self.ground.pads)
+        pads = self.ground.at_once
         contacts = self.contacts if pads == 1 else self.contacts * (self.touched == pad)[:, None]
         offset = self.position - (self._top(pad) + np.array([0.0, self.params.stand]))
         return sensed(offset, self._relative_velocity(), *self._turned(), contacts, pads=pads)
@@ -240,6 +240,10 @@ class LanderEnv(Craft):
         `ai.lander.sensing.SURROUNDINGS` names the k numbers.
         """
         return surroundings(self, self.limits, self.target if pad is None else np.asarray(pad))
+
+    def observe_wide(self, pad: Any = None) -> Floats:
+        """Return every lander's observation and what is around it, side by side, (n, 9 + k)."""
+        return np.concatenate([self.observe(pad), self.surroundings(pad)], axis=1)
 
     def snapshot(self) -> dict[str, Any]:
         """Return everything a flight depends on but its random streams, to be put back by `restore`."""
