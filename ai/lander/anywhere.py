@@ -167,7 +167,7 @@ class AnywhereEnv(LanderEnv):
 
     def observe(self, pad: Any = None) -> Floats:
         """Return every lander's observation and what is around it, (n, 9 + k)."""
-        return np.concatenate([super().observe(pad), self.surroundings(pad)], axis=1)
+        return self.observe_wide(pad)
 
     def surroundings(self, pad: Any = None) -> Floats:
         """Return what is around every lander, (n, k), with the limits of a touch that pilots are told."""

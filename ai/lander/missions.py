@@ -46,6 +46,14 @@ class Mission:
     rules: int = 0
 
     @property
+    def elsewhere(self) -> bool:
+        """Whether a flight here differs from one on the moon: in conditions, craft, limits of a touch or pad width."""
+        return (
+            (self.conditions, self.params, self.pad.width) != (CALM, PARAMS, PARAMS.pad_width)
+            or replace(self.limits, time=LIMITS.time) != LIMITS
+        )  # fmt: skip
+
+    @property
     def network_lands(self) -> bool:
         """Whether the network that comes with the game mostly lands here."""
         return self.landed > _OFTEN
