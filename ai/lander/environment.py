@@ -248,7 +248,7 @@ class LanderEnv(Craft):
     def observe_for(self, pilot: Any, pad: Any = None) -> Floats:
         """Return what a pilot reads: `observe_wide` if its network has inputs for that, else `observe`."""
         wide = getattr(pilot, "num_features", NUM_FEATURES) > NUM_FEATURES
-        return self.observe_wide(pad) if wide else self.observe(pad)
+        return self.observe_wide(pad) if wide else LanderEnv.observe(self, pad)
 
     def snapshot(self) -> dict[str, Any]:
         """Return everything a flight depends on but its random streams, to be put back by `restore`."""
