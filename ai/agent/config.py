@@ -124,7 +124,7 @@ def _pays(weights: Any) -> bool:
 # What a network is taught with that lands anywhere, by `python main.py train --preset anywhere`; not among the presets
 # that are offered on the screen, since what it needs to see is not drawn there.
 LANDS_ANYWHERE: Final = Config(
-    env=ANYWHERE, hidden=(128, 128), final_learning_rate=1e-4, schedule_decisions=4_000_000, gradient_steps=8,
+    env=ANYWHERE, hidden=(128, 128), final_learning_rate=1e-4, schedule_decisions=3_000_000, gradient_steps=8,
     replay_size=400_000, epsilon_decisions=100_000, steadiness=0.02,
     reward_weights=RewardWeights(time=-0.2, switch=-0.1),
 )  # fmt: skip

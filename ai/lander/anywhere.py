@@ -70,7 +70,7 @@ def _moving(rng: np.random.Generator) -> Site:
 
 def _outage(rng: np.random.Generator) -> Site:
     dead = rng.uniform(0.5, 4.0)
-    return Site(dead=dead, back=dead + rng.uniform(0.5, 2.0))
+    return Site(dead=dead, back=dead + rng.uniform(0.5, 2.6))
 
 
 def _any(rng: np.random.Generator) -> Site:
@@ -92,7 +92,7 @@ def _any(rng: np.random.Generator) -> Site:
         changes["tank"] = rng.uniform(1.0, 2.2) * 7.0 / spare
     if rng.random() < 0.2:
         dead = rng.uniform(0.0, 5.0)
-        changes |= {"dead": dead, "back": dead + rng.uniform(0.3, 2.0) / math.sqrt(max(1.0, gravity / 1.62))}
+        changes |= {"dead": dead, "back": dead + rng.uniform(0.3, 2.5) / math.sqrt(max(1.0, gravity / 1.62))}
     if rng.random() < 0.4:
         changes |= {"swing": _side(rng) * rng.uniform(0.5, 4.5), "swing_period": rng.uniform(12.0, 20.0)}
     pad = int(rng.integers(len(_PADS)))
@@ -110,7 +110,8 @@ SITES: Final[dict[str, Callable[[np.random.Generator], Site]]] = {
     "outage": _outage,
     "any": _any,
 }
-TRAINED: Final = (*SITES, *["any"] * 6)  # of fifteen flights, seven begin at any site
+# As often as named: what asks for foresight, fuel and a dead engine, is the hardest to learn.
+TRAINED: Final = (*SITES, "tank", "tank", "outage", "outage", *["any"] * 5)
 
 
 class AnywhereEnv(LanderEnv):

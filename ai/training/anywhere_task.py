@@ -28,7 +28,7 @@ class AnywhereTask(LanderTask):
     """Task of learning to land at random sites; it is measured at sites of each kind equally often."""
 
     num_features = AnywhereEnv.num_features
-    evaluate_every, validation_episodes, test_episodes = 200_000, 900, 1800
+    evaluate_every, validation_episodes, test_episodes = 250_000, 720, 1800
 
     def __init__(self, config: Config) -> None:
         super().__init__(config)

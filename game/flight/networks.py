@@ -122,7 +122,7 @@ def load(name: str, folder: Path, features: int = NUM_FEATURES) -> Network:
     return Network(name, agent)
 
 
-def chosen(models_dir: Path, user_dir: Path, name: str = "", *, elsewhere: bool = False) -> Network:
+def chosen(models_dir: Path, user_dir: Path, name: str = "", elsewhere: bool = False) -> Network:
     """Read the network of that name, or the shipped default if the name is empty or gone.
 
     Where it is not as on the moon (`elsewhere`), the one that lands anywhere takes the place of a shipped one.

@@ -238,7 +238,7 @@ class PlayScene(Scene):
     def _load_network(self) -> None:
         context, self._loaded_for = self.context, self._elsewhere
         settings = context.settings
-        self.network = networks.chosen(context.models_dir, context.user_dir, settings.model, elsewhere=self._elsewhere)
+        self.network = networks.chosen(context.models_dir, context.user_dir, settings.model, self._elsewhere)
         if self.network.problem:
             context.note(texts.NO_NETWORK.format(problem=self.network.problem))
         elif self.network.stands_in:
