@@ -15,7 +15,7 @@ class MovingBodies:
         self.bodies: Span = span(chosen)
         self.inverse_mass = params.inverse_mass[self.bodies]
         self.linear_drag = params.linear_drag[self.bodies]
-        self.quadratic_drag = params.quadratic_drag[self.bodies]
+        self.quadratic_drag = params.quadratic_drag[..., self.bodies, :]
         self.falls = params.dynamic[self.bodies, None]
         self.all_fall = bool(self.falls.all())
         self.fast_drag = bool(self.quadratic_drag.any())  # whether any grows with the square of the speed

@@ -65,7 +65,10 @@ class BodyState:
 
 @dataclass
 class BodyParams:
-    """Mass, drag and surface of the bodies. Rows are bodies, the same in every world of the batch."""
+    """Mass, drag and surface of the bodies. Rows are bodies, the same in every world of the batch.
+
+    Once all bodies are there, `quadratic_drag` may be made (batch, bodies, 3): one air for each world.
+    """
 
     inverse_mass: Array = field(default_factory=lambda: np.zeros((0, 3)))  # 1/kg twice, 1/(kg·m²); 0: static
     linear_drag: Array = field(default_factory=lambda: np.zeros((0, 3)))  # kg/s, kg/s, kg·m²/s

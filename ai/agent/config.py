@@ -13,6 +13,7 @@ from ai.nn.activations import ACTIVATIONS
 
 CURRICULUM: Final = "curriculum"
 LANDER: Final = "lander"
+ANYWHERE: Final = "lander-anywhere"  # our lander at random sites, with what is around it as further inputs
 _HASTE: Final = RewardWeights(time=-0.4, switch=-0.05)  # quick, and without flickering jets
 
 
@@ -82,7 +83,8 @@ class Config(Knobs):
     random_main: float = knob(0.3, "How often a random action fires the main engine; half the time is hovering.",
                               "exploration", low=0.0, high=1.0, live=True)
 
-    env: str = knob(LANDER, "Environment to learn: our lander, or one of Gymnasium by its name.", "task")
+    env: str = knob(LANDER, "Environment to learn: our lander, lander-anywhere, or one of Gymnasium by its name.",
+                    "task")
     steadiness: float = knob(0.01, "Value by which the action held may fall short of the best.",
                              "lander", low=0.0, high=1.0, live=True)
     num_envs: int = knob(256, "Landers flown at once.", "lander", low=1, high=1024)
@@ -119,6 +121,13 @@ def _pays(weights: Any) -> bool:
     return isinstance(weights, RewardWeights) and all(map(is_number, astuple(weights)))
 
 
+# What a network is taught with that lands anywhere, by `python main.py train --preset anywhere`; not among the presets
+# that are offered on the screen, since what it needs to see is not drawn there.
+LANDS_ANYWHERE: Final = Config(
+    env=ANYWHERE, hidden=(128, 128), final_learning_rate=1e-4, schedule_decisions=3_000_000, gradient_steps=8,
+    replay_size=400_000, epsilon_decisions=100_000, steadiness=0.02,
+    reward_weights=RewardWeights(time=-0.2, switch=-0.1),
+)  # fmt: skip
 PRESETS: Final[dict[str, Config]] = {
     "modern": Config(),
     "classic": Config(

@@ -30,7 +30,10 @@ def add_commands(commands: Any) -> None:
     teach.add_argument(
         "--env", metavar="NAME", help="an environment of Gymnasium, such as CartPole-v1 (default: our own lander)"
     )
-    teach.add_argument("--preset", help="modern or classic (default: modern; for --env, settings of its own)")
+    teach.add_argument(
+        "--preset",
+        help="modern, classic or anywhere, which lands on any world (default: modern; for --env, settings of its own)",
+    )
     teach.add_argument(
         "--seconds", type=float, help="stop when the whole run, resumed or not, has trained for so many seconds"
     )
@@ -94,12 +97,12 @@ def _used_up(clock: TrainingClock, training: Training) -> str:
 
 def _advance(clock: TrainingClock, training: Training, output: Path, stop: list[int]) -> None:
     """Train until the clock or the user says stop, with a progress bar, keeping the work now and then."""
-    from ai.agent.config import LANDER
+    from ai.agent.config import ANYWHERE, LANDER
     from ai.training.checkpoints import save_run
 
     def shown(progress: Progress) -> tuple[int, str]:
         best = f" best {progress.best.figure}" if progress.best else ""
-        lander = training.config.env == LANDER
+        lander = training.config.env in (LANDER, ANYWHERE)
         recent = f"landed {progress.success_rate:.0%}" if lander else f"return {progress.mean_return:.1f}, mean"
         words = f"{recent} of the last 100, ε {progress.epsilon:.2f}, {progress.decisions:,} decisions{best}"
         return int(clock.share(training) * 1000), words
@@ -135,7 +138,7 @@ def _evaluate(arguments: argparse.Namespace) -> int:
     elif arguments.spawn is None:
         score = task.evaluate(agent, episodes, arguments.seed)
     else:
-        return fail(f"--spawn is for the lander; this network is for {agent.config.env}")
+        return fail(f"--spawn is for the lander on the moon; this network is for {agent.config.env}")
     if arguments.json:
         print(json.dumps(score.to_json(), indent=2))
         return 0
@@ -157,15 +160,19 @@ def _config(arguments: argparse.Namespace, begun: Config | None = None) -> Confi
 
     Raises ValueError for a change that makes no sense.
     """
-    from ai.agent.config import LANDER, PRESETS
+    from ai.agent.config import ANYWHERE, LANDER, LANDS_ANYWHERE, PRESETS
 
-    env: str = arguments.env if arguments.env is not None else begun.env if begun else LANDER
-    if arguments.preset is not None and arguments.preset not in PRESETS:
-        raise ValueError(f"--preset is one of {', '.join(PRESETS)}, not {arguments.preset}")
+    presets = {**PRESETS, "anywhere": LANDS_ANYWHERE}
+    if arguments.preset is not None and arguments.preset not in presets:
+        raise ValueError(f"--preset is one of {', '.join(presets)}, not {arguments.preset}")
+    usual = presets[arguments.preset or "modern"].env
+    env: str = arguments.env if arguments.env is not None else begun.env if begun else usual
     if arguments.preset is not None:
-        preset = PRESETS[arguments.preset].changed(env=env)
+        preset = presets[arguments.preset].changed(env=env)
     elif begun is not None:
         preset = begun.changed(env=env)
+    elif env == ANYWHERE:
+        preset = LANDS_ANYWHERE
     elif env != LANDER:
         from ai.training.gym_task import gym_config
 

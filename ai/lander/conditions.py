@@ -14,7 +14,10 @@ from ai.common.environment import Bools, Doubles
 
 @dataclass(frozen=True)
 class Conditions:
-    """Conditions as functions of the time since a flight began; the defaults change nothing, bit for bit."""
+    """Conditions as functions of the time since a flight began; the defaults change nothing, bit for bit.
+
+    Each number may also be an array (n,), with one for each slot.
+    """
 
     wind: float = 0.0  # N to the right
     gust: float = 0.0  # N, amplitude of the gusts around that
@@ -26,23 +29,24 @@ class Conditions:
 
     def __post_init__(self) -> None:
         numbers = (self.wind, self.gust, self.swing)
-        if not all(map(math.isfinite, numbers)) or self.gust_period <= 0 or self.swing_period <= 0 or self.tank < 0:
+        positive = np.greater(self.gust_period, 0) & np.greater(self.swing_period, 0) & np.greater_equal(self.tank, 0)
+        if not (all(np.isfinite(number).all() for number in numbers) and np.all(positive)):
             raise ValueError(f"forces and distances are finite, periods more than 0 and tanks not negative: {self}")
 
     @cached_property
     def pushes(self) -> bool:
         """Whether there is any wind."""
-        return self.wind != 0 or self.gust != 0
+        return bool(np.any(self.wind) or np.any(self.gust))
 
     @cached_property
     def fails(self) -> bool:
         """Whether an engine may do nothing when it is asked to fire."""
-        return math.isfinite(self.tank) or math.isfinite(self.outage[0])
+        return bool(np.isfinite(self.tank).any() or np.isfinite(self.outage[0]).any())
 
     @cached_property
     def moves(self) -> bool:
         """Whether the pad moves."""
-        return self.swing != 0
+        return bool(np.any(self.swing))
 
     def push(self, time: Doubles) -> Doubles:
         """Force of the wind to the right in N, at times (n,) in seconds."""

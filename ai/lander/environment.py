@@ -220,7 +220,7 @@ class LanderEnv(Craft):
     def observe(self, pad: Any = None) -> Floats:
         """Return every lander's observation (n, 9) of its target, or of another `pad`, one number or (n,)."""
         pad = self.target if pad is None else np.asarray(pad)
-        pads = len(self.ground.pads)
+        pads = self.ground.at_once
         contacts = self.contacts if pads == 1 else self.contacts * (self.touched == pad)[:, None]
         offset = self.position - (self._top(pad) + np.array([0.0, self.params.stand]))
         return sensed(offset, self._relative_velocity(), *self._turned(), contacts, pads=pads)
@@ -242,9 +242,9 @@ class LanderEnv(Craft):
         state, body = self.world.state, self.lander.index
         return state.sin[:, body], state.cos[:, body], self.angular_velocity
 
-    def observe_pads(self) -> Floats:
-        """Return every lander's observation of each pad, (n, pads, 9)."""
-        return np.stack([self.observe(pad) for pad in range(len(self.ground.pads))], axis=1)
+    def observe_pads(self, pilot: Any = None) -> Floats:
+        """Return every lander's observation of each pad, (n, pads, 9), or what `pilot` reads, (n, pads, features)."""
+        return np.stack([self.observe_for(pilot, pad) for pad in range(len(self.ground.pads))], axis=1)
 
     def surroundings(self, pad: Any = None) -> Floats:
         """Return what is around every lander (n, k) that `observe` leaves out, for the target or another `pad`.
@@ -261,6 +261,15 @@ class LanderEnv(Craft):
     def around_pads(self) -> Floats:
         """Return what is around every lander on its way to each pad, (n, pads, k)."""
         return np.stack([self.around(pad) for pad in range(len(self.ground.pads))], axis=1)
+
+    def observe_wide(self, pad: Any = None) -> Floats:
+        """Return every lander's observation and what is around it, side by side, (n, 9 + k)."""
+        return np.concatenate([LanderEnv.observe(self, pad), self.surroundings(pad)], axis=1)
+
+    def observe_for(self, pilot: Any, pad: Any = None) -> Floats:
+        """Return what a pilot reads: `observe_wide` if its network has inputs for that, else `observe`."""
+        wide = getattr(pilot, "num_features", NUM_FEATURES) > NUM_FEATURES
+        return self.observe_wide(pad) if wide else LanderEnv.observe(self, pad)
 
     def snapshot(self) -> dict[str, Any]:
         """Return everything a flight depends on but its random streams, to be put back by `restore`."""

@@ -50,11 +50,15 @@ Hill = tuple[tuple[float, float], ...]  # its surface from left foot to right, c
 
 @dataclass(frozen=True)
 class Ground:
-    """A plain at height `base`, convex hills on it, and pads; metres."""
+    """A plain at height `base`, convex hills on it, and pads; metres.
+
+    With `in_turn`, the pads may lie in one place, and a slot has one of them, its target.
+    """
 
     pads: tuple[Pad, ...]
     hills: tuple[Hill, ...] = ()
     base: float = PARAMS.ground
+    in_turn: bool = False
 
     def __post_init__(self) -> None:
         if not self.pads:
@@ -62,13 +66,18 @@ class Ground:
         if any(pad.width <= 0 or pad.top <= self.base for pad in self.pads):
             raise ValueError(f"a pad is wider than nothing and higher than the plain at {self.base} m")
         rows = sorted(self.pads, key=lambda pad: pad.x)
-        if any(left.right > right.left for left, right in pairwise(rows)):
+        if not self.in_turn and any(left.right > right.left for left, right in pairwise(rows)):
             raise ValueError("pads must not overlap")
 
     @classmethod
     def flat(cls, params: LanderParams = PARAMS) -> Ground:
         """One pad in the middle of a plain, as networks are trained on."""
         return cls((Pad(0.0, params.pad_top, params.pad_width),), base=params.ground)
+
+    @cached_property
+    def at_once(self) -> int:
+        """How many pads a slot has."""
+        return 1 if self.in_turn else len(self.pads)
 
     @cached_property
     def middles(self) -> Doubles:

@@ -13,7 +13,7 @@ from ai.lander.rules import NUM_FEATURES, OBSERVATION_SCALE, PARAMS, Limits
 # Metres sideways beyond which networks were never trained: with several pads, farther ones are shown at this.
 _FAR: Final = 16.0
 # What is around a lander besides the pad: its name, and the factor that scales it as observations are scaled.
-_SCALED: Final = {
+_SCALED: Final[dict[str, float]] = {
     "time left": 0.1,  # seconds, 20 at the most
     "pad width": 0.3,  # metres
     "gravity": 0.2,  # m/s²
@@ -85,12 +85,13 @@ def surroundings(craft: Craft, limits: Limits, pad: Any) -> Floats:
     numbers = np.zeros((craft.num_envs, len(SURROUNDINGS)))
     numbers[:, 0] = np.minimum(limits.time - time, _LONG)
     numbers[:, 1] = craft.ground.widths[pad]
-    numbers[:, 2] = craft.gravity
+    numbers[:, 2] = -craft.world.gravity[..., 1]
     numbers[:, 3] = params.main_thrust / params.mass
     if conditions.pushes:
         soon = (conditions.impulse(time + _SOON) - conditions.impulse(time)) / _SOON
-        for column, push in enumerate((conditions.push(time), soon, np.asarray(conditions.wind)), start=4):
-            numbers[:, column] = push / params.mass
+        for column, push in ((4, conditions.push(time)), (5, soon), (6, conditions.wind)):
+            numbers[:, column] = push
+        numbers[:, 4:7] /= params.mass
     numbers[:, 7] = 1.0
     numbers[:, 8] = numbers[:, 10] = _AHEAD
     if conditions.fails:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.config import LANDER, PRESETS, Config
+from ai.agent.config import ANYWHERE, LANDER, LANDS_ANYWHERE, PRESETS, Config
 from ai.agent.normalizer import Normalizer
 from ai.agent.storage import KIND, LAST, write_agent
 from ai.common.knobs import nearest_preset
@@ -84,7 +84,12 @@ def snapshot(training: Training, history: History | None = None) -> Snapshot:
     This measures nothing: the clock may decide when it is called, but never which network is best.
     """
     agent, config = training.agent, training.config
-    presets = PRESETS if config.env == LANDER else {"gym": gym_config(config.env)}
+    if config.env == LANDER:
+        presets = PRESETS
+    elif config.env == ANYWHERE:
+        presets = {"anywhere": LANDS_ANYWHERE}
+    else:
+        presets = {"gym": gym_config(config.env)}
     described = {
         "env": config.env,
         **nearest_preset(config.to_json(), {name: preset.to_json() for name, preset in presets.items()}),

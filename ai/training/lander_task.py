@@ -64,7 +64,11 @@ class Evaluation:
 
 def evaluate(pilot: Pilot, episodes: int, seed: int, spawn: str = "random", frame_skip: int = 4) -> Evaluation:
     """Fly `episodes` flights at once, without exploration, from spawns that follow from `seed`."""
-    going = trial(pilot, episodes, seed, spawn, frame_skip)
+    return evaluation_of(trial(pilot, episodes, seed, spawn, frame_skip))
+
+
+def evaluation_of(going: Generator[None, None, Evaluation]) -> Evaluation:
+    """Fly what `trial` or `flown` began to its end, and return the evaluation."""
     while True:
         try:
             next(going)
@@ -77,7 +81,12 @@ def trial(
     pilot: Pilot, episodes: int, seed: int, spawn: str = "random", frame_skip: int = 4
 ) -> Generator[None, None, Evaluation]:
     """Evaluate as `evaluate` does, one decision at a time, so that the caller can do other work in between."""
-    env = LanderEnv(episodes, seed, spawn, frame_skip)
+    return (yield from flown(pilot, LanderEnv(episodes, seed, spawn, frame_skip)))
+
+
+def flown(pilot: Pilot, env: LanderEnv) -> Generator[None, None, Evaluation]:
+    """Evaluate a pilot on one new flight in each slot of `env`, one decision at a time."""
+    episodes = env.num_envs
     observation = env.reset()
     returns: Doubles = np.zeros(episodes)
     switches = 0

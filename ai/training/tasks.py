@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ai.agent.config import LANDER, Config
+from ai.agent.config import ANYWHERE, LANDER, Config
 from ai.training.task import Task
 
 
@@ -16,6 +16,10 @@ def task_of(config: Config) -> Task:
         from ai.training.lander_task import LanderTask
 
         return LanderTask(config)
+    if config.env == ANYWHERE:
+        from ai.training.anywhere_task import AnywhereTask
+
+        return AnywhereTask(config)
     from ai.training.gym_task import GymTask
 
     return GymTask(config)

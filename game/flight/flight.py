@@ -210,7 +210,7 @@ class Flight:
     def _ask_network(self) -> int:
         if self.alone is None or self._held_for == 0:
             assert self.network is not None
-            self.alone = decide(self.network, self.env.observe(), self.env.actions)
+            self.alone = decide(self.network, self.env.observe_for(self.network), self.env.actions)
         self._held_for = (self._held_for + 1) % DECISION_STEPS
         return int(self.alone.action[0])
 
@@ -219,7 +219,7 @@ class Flight:
         assert self.copilot is not None
         decision = self.decision
         if decision is None or self._held_for == 0 or self.asked != decision.pilot[0]:
-            self.decision = decision = self.copilot.decide(self.env.observe_pads(), np.array([self.asked]))
+            self.decision = decision = self.copilot.decide(self.env.observe_pads(self.network), np.array([self.asked]))
             self._held_for = 0
             self._aim(decision.likely[0])
         self._held_for = (self._held_for + 1) % DECISION_STEPS

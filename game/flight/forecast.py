@@ -13,7 +13,7 @@ from typing import Final
 
 import numpy as np
 
-from ai.common.environment import Doubles, Floats
+from ai.common.environment import Doubles
 from ai.lander.environment import PARAMS, LanderEnv
 from ai.lander.ground import Ground
 from engine import DT
@@ -64,7 +64,7 @@ class Forecast:
         self.path: Doubles = np.empty((0, 2))
         self._policy = policy
         self._ahead = LanderEnv(1, 0, frame_skip=DECISION_STEPS, ground=ground)
-        self._observation: Floats = self._ahead.reset()
+        self._ahead.reset()
         self._places: list[Doubles] = []
 
     def follow(self, env: LanderEnv, decisions: int = _DECISIONS) -> None:
@@ -74,12 +74,11 @@ class Forecast:
             if not self._places:
                 ahead.restore(env.snapshot())
                 ahead.gravity, ahead.limits = env.gravity, env.limits
-                self._observation = ahead.observe()
             self._places.append(ahead.position[0].copy())
             if self._arrived():
                 self.path, self._places = np.array(self._places), []
                 continue
-            self._observation = ahead.glide(self._policy.act(self._observation, held=ahead.actions))
+            ahead.glide(self._policy.act(ahead.observe_for(self._policy), held=ahead.actions))
         self._leave_behind(env.position[0])
 
     def _arrived(self) -> bool:

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import logging
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final, Protocol, runtime_checkable
 
 from ai.common.decision import Decision
 from ai.common.environment import Floats, Ints
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
+from ai.lander.sensing import SURROUNDINGS
 from ai.nn.files import brief
 from game.core import texts
 from game.core.folders import looks_like_item
 
 DEFAULT: Final = "modern"
+ANYWHERE: Final = "anywhere"  # flies in place of a shipped network where it is not as on the moon
 SCRIPTED: Final = "scripted"
+LANDER: Final = "lander"  # folder of the networks that come with the game
 PLAYERS: Final = "models"  # folder of the player's own networks
 PARTS: Final = ("config.json", "online", "target")  # a folder with none of these files is not a network
 _log = logging.getLogger("tranquility")
@@ -55,11 +58,15 @@ def work_of(policy: Policy) -> int:
 
 @dataclass(frozen=True)
 class Network:
-    """Network by name. `flyer` is None if it could not be read, and `problem` then says why."""
+    """Network by name. `policy` is None if it could not be read, and `problem` then says why.
+
+    `stands_in` says why this one flies although another one should; empty for the one that was asked for.
+    """
 
     name: str
     policy: Policy | None = None
     problem: str = ""
+    stands_in: str = ""
 
 
 def word(name: str) -> str:
@@ -70,14 +77,17 @@ def word(name: str) -> str:
 def folders(models_dir: Path, user_dir: Path) -> dict[str, Path]:
     """Return every folder that looks like a lander's network, by name; the player's own come last.
 
-    A player's network with the name of a shipped one gets a distinct name, and is not left out.
+    A player's network with the name of a shipped one gets a distinct name, and is not left out. The one that lands
+    anywhere is, as it reads more than nine numbers: `chosen` has it where it is of use.
     """
     found: dict[str, Path] = {}
-    for parent in (models_dir / "lander", user_dir / PLAYERS):
+    for parent in (models_dir / LANDER, user_dir / PLAYERS):
         try:
             inside = sorted(path for path in parent.iterdir() if looks_like_item(path, PARTS))
         except OSError:
             continue
+        if parent == models_dir / LANDER:
+            inside = [path for path in inside if path.name != ANYWHERE]
         # The default network comes first, not in alphabetical order.
         for path in sorted(inside, key=lambda path: path.name != DEFAULT):
             taken = path.name in found or path.name == SCRIPTED
@@ -85,8 +95,8 @@ def folders(models_dir: Path, user_dir: Path) -> dict[str, Path]:
     return found
 
 
-def load(name: str, folder: Path) -> Network:
-    """Read one network. Never raises: `problem` of the answer says what is wrong."""
+def load(name: str, folder: Path, features: int = NUM_FEATURES) -> Network:
+    """Read one network with so many inputs. Never raises: `problem` of the answer says what is wrong."""
     from ai.agent.agent import DeepQAgent
     from ai.nn import ModelFormatError
 
@@ -99,26 +109,33 @@ def load(name: str, folder: Path) -> Network:
     except Exception as error:  # a player's folder can hold anything, and none of it may end the game
         _log.exception("reading %s", folder)
         return Network(name, problem=brief(f"{type(error).__name__}: {error}"))
-    if (agent.num_features, agent.num_actions) != (NUM_FEATURES, NUM_ACTIONS):
+    if (agent.num_features, agent.num_actions) != (features, NUM_ACTIONS):
         return Network(
             name,
             problem=texts.NETWORK_ELSEWHERE.format(
                 features=agent.num_features,
                 actions=agent.num_actions,
-                lander_features=NUM_FEATURES,
+                lander_features=features,
                 lander_actions=NUM_ACTIONS,
             ),
         )
     return Network(name, agent)
 
 
-def chosen(models_dir: Path, user_dir: Path, name: str = "") -> Network:
-    """Read the network of that name, or the shipped default if the name is empty or gone."""
-    known = folders(models_dir, user_dir)
-    for wanted in (name, DEFAULT):
-        if wanted in known:
-            return load(wanted, known[wanted])
-    return _missing(models_dir)
+def chosen(models_dir: Path, user_dir: Path, name: str = "", elsewhere: bool = False) -> Network:
+    """Read the network of that name, or the shipped default if the name is empty or gone.
+
+    Where it is not as on the moon (`elsewhere`), the one that lands anywhere takes the place of a shipped one.
+    """
+    known, shipped = folders(models_dir, user_dir), models_dir / LANDER
+    wanted = name if name in known else DEFAULT
+    network = load(wanted, known[wanted]) if wanted in known else _missing(models_dir)
+    if not elsewhere or known.get(wanted, shipped / DEFAULT).parent != shipped:
+        return network
+    anywhere = load(ANYWHERE, shipped / ANYWHERE, NUM_FEATURES + len(SURROUNDINGS))
+    if anywhere.policy:
+        return anywhere
+    return replace(network, stands_in=texts.NETWORK_STANDS_IN.format(name=network.name, problem=anywhere.problem))
 
 
 class Policies:
@@ -152,4 +169,4 @@ class Policies:
 
 
 def _missing(models_dir: Path) -> Network:
-    return Network(DEFAULT, problem=texts.NETWORK_MISSING.format(path=models_dir / "lander" / DEFAULT))
+    return Network(DEFAULT, problem=texts.NETWORK_MISSING.format(path=models_dir / LANDER / DEFAULT))

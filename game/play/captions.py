@@ -30,7 +30,9 @@ def draw_title(
 ) -> None:
     """Draw the title of a challenge or of a free flight, and the reason if the flight will not count."""
     if challenge:
-        hud.draw_corner(canvas, challenge.title, challenge.line, notice or challenge.goal)
+        flown = texts.WITH_NETWORK.format(name=network.name) if flight.network and challenge.elsewhere else ""
+        small = texts.MISSION_FLOWN.format(mission=challenge.title, flown=flown) if flown else challenge.title
+        hud.draw_corner(canvas, small, challenge.line, notice or challenge.goal)
     else:
         _draw_free_title(canvas, flight, network, hands, notice)
     draw_surroundings(canvas, flight.env)

@@ -7,7 +7,7 @@ from typing import Final
 
 from ai.flights.easing import AS_IT_IS
 from ai.lander.environment import Cause, LanderEnv, Outcome
-from ai.lander.missions import Mission
+from ai.lander.missions import STARTS, Mission
 from game.core import texts
 from game.core.settings import Settings
 from game.drawing.canvas import Canvas
@@ -62,6 +62,7 @@ class Challenge:
         through: whether the challenge is finished and free flights follow.
         eases: whether the player's easing applies to its flights.
         easing: the easing of its next flight.
+        elsewhere: whether it is flown where it is not as on the moon.
 
     """
 
@@ -73,6 +74,7 @@ class Challenge:
     through = False
     eases = False
     easing = AS_IT_IS
+    elsewhere = False
     next_hint = ""
     copy_hint = texts.CODE_HINT_COPY
     title = line = goal = opening = ""
@@ -152,6 +154,7 @@ class Race(Challenge):
 
     def __init__(self, record: Record, name: str) -> None:
         self._record, self._name = record, name
+        self.elsewhere = _elsewhere(record.recording)
         self.line = texts.DUEL_RIVAL.format(name=name)
         self.opening = texts.DUEL_BEGIN.format(name=name)
 
@@ -177,6 +180,7 @@ class ContinuedFlight(Challenge):
     def __init__(self, flight_replay: FlightReplay, name: str) -> None:
         self._recording, self._step, self._name = flight_replay.record.recording, flight_replay.at, name
         self._moment = flight_replay.flight.env.snapshot()
+        self.elsewhere = _elsewhere(self._recording)
         self.name = flight_replay.record.recording.mission or flight_replay.record.entry.course
         self.line = texts.FLY_ON_LINE.format(seconds=flight_replay.at / 60)
 
@@ -193,6 +197,11 @@ class ContinuedFlight(Challenge):
         return Ghost(rerun, self._name)
 
 
+def _elsewhere(recording: Recording) -> bool:
+    """Whether a recorded flight was flown where it is not as on the moon."""
+    return bool(recording.gravity) or (recording.mission != "" and STARTS[recording.mission].elsewhere)
+
+
 def _as_begun(recording: Recording, seed: int, network: Policy | None) -> Flight:
     """Return a flight at the start of a recorded one."""
     return Flight(
@@ -207,7 +216,7 @@ class FlownMission(Challenge):
     eases = True
 
     def __init__(self, mission: Mission, rival: Record | None = None, rival_name: str = texts.MISSION_RIVAL) -> None:
-        self.mission, self.name = mission, mission.name
+        self.mission, self.name, self.elsewhere = mission, mission.name, mission.elsewhere
         self._rival, self._rival_name = rival, rival_name
         self.line, self.opening = texts.MISSIONS[mission.name]
         self.goal = texts.MISSION_GOAL.format(fuel=mission.gold[0], seconds=mission.gold[1])

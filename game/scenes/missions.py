@@ -188,7 +188,7 @@ _TOLD: Final = {
 
 def _network_words(name: str) -> str:
     """Return the shipped network's result in a mission, in words."""
-    return texts.MISSION_NETWORK_FAILS.get(name, texts.MISSION_NETWORK).format(landed=MISSIONS[name].landed)
+    return texts.MISSION_NETWORK.format(landed=MISSIONS[name].landed)
 
 
 def _best_by_course(entries: list[Entry]) -> dict[str, Entry]:

@@ -75,6 +75,9 @@ class PlayScene(Scene):
     def enter(self) -> None:
         """Resume the paused flight, unless choices made meanwhile require a new one."""
         self.flown.set_calm(self._settings.reduced_motion)
+        if self._elsewhere != self._loaded_for:
+            self._load_network()
+            self.flown.change_network(self.network.policy)
         recording, challenge = self.flight.recording, self.challenge
         other = not challenge and self._chosen() != (recording.pads, self.flown.hands)
         eases = (not challenge or challenge.eases) and eased(self._settings) != recording.easing
@@ -214,6 +217,8 @@ class PlayScene(Scene):
 
     def _begin(self, seed: int) -> None:
         self._stick.begin()
+        if self._elsewhere != self._loaded_for:
+            self._load_network()
         if self.challenge:
             self.flown = FlownFlight(self.context, seed, self.network.policy, self.challenge)
             return
@@ -261,11 +266,19 @@ class PlayScene(Scene):
         """Whether gravity is changed or assists are chosen; such flights do not count towards the player's skill."""
         return self._settings.gravity != 1 or sets_apart(self._settings)
 
+    @property
+    def _elsewhere(self) -> bool:
+        """Whether the next flight is flown where it is not as on the moon."""
+        return self.challenge.elsewhere if self.challenge else self._settings.gravity != 1
+
     def _load_network(self) -> None:
-        context = self.context
-        self.network = networks.chosen(context.models_dir, context.user_dir, context.settings.model)
+        context, self._loaded_for = self.context, self._elsewhere
+        settings = context.settings
+        self.network = networks.chosen(context.models_dir, context.user_dir, settings.model, self._elsewhere)
         if self.network.problem:
             context.note(texts.NO_NETWORK.format(problem=self.network.problem))
+        elif self.network.stands_in:
+            context.note(self.network.stands_in)
 
     def _new_seed(self) -> int:
         return int(self.context.rng.integers(2**31))

@@ -31,7 +31,7 @@ from game.ui.context import Context
 from game.ui.listing import Listing
 from tests.support.driver import Driver
 from tests.support.flights import kept, play, scripted
-from tests.support.missions import fly
+from tests.support.missions import fly, pilots
 
 Open = Callable[..., Driver]
 REST = float(PARAMS.pad_top + PARAMS.stand + 0.002)
@@ -105,9 +105,9 @@ def test_every_mission_can_be_won_and_has_a_recorded_flight_that_earns_gold(name
 
 
 def test_the_network_lands_where_its_page_says_so():
-    agent = DeepQAgent.load(MODELS_DIR / "lander" / "modern")
+    flyers = pilots(MODELS_DIR / "lander")
     for mission in MISSIONS.values():
-        landed = int((fly(agent, mission, 20)[0] == Outcome.LANDED).sum())
+        landed = int((fly(flyers[mission.elsewhere], mission, 20)[0] == Outcome.LANDED).sum())
         assert abs(landed - mission.landed) <= 2, mission.name  # another processor may round otherwise
 
 
@@ -225,13 +225,13 @@ def test_beside_the_player_flies_what_lands_or_what_they_choose(open_game: Open)
     driver.key(pygame.K_ESCAPE)
     driver.keys(*[pygame.K_DOWN] * 10, pygame.K_RETURN)
     assert play(driver).challenge.name == "outage"
-    assert isinstance(play(driver).flown.ghost.flight, ReplayedFlight)
+    assert not isinstance(play(driver).flown.ghost.flight, ReplayedFlight)
     driver.key(pygame.K_ESCAPE)
     driver.key(pygame.K_TAB)
-    driver.key(pygame.K_LEFT)
+    driver.key(pygame.K_RIGHT)
     driver.key(pygame.K_TAB)
     driver.key(pygame.K_RETURN)
-    assert not isinstance(play(driver).flown.ghost.flight, ReplayedFlight)
+    assert isinstance(play(driver).flown.ghost.flight, ReplayedFlight)
 
 
 def test_the_best_flight_of_ones_own_can_be_raced_and_a_damaged_one_is_told_of(open_game: Open, context: Context):

@@ -1,0 +1,51 @@
+"""The lander at random sites as a task to learn, with what is around it as further inputs."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from ai.agent.config import CURRICULUM, Config
+from ai.agent.schedule import touchdown_limits
+from ai.agent.symmetry import Symmetry
+from ai.common.environment import Env
+from ai.lander.anywhere import SITES, AnywhereEnv
+from ai.lander.environment import MIRROR_ACTIONS, MIRROR_FEATURES, MIRROR_SIGNS, NUM_FEATURES
+from ai.lander.pilots import Pilot
+from ai.lander.sensing import SURROUNDINGS, SURROUNDINGS_MIRROR
+from ai.lander.spawns import Curriculum
+from ai.training.lander_task import Evaluation, LanderTask, evaluation_of, flown
+
+ANYWHERE_SYMMETRY: Final = Symmetry(
+    np.concatenate([MIRROR_SIGNS, SURROUNDINGS_MIRROR]),
+    np.concatenate([MIRROR_FEATURES, NUM_FEATURES + np.arange(len(SURROUNDINGS))]),
+    MIRROR_ACTIONS,
+)
+
+
+class AnywhereTask(LanderTask):
+    """Task of learning to land at random sites; it is measured at sites of each kind equally often."""
+
+    num_features = AnywhereEnv.num_features
+    evaluate_every, validation_episodes, test_episodes = 250_000, 720, 1800
+
+    def __init__(self, config: Config) -> None:
+        super().__init__(config)
+        self.symmetry = ANYWHERE_SYMMETRY
+
+    def make_env(self, rng: np.random.Generator) -> AnywhereEnv:
+        """Make the landers to train with."""
+        config = self.config
+        spawn = Curriculum() if config.spawn == CURRICULUM else config.spawn
+        return AnywhereEnv(config.num_envs, rng, spawn, config.frame_skip, weights=config.reward_weights)
+
+    def update_env(self, decisions: int, env: Env) -> None:
+        """Tighten the limits of a touchdown over the schedule, from those that are told to a share of them."""
+        if isinstance(env, AnywhereEnv):
+            env.strictness = touchdown_limits(self.config, decisions)
+
+    def evaluate(self, pilot: Pilot, episodes: int, seed: int) -> Evaluation:
+        """Fly so many flights at once from random spawns."""
+        env = AnywhereEnv(episodes, seed, "random", self.config.frame_skip, sites=tuple(SITES))
+        return evaluation_of(flown(pilot, env))

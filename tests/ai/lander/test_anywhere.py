@@ -1,0 +1,97 @@
+"""Landers of one batch that fly at different sites, each as it would alone."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ai.lander.anywhere import GROUND, SITES, AnywhereEnv, Site
+from ai.lander.conditions import Conditions
+from ai.lander.environment import LIMITS, NUM_FEATURES, PARAMS, LanderEnv, Outcome
+from ai.lander.ground import Ground, Pad
+from ai.lander.pilots import ScriptedPilot
+from ai.lander.sensing import SURROUNDINGS, SURROUNDINGS_SCALE
+
+HARD = Site(9.81, 16.0, 0.06, 3.0, 3.0, 12.0, 0.2, 0.3, 4.0, 5.0, 0.4, 0.9, 2.0, 15.0, 2)
+MIXED = (Site(), HARD, Site(wind=-0.3, swing=-1.0, pad=3), Site(gravity=0.9, thrust=3.0, air=0.2, tank=2.0))
+
+
+def alone(site: Site) -> LanderEnv:
+    """A lander of its own at a site, made as missions are."""
+    pad = GROUND.pads[site.pad]
+    return LanderEnv(
+        1, 0, frame_skip=1,
+        params=replace(PARAMS, gravity=site.gravity, main_thrust=site.thrust, quadratic_drag=site.air),
+        ground=Ground((Pad(0.0, pad.top, pad.width),)),
+        limits=replace(LIMITS, touch_speed=site.touch_speed, slide_speed=site.slide_speed, time=site.time),
+        conditions=Conditions(site.wind, site.gust, site.gust_period, site.tank, (site.dead, site.back),
+                              site.swing, site.swing_period),
+    )  # fmt: skip
+
+
+def test_each_lander_of_a_batch_flies_as_it_would_alone():
+    start = np.array([2.0, 11.0, -0.3, -0.5, 0.05, 0.0])
+    env = AnywhereEnv(len(MIXED), 0, frame_skip=1)
+    env.reset()
+    env.settle(MIXED)
+    env.place(np.ones(len(MIXED), bool), np.tile(start, (len(MIXED), 1)))
+    single = [alone(site) for site in MIXED]
+    for other in single:
+        other.reset()
+        other.place(np.ones(1, bool), start[None])
+    pilot = ScriptedPilot()
+    for _ in range(60 * 26):
+        actions = pilot.act(env.observe()[:, :NUM_FEATURES])
+        env.step(actions)
+        for slot, other in enumerate(single):
+            other.step(actions[slot : slot + 1])
+            assert env.observe()[slot] == pytest.approx(other.observe_wide()[0], abs=1e-5)
+            assert env.outcome[slot] == other.outcome[0]
+            assert env.fuel[slot] == pytest.approx(other.fuel[0])
+    assert Outcome.FLYING not in env.outcome
+    assert Outcome.LANDED in env.outcome
+
+
+def test_a_flight_and_its_site_do_not_depend_on_how_many_fly_beside():
+    few, many = AnywhereEnv(2, 5), AnywhereEnv(40, 5)
+    for _ in range(3):
+        assert np.array_equal(few.reset(), many.reset()[:2])
+        for _ in range(10):
+            assert np.array_equal(few.step(np.full(2, 4)).observation, many.step(np.full(40, 4)).observation[:2])
+
+
+def test_only_the_slots_that_begin_anew_get_new_sites():
+    env = AnywhereEnv(6, 1, sites=("any",))
+    before = env.reset()
+    after = env.reset(np.array([True, False] * 3))
+    assert np.array_equal(before[1::2], after[1::2])
+    assert (before[::2, NUM_FEATURES:] != after[::2, NUM_FEATURES:]).any(axis=1).all()
+
+
+def test_sites_are_of_the_kinds_asked_for():
+    env = AnywhereEnv(60, 2, sites=("moon", "earth"))
+    seen = env.reset()[:, NUM_FEATURES:] / SURROUNDINGS_SCALE
+    gravity = seen[:, SURROUNDINGS.index("gravity")]
+    assert gravity == pytest.approx(np.where(env.kind == 0, PARAMS.gravity, 9.81))
+    assert set(env.kind) == {0, 1}
+    for wrong in ((), ("moon", "venus")):
+        with pytest.raises(ValueError, match="sites are some of"):
+            AnywhereEnv(1, 0, sites=wrong)
+
+
+def test_stricter_limits_are_not_told():
+    env = AnywhereEnv(1, 0, "fixed", sites=("moon",))
+    env.strictness = 0.5
+    env.reset()
+    assert env.limits.touch_speed == pytest.approx(0.5 * LIMITS.touch_speed)
+    assert env.surroundings()[0, -1] / SURROUNDINGS_SCALE[-1] == pytest.approx(LIMITS.touch_speed)
+
+
+@pytest.mark.parametrize("kind", SITES)
+def test_sites_of_every_kind_can_be_flown(kind: str):
+    env = AnywhereEnv(20, 3, "near", sites=(kind,))
+    assert env.reset().shape == (20, AnywhereEnv.num_features)
+    while (env.outcome == Outcome.FLYING).any():
+        result = env.step(ScriptedPilot().act(env.observe_for(None)))
+    assert np.isfinite(result.observation).all()
+    assert (env.outcome == Outcome.LANDED).any()
