@@ -58,7 +58,7 @@ class FlightSound:
         self._touch()
         outcome = Outcome(int(env.outcome[slot]))
         if outcome is not self._outcome and outcome in _ENDS:
-            self._sound.play("slow_crash" if self._pace.slow and outcome is Outcome.CRASHED else _ENDS[outcome])
+            self._end(outcome)
         self._outcome = outcome
         if outcome is Outcome.FLYING:
             self._sound_height()
@@ -74,12 +74,24 @@ class FlightSound:
         self._touched = bool(self._down.any())
         self._rung, self._since_note = -1, 0
 
+    def _end(self, outcome: Outcome) -> None:
+        """Play the sound of an ending; a craft that is whole beside the pad is set down, and lost its landing."""
+        if self._env.intact[self._slot]:
+            self._sound.play("touchdown", 0.15 + 0.85 * float(self._env.impact[self._slot, 0]) / self._touch_speed)
+            self._sound.play("lost")
+        else:
+            self._sound.play("slow_crash" if self._pace.slow and outcome is Outcome.CRASHED else _ENDS[outcome])
+
+    @property
+    def _touch_speed(self) -> float:
+        return self._env.limits.touch_speed
+
     def _touch(self) -> None:
         """Play a thud for every foot that touches, as loud as its speed; and the contact note, once."""
         env, slot = self._env, self._slot
         down = env.contacts[slot]
         if (down & ~self._down).any() and env.outcome[slot] != Outcome.CRASHED:
-            self._sound.play("touchdown", 0.15 + 0.85 * min(1.0, max(0.0, self._fall) / env.limits.touch_speed))
+            self._sound.play("touchdown", 0.15 + 0.85 * min(1.0, max(0.0, self._fall) / self._touch_speed))
             if not self._touched:
                 self._sound.play("contact")
             self._touched = True

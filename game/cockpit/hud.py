@@ -231,8 +231,10 @@ def draw_card(
     lower = _ADVICE_ROW if advise and card.advice else 0
     canvas.panel((card.left, top, CARD.width, CARD.height + lower + (_RIVAL_ROWS if rival else 0)))
     colour = canvas.palette.good if card.good else canvas.palette.warn
+    colour = INK if card.intact else colour
     canvas.glow((left + 10, top + 44), 30, colour, 0.5 * shown)
-    canvas.marker("check" if card.good else "cross", (left + 10, top + 44), 18, colour)
+    mark: Shape = "check" if card.good else "diamond" if card.intact else "cross"
+    canvas.marker(mark, (left + 10, top + 44), 18, colour)
     canvas.text(card.title, (left + 34, top + 52), size=TITLE, colour=colour)
     score = canvas.text(card.score, (left + width, top + 52), size=TEXT, colour=HUMAN, align="right")
     for lamp in range(card.medal):

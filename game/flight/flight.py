@@ -114,6 +114,16 @@ class Flight:
         return self.outcome is not Outcome.FLYING
 
     @property
+    def intact(self) -> bool:
+        """Whether it has ended beside the pad with nothing broken."""
+        return bool(self.env.intact[0])
+
+    @property
+    def wrecked(self) -> bool:
+        """Whether it has ended in a wreck."""
+        return self.outcome is Outcome.CRASHED and not self.intact
+
+    @property
     def flown_by(self) -> StickHolder:
         """Who chose the action of the last step."""
         return self.recording.hands[-1] if self.recording.hands else self.hand

@@ -65,6 +65,7 @@ class Entry:
         course: name of a mission; empty for a free flight.
         medal: 3 for gold, 2, 1, and 0 for none.
         file: name of the flight's file, for a replay.
+        intact: whether it came down whole beside the pad; its outcome is CRASHED.
 
     """
 
@@ -85,6 +86,7 @@ class Entry:
     pace: _Figure = 1.0
     rules: _Number = 0
     barred: _Name = ""
+    intact: bool = False
 
     @property
     def practice(self) -> bool:

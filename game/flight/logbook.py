@@ -40,6 +40,7 @@ def describe(flight: Flight, when: float, **more: Any) -> Entry:
     return Entry(
         when=round(when, 3),
         outcome=flight.outcome.name,
+        intact=flight.intact,
         seconds=round(float(env.time[0]), 3),
         fuel=round(float(env.fuel[0]), 3),
         touchdown=round(float(env.impact[0, 0]), 3),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Final
 
-from ai.lander.environment import Outcome
 from game.cockpit import hud
 from game.cockpit.cockpit import Cockpit
 from game.core.pace import SlowMotion
@@ -59,7 +58,7 @@ class FlightEnding:
     def follow(self) -> None:
         """Advance by one step; the first step after a crash starts slow motion."""
         self._since += 1
-        if self._since == 1 and self._flight.outcome is Outcome.CRASHED and not self.calm:
+        if self._since == 1 and self._flight.wrecked and not self.calm:
             self._pace.slow_down()
 
     def hurry(self) -> None:

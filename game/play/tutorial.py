@@ -319,7 +319,7 @@ class Tutorial(Challenge):
 
     def _why_beside(self, flight: Flight) -> str:
         """Return the reason written beside the craft; empty while the wreck has its own callout."""
-        return "" if flight.outcome is Outcome.CRASHED else self.why
+        return "" if flight.wrecked else self.why
 
     def draw(self, canvas: Canvas, view: View, flight: Flight, scene: DrawnFlight) -> None:
         """Draw the instruction beside the craft, and below it the reason for a restart."""

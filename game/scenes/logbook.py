@@ -18,6 +18,7 @@ from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import HUMAN, LABEL, MARGIN, MUTE, SMALL, TITLE, VIEW_SIZE
 from game.flight.flight_file import Entry, Record
 from game.flight.logbook import Records, Totals, best, skill, totals
+from game.flight.outcomes import ending_word
 from game.play.race import race
 from game.ui.actions import Action, Table
 from game.ui.context import Context
@@ -201,7 +202,7 @@ def entry_row(entry: Entry) -> Row:
     when = time.strftime("%Y-%m-%d %H:%M", time.localtime(entry.when))
     points = (texts.LOGBOOK_UNCOUNTED if entry.bar else "{points}").format(points=entry.score)
     by = {1.0: texts.LOGBOOK_YOU, 0.0: texts.LOGBOOK_NETWORK}.get(entry.human, texts.LOGBOOK_SHARED)
-    end, seconds = texts.OUTCOMES[entry.outcome][0], f"{tenths(entry.seconds):.1f} s"
+    end, seconds = ending_word(entry.outcome, intact=entry.intact), f"{tenths(entry.seconds):.1f} s"
     return when, _challenge(entry), end, seconds, points if entry.landed else "–", by
 
 

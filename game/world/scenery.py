@@ -119,16 +119,18 @@ class Scenery:
     def draw_craft(self, canvas: Canvas, alpha: float, words: bool = True) -> None:
         """Draw the craft with its flames and dust; `words` is whether to draw the callouts too.
 
-        A craft that has left the area is not drawn; a cross marks where it left.
+        A craft that has left the area flies out of view; a cross marks where it left.
         """
         view, pose = self.view(canvas.scale, alpha), self._flight.poses.at(alpha)[0]
         if self._flight.outcome is Outcome.OUT_OF_BOUNDS:
             mark_lost(canvas, view, pose)
+            if self.stage.pose_after(alpha) is not None:
+                self.stage.draw_lander(canvas, view, pose, alpha=alpha)
             return
         self._callouts.draw_light(canvas, view, pose)
         self.stage.draw_lander(canvas, view, pose, alpha=alpha)
         self.stage.draw_dust(canvas, view, alpha)
-        shown = self.stage.wreck_pose(alpha) if self._flight.outcome is Outcome.CRASHED else None
+        shown = self.stage.pose_after(alpha)
         if words:
             self._callouts.draw_words(canvas, view, pose if shown is None else shown)
 
