@@ -13,6 +13,7 @@ from ai.common.environment import Doubles, Floats
 from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.missions import STARTS
 from ai.lander.pilots import COAST
+from ai.lander.rules import AREAS
 from game.flight.handicap import OWN, Handicap
 from game.flight.networks import Policy, QPolicy, decide
 from game.flight.poses import Poses
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
 # Physics steps per decision of a network, here as in training.
 DECISION_STEPS: Final = 4
+AREA: Final = len(AREAS) - 1  # version of the area in which new flights are flown
 
 
 class StickHolder(Enum):
@@ -37,6 +39,7 @@ class Recording:
     """Recording of a flight for an exact replay: its start, and the action of every step.
 
     `hands` says who chose each action: with a shared stick, the person if the action is the one they asked for.
+    `area` is the version of the area's edges, an index of `ai.lander.rules.AREAS`.
     `gravity` lists its changes: the first step, and the share of normal gravity.
     """
 
@@ -46,6 +49,7 @@ class Recording:
     actions: list[int] = field(default_factory=list)
     hands: list[StickHolder] = field(default_factory=list)
     mission: str = ""
+    area: int = AREA
     gravity: list[tuple[int, float]] = field(default_factory=list)
 
     def gravity_at(self, step: int) -> float:
@@ -64,6 +68,7 @@ class Flight:
         hands: handicap of the keys, a name of `game.flight.handicap.HANDS`.
         mission: name of one of `ai.lander.missions.STARTS`, which sets the start and the conditions; empty for none.
         shares: whether the network may share the stick, and not only take it.
+        area: version of the area's edges, an index of `ai.lander.rules.AREAS`.
 
     Attributes:
         copilot: shares the stick while its assist is above 0; None if the network has no Q-values.
@@ -84,15 +89,17 @@ class Flight:
         hands: str = OWN,
         mission: str = "",
         shares: bool = True,
+        area: int = AREA,
     ) -> None:
         if mission:
             self.env = STARTS[mission].begin()
         else:
             self.env = LanderEnv(1, seed, spawn, frame_skip=1, ground=ground_of(seed, pads))
             self.env.reset()
+        self.env.limits = self.env.limits.in_area(area)
         self.observation: Floats = self.env.observe()
         self.hand, self.shares = StickHolder.HUMAN, shares
-        self.recording = Recording(seed, spawn, pads, mission=mission)
+        self.recording = Recording(seed, spawn, pads, mission=mission, area=area)
         self.poses = Poses(self.env)
         self.asked, self.overridden = COAST, False
         self.decision: SharedDecision | None = None

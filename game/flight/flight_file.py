@@ -17,6 +17,7 @@ from typing import Annotated, Any, Final
 
 from ai.lander.environment import NUM_ACTIONS, Outcome
 from ai.lander.missions import MISSIONS
+from ai.lander.rules import AREAS
 from ai.lander.spawns import SPAWNS
 from ai.nn.files import brief, parse_json, read_text, write_text
 from ai.nn.schema import OneOf, Seed, Share, Sized, Within, check_header, read_as
@@ -25,9 +26,10 @@ from game.core.settings import GRAVITY_SHARES
 from game.flight.flight import Recording, StickHolder
 
 FORMAT: Final = "tranquility flight"
-VERSION: Final = 4
-# Version 1 had no changes of gravity, 2 no rules of missions, 3 no reason why a flight does not count.
-_READS: Final = (1, 2, 3, 4)
+VERSION: Final = 5
+# Version 1 had no changes of gravity, 2 no rules of missions, 3 no reason why a flight does not count,
+# 4 no version of the area: it was the first.
+_READS: Final = (1, 2, 3, 4, 5)
 _LONGEST: Final = 120 * 60  # physics steps of a flight, at most
 _LARGEST: Final = 1_000_000  # bytes
 _LONGEST_NAME: Final = 255  # characters, as in the name of a file
@@ -141,6 +143,7 @@ class _FlightFile:
     hands: str
     end: tuple[float, float, float]
     entry: Entry
+    area: Annotated[int, OneOf(range(len(AREAS)))] = 0
     gravity: tuple[tuple[_Number, Annotated[float, Within(*GRAVITY_SHARES)]], ...] = ()
 
 
@@ -170,7 +173,7 @@ def to_text(record: Record) -> str:
     recording = record.recording
     return json.dumps({
         "format": FORMAT, "version": VERSION, "seed": recording.seed, "spawn": recording.spawn,
-        "pads": recording.pads, "mission": recording.mission, "actions": _packed(recording.actions),
+        "pads": recording.pads, "mission": recording.mission, "area": recording.area, "actions": _packed(recording.actions),
         "hands": _packed(hand.value for hand in recording.hands), "gravity": recording.gravity,
         "end": record.end, "entry": asdict(record.entry),
     }, indent=1) + "\n"  # fmt: skip
@@ -193,7 +196,8 @@ def from_text(text: str) -> Record:
     steps = [step for step, _ in file.gravity]
     if steps != sorted(set(steps)):
         raise ValueError(texts.FLIGHT_GRAVITY)
-    recording = Recording(file.seed, file.spawn, file.pads, actions, hands, file.mission, list(file.gravity))
+    gravity = list(file.gravity)
+    recording = Recording(file.seed, file.spawn, file.pads, actions, hands, file.mission, file.area, gravity)
     return Record(recording, file.entry, file.end)
 
 

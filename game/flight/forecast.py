@@ -73,7 +73,7 @@ class Forecast:
         for _ in range(decisions):
             if not self._places:
                 ahead.restore(env.snapshot())
-                ahead.gravity = env.gravity
+                ahead.gravity, ahead.limits = env.gravity, env.limits
                 self._observation = ahead.observe()
             self._places.append(ahead.position[0].copy())
             if self._arrived():

@@ -179,7 +179,8 @@ class ContinuedFlight(Challenge):
 
 def _as_begun(recording: Recording, seed: int, network: Policy | None) -> Flight:
     """Return a flight at the start of a recorded one."""
-    return Flight(seed, network, recording.spawn, pads=recording.pads, mission=recording.mission)
+    spawn, pads = recording.spawn, recording.pads
+    return Flight(seed, network, spawn, pads=pads, mission=recording.mission, area=recording.area)
 
 
 class FlownMission(Challenge):
