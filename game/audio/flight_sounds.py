@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 
 from ai.common.environment import Doubles
+from ai.lander.edges import near_edges
 from ai.lander.environment import LanderEnv, Outcome
 from game.audio.instruments import RUNGS, altitude_key
 from game.audio.mixer import Sound
@@ -21,6 +22,7 @@ _ENDS: Final = {
 _HARD_BRAKING: Final = 0.8  # share of the greatest deceleration above which a fall is warned of
 _REACTION: Final = 0.4  # reaction time of a warned pilot in seconds
 _WARN_TILT_BELOW: Final = 6.0  # metres
+_WARN_EDGE: Final = 6.0  # metres
 _WARN_EVERY: Final = 40  # steps
 # The altitude tone has a note for every half metre near the ground, and for every metre above.
 HEIGHTS: Final = np.array([*np.arange(0.0, 4.0, 0.5), *np.arange(4.0, 4.0 + RUNGS - 8)])
@@ -98,13 +100,15 @@ class FlightSound:
         self._down, self._fall = down.copy(), -float(env.velocity[slot, 1])
 
     def _warn(self) -> None:
-        """Warn of a likely crash, by speed or by tilt; alternate if both apply."""
+        """Warn of a likely crash, by speed or by tilt, and of the area's edge; take turns if several apply."""
         env, slot = self._env, self._slot
         warnings = []
         if self._falls_too_fast():
             warnings.append("too_fast")
         if env.tilt[slot] > env.limits.touch_tilt and env.altitude[slot] < _WARN_TILT_BELOW:
             warnings.append("too_tilted")
+        if any(edge.ahead and edge.away < _WARN_EDGE for edge in near_edges(env, slot)):
+            warnings.append("edge")
         self._rest = max(0, self._rest - 1)
         if warnings and not self._rest:
             self._sound.play(warnings[self._turn % len(warnings)])

@@ -13,6 +13,8 @@ import pygame
 
 from ai.lander.environment import LanderEnv
 from ai.lander.rules import tenths
+from game.cockpit.ladder_mark import WIDTH as LADDER_WIDTH
+from game.cockpit.ladder_mark import draw_ladder
 from game.core import texts
 from game.drawing.canvas import Canvas, Point
 from game.drawing.paint_cache import PaintCache
@@ -53,6 +55,7 @@ _CAPITAL: Final = 0.72  # height of a figure, in shares of its font size
 _ASIDE, _ABOVE = 4.0, 16.0
 _WORDS: Final = (180.0, 66.0)
 _FIGURES: Final = PaintCache(64)
+OPENING: Final = 122.0  # row of the words over a craft that waits
 _LITTLE_TIME: Final = 5.0
 _PLENTY_OF_TIME: Final = 120.0
 
@@ -216,6 +219,7 @@ def draw_share(canvas: Canvas, left: float, top: float, width: float, human: flo
 CARD: Final = pygame.Rect(400, 136, 480, 264)
 _ADVICE_ROW: Final = 24
 _RIVAL_ROWS: Final = 60
+_LADDER_ROW: Final = 28
 
 
 def draw_card(
@@ -229,7 +233,8 @@ def draw_card(
     drop = 10 * (1 - shown)
     left, top, width = card.left + 32, CARD.top - drop, CARD.width - 64
     lower = _ADVICE_ROW if advise and card.advice else 0
-    canvas.panel((card.left, top, CARD.width, CARD.height + lower + (_RIVAL_ROWS if rival else 0)))
+    ladder = _LADDER_ROW if card.climb else 0
+    canvas.panel((card.left, top, CARD.width, CARD.height + lower + ladder + (_RIVAL_ROWS if rival else 0)))
     colour = canvas.palette.good if card.good else canvas.palette.warn
     colour = INK if card.intact else colour
     canvas.glow((left + 10, top + 44), 30, colour, 0.5 * shown)
@@ -262,12 +267,16 @@ def draw_card(
             align="centre",
         )
         canvas.marker("diamond", (words.left - 10, top + 184), 8, NET)
+    if card.rung is not None and ladder:
+        draw_ladder(canvas, left + 1, top + 214, card.rung)
+        canvas.text(card.climb, (left + LADDER_WIDTH + 8, top + 214), size=SMALL, room=width - LADDER_WIDTH - 8)
+    top += ladder
     canvas.line((left, top + 218), (left + width, top + 218), LINE)
 
 
 def card_row(card: OutcomeCard, hints: list[Hint], shown: float, advise: bool, *, rival: bool) -> HintRow:
     """Return the row of hints at the foot of that card."""
-    lower = _ADVICE_ROW * bool(advise and card.advice) + _RIVAL_ROWS * rival
+    lower = _ADVICE_ROW * bool(advise and card.advice) + _RIVAL_ROWS * rival + _LADDER_ROW * bool(card.climb)
     place = (card.left + 32, CARD.top - 10 * (1 - shown) + lower + 244)
     return HintRow(hints, place, room=CARD.width - 64)
 
@@ -285,18 +294,20 @@ def _draw_rival(canvas: Canvas, rival: RivalOutcome, labels: Sequence[str], corn
         canvas.text(unit, (figure.right + 4, top + 25), size=LABEL, colour=MUTE)
 
 
-def draw_opening(canvas: Canvas, hints: Sequence[Hint], line: str, paths: Sequence[tuple[str, Colour]]) -> None:
+def draw_opening(
+    canvas: Canvas, hints: Sequence[Hint], line: str, paths: Sequence[tuple[str, Colour]], top: float = OPENING
+) -> None:
     """Draw the controls and the legend of the dotted paths in the middle, while the craft hangs and waits."""
     middle = VIEW_SIZE[0] / 2
-    canvas.text(line, (middle, 122), size=TEXT, colour=MUTE, align="centre")
-    row = HintRow(hints, (0, 150), size=TEXT)
-    replace(row, position=(middle - row.width(canvas) / 2, 150)).draw(canvas)
+    canvas.text(line, (middle, top), size=TEXT, colour=MUTE, align="centre")
+    row = HintRow(hints, (0, top + 28), size=TEXT)
+    replace(row, position=(middle - row.width(canvas) / 2, top + 28)).draw(canvas)
     gap, dots = 32, 30
     x = middle - (sum(canvas.text_width(text, size=SMALL) + dots for text, _ in paths) + gap * (len(paths) - 1)) / 2
     for text, colour in paths:
         for number in range(3):
-            canvas.dot((x + 4 + 8 * number, 174), 1.5, colour)
-        x = canvas.text(text, (x + dots, 178), size=SMALL, colour=MUTE).right + gap
+            canvas.dot((x + 4 + 8 * number, top + 52), 1.5, colour)
+        x = canvas.text(text, (x + dots, top + 56), size=SMALL, colour=MUTE).right + gap
 
 
 def draw_mark(canvas: Canvas, place: Point, within: bool) -> None:

@@ -18,7 +18,7 @@ from typing import Annotated, Any, Final
 from ai.lander.environment import NUM_ACTIONS, Outcome
 from ai.lander.missions import MISSIONS
 from ai.lander.rules import AREAS
-from ai.lander.spawns import SPAWNS
+from ai.lander.spawns import RUNGS, SPAWNS
 from ai.nn.files import brief, parse_json, read_text, write_text
 from ai.nn.schema import OneOf, Seed, Share, Sized, Within, check_header, read_as
 from game.core import texts
@@ -67,6 +67,7 @@ class Entry:
         course: name of a mission; empty for a free flight.
         medal: 3 for gold, 2, 1, and 0 for none.
         file: name of the flight's file, for a replay.
+        spawn: the kind of start, a name of `ai.lander.spawns.SPAWNS`.
         intact: whether it came down whole beside the pad; its outcome is CRASHED.
 
     """
@@ -89,6 +90,13 @@ class Entry:
     rules: _Number = 0
     barred: _Name = ""
     intact: bool = False
+    spawn: Annotated[str, OneOf(SPAWNS)] = "random"
+
+    @property
+    def on_ladder(self) -> bool:
+        """Whether it began on a rung of the ladder; such a flight does not measure the skill in flights from anywhere.
+        """
+        return self.spawn in RUNGS
 
     @property
     def practice(self) -> bool:

@@ -16,6 +16,7 @@ class OutcomeCard:
 
     For a shared flight, `stepped_in` is how often the co-pilot intervened. `medal` is 3 for gold, 2, 1, 0 for none.
     `left` is the card's left edge. `intact` is whether the craft came down whole beside the pad.
+    `rung` is the place on the ladder of starts, None off it, and `climb` what the flight has changed there.
     """
 
     good: bool
@@ -29,6 +30,8 @@ class OutcomeCard:
     stepped_in: int | None = None
     left: float = 400.0
     intact: bool = False
+    rung: int | None = None
+    climb: str = ""
 
 
 @dataclass(frozen=True)

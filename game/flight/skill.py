@@ -12,7 +12,7 @@ CHECK_EVERY: Final = 5
 
 
 class Skill:
-    """Skill of a player from their free flights, oldest first; missions have their own figures."""
+    """Skill of a player from their free flights from anywhere, oldest first; missions have their own figures."""
 
     def __init__(self, entries: Iterable[Entry]) -> None:
         self.entries = [entry for entry in entries if _counts(entry)]
@@ -44,4 +44,4 @@ class Skill:
 
 
 def _counts(entry: Entry) -> bool:
-    return not (entry.course or entry.practice)
+    return not (entry.course or entry.practice or entry.on_ladder)

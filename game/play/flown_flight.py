@@ -37,6 +37,7 @@ class FlownFlight:
         policy: the network to hand over to, if there is one; unused where the player must fly alone.
         challenge: its start and rules; None for a free flight.
         pads: number of landing pads of a free flight.
+        spawn: kind of start of a free flight.
         hands: handicap of a free flight, a name of `game.flight.handicap.HANDS`.
         check: whether it is a check flight.
 
@@ -46,7 +47,8 @@ class FlownFlight:
         difficulty: its changes of gravity and pace.
         pace: the clock that slows down after a crash.
         ending: the ending, with slow motion and outcome card.
-        waiting: whether the craft still hangs until the pilot's first touch.
+        waiting: whether the craft hangs until the pilot touches a control.
+        begun: whether it has been touched before.
 
     """
 
@@ -58,17 +60,21 @@ class FlownFlight:
         challenge: Challenge | None = None,
         *,
         pads: int = 1,
+        spawn: str = "random",
         hands: str = OWN,
         check: bool = False,
     ) -> None:
         self._context, self._settings = context, context.settings
         self.challenge, self.hands = challenge, hands
         self.waiting = self._held_before = True
+        self.begun = False
         self._was_over = False  # whether the flight was over before its latest step
         alone = check or (challenge is not None and challenge.alone)
         self._policy = None if alone else policy
         self.flight = (
-            challenge.flight(seed, self._policy) if challenge else Flight(seed, self._policy, pads=pads, hands=hands)
+            challenge.flight(seed, self._policy)
+            if challenge
+            else Flight(seed, self._policy, spawn, pads=pads, hands=hands)
         )
         self.difficulty = Difficulty(self._settings, self.flight, free=not challenge)
         self.credit = Credit(self.flight, self.difficulty, challenge, hands, check=check)
@@ -125,8 +131,13 @@ class FlownFlight:
         self._held_before = self._held_before and bool(action)
         touched = bool(action) or (self.challenge is not None and not self.challenge.waits)
         if self.flight.hand is StickHolder.NETWORK or (touched and not self._held_before):
-            self.waiting = False
+            self.waiting, self.begun = False, True
         return self.waiting
+
+    def hang(self) -> None:
+        """Let a craft in flight hang where it is until the pilot's next touch: after a pause, or a lost focus."""
+        if not self.flight.over:
+            self.waiting = self._held_before = True
 
     def prepare(self) -> None:
         """Make ready for the flight's next step; after the end, only what still moves goes on."""
@@ -207,4 +218,7 @@ class FlownFlight:
         hud.draw_readouts(canvas, self._readouts)
         explain_readouts(canvas, flight.env)
         if self.waiting and not (self.challenge and not self.challenge.opening):
-            captions.draw_opening(canvas, self._context.controls, self.challenge, self.path_preview.asks)
+            words = captions.opening(flight, self.challenge, begun=self.begun, stuck=self._held_before)
+            high = float(view.points(pose[:2])[1]) < captions.OPENING_FOOT  # a craft behind the usual place
+            top = captions.LOWER if self.begun and high else hud.OPENING
+            captions.draw_opening(canvas, self._context.controls, words, self.path_preview.asks, top)

@@ -11,7 +11,7 @@ import pygame
 from game.cockpit.cockpit import MODES
 from game.core import texts
 from game.core.scene import Pop, Scene
-from game.core.settings import GRAVITY_SHARES, PACES
+from game.core.settings import GRAVITY_SHARES, PACES, TOP_RUNG
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import FAINT, FIGURE, HUMAN, INK, LABEL, MARGIN, MUTE, SMALL, TITLE
 from game.flight.demonstrations import count_demonstrations
@@ -84,8 +84,12 @@ class ChoicesScene(FormScene):
         )
 
     def _add_starts(self) -> None:
-        """Add the rows for the next flight's pads and for the handicap on its keys."""
+        """Add the rows for the next flight's start, its pads and the handicap on its keys."""
         settings, hands = self.context.settings, list(HANDS)
+        figure = lambda rung: texts.CHOICES_RUNG.format(number=round(rung) + 1) if rung < TOP_RUNG else texts.CHOICES_TOP  # noqa: E731
+        slider = Slider(self.form.manager, self._box, texts.CHOICES_LADDER, float(settings.rung), (0.0, float(TOP_RUNG)),
+                        lambda rung: self._changes("rung")(round(rung)), step=1.0, figure=figure)  # fmt: skip
+        self._rows[self.form.add(slider)] = lambda: texts.CHOICES_LADDER_HELP
         self._choice(
             texts.CHOICES_PADS,
             texts.CHOICES_PADS_WORDS,

@@ -9,6 +9,7 @@ import numpy as np
 import pygame
 
 from ai.lander.rules import tenths
+from ai.lander.spawns import LADDER
 from game.charts.chart import Chart, Series
 from game.charts.charts import Charts
 from game.core import texts
@@ -17,7 +18,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import HUMAN, LABEL, MARGIN, MUTE, SMALL, TITLE, VIEW_SIZE
 from game.flight.flight_file import Entry, Record
-from game.flight.logbook import Records, Totals, best, skill, totals
+from game.flight.logbook import Records, Totals, best, measures, skill, totals
 from game.flight.outcomes import ending_word
 from game.play.race import race
 from game.ui.actions import Action, Table
@@ -106,7 +107,7 @@ class LogbookScene(ListScene[Entry]):
 
     def _plot(self) -> None:
         own = skill(self._entries)
-        fuel = [entry.fuel if entry.landed else np.nan for entry in self._entries if entry.alone]
+        fuel = [entry.fuel if entry.landed else np.nan for entry in self._entries if measures(entry)]
         number, span = np.arange(1, len(own) + 1), (1.0, float(len(own)))
         share = Series(number, 100 * np.array(own), texts.LOGBOOK_YOU, HUMAN, smooth=False)
         landings = Series(number, np.array(fuel, float), texts.LOGBOOK_YOU, HUMAN)
@@ -210,4 +211,6 @@ def _challenge(entry: Entry) -> str:
     """Return the name of the challenge that a flight belongs to."""
     if entry.course == "daily":
         return texts.DAILY
+    if entry.on_ladder and not entry.course:
+        return texts.LADDER_FLIGHT.format(number=LADDER.stage_of(entry.spawn) + 1)
     return texts.MISSIONS[entry.course][0] if entry.course in texts.MISSIONS else texts.COURSE_FREE.get(entry.pads, "")

@@ -22,6 +22,8 @@ from game.play import captions
 from game.play.challenge import Challenge, Duel
 from game.play.ending import FlightEnding
 from game.play.flown_flight import FlownFlight
+from game.play.ladder import Ladder, rung_of
+from game.play.rescue_offer import RescueOffer
 from game.ui.actions import Action, Run, Table, answering, hints_of
 from game.ui.context import Context
 from game.ui.hints import HintRow
@@ -29,6 +31,7 @@ from game.ui.widget import OnPress
 
 # Switching to full screen and back removes the window's focus for a moment, which must not pause the game.
 _AWAY_STEPS: Final = 10
+_INTERRUPTS: Final = (pygame.WINDOWFOCUSLOST, pygame.WINDOWSIZECHANGED)
 
 
 class PlayScene(Scene):
@@ -62,16 +65,19 @@ class PlayScene(Scene):
 
             self.challenge = Tutorial()
         self._records = Records(context.user_dir)
-        self._skill = Skill(self._records.entries())
+        entries = self._records.entries()
+        self._skill, self._ladder = Skill(entries), Ladder(context.settings, entries)
+        self._offer = RescueOffer(context.settings)
         if self._records.problem:
             context.note(self._records.problem)
         self._begin(self._new_seed() if seed is None else seed)
 
     def enter(self) -> None:
-        """Resume the paused flight, unless choices made meanwhile require a new one."""
+        """Return to the paused flight, which hangs until it is touched; choices made meanwhile may require a new one."""
         self.flown.set_calm(self._settings.reduced_motion)
-        if self.waiting and not self.challenge and self._chosen() != (self.flight.recording.pads, self.flown.hands):
-            self.retry()
+        self.flown.hang()
+        if not (self.flown.begun or self.flight.over or self.challenge) and self._chosen() != self._begun_with:
+            self._begin(self.flight.recording.seed)
 
     def exit(self) -> None:
         """Keep the flight for the return, and save the dial's setting."""
@@ -80,7 +86,7 @@ class PlayScene(Scene):
 
     def retry(self) -> None:
         """Fly again from the same start."""
-        self._begin(self.flight.recording.seed)
+        self._begin(self.flight.recording.seed, self.flight.recording.spawn)
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Handle explanations, handover, retry, pause and the dial."""
@@ -88,6 +94,8 @@ class PlayScene(Scene):
             return None
         if event.type in (pygame.WINDOWFOCUSLOST, pygame.WINDOWFOCUSGAINED):
             self._away = int(event.type == pygame.WINDOWFOCUSLOST)
+        if event.type in _INTERRUPTS:
+            self.flown.hang()
         if self.flown.cockpit.take(event):
             self._name_what_lacks()
             return None
@@ -120,8 +128,8 @@ class PlayScene(Scene):
             Command.HANDOVER: self._hand_over,
             Command.CHOICES: self._choose,
             Command.NEXT: self._begin_elsewhere,
-            Command.PAUSE: Pop if self._leaves else self._pause,
             Command.RETRY: self.retry,
+            Command.PAUSE: Pop if self._leaves else self._pause,
         }
 
     def _flight_actions(self) -> list[Action]:
@@ -129,7 +137,11 @@ class PlayScene(Scene):
 
     def _card_actions(self) -> list[Action]:
         card = self.ending.card
-        return captions.card_actions(self._go_on, self._runs, self.challenge, good=card.good) if card else []
+        if card is None:
+            return []
+        nearer = card.rung is not None and card.rung < (rung_of(self.flight) or 0)
+        actions = captions.card_actions(self._go_on, self._runs, self.challenge, good=card.good, nearer=nearer)
+        return [*actions, *[Action(Command.HANDOVER, self._accept_help, texts.HELP_HINT)] * self._offer.made]
 
     def update(self) -> Transition | None:
         """Advance by 1/60 s: fly a step, unless the craft waits or slowed time makes none due."""
@@ -184,14 +196,16 @@ class PlayScene(Scene):
         """Whether the craft still hangs until the pilot's first touch."""
         return self.flown.waiting
 
-    def _begin(self, seed: int) -> None:
+    def _begin(self, seed: int, spawn: str = "") -> None:
+        """Begin a flight, from the kind of start that `spawn` names or, if empty, from the player's rung."""
         if self.challenge:
             self.flown = FlownFlight(self.context, seed, self.network.policy, self.challenge)
             return
-        pads, hands = self._chosen()
+        self._begun_with = pads, hands, rung = self._chosen()
         check = self._settings.check_flights and self._skill.check_due and not self._eased
         hands = OWN if check else hands
-        self.flown = FlownFlight(self.context, seed, self.network.policy, pads=pads, hands=hands, check=check)
+        start = {"pads": pads, "spawn": spawn or rung}
+        self.flown = FlownFlight(self.context, seed, self.network.policy, hands=hands, check=check, **start)
 
     def _follow_flight(self) -> None:
         """Save what a step has brought the player in a challenge; after the end, go on to the card or the next try."""
@@ -206,8 +220,25 @@ class PlayScene(Scene):
                 self.retry()
         elif ending.card is None:
             self.flown.make_card(self._skill)
+            self._follow_end()
             if challenge is None or challenge.kept:
                 self.flown.write_down(self._records, self._skill, self.network)
+
+    def _follow_end(self) -> None:
+        """Let the ladder and the offer of help answer the ending, on its card."""
+        card = self.ending.card
+        assert card is not None
+        before = self._settings.rung
+        card = self._ladder.climb(self.flight, card)
+        self.ending.card = self._offer.follow(self.flight, self.credit, card)
+        if before != self._settings.rung:
+            self.context.apply_settings()
+
+    def _accept_help(self) -> None:
+        """Turn the dial to the offered help, and try again."""
+        self._offer.accept()
+        self.context.apply_settings()
+        self._go_on()
 
     @property
     def _held(self) -> int:
@@ -215,10 +246,10 @@ class PlayScene(Scene):
         mouse = self._mouse
         return self._controls.action or (mouse.action(self.flown.scenery.across) if mouse.holds else 0)
 
-    def _chosen(self) -> tuple[int, str]:
-        """Return the number of pads and the handicap, as chosen by the player."""
-        hands = self._settings.hands
-        return 3 if self._settings.three_pads else 1, hands if hands in HANDS else OWN
+    def _chosen(self) -> tuple[int, str, str]:
+        """Return the number of pads, the handicap and the kind of start, as chosen by the player."""
+        hands, three = self._settings.hands, self._settings.three_pads
+        return 3 if three else 1, hands if hands in HANDS else OWN, "random" if three else self._ladder.spawn
 
     @property
     def _eased(self) -> bool:
@@ -249,9 +280,14 @@ class PlayScene(Scene):
             self.context.note(text.format(name=network.name, problem=network.problem))
 
     def _go_on(self) -> Transition | None:
-        """After a landing, go to a new start, or leave a challenge with only one; after a crash, retry."""
-        if self.ending.card is None or not self.ending.card.good:
-            self.retry()
+        """After a landing, go to a new start, or leave a challenge with only one; after a crash, retry.
+
+        On the ladder, the same start is nearer after a crash, or as near at its foot.
+        """
+        card = self.ending.card
+        if card is None or not card.good:
+            spawn = "" if card and card.rung is not None else self.flight.recording.spawn
+            self._begin(self.flight.recording.seed, spawn)
         elif self.challenge and self.challenge.fixed:
             return Pop()
         else:
@@ -283,7 +319,7 @@ class PlayScene(Scene):
     @property
     def _leaves(self) -> bool:
         """Whether Escape goes straight back: in a challenge that has not begun or is over, where nothing is lost."""
-        return self.challenge is not None and (self.waiting or self.flight.over)
+        return self.challenge is not None and (not self.flown.begun or self.flight.over)
 
     def _pause(self) -> Transition:
         self._away = 0
@@ -297,7 +333,7 @@ class PlayScene(Scene):
 
     def _choose(self) -> Transition | None:
         """Open the choices for the next flights; in a challenge, few can be changed."""
-        return push("choices", self, self._skill, begun=not self.waiting, challenge=self.challenge is not None)
+        return push("choices", self, self._skill, begun=self.flown.begun, challenge=self.challenge is not None)
 
     def _open_networks(self) -> Transition:
         return push("runs", choose=self.choose_network)

@@ -13,6 +13,7 @@ from game.flight.flight import Flight, StickHolder
 from game.world import framing
 from game.world.callouts import Callouts
 from game.world.camera import Camera, CameraTarget, ClearArea, View
+from game.world.edges import draw_edges
 from game.world.landscape.backdrop import EARTH, landscape
 from game.world.landscape.ground import draw_ground
 from game.world.landscape.themes import LOOKS, look_of
@@ -113,6 +114,7 @@ class Scenery:
         moon.draw(canvas, self._camera, self._time, alpha, earth)
         view = self.view(canvas.scale, alpha)
         draw_ground(canvas, view, env.ground, self._time, float(env.pad_shift[0]))
+        draw_edges(canvas, view, env, canvas.palette.warn)
         if env.conditions.pushes and not self._calm:
             self.stage.wind.draw(canvas.surface, view, alpha)
 
