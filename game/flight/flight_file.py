@@ -94,8 +94,7 @@ class Entry:
 
     @property
     def on_ladder(self) -> bool:
-        """Whether it began on a rung of the ladder; such a flight does not measure the skill in flights from anywhere.
-        """
+        """Whether it began on a rung of the ladder; then it does not measure the skill in flights from anywhere."""
         return self.spawn in RUNGS
 
     @property
@@ -181,8 +180,8 @@ def to_text(record: Record) -> str:
     recording = record.recording
     return json.dumps({
         "format": FORMAT, "version": VERSION, "seed": recording.seed, "spawn": recording.spawn,
-        "pads": recording.pads, "mission": recording.mission, "area": recording.area, "actions": _packed(recording.actions),
-        "hands": _packed(hand.value for hand in recording.hands), "gravity": recording.gravity,
+        "pads": recording.pads, "mission": recording.mission, "area": recording.area,
+        "actions": _packed(recording.actions), "hands": _packed(hand.value for hand in recording.hands), "gravity": recording.gravity,
         "end": record.end, "entry": asdict(record.entry),
     }, indent=1) + "\n"  # fmt: skip
 

@@ -94,7 +94,7 @@ def landing_score(env: LanderEnv, slot: int = 0) -> int:
 
 
 def ending_word(outcome: str, *, intact: bool) -> str:
-    """Return the title of an ending by the name of its Outcome; `intact` is for a craft that is whole beside the pad."""
+    """Return the title of an ending by the name of its Outcome; `intact` is for a whole craft beside the pad."""
     return texts.BESIDE_TITLE if intact else texts.OUTCOMES[outcome][0]
 
 

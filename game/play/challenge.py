@@ -90,6 +90,20 @@ class Challenge:
         """Whether a finished flight restarts by itself, without a card."""
         return False
 
+    def dial(self, settings: Settings) -> Settings:
+        """Return the settings that the dial turns: the player's own, or others for this challenge alone."""
+        return settings
+
+    @property
+    def holds(self) -> bool:
+        """Whether the craft goes on to hang, although it is touched."""
+        return False
+
+    @property
+    def guides(self) -> bool:
+        """Whether the network's path is previewed: not beside a ghost, where one blue path is enough."""
+        return False
+
     @property
     def waits(self) -> bool:
         """Whether the craft hangs until the pilot touches a control; otherwise, only until all are released."""

@@ -78,7 +78,8 @@ class FlownFlight:
         )
         self.difficulty = Difficulty(self._settings, self.flight, free=not challenge)
         self.credit = Credit(self.flight, self.difficulty, challenge, hands, check=check)
-        self.cockpit = Cockpit(self.flight, self._settings, self.credit)
+        dial = challenge.dial(self._settings) if challenge else self._settings
+        self.cockpit = Cockpit(self.flight, dial, self.credit)
         self.ghost = challenge.ghost(seed, self._policy) if challenge else None
         told = not challenge or bool(challenge.opening)
         calm = self._settings.reduced_motion
@@ -91,8 +92,8 @@ class FlownFlight:
 
     @property
     def _guide(self) -> Policy | None:
-        """The network whose path is previewed; None beside a ghost, where one blue path is enough."""
-        return None if self.challenge else self._policy
+        """The network whose path is previewed; None where none is."""
+        return None if self.challenge and not self.challenge.guides else self._policy
 
     def set_calm(self, calm: bool) -> None:
         """Set whether motion is reduced."""
@@ -130,7 +131,8 @@ class FlownFlight:
         """Whether the craft still hangs; a key that began the flight itself must first be let go."""
         self._held_before = self._held_before and bool(action)
         touched = bool(action) or (self.challenge is not None and not self.challenge.waits)
-        if self.flight.hand is StickHolder.NETWORK or (touched and not self._held_before):
+        holds = self.challenge is not None and self.challenge.holds
+        if self.flight.hand is StickHolder.NETWORK or (touched and not self._held_before and not holds):
             self.waiting, self.begun = False, True
         return self.waiting
 

@@ -31,8 +31,8 @@ _LABELS: Final = 142
 _FIRST: Final = 136
 _ROW: Final = 40
 _HELP: Final = 18  # from the last row to the sentence on the one in focus
-_TOGGLES: Final = 40
-_TOGGLE_ROW: Final = 58
+_TOGGLES: Final = 34
+_TOGGLE_ROW: Final = 55
 _CHART: Final = pygame.Rect(800, 152, 372, 176)
 
 
@@ -86,9 +86,11 @@ class ChoicesScene(FormScene):
     def _add_starts(self) -> None:
         """Add the rows for the next flight's start, its pads and the handicap on its keys."""
         settings, hands = self.context.settings, list(HANDS)
-        figure = lambda rung: texts.CHOICES_RUNG.format(number=round(rung) + 1) if rung < TOP_RUNG else texts.CHOICES_TOP  # noqa: E731
-        slider = Slider(self.form.manager, self._box, texts.CHOICES_LADDER, float(settings.rung), (0.0, float(TOP_RUNG)),
-                        lambda rung: self._changes("rung")(round(rung)), step=1.0, figure=figure)  # fmt: skip
+        change, limits = self._changes("rung"), (0.0, float(TOP_RUNG))
+        slider = Slider(
+            self.form.manager, self._box, texts.CHOICES_LADDER, float(settings.rung), limits,
+            lambda rung: change(round(rung)), step=1.0, figure=_rung,
+        )  # fmt: skip
         self._rows[self.form.add(slider)] = lambda: texts.CHOICES_LADDER_HELP
         self._choice(
             texts.CHOICES_PADS,
@@ -183,6 +185,10 @@ class ChoicesScene(FormScene):
 
 def _index(names: tuple[str, ...] | list[str], name: str) -> int:
     return names.index(name) if name in names else 0
+
+
+def _rung(rung: float) -> str:
+    return texts.CHOICES_RUNG.format(number=round(rung) + 1) if rung < TOP_RUNG else texts.CHOICES_TOP
 
 
 def _percent(share: float, zero: str = texts.CHOICES_ASSIST_OFF) -> str:

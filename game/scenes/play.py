@@ -73,7 +73,7 @@ class PlayScene(Scene):
         self._begin(self._new_seed() if seed is None else seed)
 
     def enter(self) -> None:
-        """Return to the paused flight, which hangs until it is touched; choices made meanwhile may require a new one."""
+        """Return to the paused flight, which hangs until a touch; choices made meanwhile may require a new one."""
         self.flown.set_calm(self._settings.reduced_motion)
         self.flown.hang()
         if not (self.flown.begun or self.flight.over or self.challenge) and self._chosen() != self._begun_with:

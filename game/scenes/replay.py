@@ -276,7 +276,9 @@ class ReplayScene(FormScene):
         hud.draw_corner(
             canvas,
             title,
-            texts.REPLAY_LINE.format(end=ending_word(entry.outcome, intact=entry.intact), seconds=entry.seconds, when=when),
+            texts.REPLAY_LINE.format(
+                end=ending_word(entry.outcome, intact=entry.intact), seconds=entry.seconds, when=when
+            ),
         )
         flight = self.flight_replay.flight
         seconds = f"{self.flight_replay.at * STEP:.2f}"

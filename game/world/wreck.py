@@ -1,4 +1,4 @@
-"""The craft once its flight is over: a wreck tumbles, a whole craft settles, one that left flies away. Decoration only."""
+"""The craft after its flight: a wreck tumbles, a whole craft settles, one that left flies away. Decoration only."""
 
 from __future__ import annotations
 

@@ -61,7 +61,11 @@ def open_game(context: Context) -> Iterator[Callable[..., Driver]]:
     opened: list[Driver] = []
 
     def open_it(
-        first: Scene | Callable[..., Scene] | None = None, *arguments: Any, tutored: bool = True, ladder: bool = False, **options: Any
+        first: Scene | Callable[..., Scene] | None = None,
+        *arguments: Any,
+        tutored: bool = True,
+        ladder: bool = False,
+        **options: Any,
     ) -> Driver:
         """Open the game with a scene that is given, or made by its class or a function, with these arguments."""
 
