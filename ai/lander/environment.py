@@ -114,8 +114,9 @@ class LanderEnv(Craft):
         Its outcome is CRASHED all the same: no landing, and no reward for one.
         """
         limits = self.limits
-        whole: Bools = (self.impact <= (limits.touch_speed, limits.slide_speed, limits.touch_tilt)).all(axis=1)
-        return whole & (self.outcome == Outcome.CRASHED)
+        kept = self.impact <= np.array([limits.touch_speed, limits.slide_speed, limits.touch_tilt])
+        whole: Bools = kept.all(axis=1) & (self.outcome == Outcome.CRASHED)
+        return whole
 
     @property
     def stage(self) -> int:

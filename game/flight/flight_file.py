@@ -181,8 +181,8 @@ def to_text(record: Record) -> str:
     return json.dumps({
         "format": FORMAT, "version": VERSION, "seed": recording.seed, "spawn": recording.spawn,
         "pads": recording.pads, "mission": recording.mission, "area": recording.area,
-        "actions": _packed(recording.actions), "hands": _packed(hand.value for hand in recording.hands), "gravity": recording.gravity,
-        "end": record.end, "entry": asdict(record.entry),
+        "actions": _packed(recording.actions), "hands": _packed(hand.value for hand in recording.hands),
+        "gravity": recording.gravity, "end": record.end, "entry": asdict(record.entry),
     }, indent=1) + "\n"  # fmt: skip
 
 

@@ -49,7 +49,7 @@ def outcome_card(env: LanderEnv, human: float, slot: int = 0) -> OutcomeCard:
     title, reason = texts.OUTCOMES[outcome.name]
     intact = bool(env.intact[slot])
     if intact:
-        title, reason = texts.BESIDE_TITLE, texts.BESIDE_REASON
+        title, reason = texts.BESIDE_TITLE, crash_reason(env, slot)
     elif outcome is Outcome.CRASHED:
         reason = crash_reason(env, slot)
     elif outcome is Outcome.OUT_OF_BOUNDS:

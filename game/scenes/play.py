@@ -204,8 +204,9 @@ class PlayScene(Scene):
         self._begun_with = pads, hands, rung = self._chosen()
         check = self._settings.check_flights and self._skill.check_due and not self._eased
         hands = OWN if check else hands
-        start = {"pads": pads, "spawn": spawn or rung}
-        self.flown = FlownFlight(self.context, seed, self.network.policy, hands=hands, check=check, **start)
+        self.flown = FlownFlight(
+            self.context, seed, self.network.policy, pads=pads, spawn=spawn or rung, hands=hands, check=check
+        )
 
     def _follow_flight(self) -> None:
         """Save what a step has brought the player in a challenge; after the end, go on to the card or the next try."""

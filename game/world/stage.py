@@ -130,11 +130,11 @@ class Stage:
         if env.outcome[0] != Outcome.CRASHED:
             return None
         if env.intact[0]:
+            x, y = env.position[0].tolist()
             strength = min(1.0, float(env.impact[0, 0]) / env.limits.touch_speed)
             self.jolt = _JOLT * 0.55 * strength**1.5
             for side in (-1, 1):
-                place = foot_place(*env.position[0].tolist(), float(env.angle[0]), side)
-                self.particles.settle(place, strength)
+                self.particles.settle(foot_place(x, y, float(env.angle[0]), side), strength)
             return Wreck(env, 0, self._rng)
         self.jolt = min(_JOLT, 4.0 + 1.4 * float(env.impact[0, :2].max()))
         return None if self.calm else Wreck(env, 0, self._rng)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -15,8 +15,11 @@ _STEPS: Final = 420  # at most; after them the wreck lies still
 _STILL: Final = 0.05  # m/s and rad/s
 _SPIN: Final = 0.6  # rad/s for every m/s of the blow, at most
 _HOP: Final = 0.12  # share of the blow that throws it up again
-_TUMBLES: Final = {"restitution": 0.25, "friction": 0.7}
-_SETTLES: Final = {"restitution": 0.0, "friction": 1.6}  # feet dig in: it stays where it came down, on a slope too
+_TUMBLES: Final[dict[str, Any]] = {"restitution": 0.25, "friction": 0.7}
+_SETTLES: Final[dict[str, Any]] = {
+    "restitution": 0.0,
+    "friction": 1.6,
+}  # feet dig in: it stays where it came down, on a slope too
 _AWAY: Final = 3.0  # m/s² with which a craft that left the area flies on
 _LEVELS: Final = 3.0  # 1/s, at which its sinking and its turning die down
 
