@@ -45,7 +45,7 @@ class Cause(IntEnum):
 
 # Edges of the area by version, metres from the middle of the world and up: networks are trained in the first one,
 # people fly in the last, which leaves more room to turn back; a recording says in which it was flown.
-AREAS: Final = ((22.0, 26.0), (30.0, 33.0))
+AREAS: Final = ((22.0, 26.0), (30.0, 29.0))
 
 
 @dataclass(frozen=True)

@@ -219,7 +219,7 @@ def draw_share(canvas: Canvas, left: float, top: float, width: float, human: flo
 CARD: Final = pygame.Rect(400, 136, 480, 264)
 _ADVICE_ROW: Final = 24
 _RIVAL_ROWS: Final = 60
-_LADDER_ROW: Final = 28
+_LADDER_ROW: Final = 30
 
 
 def draw_card(
@@ -268,8 +268,8 @@ def draw_card(
         )
         canvas.marker("diamond", (words.left - 10, top + 184), 8, NET)
     if card.rung is not None and ladder:
-        draw_ladder(canvas, left + 1, top + 214, card.rung)
-        canvas.text(card.climb, (left + LADDER_WIDTH + 8, top + 214), size=SMALL, room=width - LADDER_WIDTH - 8)
+        draw_ladder(canvas, left + 1, top + 223, card.rung)
+        canvas.text(card.climb, (left + LADDER_WIDTH + 8, top + 223), size=SMALL, room=width - LADDER_WIDTH - 8)
     top += ladder
     canvas.line((left, top + 218), (left + width, top + 218), LINE)
 

@@ -9,7 +9,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import FAINT, HUMAN
 
 _PITCH: Final = 7.0  # points from rung to rung
-_HIGH: Final = (3.0, 1.0)  # points, of the lowest, and more for each above it
+_HIGH: Final = (5.0, 0.7)  # points, of the lowest, and more for each above it
 WIDTH: Final = _PITCH * len(RUNGS)
 
 

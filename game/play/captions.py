@@ -22,7 +22,7 @@ from game.ui.hints import Hint, HintRow, flight_hints
 from game.world.camera import ClearArea
 
 _KEYS_ROOM: Final = 352.0  # points, to the right of who flies
-OPENING_FOOT: Final = 240.0  # row above which the words over a waiting craft would hide it
+OPENING_FOOT: Final = 290.0  # row above which the words over a waiting craft would hide it
 LOWER: Final = 420.0  # where they stand then
 BELOW_OPENING: Final = ClearArea(head=196.0)  # keeps the waiting craft clear of the opening text
 

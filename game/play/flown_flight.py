@@ -119,6 +119,7 @@ class FlownFlight:
         """Count 1/60 s; return whether a step is due: the craft may wait, or slowed time make none due."""
         self.pace.rate = self._settings.pace
         if self._waits(action):
+            self.cockpit.help()
             self.path_preview.follow(waiting=True)
             return False
         return bool(self.pace.steps())

@@ -105,7 +105,7 @@ class Tutorial(Challenge):
         if self.through:
             return ""
         self._leave_out(flight.network)
-        if flight.over and not self._over and not self.lesson.done(flight):
+        if flight.over and not self._over:
             self._why = self._reason(flight)
         self._over = flight.over
         self._flown_for += 1
@@ -118,7 +118,7 @@ class Tutorial(Challenge):
         self._done_for = self._done_for + 1 if done else 0 if self.lesson.held else self._done_for
         if self._done_for < self.lesson.steps:
             return ""
-        self.praise = _PRAISE
+        self.praise, self._why = _PRAISE, ""
         self.flown |= self.lesson.name == "land"
         self.through = self._number == len(self._lessons) - 1
         return "" if flight.over else "choose"  # a landing has a sound of its own

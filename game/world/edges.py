@@ -16,9 +16,10 @@ from game.drawing.paint import light
 from game.drawing.tokens import Colour
 from game.world.camera import GROUND_LINE, View
 
-_DEEP: Final = 3.0  # metres that the glow reaches into the area
+_DEEP: Final = 4.0  # metres that the glow reaches into the area
+_ACROSS: Final = 60.0  # metres to both sides, beyond any view: of the edge above
 _LEVELS: Final = 12  # steps of its strength, so that few pictures are ever made
-_STRENGTH: Final = 0.55
+_STRENGTH: Final = 0.8
 _PICTURE: Final = (48, 64)  # pixels, stretched
 
 
@@ -28,10 +29,10 @@ def draw_edges(canvas: Canvas, view: View, env: LanderEnv, colour: Colour) -> No
         level = math.ceil(_LEVELS * (1 - edge.away / NEAR))
         if not level:
             continue
-        reach, ceiling = env.limits.half_width, env.limits.ceiling
+        ceiling = env.limits.ceiling
         inward = {"left": 1.0, "right": -1.0, "above": -1.0}[edge.side] * _DEEP
         if edge.side == "above":
-            corners = (-reach, edge.place), (reach, edge.place + inward)
+            corners = (-_ACROSS, edge.place), (_ACROSS, edge.place + inward)
         else:
             corners = (edge.place, ceiling), (edge.place + inward, GROUND_LINE)
         (x0, y0), (x1, y1) = (view.pixels(corner).tolist() for corner in corners)
@@ -41,7 +42,7 @@ def draw_edges(canvas: Canvas, view: View, env: LanderEnv, colour: Colour) -> No
         if seen.width and seen.height:
             glow = pygame.transform.scale(_glow(edge.side, level, colour), seen.size)
             canvas.surface.blit(glow, seen, special_flags=pygame.BLEND_RGB_ADD)
-        end = (reach, ceiling) if edge.side == "above" else (edge.place, GROUND_LINE)
+        end = (_ACROSS, ceiling) if edge.side == "above" else (edge.place, GROUND_LINE)
         (ax, ay), (bx, by) = (view.points(place).tolist() for place in (corners[0], end))
         canvas.line((ax, ay), (bx, by), colour, alpha=0.5 * level / _LEVELS)
 

@@ -32,7 +32,7 @@ def framed(env: LanderEnv, slot: int = 0, clear: ClearArea = ALL) -> CameraTarge
         right += weight * (max(right, edges[1] + _BESIDE) - right)
     top = max(y, ahead_y) + _AROUND
     for edge in near_edges(env, slot):  # an edge of the area comes into view as the craft comes near
-        weight = 1 - edge.away / NEAR
+        weight = min(1.0, 2 * (1 - edge.away / NEAR))
         left += weight * (min(left, edge.place - _AROUND) - left) * (edge.side == "left")
         right += weight * (max(right, edge.place + _AROUND) - right) * (edge.side == "right")
         top += weight * (max(top, edge.place + _BEYOND) - top) * (edge.side == "above")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 
 from ai.common.environment import Doubles
@@ -21,6 +23,8 @@ from game.world.particles import DUST
 from game.world.stage import Stage
 
 _EDGE, _LOWEST = 24.0, 620.0  # points that a mark keeps from the sides, and its lowest row, above the read-outs
+
+_HEAD: Final = 84.0  # points at the top into which a craft that leaves flies no farther
 
 
 class Scenery:
@@ -127,7 +131,9 @@ class Scenery:
         if self._flight.outcome is Outcome.OUT_OF_BOUNDS:
             mark_lost(canvas, view, pose)
             if self.stage.pose_after(alpha) is not None:
+                canvas.surface.set_clip(canvas.rect(0, _HEAD, VIEW_SIZE[0], VIEW_SIZE[1] - _HEAD))  # behind the words
                 self.stage.draw_lander(canvas, view, pose, alpha=alpha)
+                canvas.surface.set_clip(None)
             return
         self._callouts.draw_light(canvas, view, pose)
         self.stage.draw_lander(canvas, view, pose, alpha=alpha)
