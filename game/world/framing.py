@@ -32,7 +32,8 @@ def framed(env: LanderEnv, slot: int = 0, clear: ClearArea = ALL) -> CameraTarge
         right += weight * (max(right, edges[1] + _BESIDE) - right)
     top = max(y, ahead_y) + _AROUND
     for edge in near_edges(env, slot):  # an edge of the area comes into view as the craft comes near
-        weight = min(1.0, 2 * (1 - edge.away / NEAR))
+        near = min(1.0, 1.6 * (1 - edge.away / NEAR))
+        weight = near * near * (3 - 2 * near)  # eases in and out
         left += weight * (min(left, edge.place - _AROUND) - left) * (edge.side == "left")
         right += weight * (max(right, edge.place + _AROUND) - right) * (edge.side == "right")
         top += weight * (max(top, edge.place + _BEYOND) - top) * (edge.side == "above")

@@ -167,8 +167,9 @@ class Stage:
 
     def sprite(self, slot: int = 0, size: float = 1.0) -> Sprite:
         """Return the sprite of a slot's lander; `size` 1 is true to scale."""
+        sprite = self._after.sprite if isinstance(self._after, Wreck) else self._lander
         image = art.WRECK if self._wrecked[slot] else art.LANDER
-        return replace(self._lander, image=image, size=(size * self._lander.size[0], size * self._lander.size[1]))
+        return replace(sprite, image=image, size=(size * sprite.size[0], size * sprite.size[1]))
 
     def draw_lander(
         self, canvas: Canvas, view: View, pose: Doubles, slot: int = 0, size: float = 1.0, alpha: float = 1.0

@@ -9,7 +9,8 @@ import numpy as np
 
 from ai.common.environment import Doubles
 from ai.lander.environment import FOOT_CENTRE, FOOT_SIZE, HULL, LanderEnv
-from engine import DT, Polygon, World
+from engine import DT, Polygon, Sprite, World
+from game.world.lander import LANDER, SIZE, WRECK
 
 _STEPS: Final = 420  # at most; after them the wreck lies still
 _STILL: Final = 0.05  # m/s and rad/s
@@ -29,6 +30,10 @@ class Wreck:
 
     Gravity, hills and pads are those of the flight, with moving pads frozen at that moment. A craft that is whole is
     set down without a blow.
+
+    Attributes:
+        sprite: picture of the moving body.
+
     """
 
     def __init__(self, env: LanderEnv, slot: int, rng: np.random.Generator) -> None:
@@ -42,6 +47,7 @@ class Wreck:
             shapes, env.position[slot], float(env.angle[slot]), mass=params.mass, inertia=params.inertia,
             centre_of_mass=(0.0, 0.0), angular_drag=4.0 if whole else 0.3, **surface,
         )  # fmt: skip
+        self.sprite = Sprite(self._body, LANDER if whole else WRECK, SIZE)
         for pad in env.ground.build(self._world, **surface):
             pad.position = pad.position + np.array([float(env.pad_shift[slot]), 0.0])
         self._body.velocity = env.velocity[slot] + np.array([0.0, _HOP * blow])
