@@ -48,7 +48,7 @@ class FlownFlight:
         pace: the clock that slows down after a crash.
         ending: the ending, with slow motion and outcome card.
         waiting: whether the craft hangs until the pilot touches a control.
-        begun: whether it has been touched before.
+        begun: whether it has flown a step.
 
     """
 
@@ -134,7 +134,7 @@ class FlownFlight:
         touched = bool(action) or (self.challenge is not None and not self.challenge.waits)
         holds = self.challenge is not None and self.challenge.holds
         if self.flight.hand is StickHolder.NETWORK or (touched and not self._held_before and not holds):
-            self.waiting, self.begun = False, True
+            self.waiting = False
         return self.waiting
 
     def hang(self) -> None:
@@ -144,7 +144,7 @@ class FlownFlight:
 
     def prepare(self) -> None:
         """Make ready for the flight's next step; after the end, only what still moves goes on."""
-        self._was_over = self.flight.over
+        self._was_over, self.begun = self.flight.over, True
         if not self._was_over:  # at the end, the figures stay those of the last moment before
             self._readouts = hud.flight_readouts(self.flight.env)
             self.difficulty.heed()

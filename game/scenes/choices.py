@@ -84,14 +84,8 @@ class ChoicesScene(FormScene):
         )
 
     def _add_starts(self) -> None:
-        """Add the rows for the next flight's start, its pads and the handicap on its keys."""
+        """Add the rows for the next flight's pads, the handicap on its keys, and its start."""
         settings, hands = self.context.settings, list(HANDS)
-        change, limits = self._changes("rung"), (0.0, float(TOP_RUNG))
-        slider = Slider(
-            self.form.manager, self._box, texts.CHOICES_LADDER, float(settings.rung), limits,
-            lambda rung: change(round(rung)), step=1.0, figure=_rung,
-        )  # fmt: skip
-        self._rows[self.form.add(slider)] = lambda: texts.CHOICES_LADDER_HELP
         self._choice(
             texts.CHOICES_PADS,
             texts.CHOICES_PADS_WORDS,
@@ -107,6 +101,12 @@ class ChoicesScene(FormScene):
             lambda index: self._changes("hands")(hands[index]),
             lambda: texts.CHOICES_HANDS_HELP.get(settings.hands, ""),
         )
+        change, limits = self._changes("rung"), (0.0, float(TOP_RUNG))
+        slider = Slider(
+            self.form.manager, self._box, texts.CHOICES_LADDER, float(settings.rung), limits,
+            lambda rung: change(round(rung)), step=1.0, figure=_rung,
+        )  # fmt: skip
+        self._rows[self.form.add(slider)] = lambda: texts.CHOICES_LADDER_HELP
 
     def actions(self) -> Table:
         """Change a choice, or go back; the key that opened this scene closes it too."""
