@@ -40,6 +40,7 @@ from game.play.tutorial_lessons import (
 from game.world.camera import View
 
 _PRAISE: Final = 40  # steps that a finished lesson stays on the screen, with a tick
+_LONG: Final = 900  # steps in flight after which a rescue that does not come down is helped by words
 _NEAR: Final = 4.0  # metres above the pad, below which the craft should be upright
 _TOLD_WHY: Final = 240  # steps in flight that the reason for a restart stays on the screen
 _SIDEWAYS: Final = 12.0  # metres from the pad that count as far
@@ -233,7 +234,7 @@ class Tutorial(Challenge):
         if self.praise:
             return texts.TUTORIAL_GOOD[lesson.name]
         if lesson.guarded:
-            return told[1] if self._begun > 2 else told[0]
+            return told[1] if self._begun > 2 or self._flown_for > _LONG else told[0]
         if flight.hand is StickHolder.NETWORK:
             return texts.TUTORIAL["take_back"][0]
         if lesson.name not in ("lean", "fall") and abs(float(env.position[0, 0])) > _SIDEWAYS:

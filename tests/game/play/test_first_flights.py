@@ -273,7 +273,6 @@ def decided(action: int) -> Callable[[Flight], int]:
 HANDS: dict[str, Callable[[Flight], int]] = {
     "holds left": decided(1),
     "holds right": decided(2),
-    "holds the engine": decided(3),
     "does nothing": decided(0),
     "flies well": lambda flight: int(PILOT.act(flight.env.observe())[0]),
 }
@@ -298,6 +297,19 @@ def test_who_tries_to_crash_is_brought_down_by_the_network_that_comes_with_the_g
             break
     assert flight.outcome is Outcome.LANDED
     assert tutorial.through
+
+
+def test_a_rescue_that_does_not_come_down_is_helped_by_words(open_game: Open):
+    driver = open_game(PlayScene, 0, challenge=Tutorial())
+    challenge, controls = play(driver).challenge, driver.app.context.controls
+    while challenge.lesson.name != "rescue":
+        challenge.skip() if challenge.lesson.name != "dial" else challenge.follow(play(driver).flight)
+    flight = play(driver).flight
+    first, later = (words.split("{")[0] for words in texts.TUTORIAL["rescue"])
+    assert challenge.words(flight, controls).startswith(first)
+    for _ in range(1000):  # whatever it does up there
+        challenge.follow(flight)
+    assert challenge.words(flight, controls).startswith(later)
 
 
 @pytest.mark.parametrize("device", DEVICES)
