@@ -7,13 +7,14 @@ from typing import Any, Final
 
 from ai.common.knobs import Knobs, is_number, knob, shown
 from ai.lander.rewards import RewardWeights
-from ai.lander.spawns import SPAWNS
+from ai.lander.spawns import RUNGS, SPAWNS
 from ai.nn import OPTIMIZERS
 from ai.nn.activations import ACTIVATIONS
 
 CURRICULUM: Final = "curriculum"
 LANDER: Final = "lander"
 ANYWHERE: Final = "lander-anywhere"  # our lander at random sites, with what is around it as further inputs
+_STARTS: Final = (CURRICULUM, *(name for name in SPAWNS if name not in RUNGS))  # a person's ladder is no choice here
 _HASTE: Final = RewardWeights(time=-0.4, switch=-0.05)  # quick, and without flickering jets
 
 
@@ -89,7 +90,7 @@ class Config(Knobs):
                              "lander", low=0.0, high=1.0, live=True)
     num_envs: int = knob(256, "Landers flown at once.", "lander", low=1, high=1024)
     frame_skip: int = knob(4, "Physics steps per decision.", "lander", low=1, high=12)
-    spawn: str = knob("thorough", "Where flights begin.", "lander", choices=(CURRICULUM, *SPAWNS))
+    spawn: str = knob("thorough", "Where flights begin.", "lander", choices=_STARTS)
     final_touchdown_limits: float = knob(0.8, "Touchdown limits after the schedule, as a share of the real ones.",
                                          "lander", low=0.3, high=1.0, formerly="care")
     reward_scale: float = knob(0.01, "Factor on rewards before the network sees them.",

@@ -22,6 +22,7 @@ from ai.flights.shared import Claim, SharedFlight
 from ai.flights.stick import STEPS, Shares
 from ai.lander.environment import Outcome
 from ai.lander.missions import MISSIONS
+from ai.lander.rules import AREAS
 from ai.lander.spawns import SPAWNS
 
 VERSION: Final = 1
@@ -129,11 +130,11 @@ def _made(
     gravity: list[tuple[int, float]] | None = None,
     course: str = "",
     barred: str = "",
-    **eased: Any,
+    **more: Any,
 ) -> SharedFlight:
     """Return a flight of what the sections hold."""
     seed, spawn, pads, mission = start
-    recording = Recording(seed, spawn, pads, actions, hands, mission, gravity or [], **eased)
+    recording = Recording(seed, spawn, pads, actions, hands, mission, gravity or [], **more)
     return SharedFlight(recording, claim, course or mission, barred)
 
 
@@ -298,6 +299,17 @@ def _read_easing(reader: _Reader, found: dict[str, Any]) -> None:
     found["easing"] = Easing(bool(bits & 1), bool(bits & 2))
 
 
+def _pack_area(flight: SharedFlight) -> bytes:
+    return _varint(flight.recording.area)
+
+
+def _read_area(reader: _Reader, found: dict[str, Any]) -> None:
+    area = reader.number(_MOST)
+    if area >= len(AREAS):
+        raise CodeError("newer")
+    found["area"] = area
+
+
 def _pack_course(flight: SharedFlight) -> bytes:
     return _named(flight.course) if flight.course != flight.recording.mission else b""
 
@@ -322,6 +334,7 @@ _SECTIONS: Final[dict[int, tuple[Callable[[SharedFlight], bytes], Callable[[_Rea
     5: (_pack_claim, _read_claim),
     6: (_pack_shares, _read_shares),
     7: (_pack_easing, _read_easing),
+    8: (_pack_area, _read_area),
     OPTIONAL: (_pack_course, _read_course),
     OPTIONAL + 1: (_pack_barred, _read_barred),
 }

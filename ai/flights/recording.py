@@ -8,7 +8,9 @@ from typing import Final
 
 from ai.flights.easing import AS_IT_IS, UNHURRIED, Easing
 from ai.flights.stick import Shares
+from ai.lander.rules import AREAS
 
+AREA: Final = len(AREAS) - 1  # version of the area in which new flights are flown
 LONGEST: Final = round(UNHURRIED) * 60  # physics steps of a recorded flight, at most
 
 
@@ -25,7 +27,8 @@ class Recording:
 
     `hands` says who chose each action: with a shared stick, the person if the action is the one they asked for.
     `gravity` lists its changes: the first step, and the share of normal gravity. `shares` has the shares of thrust
-    of each step, by its number, in which an engine gave less than all of it. `easing` is what gave the pilot more room.
+    of each step, by its number, in which an engine gave less than all of it. `easing` is what gave the pilot more room,
+    `area` the version of the area's edges, an index of `ai.lander.rules.AREAS`.
     """
 
     seed: int
@@ -37,6 +40,7 @@ class Recording:
     gravity: list[tuple[int, float]] = field(default_factory=list)
     shares: dict[int, Shares] = field(default_factory=dict)
     easing: Easing = AS_IT_IS
+    area: int = AREA
 
     def gravity_at(self, step: int) -> float:
         """Return the share of normal gravity during a step."""

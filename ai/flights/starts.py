@@ -32,9 +32,12 @@ def begun(start: Recording, seeds: Sequence[int] = ()) -> LanderEnv:
     """
     seeds, easing = seeds or (start.seed,), start.easing
     if start.mission:
-        return easing.mission(start.mission).begin(len(seeds))
+        env = easing.mission(start.mission).begin(len(seeds))
+        env.limits = env.limits.in_area(start.area)
+        return env
+    limits = easing.limits(LIMITS).in_area(start.area)
     ground = ground_of(seeds[0], start.pads, easing.pads)
-    env = LanderEnv(len(seeds), 0, start.spawn, frame_skip=1, ground=ground, limits=easing.limits(LIMITS))
+    env = LanderEnv(len(seeds), 0, start.spawn, frame_skip=1, ground=ground, limits=limits)
     for slot, seed in enumerate(seeds):  # as each would draw alone
         env.draw_from(slot, np.random.default_rng(seed).spawn(1)[0])
     env.reset()

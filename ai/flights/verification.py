@@ -80,7 +80,15 @@ def verified(flights: Sequence[SharedFlight]) -> Iterator[tuple[int, Earned]]:
 def _together(recording: Recording) -> object:
     """Return what flights must share to be flown in one environment."""
     seed = recording.seed if recording.pads > 1 else 0
-    return recording.mission, recording.spawn, recording.pads, seed, tuple(recording.gravity), recording.easing
+    return (
+        recording.mission,
+        recording.spawn,
+        recording.pads,
+        seed,
+        tuple(recording.gravity),
+        recording.easing,
+        recording.area,
+    )
 
 
 def fly_again(recordings: Sequence[Recording]) -> list[Earned]:

@@ -109,6 +109,17 @@ class LanderEnv(Craft):
         return np.where(self.outcome == Outcome.LANDED, self.touched, -1)
 
     @property
+    def intact(self) -> Bools:
+        """Whether a flight ended in a touch beside the pad that broke nothing: within all limits of a touch, (n,).
+
+        Its outcome is CRASHED all the same: no landing, and no reward for one.
+        """
+        limits = self.limits
+        kept = self.impact <= np.array([limits.touch_speed, limits.slide_speed, limits.touch_tilt])
+        whole: Bools = kept.all(axis=1) & (self.outcome == Outcome.CRASHED)
+        return whole
+
+    @property
     def stage(self) -> int:
         """Stage of the curriculum, 0 without one."""
         return self.spawn.stage(self.landings) if isinstance(self.spawn, Curriculum) else 0

@@ -26,6 +26,11 @@ _NEAR: Final = np.array([0.0, 4.5, 0.0, -0.4, 0.0, 0.0])
 _NEAR_REACH: Final = np.array([5.0, 1.9, 1.2, 0.8, 0.35, 0.4])
 
 
+_BOTTOM: Final = np.array([0.0, 7.0, 0.0, -0.3, 0.0, 0.0])
+_BOTTOM_REACH: Final = np.array([0.5, 0.5, 0.2, 0.2, 0.03, 0.03])
+_RUNGS: Final = 10
+
+
 def _around(middle: Doubles, reach: Doubles) -> Spawn:
     def draw(rng: np.random.Generator) -> Doubles:
         return middle + reach * (2.0 * rng.random(6) - 1.0)
@@ -67,6 +72,13 @@ def _thorough(rng: np.random.Generator) -> Doubles:
     return SPAWNS["graded" if kind < 0.4 else "wide"](rng)
 
 
+def _rung(share: float) -> Spawn:
+    """Return starts that are `share` of the way from the bottom of the ladder to random ones."""
+    return _around(_BOTTOM + share * (_MIDDLE - _BOTTOM), _BOTTOM_REACH + share * (_REACH - _BOTTOM_REACH))
+
+
+# The ladder that a person learns on: above the pad at first, each rung a little farther from it.
+RUNGS: Final = {f"rung_{number}": _rung((number - 1) / _RUNGS) for number in range(1, _RUNGS + 1)}
 SPAWNS: Final[dict[str, Spawn]] = {
     "fixed": _at(8.0),
     "higher": _at(12.0),
@@ -78,6 +90,7 @@ SPAWNS: Final[dict[str, Spawn]] = {
     "wide": _around(_MIDDLE, _WIDE_REACH),
     "practice": _practice,
     "thorough": _thorough,
+    **RUNGS,
 }
 
 
@@ -97,6 +110,13 @@ class Curriculum:
         """Index of the stage that `landings` successes have led to."""
         return sum(landings >= threshold for threshold, _ in self.stages) - 1
 
+    def stage_of(self, spawn: str) -> int:
+        """Index of the stage that has this spawn; raises ValueError if none has."""
+        return [name for _, name in self.stages].index(spawn)
+
     def spawn(self, landings: int) -> str:
         """Name of the spawn of that stage."""
         return self.stages[self.stage(landings)][1]
+
+
+LADDER: Final = Curriculum(tuple(enumerate((*RUNGS, "random"))))

@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 
 from ai.common.environment import Doubles
+from ai.lander.edges import near_edges
 from ai.lander.environment import LanderEnv, Outcome
 from game.audio.instruments import RUNGS, altitude_key
 from game.audio.mixer import Sound
@@ -21,6 +22,7 @@ _ENDS: Final = {
 _HARD_BRAKING: Final = 0.8  # share of the greatest deceleration above which a fall is warned of
 _REACTION: Final = 0.4  # reaction time of a warned pilot in seconds
 _WARN_TILT_BELOW: Final = 6.0  # metres
+_WARN_EDGE: Final = 6.0  # metres
 _WARN_EVERY: Final = 40  # steps
 # The altitude tone has a note for every half metre near the ground, and for every metre above.
 HEIGHTS: Final = np.array([*np.arange(0.0, 4.0, 0.5), *np.arange(4.0, 4.0 + RUNGS - 8)])
@@ -58,7 +60,7 @@ class FlightSound:
         self._touch()
         outcome = Outcome(int(env.outcome[slot]))
         if outcome is not self._outcome and outcome in _ENDS:
-            self._sound.play("slow_crash" if self._pace.slow and outcome is Outcome.CRASHED else _ENDS[outcome])
+            self._end(outcome)
         self._outcome = outcome
         if outcome is Outcome.FLYING:
             self._sound_height()
@@ -74,25 +76,39 @@ class FlightSound:
         self._touched = bool(self._down.any())
         self._rung, self._since_note = -1, 0
 
+    def _end(self, outcome: Outcome) -> None:
+        """Play the sound of an ending; a craft that is whole beside the pad is set down, and lost its landing."""
+        if self._env.intact[self._slot]:
+            self._sound.play("touchdown", 0.15 + 0.85 * float(self._env.impact[self._slot, 0]) / self._touch_speed)
+            self._sound.play("lost")
+        else:
+            self._sound.play("slow_crash" if self._pace.slow and outcome is Outcome.CRASHED else _ENDS[outcome])
+
+    @property
+    def _touch_speed(self) -> float:
+        return self._env.limits.touch_speed
+
     def _touch(self) -> None:
         """Play a thud for every foot that touches, as loud as its speed; and the contact note, once."""
         env, slot = self._env, self._slot
         down = env.contacts[slot]
         if (down & ~self._down).any() and env.outcome[slot] != Outcome.CRASHED:
-            self._sound.play("touchdown", 0.15 + 0.85 * min(1.0, max(0.0, self._fall) / env.limits.touch_speed))
+            self._sound.play("touchdown", 0.15 + 0.85 * min(1.0, max(0.0, self._fall) / self._touch_speed))
             if not self._touched:
                 self._sound.play("contact")
             self._touched = True
         self._down, self._fall = down.copy(), -float(env.velocity[slot, 1])
 
     def _warn(self) -> None:
-        """Warn of a likely crash, by speed or by tilt; alternate if both apply."""
+        """Warn of a likely crash, by speed or by tilt, and of the area's edge; take turns if several apply."""
         env, slot = self._env, self._slot
         warnings = []
         if self._falls_too_fast():
             warnings.append("too_fast")
         if env.tilt[slot] > env.limits.touch_tilt and env.altitude[slot] < _WARN_TILT_BELOW:
             warnings.append("too_tilted")
+        if any(edge.ahead and edge.away < _WARN_EDGE for edge in near_edges(env, slot)):
+            warnings.append("edge")
         self._rest = max(0, self._rest - 1)
         if warnings and not self._rest:
             self._sound.play(warnings[self._turn % len(warnings)])

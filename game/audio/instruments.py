@@ -150,6 +150,11 @@ def _too_tilted(_: np.random.Generator) -> Signal:
     return np.stack([voice * np.cos(angle), voice * np.sin(angle)], axis=1)
 
 
+def _edge(_: np.random.Generator) -> Signal:
+    """Warning of the area's edge: two low, soft knocks on one note."""
+    return together(_mallet(-12, 0.5), synth.late(_mallet(-12, 0.5), 0.16))
+
+
 def _ping(_: np.random.Generator, number: int) -> Signal:
     """Note of the altitude tone; low notes have overtones, for small loudspeakers."""
     frequency = rung(number)
@@ -221,6 +226,7 @@ INSTRUMENTS: Final[dict[str, Instrument]] = {
     "pad": Instrument(_pad, "ambience", -18, loops=True),
     "too_fast": Instrument(_too_fast, "effects", -20),
     "too_tilted": Instrument(_too_tilted, "effects", -17),
+    "edge": Instrument(_edge, "effects", -16),
     "touchdown": Instrument(_thud, "effects", -9),
     "contact": Instrument(_bell, "effects", -15),
     "crash": Instrument(_crash, "effects", -6),

@@ -13,6 +13,8 @@ import pygame
 
 from ai.lander.environment import LanderEnv
 from ai.lander.rules import tenths
+from game.cockpit.ladder_mark import WIDTH as LADDER_WIDTH
+from game.cockpit.ladder_mark import draw_ladder
 from game.core import texts
 from game.drawing.canvas import Canvas, Point
 from game.drawing.paint_cache import PaintCache
@@ -54,6 +56,7 @@ _CAPITAL: Final = 0.72  # height of a figure, in shares of its font size
 _ASIDE, _ABOVE = 4.0, 16.0
 _WORDS: Final = (180.0, 66.0)
 _FIGURES: Final = PaintCache(64)
+OPENING: Final = 122.0  # row of the words over a craft that waits
 _LITTLE_TIME: Final = 5.0
 _PLENTY_OF_TIME: Final = 120.0
 
@@ -242,6 +245,7 @@ CARD: Final = pygame.Rect(400, 136, 480, 264)
 _ADVICE_ROW: Final = 24
 _RIVAL_ROWS: Final = 60
 _GROWTH_ROW: Final = 22
+_LADDER_ROW: Final = 30
 
 
 def draw_card(
@@ -257,8 +261,10 @@ def draw_card(
     lower = _lower(card, advise)
     canvas.panel((card.left, top, CARD.width, CARD.height + lower + _below(card, rival=rival is not None)))
     colour = canvas.palette.good if card.good else canvas.palette.warn
+    colour = INK if card.intact else colour
     canvas.glow((left + 10, top + 44), 30, colour, 0.5 * shown)
-    canvas.marker("check" if card.good else "cross", (left + 10, top + 44), 18, colour)
+    mark: Shape = "check" if card.good else "diamond" if card.intact else "cross"
+    canvas.marker(mark, (left + 10, top + 44), 18, colour)
     canvas.text(card.title, (left + 34, top + 52), size=TITLE, colour=colour)
     score = canvas.text(card.score, (left + width, top + 52), size=TEXT, colour=HUMAN, align="right")
     for lamp in range(card.medal):
@@ -291,6 +297,10 @@ def draw_card(
     for line in card.growth:
         canvas.text(line, (left, top + 220), size=SMALL, colour=HUMAN, room=width)
         top += _GROWTH_ROW
+    if card.rung is not None and card.climb:
+        draw_ladder(canvas, left + 1, top + 223, card.rung)
+        canvas.text(card.climb, (left + LADDER_WIDTH + 8, top + 223), size=SMALL, room=width - LADDER_WIDTH - 8)
+        top += _LADDER_ROW
     canvas.line((left, top + 218), (left + width, top + 218), LINE)
 
 
@@ -303,7 +313,7 @@ def card_row(card: OutcomeCard, hints: list[Hint], shown: float, advise: bool, *
 
 def _below(card: OutcomeCard, *, rival: bool) -> int:
     """Return how many points of rows a card has more than the usual ones."""
-    return _RIVAL_ROWS * rival + _GROWTH_ROW * len(card.growth)
+    return _RIVAL_ROWS * rival + _GROWTH_ROW * len(card.growth) + _LADDER_ROW * bool(card.climb)
 
 
 def _below_reason(card: OutcomeCard, advise: bool) -> list[tuple[str, Colour]]:
@@ -329,19 +339,21 @@ def _draw_rival(canvas: Canvas, rival: RivalOutcome, labels: Sequence[str], corn
         canvas.text(unit, (figure.right + 4, top + 25), size=LABEL, colour=MUTE)
 
 
-def draw_opening(canvas: Canvas, hints: Sequence[Hint], line: str, paths: Sequence[tuple[str, Colour]]) -> None:
+def draw_opening(
+    canvas: Canvas, hints: Sequence[Hint], line: str, paths: Sequence[tuple[str, Colour]], top: float = OPENING
+) -> None:
     """Draw the controls and the legend of the dotted paths in the middle, while the craft hangs and waits."""
     canvas = canvas.at(0, -1)
     middle = VIEW_SIZE[0] / 2
-    canvas.text(line, (middle, 122), size=TEXT, colour=MUTE, align="centre")
-    row = HintRow(hints, (0, 150), size=TEXT)
-    replace(row, position=(middle - row.width(canvas) / 2, 150)).draw(canvas)
+    canvas.text(line, (middle, top), size=TEXT, colour=MUTE, align="centre")
+    row = HintRow(hints, (0, top + 28), size=TEXT)
+    replace(row, position=(middle - row.width(canvas) / 2, top + 28)).draw(canvas)
     gap, dots = 32, 30
     x = middle - (sum(canvas.text_width(text, size=SMALL) + dots for text, _ in paths) + gap * (len(paths) - 1)) / 2
     for text, colour in paths:
         for number in range(3):
-            canvas.dot((x + 4 + 8 * number, 174), 1.5, colour)
-        x = canvas.text(text, (x + dots, 178), size=SMALL, colour=MUTE).right + gap
+            canvas.dot((x + 4 + 8 * number, top + 52), 1.5, colour)
+        x = canvas.text(text, (x + dots, top + 56), size=SMALL, colour=MUTE).right + gap
 
 
 def draw_mark(canvas: Canvas, place: Point, within: bool) -> None:

@@ -6,14 +6,14 @@ import math
 from collections.abc import Iterator
 from typing import Final
 
-from ai.lander.environment import PARAMS, LanderEnv, Outcome
+from ai.lander.edges import near_edges
+from ai.lander.environment import PARAMS, LanderEnv
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK, MARGIN, MUTE, SMALL
 
 _FIRST: Final = 98.0  # the first row, below the flight's goal
 _ROW: Final = 20.0
-_NEAR_EDGE: Final = 6.0  # distance in metres at which the edge of the area is announced
 _SOON: Final = 3.0  # seconds ahead that a failure is announced
 _ARROW: Final = 52.0  # length of the strongest wind's arrow, in points
 _STRONGEST, _CALM = 0.6, 0.05  # m/s²
@@ -55,16 +55,11 @@ def surroundings(env: LanderEnv) -> Iterator[tuple[str, float, bool]]:
 
 
 def _edges(env: LanderEnv) -> Iterator[tuple[str, float, bool]]:
-    """Yield warnings of the area's invisible edges while the flight heads for them."""
-    (x, y), (across, up) = env.position[0].tolist(), env.velocity[0].tolist()
-    limits = env.limits
-    if env.outcome[0] != Outcome.FLYING:
-        return
-    if up > 0 and (above := limits.ceiling - y) < _NEAR_EDGE:
-        yield texts.EDGE_ABOVE.format(metres=math.ceil(max(0.0, above))), 0.0, True
-    if x * across > 0 and (aside := limits.half_width - abs(x)) < _NEAR_EDGE:
-        text = texts.EDGE_RIGHT if x > 0 else texts.EDGE_LEFT
-        yield text.format(metres=math.ceil(max(0.0, aside))), 0.0, True
+    """Yield the distance to each edge of the area that the flight comes near and heads for."""
+    words = {"above": texts.EDGE_ABOVE, "left": texts.EDGE_LEFT, "right": texts.EDGE_RIGHT}
+    for edge in near_edges(env):
+        if edge.ahead:
+            yield words[edge.side].format(metres=math.ceil(edge.away)), 0.0, True
 
 
 def _draw_arrow(canvas: Canvas, start: tuple[float, float], push: float) -> None:

@@ -20,6 +20,7 @@ _LARGEST: Final = 1_000_000  # bytes
 # Limits of the player's factors for gravity and for the pace of time.
 GRAVITY_SHARES: Final = (0.6, 1.4)
 PACES: Final = (0.2, 1.0)
+TOP_RUNG: Final = 10  # of the ladder of starts: there, flights begin anywhere
 
 
 @dataclass
@@ -60,6 +61,7 @@ class Settings:
     all_knobs: bool = False  # whether Train shows all knobs, and not three
     tutored: bool = False  # whether the tutorial flight was flown or skipped, so it is not offered again
     first_flown: bool = False  # whether the tutorial flight was flown to its landing
+    rung: Annotated[int, Within(-1, TOP_RUNG)] = -1  # place on the ladder of starts, from 0; -1 before it is known
     learnt: dict[str, Any] = field(default_factory=dict)  # progress by chapter, as game.learn.progress writes it
     chapter: str = ""  # key of the chapter last opened
     unknown: dict[str, Any] = field(default_factory=dict)  # values written by a newer version; kept unchanged

@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 from ai.copilot.alone import Estimate, LandingAlone
 from game.flight.flight_file import Entry
 
-KINDS: Final = ("plain", "hills", "missions")  # keys of `texts.BECOMING_KINDS`
+KINDS: Final = ("ladder", "plain", "hills", "missions")  # keys of `texts.BECOMING_KINDS`
 _MOST: Final = 300  # latest flights of a kind that are looked at: older ones are forgotten anyway
 
 
@@ -22,7 +22,9 @@ class Change(NamedTuple):
 
 def kind_of(entry: Entry) -> str:
     """Return the kind of start of a flight, one of `KINDS`."""
-    return "missions" if entry.course else "hills" if entry.pads > 1 else "plain"
+    if entry.course:
+        return "missions"
+    return "hills" if entry.pads > 1 else "ladder" if entry.on_ladder else "plain"
 
 
 def tells(entry: Entry) -> bool:

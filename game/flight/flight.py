@@ -9,7 +9,7 @@ import numpy as np
 from ai.common.decision import Decision
 from ai.common.environment import Doubles, Floats
 from ai.flights.easing import AS_IT_IS, Easing
-from ai.flights.recording import Recording, StickHolder
+from ai.flights.recording import AREA, Recording, StickHolder
 from ai.flights.starts import begun
 from ai.flights.stick import Shares, thrust
 from ai.lander.environment import Outcome
@@ -40,6 +40,7 @@ class Flight:
         mission: name of one of `ai.lander.missions.STARTS`, which sets the start and the conditions; empty for none.
         shares: whether the network may share the stick, and not only take it.
         easing: changes of the rules that give the pilot more room.
+        area: version of the area's edges, an index of `ai.lander.rules.AREAS`.
 
     Attributes:
         steered: whether the jets are fired for the person, who has the main engine alone: one switch is enough.
@@ -62,8 +63,9 @@ class Flight:
         mission: str = "",
         shares: bool = True,
         easing: Easing = AS_IT_IS,
+        area: int = AREA,
     ) -> None:
-        self.recording = Recording(seed, spawn, pads, mission=mission, easing=easing)
+        self.recording = Recording(seed, spawn, pads, mission=mission, area=area, easing=easing)
         self.env = begun(self.recording)
         self.observation: Floats = self.env.observe()
         self.hand, self.shares = StickHolder.HUMAN, shares
@@ -87,6 +89,16 @@ class Flight:
     def over(self) -> bool:
         """Whether it has ended."""
         return self.outcome is not Outcome.FLYING
+
+    @property
+    def intact(self) -> bool:
+        """Whether it has ended beside the pad with nothing broken."""
+        return bool(self.env.intact[0])
+
+    @property
+    def wrecked(self) -> bool:
+        """Whether it has ended in a wreck."""
+        return self.outcome is Outcome.CRASHED and not self.intact
 
     @property
     def flown_by(self) -> StickHolder:

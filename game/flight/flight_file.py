@@ -20,7 +20,8 @@ from ai.flights.recording import LONGEST, Recording, StickHolder
 from ai.flights.stick import STEPS, Shares
 from ai.lander.environment import NUM_ACTIONS, Outcome
 from ai.lander.missions import MISSIONS
-from ai.lander.spawns import SPAWNS
+from ai.lander.rules import AREAS
+from ai.lander.spawns import RUNGS, SPAWNS
 from ai.nn.files import brief, parse_json, read_text, write_text
 from ai.nn.schema import OneOf, Seed, Share, Sized, Within, check_header, read_as
 from game.core import texts
@@ -29,7 +30,7 @@ from game.core.settings import GRAVITY_SHARES
 FORMAT: Final = "tranquility flight"
 VERSION: Final = 5
 # Version 1 had no changes of gravity, 2 no rules of missions, 3 no reason why a flight does not count, 4 no shares
-# of thrust and no easing.
+# of thrust, no easing and no version of the area: it was the first.
 _READS: Final = (1, 2, 3, 4, 5)
 _LARGEST: Final = 2_000_000  # bytes
 _LONGEST_NAME: Final = 255  # characters, as in the name of a file
@@ -68,6 +69,8 @@ class Entry:
         course: name of a mission; empty for a free flight.
         medal: 3 for gold, 2, 1, and 0 for none.
         file: name of the flight's file, for a replay.
+        spawn: the kind of start, a name of `ai.lander.spawns.SPAWNS`.
+        intact: whether it came down whole beside the pad; its outcome is CRASHED.
 
     """
 
@@ -89,6 +92,13 @@ class Entry:
     rules: _Number = 0
     barred: _Name = ""
     guarded: Share = 0.0
+    intact: bool = False
+    spawn: Annotated[str, OneOf(SPAWNS)] = "random"
+
+    @property
+    def on_ladder(self) -> bool:
+        """Whether it began on a rung of the ladder; then it does not measure the skill in flights from anywhere."""
+        return self.spawn in RUNGS
 
     @property
     def practice(self) -> bool:
@@ -143,6 +153,7 @@ class _FlightFile:
     hands: str
     end: tuple[float, float, float]
     entry: Entry
+    area: Annotated[int, OneOf(range(len(AREAS)))] = 0
     gravity: tuple[tuple[_Number, Annotated[float, Within(*GRAVITY_SHARES)]], ...] = ()
     shares: str = ""
     easing: Easing = AS_IT_IS
@@ -174,9 +185,9 @@ def to_text(record: Record) -> str:
     recording = record.recording
     return json.dumps({
         "format": FORMAT, "version": VERSION, "seed": recording.seed, "spawn": recording.spawn,
-        "pads": recording.pads, "mission": recording.mission, "actions": _packed(recording.actions),
-        "hands": _packed(hand.value for hand in recording.hands), "gravity": recording.gravity,
-        "shares": _packed_shares(recording), "easing": asdict(recording.easing),
+        "pads": recording.pads, "mission": recording.mission, "area": recording.area,
+        "actions": _packed(recording.actions), "hands": _packed(hand.value for hand in recording.hands),
+        "gravity": recording.gravity, "shares": _packed_shares(recording), "easing": asdict(recording.easing),
         "end": record.end, "entry": asdict(record.entry),
     }, indent=1) + "\n"  # fmt: skip
 
@@ -198,9 +209,10 @@ def from_text(text: str) -> Record:
     steps = [step for step, _ in file.gravity]
     if steps != sorted(set(steps)):
         raise ValueError(texts.FLIGHT_GRAVITY)
+    shares = _unpacked_shares(file.shares, len(actions))
     recording = Recording(
         file.seed, file.spawn, file.pads, actions, hands, file.mission, list(file.gravity),
-        _unpacked_shares(file.shares, len(actions)), file.easing,
+        area=file.area, shares=shares, easing=file.easing,
     )  # fmt: skip
     return Record(recording, file.entry, file.end)
 

@@ -40,6 +40,8 @@ def describe(flight: Flight, when: float, **more: Any) -> Entry:
     return Entry(
         when=round(when, 3),
         outcome=flight.outcome.name,
+        intact=flight.intact,
+        spawn=flight.recording.spawn,
         seconds=round(float(env.time[0]), 3),
         fuel=round(float(env.fuel[0]), 3),
         touchdown=round(float(env.impact[0, 0]), 3),
@@ -186,11 +188,11 @@ class Records:
 def best(entries: Iterable[Entry], most: int = BEST) -> list[Entry]:
     """Return up to `most` best landings of each mission by the person alone that can be replayed.
 
-    Landings under other rules are ranked separately, like another mission.
+    Landings under other rules are ranked separately, like another mission, and so are those from the ladder.
     """
 
-    def challenge(entry: Entry) -> tuple[str, int, int]:
-        return entry.course, entry.pads, entry.rules
+    def challenge(entry: Entry) -> tuple[str, int, int, bool]:
+        return entry.course, entry.pads, entry.rules, entry.on_ladder
 
     own = (entry for entry in entries if entry.landed and entry.alone and not entry.practice)
     landings = sorted((entry for entry in own if entry.file), key=challenge)

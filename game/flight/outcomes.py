@@ -17,7 +17,8 @@ class OutcomeCard:
     For a shared flight, `stepped_in` is how often the co-pilot intervened, and `saved` how often it saved the person;
     None for a flight without a guardian that could tell, or without a landing. `medal` is 3 for gold, 2, 1, 0 for none.
     `assists` says what made the flight easier. `left` is the card's left edge. `growth` are lines on what the flight
-    has shown of the person's own skill.
+    has shown of the person's own skill. `intact` is whether the craft came down whole beside the pad. `rung` is the
+    place on the ladder of starts, None off it, and `climb` what the flight has changed there.
     """
 
     good: bool
@@ -33,6 +34,9 @@ class OutcomeCard:
     saved: int | None = None
     left: float = 400.0
     growth: tuple[str, ...] = ()
+    intact: bool = False
+    rung: int | None = None
+    climb: str = ""
 
     @property
     def told(self) -> str:
@@ -56,14 +60,18 @@ def outcome_card(env: LanderEnv, human: float, slot: int = 0) -> OutcomeCard:
     """Return the outcome card of a flight that has ended; `human` is the person's share of the steps, 0 to 1."""
     outcome = Outcome(int(env.outcome[slot]))
     title, reason = texts.OUTCOMES[outcome.name]
-    if outcome is Outcome.CRASHED:
+    intact = bool(env.intact[slot])
+    if intact:
+        title, reason = texts.BESIDE_TITLE, crash_reason(env, slot)
+    elif outcome is Outcome.CRASHED:
         reason = crash_reason(env, slot)
     elif outcome is Outcome.OUT_OF_BOUNDS:
         reason = reason.format(where=_where_left(env, slot))
     elif outcome is Outcome.TIMED_OUT:
         reason = reason.format(limit=f"{env.limits.time:.0f}")
-    advice = texts.ADVICE.get(Cause(int(env.cause[slot])).name, "")
-    return OutcomeCard(outcome is Outcome.LANDED, title, reason, flight_figures(env, slot), human, advice)
+    advice = texts.ADVICE.get(cause_of(env, slot).name, "")
+    figures = flight_figures(env, slot)
+    return OutcomeCard(outcome is Outcome.LANDED, title, reason, figures, human, advice, intact=intact)
 
 
 def _where_left(env: LanderEnv, slot: int) -> str:
@@ -87,16 +95,33 @@ def flight_figures(env: LanderEnv, slot: int = 0) -> tuple[tuple[str, str, str],
     return (*figures, (texts.FROM_MIDDLE, f"{away:.1f}", "m"))
 
 
+def ending_word(outcome: str, *, intact: bool) -> str:
+    """Return the title of an ending by the name of its Outcome; `intact` is for a whole craft beside the pad."""
+    return texts.BESIDE_TITLE if intact else texts.OUTCOMES[outcome][0]
+
+
+def cause_of(env: LanderEnv, slot: int = 0) -> Cause:
+    """Return why a craft broke: of a hard touch beside the pad the limit it exceeded, as the place breaks nothing."""
+    cause = Cause(int(env.cause[slot]))
+    if cause is not Cause.TERRAIN or env.intact[slot]:
+        return cause
+    return next(cause for cause, (value, limit) in _exceeded(env, slot).items() if value > limit)
+
+
+def _exceeded(env: LanderEnv, slot: int) -> dict[Cause, tuple[float, float]]:
+    """Return what the craft's touches came to, and its limit, for every cause that has one."""
+    (speed, slide, tilt), limits = env.impact[slot].tolist(), env.limits
+    return {
+        Cause.HARD: (speed, limits.touch_speed),
+        Cause.SLIDING: (slide, limits.slide_speed),
+        Cause.TILTED: (math.degrees(tilt), math.degrees(limits.touch_tilt)),
+    }
+
+
 def crash_reason(env: LanderEnv, slot: int = 0) -> str:
     """Return which limit the lander exceeded, and by how much."""
-    cause = Cause(int(env.cause[slot]))
-    speed, slide, tilt = env.impact[slot].tolist()
-    limits = env.limits
-    value, limit = {
-        Cause.HARD: _beyond(speed, limits.touch_speed),
-        Cause.SLIDING: _beyond(slide, limits.slide_speed),
-        Cause.TILTED: _beyond(math.degrees(tilt), math.degrees(limits.touch_tilt), 0),
-    }.get(cause, ("", ""))
+    cause, limits = cause_of(env, slot), _exceeded(env, slot)
+    value, limit = _beyond(*limits[cause], 0 if cause is Cause.TILTED else 1) if cause in limits else ("", "")
     return texts.CAUSES[cause.name].format(value=value, limit=limit)
 
 

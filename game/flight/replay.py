@@ -22,8 +22,9 @@ class ReplayedFlight(Flight):
 
     def __init__(self, source: Recording) -> None:
         super().__init__(
-            source.seed, spawn=source.spawn, pads=source.pads, mission=source.mission, easing=source.easing
-        )
+            source.seed, spawn=source.spawn, pads=source.pads, mission=source.mission, easing=source.easing,
+            area=source.area,
+        )  # fmt: skip
         self._source = source
 
     @property

@@ -63,4 +63,4 @@ class Skill:
 
 
 def _counts(entry: Entry) -> bool:
-    return not (entry.course or entry.practice)
+    return not (entry.course or entry.practice or entry.on_ladder)

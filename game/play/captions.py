@@ -8,20 +8,24 @@ from typing import Final
 import pygame
 
 from game.cockpit import hud
+from game.cockpit.ladder_mark import draw_ladder
 from game.cockpit.surroundings import draw_surroundings
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import HUMAN, MARGIN, NET
+from game.drawing.tokens import HUMAN, MARGIN, NET, SMALL
 from game.flight.flight import Flight, StickHolder
 from game.flight.handicap import OWN
 from game.flight.networks import Network
 from game.input.controls import Command, Controls
 from game.play.challenge import Challenge
+from game.play.ladder import COUNT, rung_of
 from game.ui.actions import Action, Run
 from game.ui.hints import Hint, HintRow, flight_hints
 from game.world.camera import ClearArea
 
 _KEYS_ROOM: Final = 352.0  # points, to the right of who flies
+OPENING_FOOT: Final = 290.0  # row above which the words over a waiting craft would hide it
+LOWER: Final = 420.0  # where they stand then
 BELOW_OPENING: Final = ClearArea(head=196.0)  # keeps the waiting craft clear of the opening text
 
 
@@ -42,18 +46,31 @@ def _draw_free_title(canvas: Canvas, flight: Flight, network: Network, hands: st
     flown = texts.WITH_NETWORK.format(name=network.name) if flight.network else texts.ALONE
     if hands != OWN:
         flown = texts.HANDICAPS.format(hands=texts.CHOICES_HANDS_WORDS[hands])
-    hud.draw_corner(canvas, texts.THREE_PADS if flight.recording.pads > 1 else texts.FREE_FLIGHT, flown, notice)
+    title = texts.THREE_PADS if flight.recording.pads > 1 else texts.FREE_FLIGHT
+    rung = rung_of(flight)
+    if rung is not None:
+        title = texts.LADDER_TITLE.format(number=rung + 1, count=COUNT)
+        draw_ladder(canvas, MARGIN + canvas.text_width(title, size=SMALL) + 12, 38, rung)
+    hud.draw_corner(canvas, title, flown, notice)
 
 
-def draw_opening(
-    canvas: Canvas, controls: Controls, challenge: Challenge | None, forecast: bool, *, check: bool = False
-) -> None:
-    """Draw the controls and the legend of the dotted paths while the craft hangs and waits, before a `check` kindly."""
+def opening(flight: Flight, challenge: Challenge | None, *, begun: bool, stuck: bool, check: bool) -> str:
+    """Return the words over a craft that waits: for the first touch, for the next one, or until all is let go."""
+    if begun:
+        return texts.TUTORIAL_LET_GO if stuck else texts.WAITS_AGAIN
+    if challenge:
+        return challenge.opening
+    if check:
+        return texts.CHECK_BEGIN
+    return texts.BEGIN if rung_of(flight) is None else texts.LADDER_BEGIN
+
+
+def draw_opening(canvas: Canvas, controls: Controls, words: str, forecast: bool, top: float) -> None:
+    """Draw words, the controls and the legend of the dotted paths while the craft hangs and waits."""
     paths = [(texts.PATH_YOURS, HUMAN)]
     if forecast:
         paths.append((texts.PATH_NETWORK, NET))
-    begin = texts.CHECK_BEGIN if check else texts.BEGIN
-    hud.draw_opening(canvas, flight_hints(controls), challenge.opening if challenge else begin, paths)
+    hud.draw_opening(canvas, flight_hints(controls), words, paths, top)
 
 
 def flight_actions(
@@ -68,7 +85,7 @@ def flight_actions(
         leaves: whether Escape goes straight back.
 
     """
-    hints = {Command.PAUSE: texts.HINT_LEAVE if leaves else texts.HINT_PAUSE}
+    hints = {Command.PAUSE: texts.HINT_LEAVE if leaves else texts.HINT_PAUSE, Command.RETRY: texts.HINT_RETRY}
     if not challenge:
         hints[Command.CHOICES] = texts.CHOICES_HINT
     elif challenge.next_hint:
@@ -84,12 +101,18 @@ def flight_row(hints: list[Hint], view: pygame.FRect) -> HintRow:
     return HintRow(hints, (view.right - MARGIN, view.top + 42), from_right=True, room=_KEYS_ROOM)
 
 
-def card_actions(go_on: Run, runs: Mapping[Command, Run], challenge: Challenge | None, *, good: bool) -> list[Action]:
-    """Return the two actions that an outcome card names: to go on, and one of the others; `good` is for a landing."""
+def card_actions(
+    go_on: Run, runs: Mapping[Command, Run], challenge: Challenge | None, *, good: bool, nearer: bool = False
+) -> list[Action]:
+    """Return the two actions that an outcome card names: to go on, and one of the others.
+
+    `good` is for a landing; `nearer` is whether the next try begins nearer to the pad.
+    """
     fixed = challenge is not None and challenge.fixed
     if good:
         other, hint = Command.RETRY, texts.HINT_AGAIN
     else:
         other, hint = (Command.PAUSE, texts.HINT_LEAVE) if fixed else (Command.NEXT, texts.HINT_NEW)
     first = (texts.CARD_FIRST_FIXED if fixed else texts.CARD_FIRST)[good]
+    first = texts.LADDER_NEARER if nearer else first
     return [Action(Command.CONFIRM, go_on, first), Action(other, runs[other], hint)]

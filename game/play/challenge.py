@@ -99,6 +99,20 @@ class Challenge:
         """Whether a finished flight restarts by itself, without a card."""
         return False
 
+    def dial(self, settings: Settings) -> Settings:
+        """Return the settings that the dial turns: the player's own, or others for this challenge alone."""
+        return settings
+
+    @property
+    def holds(self) -> bool:
+        """Whether the craft goes on to hang, although it is touched."""
+        return False
+
+    @property
+    def guides(self) -> bool:
+        """Whether the network's path is previewed: not beside a ghost, where one blue path is enough."""
+        return False
+
     @property
     def waits(self) -> bool:
         """Whether the craft hangs until the pilot touches a control; otherwise, only until all are released."""
@@ -204,9 +218,8 @@ def _elsewhere(recording: Recording) -> bool:
 
 def _as_begun(recording: Recording, seed: int, network: Policy | None) -> Flight:
     """Return a flight at the start of a recorded one."""
-    return Flight(
-        seed, network, recording.spawn, pads=recording.pads, mission=recording.mission, easing=recording.easing
-    )
+    start = {"pads": recording.pads, "mission": recording.mission}
+    return Flight(seed, network, recording.spawn, **start, area=recording.area, easing=recording.easing)
 
 
 class FlownMission(Challenge):

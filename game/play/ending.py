@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Final
 
-from ai.lander.environment import Outcome
 from game.cockpit import hud
 from game.cockpit.cockpit import Cockpit
 from game.core.pace import SlowMotion
@@ -14,6 +13,7 @@ from game.flight.flight import Flight
 from game.flight.skill import Skill
 from game.play.challenge import Challenge
 from game.play.ghost import Ghost
+from game.play.ladder import rung_of
 from game.ui.hints import Hint, HintRow
 from game.world.camera import CameraTarget
 from game.world.scenery import Scenery
@@ -59,7 +59,7 @@ class FlightEnding:
     def follow(self) -> None:
         """Advance by one step; the first step after a crash starts slow motion."""
         self._since += 1
-        if self._since == 1 and self._flight.outcome is Outcome.CRASHED and not self.calm:
+        if self._since == 1 and self._flight.wrecked and not self.calm:
             self._pace.slow_down()
 
     def hurry(self) -> None:
@@ -71,7 +71,8 @@ class FlightEnding:
     def make_card(self, cockpit: Cockpit, challenge: Challenge | None, skill: Skill, scenery: Scenery) -> None:
         """Make the outcome card; the best score to compare with is that of free flights."""
         self._whole = scenery.shot_of(cockpit.track.path)
-        card = cockpit.card(0 if challenge and challenge.name else skill.best, self._whole.view(1.0))
+        unranked = rung_of(self._flight) is not None or (challenge and challenge.name)
+        card = cockpit.card(0 if unranked else skill.best, self._whole.view(1.0))
         self.card = challenge.card(card, self._flight, cockpit.credit) if challenge else card
 
     def draw(self, canvas: Canvas, ghost: Ghost | None, advise: bool) -> None:

@@ -41,6 +41,7 @@ class FlownFlight:
         policy: the network to hand over to, if there is one; unused where the player must fly alone.
         challenge: its start and rules; None for a free flight.
         pads: number of landing pads of a free flight.
+        spawn: kind of start of a free flight.
         hands: handicap of a free flight, a name of `game.flight.handicap.HANDS`.
         check: whether it is a check flight.
 
@@ -52,7 +53,8 @@ class FlownFlight:
         ending: the ending, with slow motion and outcome card.
         record: the record of the flight once it is over; None before, and where none is kept.
         chance_map: where one could still be saved, while the player wishes to see it.
-        waiting: whether the craft still hangs until the pilot's first touch.
+        waiting: whether the craft hangs until the pilot touches a control.
+        begun: whether it has flown a step.
 
     """
 
@@ -64,6 +66,7 @@ class FlownFlight:
         challenge: Challenge | None = None,
         *,
         pads: int = 1,
+        spawn: str = "random",
         hands: str = OWN,
         check: bool = False,
     ) -> None:
@@ -71,13 +74,15 @@ class FlownFlight:
         self.challenge, self.hands = challenge, hands
         self.waiting = self._held_before = True
         self.record: Record | None = None
+        self.begun = False
         self._was_over = False  # whether the flight was over before its latest step
         alone = check or (challenge is not None and challenge.alone)
         self._policy = None if alone else policy
-        self.flight = self._begin(seed, pads)
+        self.flight = self._begin(seed, spawn, pads)
         self.difficulty = Difficulty(self._settings, self.flight, free=not challenge)
         self.credit = Credit(self.flight, self.difficulty, challenge, hands, check=check)
-        self.cockpit = Cockpit(self.flight, self._settings, self.credit, context.view)
+        dial = challenge.dial(self._settings) if challenge else self._settings
+        self.cockpit = Cockpit(self.flight, dial, self.credit, context.view)
         self.ghost = challenge.ghost(seed, self._policy) if challenge else None
         told = not challenge or bool(challenge.opening)
         calm = self._settings.reduced_motion
@@ -89,19 +94,19 @@ class FlownFlight:
         self.path_preview = PathPreview(self.flight, self._guide)
         self.chance_map = ChanceMap()
 
-    def _begin(self, seed: int, pads: int) -> Flight:
+    def _begin(self, seed: int, spawn: str, pads: int) -> Flight:
         """Return the flight at its start, eased as the player has chosen, where that may be."""
         easing, challenge = eased(self._settings), self.challenge
         if challenge is None:
-            return Flight(seed, self._policy, pads=pads, hands=self.hands, easing=easing)
+            return Flight(seed, self._policy, spawn, pads=pads, hands=self.hands, easing=easing)
         if challenge.eases:
             challenge.easing = easing
         return challenge.flight(seed, self._policy)
 
     @property
     def _guide(self) -> Policy | None:
-        """The network whose path is previewed; None beside a ghost, where one blue path is enough."""
-        return None if self.challenge else self._policy
+        """The network whose path is previewed; None where none is."""
+        return None if self.challenge and not self.challenge.guides else self._policy
 
     def set_calm(self, calm: bool) -> None:
         """Set whether motion is reduced."""
@@ -130,6 +135,7 @@ class FlownFlight:
         """Count 1/60 s; return whether a step is due: the craft may wait, or slowed time make none due."""
         self.pace.rate = self._settings.pace
         if self._waits(action):
+            self.cockpit.help()
             self.path_preview.follow(waiting=True)
             return False
         return bool(self.pace.steps())
@@ -142,13 +148,19 @@ class FlownFlight:
         """Whether the craft still hangs; a key that began the flight itself must first be let go."""
         self._held_before = self._held_before and bool(action)
         touched = bool(action) or (self.challenge is not None and not self.challenge.waits)
-        if self.flight.hand is StickHolder.NETWORK or (touched and not self._held_before):
+        holds = self.challenge is not None and self.challenge.holds
+        if self.flight.hand is StickHolder.NETWORK or (touched and not self._held_before and not holds):
             self.waiting = False
         return self.waiting
 
+    def hang(self) -> None:
+        """Let a craft in flight hang where it is until the pilot's next touch: after a pause, or a lost focus."""
+        if not self.flight.over:
+            self.waiting = self._held_before = True
+
     def prepare(self) -> None:
         """Make ready for the flight's next step; after the end, only what still moves goes on."""
-        self._was_over = self.flight.over
+        self._was_over, self.begun = self.flight.over, True
         if not self._was_over:  # at the end, the figures stay those of the last moment before
             self._readouts, self._thrust = hud.flight_readouts(self.flight.env), hud.thrust_readout(self.flight.env)
             self.difficulty.heed()
@@ -237,6 +249,9 @@ class FlownFlight:
             hud.draw_readouts(canvas, self._readouts)
         explain_readouts(canvas, flight.env)
         if self.waiting and not (self.challenge and not self.challenge.opening):
-            captions.draw_opening(
-                canvas, self._context.controls, self.challenge, self.path_preview.asks, check=self.credit.check
+            words = captions.opening(
+                flight, self.challenge, begun=self.begun, stuck=self._held_before, check=self.credit.check
             )
+            high = float(view.points(pose[:2])[1]) < captions.OPENING_FOOT  # a craft behind the usual place
+            top = captions.LOWER if self.begun and high else hud.OPENING
+            captions.draw_opening(canvas, self._context.controls, words, self.path_preview.asks, top)

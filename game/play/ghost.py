@@ -66,7 +66,7 @@ class Ghost:
             _draw_fire(canvas, view, pose, int(flight.env.steps[0]))
         x, y = view.pixels(pose[:2]).tolist()
         fine, degrees = view.painted_per_metre, round(math.degrees(pose[2])) % 360
-        crashed = flight.outcome is Outcome.CRASHED
+        crashed = flight.wrecked
         ratio = view.pixels_per_metre / fine
         canvas.surface.blit(*fitted(lambda halves: _phantom(fine, degrees, halves, crashed), ratio, (x, y)))
         _point_to(canvas, *view.points(pose[:2]).tolist())
@@ -84,6 +84,8 @@ def _point_to(canvas: Canvas, x: float, y: float) -> None:
 def _result(yours: LanderEnv, theirs: LanderEnv) -> str:
     """Describe the rival's result and, where both have landed, who was first."""
     outcome = Outcome(int(theirs.outcome[0]))
+    if theirs.intact[0]:
+        return texts.BESIDE_RESULT
     if not (outcome is Outcome.LANDED and yours.outcome[0] == outcome):
         return texts.RIVAL_RESULTS[outcome.name]
     behind = tenths(tenths(float(theirs.time[0])) - tenths(float(yours.time[0])))  # of the rounded figures on the card

@@ -7,8 +7,7 @@ line beside it names the key that it waits for.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -21,114 +20,35 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK, MUTE, SMALL, TEXT
 from game.flight.credit import Credit
 from game.flight.flight import Flight, StickHolder
-from game.flight.networks import Policy
+from game.flight.networks import Policy, QPolicy
 from game.flight.outcomes import OutcomeCard, outcome_card
 from game.input.bindings import Command, Held
 from game.input.controls import Controls
 from game.play.challenge import Challenge, DrawnFlight
+from game.play.rescue_offer import GUARD, HELP
+from game.play.tutorial_lessons import (
+    LESSONS,
+    NEED_COPILOT,
+    NEED_NETWORK,
+    RISING,
+    UPRIGHT,
+    Lesson,
+    falls_too_fast,
+    leaves_at_the_top,
+    turned,
+)
 from game.world.camera import View
 
 _PRAISE: Final = 40  # steps that a finished lesson stays on the screen, with a tick
-_HIGH: Final = (0.0, 17.0, 0.0, 0.0, 0.0, 0.0)
-_LOW: Final = (0.0, 8.0, 0.0, 0.0, 0.0, 0.0)
-_MIDWAY: Final = (0.0, 14.0, 0.0, 0.0, 0.0, 0.0)  # with room above for players who fire for long
-_LEANING: Final = (0.0, 17.0, 0.0, 0.0, 0.3, 0.0)
-_SINKING: Final = (0.0, 16.0, 0.0, -2.0, 0.0, 0.0)
-_LEAN: Final = 0.15  # rad
-_UPRIGHT: Final = (0.08, 0.15)  # rad, rad/s
-_SLOW: Final = 1.0  # m/s
-_RISING: Final = 0.3  # m/s upwards, above which the craft rises instead of braking
-_MARGIN: Final = 2.0, 1.4  # metres, and shares of the braking distance, within which braking is urgent
+_LONG: Final = 900  # steps in flight after which a rescue that does not come down is helped by words
 _NEAR: Final = 4.0  # metres above the pad, below which the craft should be upright
 _TOLD_WHY: Final = 240  # steps in flight that the reason for a restart stays on the screen
-_AHEAD: Final = 0.9  # seconds of look-ahead for stopping a turn
 _SIDEWAYS: Final = 12.0  # metres from the pad that count as far
-_TOP: Final = 3.5  # metres below the top of the area, within which to release the engine
 _BESIDE: Final = 1.6  # metres from the middle of a craft to the text beside it
 _EDGE: Final = 24.0
 _SIZE: Final = TEXT + 2
 _WHY: Final = 22.0  # from the instruction to the reason for a restart
 _FOOT: Final = 120.0  # points above the lower edge, for the read-outs
-
-
-@dataclass(frozen=True)
-class Lesson:
-    """One lesson: something to do, and how to tell that it is done.
-
-    Attributes:
-        name: key of its line in `texts.TUTORIAL`.
-        done: predicate: whether the lesson's action is being done in this step of a flight.
-        steps: number of steps for which it must be done, 60 per second; consecutive if `held`.
-        start: state at which the lesson restarts after a crash.
-        by: who must have the stick.
-        hands_off: whether it begins with all controls released, and needs no touch.
-        back: number of lessons to go back when it restarts.
-
-    """
-
-    name: str
-    done: Callable[[Flight], bool]
-    steps: int
-    start: tuple[float, float, float, float, float, float] = _HIGH
-    held: bool = True
-    by: StickHolder = StickHolder.HUMAN
-    back: int = 0
-    hands_off: bool = False
-
-
-def _fires(flight: Flight) -> bool:
-    return bool(flight.env.actions[0] >= 3)
-
-
-def _falls(flight: Flight) -> bool:
-    return bool(flight.env.actions[0] == 0 and flight.env.velocity[0, 1] < -0.3)
-
-
-def _leans(flight: Flight) -> bool:
-    return bool(flight.env.tilt[0] > _LEAN)
-
-
-def _stands_upright(flight: Flight) -> bool:
-    env = flight.env
-    return bool(env.tilt[0] < _UPRIGHT[0] and abs(env.angular_velocity[0]) < _UPRIGHT[1])
-
-
-def _brakes(flight: Flight) -> bool:
-    return bool(-_SLOW <= flight.env.velocity[0, 1] <= _RISING)
-
-
-def _turned(env: LanderEnv) -> float:
-    """Return the predicted angle of the craft, counter-clockwise in rad, far enough ahead to stop a turn in time."""
-    return float(env.angle[0] + _AHEAD * env.angular_velocity[0])
-
-
-def _falls_too_fast(env: LanderEnv) -> bool:
-    """Return whether the craft must brake now to land softly."""
-    descent, allowed = -float(env.velocity[0, 1]), env.limits.touch_speed
-    if descent < allowed or env.outcome[0] != Outcome.FLYING:
-        return False
-    braking = env.params.main_thrust / env.params.mass - env.params.gravity
-    way = (descent**2 - allowed**2) / (2 * braking)
-    return bool(env.altitude[0] < _MARGIN[0] + _MARGIN[1] * way)
-
-
-def _leaves_at_the_top(env: LanderEnv) -> bool:
-    """Return whether the craft must stop firing now, or it leaves the area at its invisible top."""
-    rise, gravity = float(env.velocity[0, 1]), env.params.gravity
-    room = env.limits.ceiling - _TOP - float(env.position[0, 1])
-    return rise > 0 and rise**2 / (2 * gravity) > room and env.outcome[0] == Outcome.FLYING
-
-
-LESSONS: Final = (
-    Lesson("fire", _fires, 24, _MIDWAY, held=False),
-    Lesson("fall", _falls, 50, hands_off=True),
-    Lesson("brake", _brakes, 50, _SINKING),
-    Lesson("lean", _leans, 1),
-    Lesson("upright", _stands_upright, 20, _LEANING),
-    Lesson("hand_over", lambda _: True, 1, by=StickHolder.NETWORK),
-    Lesson("take_back", lambda _: True, 1, back=1),
-    Lesson("land", lambda flight: flight.outcome is Outcome.LANDED, 1, _LOW),
-)
 
 
 class Tutorial(Challenge):
@@ -147,6 +67,7 @@ class Tutorial(Challenge):
 
     def __init__(self) -> None:
         self._lessons = list(LESSONS)
+        self._dial: Settings | None = None
         self._number = self._done_for = self.praise = 0
         self._begun = 0  # number of times that the lesson was begun
         self._why = ""  # reason why the lesson restarts
@@ -169,13 +90,12 @@ class Tutorial(Challenge):
 
     def flight(self, seed: int, network: Policy | None) -> Flight:
         """Begin a flight at the current lesson, or one before it; without a network, skip lessons that need one."""
-        if network is None:
-            self._do_without_network()
+        self._leave_out(network)
         self._number -= self.lesson.back
         self._begun += 1
         self._done_for = self.praise = self._flown_for = 0
         self._over = False
-        flight = Flight(seed, network, mission=FIRST.name, shares=False)  # a co-pilot would brake the fall
+        flight = Flight(seed, network, mission=FIRST.name, shares=self.lesson.guarded)
         flight.env.place(np.ones(1, bool), np.array([self.lesson.start]))
         flight.observation = flight.env.observe()
         flight.rest()
@@ -185,8 +105,7 @@ class Tutorial(Challenge):
         """Check whether the lesson is done; return the sound to play if so."""
         if self.through:
             return ""
-        if flight.network is None:
-            self._do_without_network()
+        self._leave_out(flight.network)
         if flight.over and not self._over:
             self._why = self._reason(flight)
         self._over = flight.over
@@ -196,13 +115,14 @@ class Tutorial(Challenge):
             if not self.praise:
                 self._begin_lesson(self._number + 1)
             return ""
-        done = flight.hand is self.lesson.by and self.lesson.done(flight)
+        done = flight.hand is (self.lesson.by or flight.hand) and self.lesson.done(flight)
         self._done_for = self._done_for + 1 if done else 0 if self.lesson.held else self._done_for
         if self._done_for < self.lesson.steps:
             return ""
-        self.praise = _PRAISE
-        self.through = self.flown = self._number == len(self._lessons) - 1
-        return "" if self.through else "choose"  # a landing has a sound of its own
+        self.praise, self._why = _PRAISE, ""
+        self.flown |= self.lesson.name == "land"
+        self.through = self._number == len(self._lessons) - 1
+        return "" if flight.over else "choose"  # a landing has a sound of its own
 
     def skip(self) -> None:
         """Skip the lesson, and those that start with it."""
@@ -218,9 +138,24 @@ class Tutorial(Challenge):
     def remember(self, settings: Settings) -> bool:
         """Store that the tutorial is over, so that it is not offered again, and whether it was flown."""
         before = settings.tutored, settings.first_flown
-        settings.tutored |= self.through
+        settings.tutored |= self.through or self.flown
         settings.first_flown |= self.flown
         return before != (settings.tutored, settings.first_flown)
+
+    def dial(self, settings: Settings) -> Settings:
+        """Return the dial of the lessons, on guard and at nothing: the player's own stays where it is."""
+        self._dial = self._dial or replace(settings, assist=0.0, copilot=GUARD)
+        return self._dial
+
+    @property
+    def holds(self) -> bool:
+        """Whether the craft goes on to hang: until the dial is turned, where a lesson asks for that."""
+        return self.lesson.guarded and self._dial is not None and self._dial.assist < HELP
+
+    @property
+    def guides(self) -> bool:
+        """Whether the network's path is previewed."""
+        return self.lesson.guarded
 
     @property
     def waits(self) -> bool:
@@ -235,19 +170,22 @@ class Tutorial(Challenge):
         """Return the final card: tutorial complete, or the crash of a player who flies it once more."""
         if not card.good:
             return replace(card, score="")
-        return replace(card, title=texts.TUTORIAL_DONE, reason=texts.TUTORIAL_DONE_REASON, score="")
+        reason = texts.TUTORIAL_DONE_REASON
+        if self.lesson.guarded:
+            reason = texts.TUTORIAL_SAVED if card.stepped_in else texts.TUTORIAL_NOT_NEEDED
+        return replace(card, title=texts.TUTORIAL_DONE, reason=reason, score="", advice=texts.TUTORIAL_NEXT)
 
     def _begin_lesson(self, number: int) -> None:
         self._number, self._why = number, ""
         self._done_for = self.praise = self._begun = 0
 
-    def _do_without_network(self) -> None:
-        """Skip lessons that need a network, at any point of the tutorial."""
-        if len(self._lessons) < len(LESSONS):
-            return
-        name = self.lesson.name
-        self._lessons = [lesson for lesson in LESSONS if lesson.name not in ("hand_over", "take_back")]
-        self._number = next((k for k, lesson in enumerate(self._lessons) if lesson.name == name), 5)
+    def _leave_out(self, network: Policy | None) -> None:
+        """Leave out, at any point of the tutorial, the lessons that the network there is cannot take part in."""
+        unable = (NEED_NETWORK if network is None else ()) + (() if isinstance(network, QPolicy) else NEED_COPILOT)
+        able = [lesson for lesson in self._lessons if lesson.name not in unable]
+        ahead = [lesson for lesson in self._lessons[self._number :] if lesson in able]
+        self._lessons, self._number = able, able.index(ahead[0]) if ahead else len(able) - 1
+        self.through |= not ahead
 
     def _reason(self, flight: Flight) -> str:
         """Return the reason why the lesson restarts."""
@@ -274,39 +212,44 @@ class Tutorial(Challenge):
         return self._line(flight, waiting, stuck).format(
             main=controls.word(Held.MAIN),
             turn=turn,
-            other=right if _turned(env) > 0 else left,
+            other=right if turned(env) > 0 else left,
             inward=right if env.position[0, 0] < 0 else left,
             hand_over=controls.word(Command.HANDOVER),
+            more=texts.TUTORIAL_WHEEL if controls.mouse_in_use else controls.word(Command.FASTER),
         )
 
     def _line(self, flight: Flight, waiting: bool, stuck: bool) -> str:
         env, lesson = flight.env, self.lesson
         told = texts.TUTORIAL[lesson.name]
         if flight.over:
-            return texts.TUTORIAL_AGAIN
+            return texts.TUTORIAL_GOOD[lesson.name] if self.praise else texts.TUTORIAL_AGAIN
+        if waiting and lesson.guarded:
+            return told[0] if self.holds else texts.TUTORIAL_PATHS
         if stuck:
             return told[0] if lesson.hands_off else texts.TUTORIAL_LET_GO
         if waiting and lesson.name == "land":  # the lesson's own line names no key that starts the flight
             return texts.TUTORIAL_READY
-        if flight.hand is StickHolder.HUMAN and (urgent := self._urgent(env)):
+        if flight.hand is StickHolder.HUMAN and not lesson.guarded and (urgent := self._urgent(env)):
             return urgent
         if self.praise:
             return texts.TUTORIAL_GOOD[lesson.name]
+        if lesson.guarded:
+            return told[1] if self._begun > 2 or self._flown_for > _LONG else told[0]
         if flight.hand is StickHolder.NETWORK:
             return texts.TUTORIAL["take_back"][0]
         if lesson.name not in ("lean", "fall") and abs(float(env.position[0, 0])) > _SIDEWAYS:
             return texts.TUTORIAL_AWAY
-        if lesson.name == "brake" and env.velocity[0, 1] > _RISING:
+        if lesson.name == "brake" and env.velocity[0, 1] > RISING:
             return texts.TUTORIAL_RISES
-        if lesson.name == "upright" and abs(_turned(env)) < _UPRIGHT[0]:
+        if lesson.name == "upright" and abs(turned(env)) < UPRIGHT[0]:
             return texts.TUTORIAL_STANDS
         return told[1] if self._begun > 2 and told[1] else told[0]
 
     def _urgent(self, env: LanderEnv) -> str:
         """Return an urgent warning, which precedes any lesson; empty if nothing is urgent."""
-        if _falls_too_fast(env):
+        if falls_too_fast(env):
             return texts.TUTORIAL_TOO_FAST
-        if _leaves_at_the_top(env):
+        if leaves_at_the_top(env):
             return texts.TUTORIAL_TOO_HIGH
         if self.lesson.name == "land" and env.altitude[0] < _NEAR and env.tilt[0] > env.limits.touch_tilt / 2:
             return texts.TUTORIAL_TOO_TILTED
@@ -319,7 +262,7 @@ class Tutorial(Challenge):
 
     def _why_beside(self, flight: Flight) -> str:
         """Return the reason written beside the craft; empty while the wreck has its own callout."""
-        return "" if flight.outcome is Outcome.CRASHED else self.why
+        return "" if flight.wrecked else self.why
 
     def draw(self, canvas: Canvas, view: View, flight: Flight, scene: DrawnFlight) -> None:
         """Draw the instruction beside the craft, and below it the reason for a restart."""

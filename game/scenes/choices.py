@@ -10,7 +10,7 @@ import pygame
 from game.cockpit.cockpit import MODES
 from game.core import texts
 from game.core.scene import Pop, Scene
-from game.core.settings import GRAVITY_SHARES, PACES
+from game.core.settings import GRAVITY_SHARES, PACES, TOP_RUNG
 from game.drawing.canvas import Canvas, Point
 from game.drawing.prose import draw_wrapped
 from game.drawing.shapes import Shape
@@ -35,7 +35,7 @@ _LABELS: Final = 142
 _FIRST: Final = 136
 _ROW: Final = 40
 _HELP: Final = 18  # from the last row to the sentence on the one in focus
-_TOGGLES: Final = 38
+_TOGGLES: Final = 34
 _TOGGLE_ROW: Final = 50
 _CHART: Final = pygame.Rect(800, 152, 372, 150)
 _SHOWN: Final = 60  # latest flights on the chart
@@ -113,7 +113,7 @@ class ChoicesScene(FormScene):
         self.context.apply_settings()
 
     def _add_starts(self) -> None:
-        """Add the rows for the next flight's pads and for the handicap on its keys."""
+        """Add the rows for the next flight's pads, the handicap on its keys, and its start."""
         settings, hands = self.context.settings, list(HANDS)
         self._choice(
             texts.CHOICES_PADS,
@@ -130,6 +130,12 @@ class ChoicesScene(FormScene):
             lambda index: self._changes("hands")(hands[index]),
             lambda: texts.CHOICES_HANDS_HELP.get(settings.hands, ""),
         )
+        change, limits = self._changes("rung"), (0.0, float(TOP_RUNG))
+        slider = Slider(
+            self.form.manager, self._box, texts.CHOICES_LADDER, float(settings.rung), limits,
+            lambda rung: change(round(rung)), step=1.0, figure=_rung,
+        )  # fmt: skip
+        self._rows[self.form.add(slider)] = lambda: texts.CHOICES_LADDER_HELP
 
     def actions(self) -> Table:
         """Change a choice, or go back; the key that opened this scene closes it too."""
@@ -153,7 +159,8 @@ class ChoicesScene(FormScene):
         """Kind of start of the flight below, or of the next one, one of `game.flight.becoming.KINDS`."""
         if self._challenge:
             return "missions"
-        return "hills" if self.context.settings.three_pads else "plain"
+        settings = self.context.settings
+        return "hills" if settings.three_pads else "ladder" if settings.rung < TOP_RUNG else "plain"
 
     @property
     def _box(self) -> tuple[int, int, int, int]:
@@ -224,6 +231,10 @@ class ChoicesScene(FormScene):
 
 def _index(names: tuple[str, ...] | list[str], name: str) -> int:
     return names.index(name) if name in names else 0
+
+
+def _rung(rung: float) -> str:
+    return texts.CHOICES_RUNG.format(number=round(rung) + 1) if rung < TOP_RUNG else texts.CHOICES_TOP
 
 
 def _percent(share: float, zero: str = texts.CHOICES_ASSIST_OFF) -> str:

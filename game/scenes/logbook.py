@@ -9,6 +9,7 @@ import numpy as np
 import pygame
 
 from ai.lander.rules import tenths
+from ai.lander.spawns import LADDER
 from game.charts.chart import Chart, Series
 from game.charts.charts import Charts
 from game.core import texts
@@ -20,6 +21,7 @@ from game.flight import sharing
 from game.flight.becoming import KINDS, Becoming
 from game.flight.flight_file import Entry, Record
 from game.flight.logbook import Records, Totals, best, totals
+from game.flight.outcomes import ending_word
 from game.panels.becoming_band import draw_band
 from game.play.friend import paste
 from game.play.growth import said
@@ -244,7 +246,7 @@ def entry_row(entry: Entry) -> Row:
     when = time.strftime("%Y-%m-%d %H:%M", time.localtime(entry.when))
     points = (texts.LOGBOOK_UNCOUNTED if entry.bar else "{points}").format(points=entry.score)
     by = {1.0: texts.LOGBOOK_YOU, 0.0: texts.LOGBOOK_NETWORK}.get(entry.human, texts.LOGBOOK_SHARED)
-    end, seconds = texts.OUTCOMES[entry.outcome][0], f"{tenths(entry.seconds):.1f} s"
+    end, seconds = ending_word(entry.outcome, intact=entry.intact), f"{tenths(entry.seconds):.1f} s"
     return when, _challenge(entry), end, seconds, points if entry.landed else "–", by
 
 
@@ -252,4 +254,6 @@ def _challenge(entry: Entry) -> str:
     """Return the name of the challenge that a flight belongs to."""
     if entry.course == "daily":
         return texts.DAILY
+    if entry.on_ladder and not entry.course:
+        return texts.LADDER_FLIGHT.format(number=LADDER.stage_of(entry.spawn) + 1)
     return texts.MISSIONS[entry.course][0] if entry.course in texts.MISSIONS else texts.COURSE_FREE.get(entry.pads, "")

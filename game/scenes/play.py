@@ -24,6 +24,8 @@ from game.play.challenge import Challenge, Duel
 from game.play.ending import FlightEnding
 from game.play.flight_controls import FlightControls
 from game.play.flown_flight import FlownFlight
+from game.play.ladder import Ladder, rung_of
+from game.play.rescue_offer import RescueOffer
 from game.ui.actions import Action, Run, Table, answering, hints_of
 from game.ui.clipboard import give
 from game.ui.context import Context
@@ -32,6 +34,7 @@ from game.ui.widget import OnPress
 
 # Switching to full screen and back removes the window's focus for a moment, which must not pause the game.
 _AWAY_STEPS: Final = 10
+_INTERRUPTS: Final = (pygame.WINDOWFOCUSLOST, pygame.WINDOWSIZECHANGED)
 
 
 class PlayScene(Scene):
@@ -67,22 +70,25 @@ class PlayScene(Scene):
 
             self.challenge = Tutorial()
         self._records = Records(context.user_dir)
-        self._skill = Skill(self._records.entries())
+        entries = self._records.entries()
+        self._skill, self._ladder = Skill(entries), Ladder(context.settings, entries)
+        self._offer = RescueOffer(context.settings)
         if self._records.problem:
             context.note(self._records.problem)
         self._begin(self._new_seed() if seed is None else seed)
 
     def enter(self) -> None:
-        """Resume the paused flight, unless choices made meanwhile require a new one."""
+        """Return to the paused flight, which hangs until a touch; choices made meanwhile may require a new one."""
         self.flown.set_calm(self._settings.reduced_motion)
         if self._elsewhere != self._loaded_for:
             self._load_network()
             self.flown.change_network(self.network.policy)
-        recording, challenge = self.flight.recording, self.challenge
-        other = not challenge and self._chosen() != (recording.pads, self.flown.hands)
-        eases = (not challenge or challenge.eases) and eased(self._settings) != recording.easing
-        if self.waiting and (other or eases):
-            self.retry()
+        self.flown.hang()
+        challenge = self.challenge
+        eases = (not challenge or challenge.eases) and eased(self._settings) != self.flight.recording.easing
+        other = not challenge and self._chosen() != self._begun_with
+        if not (self.flown.begun or self.flight.over) and (eases or other):
+            self._begin(self.flight.recording.seed)
 
     def exit(self) -> None:
         """Keep the flight for the return, and save the dial's setting."""
@@ -91,7 +97,7 @@ class PlayScene(Scene):
 
     def retry(self) -> None:
         """Fly again from the same start."""
-        self._begin(self.flight.recording.seed)
+        self._begin(self.flight.recording.seed, self.flight.recording.spawn)
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Handle explanations, handover, retry, pause and the dial."""
@@ -100,6 +106,8 @@ class PlayScene(Scene):
         if event.type in (pygame.WINDOWFOCUSLOST, pygame.WINDOWFOCUSGAINED):
             self._away = int(event.type == pygame.WINDOWFOCUSLOST)
         fades = fading.active(self._settings)
+        if event.type in _INTERRUPTS:
+            self.flown.hang()
         if self.flown.cockpit.take(event):
             self._name_what_lacks()
             if fades and not fading.active(self._settings):
@@ -135,8 +143,8 @@ class PlayScene(Scene):
             Command.HANDOVER: self._hand_over,
             Command.CHOICES: self._choose,
             Command.NEXT: self._begin_elsewhere,
-            Command.PAUSE: Pop if self._leaves else self.pause,
             Command.RETRY: self.retry,
+            Command.PAUSE: Pop if self._leaves else self._pause,
         }
 
     def _flight_actions(self) -> list[Action]:
@@ -153,9 +161,14 @@ class PlayScene(Scene):
 
     def _card_actions(self) -> list[Action]:
         card = self.ending.card
+        if card is None:
+            return []
         hint = (self.challenge or Challenge).copy_hint
         copy = [Action(pygame.K_k, self._copy, hint, Command.STEP)] if self.flown.record else []
-        return [*captions.card_actions(self._go_on, self._runs, self.challenge, good=card.good), *copy] if card else []
+        offer = [Action(Command.HANDOVER, self._accept_help, texts.HELP_HINT)] if self._offer.made else []
+        nearer = card.rung is not None and card.rung < (rung_of(self.flight) or 0)
+        actions = captions.card_actions(self._go_on, self._runs, self.challenge, good=card.good, nearer=nearer)
+        return [*actions, *offer, *copy]
 
     @property
     def takes_switch(self) -> bool:  # type: ignore[override]
@@ -215,18 +228,21 @@ class PlayScene(Scene):
         """Whether the craft still hangs until the pilot's first touch."""
         return self.flown.waiting
 
-    def _begin(self, seed: int) -> None:
+    def _begin(self, seed: int, spawn: str = "") -> None:
+        """Begin a flight, from the kind of start that `spawn` names or, if empty, from the player's rung."""
         self._stick.begin()
         if self._elsewhere != self._loaded_for:
             self._load_network()
         if self.challenge:
             self.flown = FlownFlight(self.context, seed, self.network.policy, self.challenge)
             return
-        pads, hands = self._chosen()
+        self._begun_with = pads, hands, rung = self._chosen()
         checks = self._settings.check_flights or self._settings.fade
         check = checks and self._skill.check_due and not self._eased
         hands = OWN if check else hands
-        self.flown = FlownFlight(self.context, seed, self.network.policy, pads=pads, hands=hands, check=check)
+        self.flown = FlownFlight(
+            self.context, seed, self.network.policy, pads=pads, spawn=spawn or rung, hands=hands, check=check
+        )
 
     def _follow_flight(self) -> None:
         """Save what a step has brought the player in a challenge; after the end, go on to the card or the next try."""
@@ -241,9 +257,26 @@ class PlayScene(Scene):
                 self.retry()
         elif ending.card is None:
             self.flown.make_card(self._skill)
+            self._follow_end()
             if challenge is None or challenge.kept:
                 self.flown.write_down(self._records, self._skill, self.network)
                 self._grow()
+
+    def _follow_end(self) -> None:
+        """Let the ladder and the offer of help answer the ending, on its card."""
+        card = self.ending.card
+        assert card is not None
+        before = self._settings.rung
+        card = self._ladder.climb(self.flight, card)
+        self.ending.card = self._offer.follow(self.flight, self.credit, card)
+        if before != self._settings.rung:
+            self.context.apply_settings()
+
+    def _accept_help(self) -> None:
+        """Turn the dial to the offered help, and try again."""
+        self._offer.accept()
+        self.context.apply_settings()
+        self._go_on()
 
     def _grow(self) -> None:
         """Let help fade after a free flight, and tell on the card what the flight has shown."""
@@ -256,10 +289,10 @@ class PlayScene(Scene):
         if before != self._settings.assist:
             self.context.apply_settings()
 
-    def _chosen(self) -> tuple[int, str]:
-        """Return the number of pads and the handicap, as chosen by the player."""
-        hands = self._settings.hands
-        return 3 if self._settings.three_pads else 1, hands if hands in HANDS else OWN
+    def _chosen(self) -> tuple[int, str, str]:
+        """Return the number of pads, the handicap and the kind of start, as chosen by the player."""
+        hands, three = self._settings.hands, self._settings.three_pads
+        return 3 if three else 1, hands if hands in HANDS else OWN, "random" if three else self._ladder.spawn
 
     @property
     def _eased(self) -> bool:
@@ -312,9 +345,14 @@ class PlayScene(Scene):
             give(self.context, *challenge.message(self.flown.record))
 
     def _go_on(self) -> Transition | None:
-        """After a landing, go to a new start, or leave a challenge with only one; after a crash, retry."""
-        if self.ending.card is None or not self.ending.card.good:
-            self.retry()
+        """After a landing, go to a new start, or leave a challenge with only one; after a crash, retry.
+
+        On the ladder, the same start is nearer after a crash, or as near at its foot.
+        """
+        card = self.ending.card
+        if card is None or not card.good:
+            spawn = "" if card and card.rung is not None else self.flight.recording.spawn
+            self._begin(self.flight.recording.seed, spawn)
         elif self.challenge and self.challenge.fixed:
             return Pop()
         else:
@@ -346,7 +384,7 @@ class PlayScene(Scene):
     @property
     def _leaves(self) -> bool:
         """Whether Escape goes straight back: in a challenge that has not begun or is over, where nothing is lost."""
-        return self.challenge is not None and (self.waiting or self.flight.over)
+        return self.challenge is not None and (not self.flown.begun or self.flight.over)
 
     def pause(self) -> Transition:
         """Pause the flight."""
@@ -362,7 +400,7 @@ class PlayScene(Scene):
 
     def _choose(self) -> Transition | None:
         """Open the choices for the next flights; in a challenge, few can be changed."""
-        return push("choices", self, self._skill, begun=not self.waiting, challenge=self.challenge is not None)
+        return push("choices", self, self._skill, begun=self.flown.begun, challenge=self.challenge is not None)
 
     def _open_networks(self) -> Transition:
         return push("runs", choose=self.choose_network)

@@ -23,12 +23,14 @@ from game.core.pace import SlowMotion
 from game.core.scene import Pop, Push, Transition, push
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
+from game.drawing.shapes import Shape
 from game.drawing.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, VIEW_SIZE
 from game.export.export import Export
 from game.export.kinds import KINDS
 from game.flight import networks, sharing
 from game.flight.flight import StickHolder
 from game.flight.flight_file import Record
+from game.flight.outcomes import ending_word
 from game.flight.replay import FlightReplay
 from game.input.controls import Command
 from game.panels import falls
@@ -180,7 +182,7 @@ class ReplayScene(FormScene):
         was_over = flight.over
         self.flight_replay.step()
         ended = flight.over and not was_over
-        if ended and flight.outcome is Outcome.CRASHED and self._pace.rate == 1 and not self._scenery.calm:
+        if ended and flight.wrecked and self._pace.rate == 1 and not self._scenery.calm:
             self._pace.slow_down()
         self._scenery.follow(ended)
         self._look()
@@ -326,7 +328,9 @@ class ReplayScene(FormScene):
         hud.draw_corner(
             canvas,
             title,
-            texts.REPLAY_LINE.format(end=texts.OUTCOMES[entry.outcome][0], seconds=entry.seconds, when=when),
+            texts.REPLAY_LINE.format(
+                end=ending_word(entry.outcome, intact=entry.intact), seconds=entry.seconds, when=when
+            ),
         )
 
     def _draw_moment(self, canvas: Canvas) -> None:
@@ -339,12 +343,13 @@ class ReplayScene(FormScene):
         by_hand = flight.flown_by is StickHolder.HUMAN
         by = (texts.YOU_FLEW if by_hand else texts.NETWORK_FLEW) if not self.claimed else texts.FRIEND_FLEW[by_hand]
         if self.ended:
-            by = texts.OUTCOMES[flight.outcome.name][0] if flight.over else by
+            by = ending_word(flight.outcome.name, intact=flight.intact) if flight.over else by
         canvas.text(by, (middle, 34), size=SMALL, colour=MUTE, align="centre", room=2 * _FIGURE - 16)
         if flight.over:
             good = flight.outcome is Outcome.LANDED
-            colour = canvas.palette.good if good else canvas.palette.warn
-            canvas.marker("check" if good else "cross", (figure.left - 16, 51), 11, colour)
+            colour = canvas.palette.good if good else INK if flight.intact else canvas.palette.warn
+            mark: Shape = "check" if good else "diamond" if flight.intact else "cross"
+            canvas.marker(mark, (figure.left - 16, 51), 11, colour)
         elif self.playback.stopped:
             for x in (figure.left - 20, figure.left - 15):
                 canvas.line((x, 45), (x, 57), INK, 2)

@@ -78,7 +78,9 @@ class Callouts:
             self._write(canvas, view, pose, texts.CONTACT_LIGHT, shown, crash=False)
         shown = self._shown(self._crash, _REASON)
         if shown > 0:
-            self._write(canvas, view, pose, crash_reason(self._env), shown, crash=True)
+            intact = bool(self._env.intact[0])
+            text = texts.BESIDE_TITLE if intact else crash_reason(self._env)
+            self._write(canvas, view, pose, text, shown, crash=not intact)
 
     def _shown(self, since: int, times: tuple[int, int, int]) -> float:
         """Opacity of a word, 0 to 1, `since` steps after it was due."""

@@ -28,9 +28,9 @@ HOME: Final = (0.0, VIEW_BOTTOM + VIEW_SIZE[1] / POINTS_PER_METRE / 2)
 # The ground stays on one row of the screen, whatever the zoom: a camera that comes nearer also comes lower.
 GROUND_LINE: Final = 1.0  # metres
 GROUND_ROW: Final = VIEW_SIZE[1] / 2 + (HOME[1] - GROUND_LINE) * POINTS_PER_METRE  # points
-WIDEST: Final = 0.74  # zoom at which all of the world in which a flight may be is seen
+WIDEST: Final = 0.6  # zoom at which all of the world in which a flight may be is seen
 CLOSEST: Final = 2.0
-LAND_REACH: Final = 28.0  # metres of visible land to either side of the middle of the world
+LAND_REACH: Final = 34.0  # metres of visible land to either side of the middle of the world
 
 _PACE: Final = 2.6  # rad/s, of the spring that moves the camera
 _EDGE: Final = 1.5  # metres around a position to be kept in view

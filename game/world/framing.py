@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 
 from ai.common.environment import Doubles
+from ai.lander.edges import NEAR, near_edges
 from ai.lander.environment import LanderEnv
 from game.drawing.tokens import VIEW_SIZE
 from game.world.camera import GROUND_LINE, POINTS_PER_METRE, Camera, CameraTarget, ClearArea
@@ -14,6 +15,7 @@ from game.world.camera import GROUND_LINE, POINTS_PER_METRE, Camera, CameraTarge
 ALL: Final = ClearArea()
 _AROUND: Final = 2.2  # metres beside a craft, and above it
 _BESIDE: Final = 1.6  # metres beside a pad
+_BEYOND: Final = 0.4  # metres above the upper edge of the area
 _LEAD: Final = 0.6  # seconds: how far ahead of a craft the camera looks
 # Of several pads, only those count that a craft at that height can still reach.
 _REACH: Final = (6.0, 2.2)  # metres to the side at the height of the ground, and more for every metre above it
@@ -28,7 +30,14 @@ def framed(env: LanderEnv, slot: int = 0, clear: ClearArea = ALL) -> CameraTarge
     for edges, weight in _pads(env, slot, x, y):
         left += weight * (min(left, edges[0] - _BESIDE) - left)
         right += weight * (max(right, edges[1] + _BESIDE) - right)
-    return CameraTarget.around(left, right, max(y, ahead_y) + _AROUND, clear)
+    top = max(y, ahead_y) + _AROUND
+    for edge in near_edges(env, slot):  # an edge of the area comes into view as the craft comes near
+        near = min(1.0, 1.6 * (1 - edge.away / NEAR))
+        weight = near * near * (3 - 2 * near)  # eases in and out
+        left += weight * (min(left, edge.place - _AROUND) - left) * (edge.side == "left")
+        right += weight * (max(right, edge.place + _AROUND) - right) * (edge.side == "right")
+        top += weight * (max(top, edge.place + _BEYOND) - top) * (edge.side == "above")
+    return CameraTarget.around(left, right, top, clear)
 
 
 def whole(path: Doubles) -> CameraTarget:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 
 from ai.common.environment import Doubles
@@ -12,6 +14,7 @@ from game.flight.flight import Flight, StickHolder
 from game.world import framing
 from game.world.callouts import Callouts
 from game.world.camera import Camera, CameraTarget, ClearArea, View
+from game.world.edges import draw_edges
 from game.world.landscape.backdrop import EARTH, landscape
 from game.world.landscape.ground import draw_ground
 from game.world.landscape.themes import LOOKS, look_of
@@ -20,6 +23,8 @@ from game.world.particles import DUST
 from game.world.stage import Stage, flames
 
 _EDGE, _FOOT = 24.0, 100.0  # points that a mark keeps from the sides, and from the lower edge with its read-outs
+
+_HEAD: Final = 84.0  # points at the top into which a craft that leaves flies no farther
 
 
 class Scenery:
@@ -115,6 +120,7 @@ class Scenery:
         moon.draw(canvas, self._camera, self._time, alpha, earth)
         view = self.view(canvas.scale, alpha).filling(canvas)
         draw_ground(canvas, view, env.ground, self._time, float(env.pad_shift[0]))
+        draw_edges(canvas, view, env, canvas.palette.warn)
         if env.conditions.pushes and not self._calm:
             self.stage.wind.draw(canvas.surface, view, alpha)
 
@@ -123,17 +129,21 @@ class Scenery:
 
         `words` is whether to draw the callouts too.
 
-        A craft that has left the area is not drawn; a cross marks where it left.
+        A craft that has left the area flies out of view; a cross marks where it left.
         """
         view, pose = self.view(canvas.scale, alpha).filling(canvas), self._flight.poses.at(alpha)[0]
         self._factors.draw(canvas, view, pose)
         if self._flight.outcome is Outcome.OUT_OF_BOUNDS:
             mark_lost(canvas, view, pose)
+            if self.stage.pose_after(alpha) is not None:
+                canvas.surface.set_clip(canvas.rect(0, _HEAD, VIEW_SIZE[0], VIEW_SIZE[1] - _HEAD))  # behind the words
+                self.stage.draw_lander(canvas, view, pose, alpha=alpha)
+                canvas.surface.set_clip(None)
             return
         self._callouts.draw_light(canvas, view, pose)
         self.stage.draw_lander(canvas, view, pose, alpha=alpha)
         self.stage.draw_dust(canvas, view, alpha)
-        shown = self.stage.wreck_pose(alpha) if self._flight.outcome is Outcome.CRASHED else None
+        shown = self.stage.pose_after(alpha)
         if words:
             self._callouts.draw_words(canvas, view, pose if shown is None else shown)
 

@@ -23,7 +23,7 @@ from game.world.craft import STAND, draw_craft, draw_crowd, draw_fires, foot_pla
 from game.world.landscape.relief import Relief
 from game.world.landscape.wind import Wind
 from game.world.particles import DUST, Particles
-from game.world.wreck import Wreck
+from game.world.wreck import Departure, Wreck
 
 _IGNITE: Final = 0.34  # share of the way to full or no thrust that a flame covers per step
 _DIE: Final = 0.22
@@ -70,7 +70,7 @@ class Stage:
         self.flash = np.zeros(count, np.intp)
         self.jolt = 0.0
         self._lander = Sprite(env.lander, art.LANDER, art.SIZE)
-        self._wreck: Wreck | None = None
+        self._after: Wreck | Departure | None = None
         self._flicker = 0
         self._down = np.zeros(2, bool)
         self._fall = 0.0
@@ -88,7 +88,7 @@ class Stage:
         self._flicker += 1
         self.flash = np.maximum(self.flash - 1, 0)
         self.jolt = 0.0
-        for slot in np.flatnonzero(ended & (env.outcome == Outcome.CRASHED)):
+        for slot in np.flatnonzero(ended & self._wrecked):
             self.flash[slot] = _FLASH_STEPS
             self.particles.burst(env.position[slot], env.velocity[slot], 1.0 if env.num_envs == 1 else 0.2)
         if env.num_envs == 1:
@@ -102,26 +102,46 @@ class Stage:
         self.flash[:] = 0
         self.particles.clear()
         self.wind.forget()
-        self._wreck = None
+        self._after = None
         self._down, self._fall = self._env.contacts[0].copy(), 0.0
 
-    def wreck_pose(self, alpha: float) -> Doubles | None:
-        """Return the pose (x, y, angle) of the tumbling wreck; None where there is none."""
-        return None if self._wreck is None else self._wreck.pose(alpha)
+    def pose_after(self, alpha: float) -> Doubles | None:
+        """Return the pose (x, y, angle) of what still moves after the end; None where nothing does."""
+        return None if self._after is None else self._after.pose(alpha)
+
+    @property
+    def _wrecked(self) -> Bools:
+        """Whether each flight ended in a wreck, (n,)."""
+        wrecked: Bools = (self._env.outcome == Outcome.CRASHED) & ~self._env.intact
+        return wrecked
 
     def _follow_one(self, ended: bool) -> None:
         """Update the close-up effects of a single lander: exhaust, dust, touchdown, crash."""
         env = self._env
-        if ended and env.outcome[0] == Outcome.CRASHED:
-            speed = float(env.impact[0, :2].max())
-            self.jolt = min(_JOLT, 4.0 + 1.4 * speed)
-            if not self.calm:
-                self._wreck = Wreck(env, 0, self._rng)
-        if self._wreck is not None:
-            self._wreck.step()
+        if ended:
+            self._after = self._begin_after()
+        if self._after is not None:
+            self._after.step()
         elif env.outcome[0] != Outcome.CRASHED:
             self._burn()
             self._touch()
+
+    def _begin_after(self) -> Wreck | Departure | None:
+        """Return what still moves after the end; with reduced motion, no wreck tumbles."""
+        env = self._env
+        if env.outcome[0] == Outcome.OUT_OF_BOUNDS:
+            return Departure(env, 0)
+        if env.outcome[0] != Outcome.CRASHED:
+            return None
+        if env.intact[0]:
+            x, y = env.position[0].tolist()
+            strength = min(1.0, float(env.impact[0, 0]) / env.limits.touch_speed)
+            self.jolt = _JOLT * 0.55 * strength**1.5
+            for side in (-1, 1):
+                self.particles.settle(foot_place(x, y, float(env.angle[0]), side), strength)
+            return Wreck(env, 0, self._rng)
+        self.jolt = min(_JOLT, 4.0 + 1.4 * float(env.impact[0, :2].max()))
+        return None if self.calm else Wreck(env, 0, self._rng)
 
     def _burn(self) -> None:
         env = self._env
@@ -151,8 +171,8 @@ class Stage:
 
     def sprite(self, slot: int = 0, size: float = 1.0) -> Sprite:
         """Return the sprite of a slot's lander; `size` 1 is true to scale."""
-        sprite = self._lander if self._wreck is None else self._wreck.sprite
-        image = art.WRECK if self._env.outcome[slot] == Outcome.CRASHED else art.LANDER
+        sprite = self._after.sprite if isinstance(self._after, Wreck) else self._lander
+        image = art.WRECK if self._wrecked[slot] else art.LANDER
         return replace(sprite, image=image, size=(size * sprite.size[0], size * sprite.size[1]))
 
     def draw_lander(
@@ -160,8 +180,8 @@ class Stage:
     ) -> None:
         """Draw one lander with everything around it but dust; `size` 1 is true to scale."""
         sprite = self.sprite(slot, size)
-        if self._wreck is not None:
-            pose = self._wreck.pose(alpha)
+        after = self.pose_after(alpha)
+        pose = pose if after is None else after
         x, y, angle = pose.tolist()
         self._draw_shadow(canvas, view, x, y, angle)
         self._draw_ground_light(canvas, view, x, y, angle, slot)
@@ -178,7 +198,7 @@ class Stage:
     def _draw_wreck(self, canvas: Canvas, view: View, sprite: Sprite, pose: Doubles, slot: int) -> None:
         """Draw the dark wreck of a crash; one that does not tumble sags to the side it leans to."""
         x, y, angle = pose.tolist()
-        if self._wreck is None:
+        if self._after is None:
             sag = 1 - (self.flash[slot] / _FLASH_STEPS) ** 2
             y, angle = y - 0.16 * sag, angle + 0.16 * sag * (1 if angle >= 0 else -1)
         size = art.share(sprite)

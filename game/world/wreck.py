@@ -1,45 +1,55 @@
-"""Wreck of a crash: a rigid body that tumbles on in a physics world of its own. Decoration only."""
+"""The craft after its flight: a wreck tumbles, a whole craft settles, one that left flies away. Decoration only."""
 
 from __future__ import annotations
 
-from typing import Final
+import math
+from typing import Any, Final
 
 import numpy as np
 
 from ai.common.environment import Doubles
 from ai.lander.environment import FOOT_CENTRE, FOOT_SIZE, HULL, LanderEnv
-from engine import Polygon, Sprite, World
-from game.world.lander import SIZE, WRECK
+from engine import DT, Polygon, Sprite, World
+from game.world.lander import LANDER, SIZE, WRECK
 
 _STEPS: Final = 420  # at most; after them the wreck lies still
 _STILL: Final = 0.05  # m/s and rad/s
 _SPIN: Final = 0.6  # rad/s for every m/s of the blow, at most
 _HOP: Final = 0.12  # share of the blow that throws it up again
+_TUMBLES: Final[dict[str, Any]] = {"restitution": 0.25, "friction": 0.7}
+_SETTLES: Final[dict[str, Any]] = {
+    "restitution": 0.0,
+    "friction": 1.6,
+}  # feet dig in: it stays where it came down, on a slope too
+_AWAY: Final = 3.0  # m/s² with which a craft that left the area flies on
+_LEVELS: Final = 3.0  # 1/s, at which its sinking and its turning die down
 
 
 class Wreck:
-    """The craft of one slot from the moment of its crash; call `step` once for every step of 1/60 s.
+    """The craft of one slot from the moment it came down off the pad; call `step` once for every step of 1/60 s.
 
-    Gravity, hills and pads are those of the flight, with moving pads frozen at that moment.
+    Gravity, hills and pads are those of the flight, with moving pads frozen at that moment. A craft that is whole is
+    set down without a blow.
 
     Attributes:
-        sprite: picture of the tumbling body.
+        sprite: picture of the moving body.
 
     """
 
     def __init__(self, env: LanderEnv, slot: int, rng: np.random.Generator) -> None:
-        params = env.params
+        params, whole = env.params, bool(env.intact[slot])
+        surface = _SETTLES if whole else _TUMBLES
         self._world = World(gravity=(0.0, -env.gravity), batch=1, iterations=5)
         x, y = FOOT_CENTRE
         shapes = [Polygon(HULL), Polygon.box(*FOOT_SIZE, (-x, y)), Polygon.box(*FOOT_SIZE, (x, y))]
-        blow = float(env.impact[slot, :2].max())
+        blow = 0.0 if whole else float(env.impact[slot, :2].max())
         self._body = self._world.add(
             shapes, env.position[slot], float(env.angle[slot]), mass=params.mass, inertia=params.inertia,
-            centre_of_mass=(0.0, 0.0), restitution=0.25, friction=0.7, angular_drag=0.3,
+            centre_of_mass=(0.0, 0.0), angular_drag=4.0 if whole else 0.3, **surface,
         )  # fmt: skip
-        for pad in env.ground.build(self._world, restitution=0.25, friction=0.7):
+        self.sprite = Sprite(self._body, LANDER if whole else WRECK, SIZE)
+        for pad in env.ground.build(self._world, **surface):
             pad.position = pad.position + np.array([float(env.pad_shift[slot]), 0.0])
-        self.sprite = Sprite(self._body, WRECK, SIZE)
         self._body.velocity = env.velocity[slot] + np.array([0.0, _HOP * blow])
         self._body.angular_velocity = env.angular_velocity[slot] + _SPIN * blow * rng.uniform(-1.0, 1.0)
         self._steps = self._rest = 0
@@ -68,3 +78,26 @@ class Wreck:
 
     def _pose(self) -> Doubles:
         return np.append(self._body.position[0], self._body.angle[0])
+
+
+class Departure:
+    """The craft of one slot from the moment it left the area: it levels out and flies away, faster and faster."""
+
+    def __init__(self, env: LanderEnv, slot: int) -> None:
+        x, y = env.position[slot].tolist()
+        self._speed = np.append(env.velocity[slot], env.angular_velocity[slot])
+        up = y > env.limits.ceiling
+        self._push = np.array([0.0, _AWAY, 0.0]) if up else np.array([math.copysign(_AWAY, x), 0.0, 0.0])
+        self._now = self._before = np.array([x, y, float(env.angle[slot])])
+
+    def step(self) -> None:
+        """Advance by 1/60 s."""
+        self._before = self._now
+        kept = math.exp(-_LEVELS * DT)
+        self._speed = self._speed * (1.0, kept if self._speed[1] < 0 else 1.0, kept) + self._push * DT
+        self._now = self._now + self._speed * DT
+
+    def pose(self, alpha: float) -> Doubles:
+        """Return x, y and angle, `alpha` of the way from the last step to this one."""
+        pose: Doubles = self._before + alpha * (self._now - self._before)
+        return pose

@@ -17,7 +17,7 @@ import pytest
 
 from ai.lander.pilots import ScriptedPilot
 from game.core.scene import Scene
-from game.core.settings import Settings, SettingsFile
+from game.core.settings import TOP_RUNG, Settings, SettingsFile
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.flight import networks
@@ -39,7 +39,7 @@ def usual_text_size() -> Iterator[None]:
 
 @pytest.fixture
 def context(tmp_path: Path) -> Context:
-    return Context(tmp_path / "user", Settings(), rng=np.random.default_rng(1))
+    return Context(tmp_path / "user", Settings(rung=TOP_RUNG), rng=np.random.default_rng(1))
 
 
 @pytest.fixture
@@ -61,7 +61,11 @@ def open_game(context: Context) -> Iterator[Callable[..., Driver]]:
     opened: list[Driver] = []
 
     def open_it(
-        first: Scene | Callable[..., Scene] | None = None, *arguments: Any, tutored: bool = True, **options: Any
+        first: Scene | Callable[..., Scene] | None = None,
+        *arguments: Any,
+        tutored: bool = True,
+        ladder: bool = False,
+        **options: Any,
     ) -> Driver:
         """Open the game with a scene that is given, or made by its class or a function, with these arguments."""
 
@@ -72,6 +76,8 @@ def open_game(context: Context) -> Iterator[Callable[..., Driver]]:
             driver.app.settings_writer.wait()
         context.settings = SettingsFile(context.user_dir).load()
         context.settings.tutored |= tutored  # or a first flight would teach
+        if not ladder and context.settings.rung < 0:
+            context.settings.rung = TOP_RUNG  # or free flights would begin above the pad
         frames = count()
         opened.append(Driver(App(context, make, now=lambda: next(frames) / 60, scene_of=scene_of, capped=False)))
         return opened[-1]

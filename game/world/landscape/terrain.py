@@ -20,7 +20,7 @@ HORIZON_HEIGHT: Final = VIEW_BOTTOM + (1 - PLAIN_HORIZON) * VIEW_SIZE[1] / POINT
 # How much wider than the view the land is to either side, so that it can move sideways; and the plain, where a
 # camera goes about.
 MARGIN: Final = 0.04
-WIDE_MARGIN: Final = LAND_REACH / WORLD_WIDTH - 0.5 + 0.01
+WIDE_MARGIN: Final = (LAND_REACH + 5.0) / WORLD_WIDTH - 0.5  # and as far as a camera that eases outwards overshoots
 # Shares of the view's height that the plain goes on below it: where a camera rests, and where it goes far away.
 _FOOT, _WIDE_FOOT = 0.03, 0.085
 _WARM: Final = np.array((255, 150, 96), np.float32)

@@ -149,6 +149,7 @@ def test_gravity_is_changed_in_flight_at_once_and_told(open_game: Open, context:
     while scene.form.focused.label != texts.CHOICES_GRAVITY:
         game.key(pygame.K_DOWN)
     game.keys(pygame.K_LEFT, pygame.K_LEFT, pygame.K_c)
+    game.key(pygame.K_UP)  # it hangs until it is touched
     game.frames(2)
     [(step, share)] = play.flight.recording.gravity
     assert (step > 10, share) == (True, pytest.approx(0.8))

@@ -11,8 +11,10 @@ from game.core.assets import MODELS_DIR
 from game.flight import networks
 from game.flight.flight import DECISION_STEPS, Flight, StickHolder
 from game.flight.forecast import Forecast, coast_path
+from game.flight.logbook import describe
 from game.flight.outcomes import outcome_card
 from game.flight.swarm import Swarm
+from game.scenes.logbook import entry_row
 
 STANDING = PARAMS.pad_top + PARAMS.stand
 
@@ -123,6 +125,12 @@ CASES = {
     Cause.HULL: ((0, 3.5, 0, -0.5, np.pi, 0), texts.CAUSES["HULL"]),
     Cause.TERRAIN: ((10, 2.2, 0, -0.5, 0, 0), texts.CAUSES["TERRAIN"]),
 }
+# Beside the pad, nothing but speed and tilt break a craft.
+BESIDE = {
+    Cause.HARD: ((10, 6, 0, -3, 0, 0), CASES[Cause.HARD][1]),
+    Cause.TILTED: ((10, 3.2, 0, -0.2, 0.6, 0), CASES[Cause.TILTED][1]),
+    Cause.SLIDING: ((10, 2.1, 3.5, -0.3, 0, 0), CASES[Cause.SLIDING][1]),
+}
 
 
 @pytest.mark.parametrize("cause", CASES)
@@ -140,6 +148,38 @@ def test_the_card_names_what_broke_it(cause: Cause):
     assert card.reason == words.format(speed, slide, np.degrees(tilt))
 
 
+@pytest.mark.parametrize("cause", BESIDE)
+def test_a_hard_touch_beside_the_pad_breaks_by_its_speed_or_tilt(cause: Cause):
+    start, words = BESIDE[cause]
+    flight = Flight(1)
+    place(flight.env, *start)
+    while not flight.over:
+        flight.step(0)
+    card = outcome_card(flight.env, 1.0)
+    assert flight.env.cause[0] == Cause.TERRAIN  # the rules that networks learn by
+    assert flight.wrecked
+    assert not flight.intact
+    assert (card.title, card.intact) == (texts.OUTCOMES["CRASHED"][0], False)
+    speed, slide, tilt = flight.env.impact[0]
+    assert card.reason == words.format(speed, slide, np.degrees(tilt))
+    assert card.advice == texts.ADVICE[cause.name]
+
+
+def test_a_soft_touch_beside_the_pad_leaves_the_craft_whole_without_points():
+    flight = Flight(1)
+    place(flight.env, 10, 2.2, 0.3, -0.5, 0.2, 0)
+    while not flight.over:
+        flight.step(0)
+    card, entry = outcome_card(flight.env, 1.0), describe(flight, 0.0)
+    assert flight.outcome is Outcome.CRASHED
+    assert flight.intact
+    assert not flight.wrecked
+    assert (card.title, card.good, card.intact) == (texts.BESIDE_TITLE, False, True)
+    assert card.advice == texts.ADVICE["TERRAIN"]
+    assert (entry.score, entry.landed, entry.intact) == (0, False, True)
+    assert entry_row(entry)[2] == texts.BESIDE_TITLE
+
+
 def test_the_card_of_a_landing_and_of_the_other_ends():
     flight = Flight(1)
     place(flight.env, 0.4, STANDING + 0.02, 0, 0, 0, 0)
@@ -150,15 +190,15 @@ def test_the_card_of_a_landing_and_of_the_other_ends():
     assert card.title == "Landed"
     assert ("OFF CENTRE", "0.4", "m") in card.figures
     flight = Flight(1)
-    place(flight.env, 21.9, 12, 6, 0, 0, 0)
+    place(flight.env, 29.9, 12, 6, 0, 0, 0)
     while not flight.over:
         flight.step(0)
-    assert outcome_card(flight.env, 1.0).reason == "Left the area at the side, 22 m from its middle."
+    assert outcome_card(flight.env, 1.0).reason == "Left the area at the side, 30 m from its middle."
     flight = Flight(1)
-    place(flight.env, 0, 25.9, 0, 6, 0, 0)
+    place(flight.env, 0, 28.9, 0, 6, 0, 0)
     while not flight.over:
         flight.step(0)
-    assert outcome_card(flight.env, 1.0).reason == "Left the area at the top, 23 m up."
+    assert outcome_card(flight.env, 1.0).reason == "Left the area at the top, 26 m up."
     flight = Flight(1)
     flight.env.steps[:] = round(LIMITS.time * 60) - 1
     flight.step(0)

@@ -123,6 +123,7 @@ def test_flights_that_end_at_one_moment_keep_a_file_each(kept: Records):
         lambda text: text.replace('"network*', '"nobody*'),
         lambda text: text.replace('"LANDED"', '"FLOWN"'),
         lambda text: text.replace('"pads": 1', '"pads": 2'),
+        lambda text: text.replace('"area": 1', '"area": 2'),
         lambda text: text.replace('"entry"', '"other"'),
         lambda text: text.replace('"end": [', f'"end": [{10**400}, '),
         lambda text: text.replace('"gravity": []', '"gravity": [[Infinity, 1.0]]'),
@@ -267,7 +268,7 @@ def test_a_flight_from_before_a_mission_was_changed_is_kept_and_counts_no_more(k
     line = kept.keep(scripted(0, mission="earth"), NOON, course="earth", alone=True)
     assert line.rules == MISSIONS["earth"].rules == 1
     text = (kept.folder / line.file).read_text()
-    older = text.replace('"version": 4', '"version": 2').replace(',\n  "rules": 1', "")
+    older = text.replace('"version": 5', '"version": 2').replace(',\n  "rules": 1', "")
     assert older.count("rules") == 0
     (kept.folder / "older.json").write_text(older)
     before = kept.read("older.json").entry

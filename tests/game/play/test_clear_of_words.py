@@ -81,7 +81,7 @@ def test_no_dotted_way_leads_through_what_is_said_before_a_flight(open_game: Ope
     assert min(row for _, row in places) > scene.flown.scenery.clear.head
 
 
-@pytest.mark.parametrize("state", [(21.9, 3.0, 6.0, 0.0, 0, 0), (0, 25.9, 0, 6.0, 0, 0), (-21.9, 12, -6.0, 0, 0, 0)])
+@pytest.mark.parametrize("state", [(29.9, 3.0, 6.0, 0.0, 0, 0), (0, 28.9, 0, 6.0, 0, 0), (-29.9, 12, -6.0, 0, 0, 0)])
 @pytest.mark.parametrize("calm", [True, False])
 def test_a_craft_that_is_lost_lies_on_no_words(open_game: Open, context: Context, monkeypatch, state, calm: bool):
     context.settings.reduced_motion = calm
@@ -90,11 +90,14 @@ def test_a_craft_that_is_lost_lies_on_no_words(open_game: Open, context: Context
     place(driver, *state)
     driver.frames(10)
     assert play(driver).flight.outcome is Outcome.OUT_OF_BOUNDS
-    crafts: list[object] = []
-    monkeypatch.setattr(play(driver).flown.scenery.stage, "draw_lander", lambda *args, **_: crafts.append(args))
+    tops: list[float] = []
+    canvas, stage = driver.app.canvas, play(driver).flown.scenery.stage
+    monkeypatch.setattr(
+        stage, "draw_lander", lambda *_, **__: tops.append(canvas.surface.get_clip().top / canvas.scale)
+    )
     places = drawn(monkeypatch, "marker")
-    play(driver).flown.scenery.draw_craft(driver.app.canvas, 1.0)
-    assert not crafts
+    play(driver).flown.scenery.draw_craft(canvas, 1.0)
+    assert [top > 80 for top in tops] == [True]
     ((x, y),) = places
     assert 0 < x < 1280
     assert 80 < y < READ_OUTS

@@ -9,6 +9,7 @@ import pytest
 from ai.lander.environment import PARAMS, Outcome
 from game.core import texts
 from game.flight import networks
+from game.flight.outcomes import crash_reason
 from game.flight.replay import ReplayedFlight
 from game.play.captions import BELOW_OPENING
 from game.scenes.play import PlayScene
@@ -133,7 +134,7 @@ def test_the_reason_of_a_crash_is_told_on_the_spot_before_the_card(game: Driver,
     written.clear()
     game.frames(3)
     assert scene(game).ending.shown == 0
-    assert texts.CAUSES["TERRAIN"] in written
+    assert crash_reason(scene(game).flight.env) in written
 
 
 @pytest.mark.parametrize("reduced", [False, True])

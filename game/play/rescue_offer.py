@@ -1,0 +1,44 @@
+"""Offer of help after three crashes in a row: one key turns the dial to 40 %, on guard."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Final
+
+from ai.lander.environment import Outcome
+from game.core import texts
+from game.core.settings import Settings
+from game.flight.credit import Credit
+from game.flight.flight import Flight
+from game.flight.outcomes import OutcomeCard
+
+CRASHES: Final = 3
+HELP: Final = 0.4  # of the dial
+GUARD: Final = "guardian"
+
+
+class RescueOffer:
+    """Counts the crashes in a row, of flights that the player brought to their end.
+
+    Attributes:
+        made: whether the card in view makes the offer.
+
+    """
+
+    def __init__(self, settings: Settings) -> None:
+        self._settings = settings
+        self._crashes = 0
+        self.made = False
+
+    def follow(self, flight: Flight, credit: Credit, card: OutcomeCard) -> OutcomeCard:
+        """Count a finished flight; return its card, which makes the offer once it is time and there is help."""
+        self._crashes = 0 if flight.outcome is Outcome.LANDED else self._crashes + (not flight.intact)
+        there = flight.copilot is not None and not credit.alone
+        helped = self._settings.assist >= HELP and self._settings.copilot == GUARD
+        self.made = self._crashes >= CRASHES and there and not helped
+        return replace(card, advice=texts.HELP_OFFER) if self.made else card
+
+    def accept(self) -> None:
+        """Turn the dial, and count anew."""
+        self._settings.assist, self._settings.copilot = max(self._settings.assist, HELP), GUARD
+        self._crashes, self.made = 0, False

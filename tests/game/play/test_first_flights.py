@@ -1,0 +1,348 @@
+"""The first ten flights: the ladder, the offer of help, a craft that hangs after every interruption, and the rescue."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.agent.agent import DeepQAgent
+from ai.lander.environment import LanderEnv, Outcome
+from ai.lander.pilots import ScriptedPilot
+from ai.lander.spawns import LADDER, RUNGS, SPAWNS
+from game.core import texts
+from game.core.assets import MODELS_DIR
+from game.core.settings import TOP_RUNG, Settings
+from game.flight import networks
+from game.flight.flight import Flight, StickHolder
+from game.flight.flight_file import Entry
+from game.flight.logbook import Records, best, skill
+from game.flight.replay import FlightReplay
+from game.flight.skill import Skill
+from game.play.ladder import Ladder
+from game.play.rescue_offer import CRASHES, HELP
+from game.play.tutorial import Tutorial
+from game.scenes.play import PlayScene
+from game.ui.context import Context
+from tests.support.driver import Driver
+from tests.support.flights import fly_out, kept, play
+from tests.support.player import DEVICES, Player
+from tests.support.reading import Weighs
+from tests.support.slow_hands import fly_slowly
+
+Open = Callable[..., Driver]
+ON_PAD = (0.0, 2.6, 0.0, -0.4, 0.0, 0.0)
+TOO_FAST = (0.0, 4.0, 0.0, -6.0, 0.0, 0.0)
+BESIDE = (8.0, 2.2, 0.0, -0.4, 0.0, 0.0)
+
+
+@pytest.fixture(autouse=True)
+def weighing_network(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", Weighs()))
+
+
+def end(driver: Driver, state: tuple[float, ...]) -> None:
+    """Bring the flight to its end from a state, and to its card."""
+    driver.frames(2)
+    driver.key(pygame.K_UP)
+    play(driver).flight.env.place(np.ones(1, bool), np.array([state]))
+    for _ in range(200):
+        driver.skip()
+        if play(driver).ending.shown == 1:
+            return
+    raise AssertionError("no card came")
+
+
+# The ladder
+
+
+def test_the_ladder_widens_from_above_the_pad_to_starts_from_anywhere():
+    starts = [np.array([SPAWNS[name](np.random.default_rng(seed)) for seed in range(300)]) for _, name in LADDER.stages]
+    spreads = [np.abs(rows[:, 0]).max() for rows in starts]
+    assert spreads == sorted(spreads)
+    assert spreads[0] < 0.6
+    assert np.abs(starts[0][:, 4]).max() < 0.05
+    assert len(LADDER.stages) == TOP_RUNG + 1 == len(RUNGS) + 1
+    assert LADDER.stages[-1][1] == "random"
+
+
+def test_slow_hands_can_climb_it():
+    for rung in (0, 5, 9):
+        env = LanderEnv(24, rung, LADDER.spawn(rung), frame_skip=1)
+        env.reset()
+        assert fly_slowly(env, ScriptedPilot()).mean() > 0.85
+
+
+def test_landings_lead_up_and_crashes_down_and_the_card_and_title_say_so(open_game: Open, written: list[str]):
+    driver = open_game(PlayScene, ladder=True)
+    settings = driver.app.context.settings
+    driver.frames(2)
+    assert texts.LADDER_TITLE.format(number=1, count=10) in written
+    assert texts.LADDER_BEGIN in written
+    assert play(driver).flight.recording.spawn == "rung_1"
+    end(driver, ON_PAD)
+    assert settings.rung == 1
+    assert play(driver).ending.card.climb == texts.LADDER_UP.format(number=2)
+    driver.key(pygame.K_RETURN)
+    assert play(driver).flight.recording.spawn == "rung_2"
+    seed = play(driver).flight.recording.seed
+    end(driver, TOO_FAST)
+    written.clear()
+    driver.frames(2)
+    assert texts.LADDER_DOWN.format(number=1) in written
+    assert texts.LADDER_NEARER in written
+    driver.key(pygame.K_RETURN)  # the same start, nearer
+    assert (play(driver).flight.recording.seed, play(driver).flight.recording.spawn) == (seed, "rung_1")
+    end(driver, BESIDE)
+    assert settings.rung == 0
+    assert play(driver).ending.card.climb == texts.LADDER_LOWEST
+    driver.app.close()
+    assert driver.saved()["rung"] == 0
+
+
+def test_another_try_by_key_is_the_very_same_start(open_game: Open):
+    driver = open_game(PlayScene, ladder=True)
+    driver.app.context.settings.rung = 4
+    driver.key(pygame.K_n)
+    before = play(driver).flight
+    end(driver, TOO_FAST)
+    driver.key(pygame.K_r)
+    again = play(driver).flight
+    assert again is not before
+    assert (again.recording.seed, again.recording.spawn) == (before.recording.seed, "rung_5")
+
+
+def test_the_top_is_flights_from_anywhere_for_good(open_game: Open):
+    driver = open_game(PlayScene, ladder=True)
+    settings = driver.app.context.settings
+    settings.rung = TOP_RUNG - 1
+    driver.key(pygame.K_n)
+    end(driver, ON_PAD)
+    assert play(driver).ending.card.climb == texts.LADDER_TOP
+    driver.key(pygame.K_RETURN)
+    assert play(driver).flight.recording.spawn == "random"
+    end(driver, TOO_FAST)
+    assert settings.rung == TOP_RUNG
+    assert play(driver).ending.card.rung is None
+
+
+def test_who_has_landed_often_before_begins_at_the_top(context: Context):
+    def entry(outcome: str) -> Entry:
+        return Entry(0, outcome, 5, 1, 1, 1)
+
+    for landings, rung in ((0, 0), (4, 4), (60, TOP_RUNG)):
+        settings = Settings()
+        Ladder(settings, [entry("LANDED")] * landings + [entry("CRASHED")] * 3)
+        assert settings.rung == rung
+    settings = Settings(rung=2)
+    Ladder(settings, [entry("LANDED")] * 60)
+    assert settings.rung == 2
+
+
+def test_the_choices_move_on_the_ladder_and_off_it(open_game: Open):
+    driver = open_game(PlayScene, ladder=True)
+    driver.frames(2)
+    driver.key(pygame.K_c)
+    while driver.form.focused.label != texts.CHOICES_LADDER:
+        driver.key(pygame.K_DOWN)
+    driver.keys(*[pygame.K_RIGHT] * 12)
+    driver.key(pygame.K_ESCAPE)
+    assert play(driver).flight.recording.spawn == "random"
+    driver.frames(2)
+    driver.key(pygame.K_c)
+    while driver.form.focused.label != texts.CHOICES_LADDER:
+        driver.key(pygame.K_DOWN)
+    driver.keys(*[pygame.K_LEFT] * 12)
+    driver.key(pygame.K_ESCAPE)
+    assert play(driver).flight.recording.spawn == "rung_1"
+
+
+def test_flights_from_the_ladder_replay_but_do_not_measure_skill(context: Context):
+    flight = Flight(7, ScriptedPilot(), "rung_3")
+    flight.hand_over()
+    record = kept(context, fly_out(flight), alone=True)
+    replay = FlightReplay(record)
+    while not replay.complete:
+        replay.scout(200)
+    assert replay.faithful
+    assert record.recording.spawn == "rung_3"
+    [entry] = Records(context.user_dir).entries()
+    assert entry.on_ladder
+    assert skill([entry]) == Skill([entry]).own == []
+    assert best([entry])
+
+
+# Help after three crashes
+
+
+@pytest.mark.parametrize("device", DEVICES)
+def test_after_three_crashes_one_key_turns_the_dial(open_game: Open, written: list[str], device: str):
+    driver = player = Player(open_game(PlayScene), device)
+    for number in range(CRASHES):
+        written.clear()
+        end(driver, TOO_FAST)
+        driver.frames(2)
+        assert (texts.HELP_OFFER in written) == (texts.HELP_HINT in written) == (number == CRASHES - 1)
+        if number < CRASHES - 1:
+            driver.key(pygame.K_RETURN)
+    player.press("hand over")
+    settings = driver.app.context.settings
+    assert (settings.assist, settings.copilot) == (HELP, "guardian")
+    driver.frames(2)
+    assert not play(driver).flight.over
+    assert play(driver).flight.shared
+    assert play(driver).flight.hand is StickHolder.HUMAN
+
+
+def test_a_click_takes_the_help_and_a_landing_counts_anew(open_game: Open):
+    driver = open_game(PlayScene)
+    for state in (TOO_FAST, TOO_FAST, ON_PAD, TOO_FAST, TOO_FAST):
+        end(driver, state)
+        assert texts.HELP_HINT not in driver.hints()
+        driver.key(pygame.K_RETURN)
+    end(driver, TOO_FAST)
+    driver.frames(2)
+    driver.click(driver.hints()[texts.HELP_HINT])
+    assert driver.app.context.settings.assist == HELP
+
+
+# Hanging until touched
+
+
+@pytest.mark.parametrize("way", ["pause", "choices", "focus", "size"])
+def test_a_flight_hangs_after_every_interruption_until_it_is_touched(open_game: Open, written: list[str], way: str):
+    driver = open_game(PlayScene, 4)
+    driver.frames(2)
+    driver.key(pygame.K_UP)
+    driver.frames(20)
+    if way == "pause":
+        driver.keys(pygame.K_ESCAPE, pygame.K_ESCAPE)
+    elif way == "choices":
+        driver.keys(pygame.K_c, pygame.K_c)
+    elif way == "focus":
+        driver.post(pygame.WINDOWFOCUSLOST)
+        driver.post(pygame.WINDOWFOCUSGAINED)
+    else:
+        driver.post(pygame.WINDOWSIZECHANGED, x=1280, y=720)
+    driver.frames(2)
+    steps = len(play(driver).flight.recording.actions)
+    written.clear()
+    driver.frames(30)
+    assert play(driver).waiting
+    assert len(play(driver).flight.recording.actions) == steps > 10
+    assert texts.WAITS_AGAIN in written
+    driver.key(pygame.K_LEFT)
+    driver.frames(5)
+    assert not play(driver).waiting
+    assert len(play(driver).flight.recording.actions) > steps
+
+
+def test_a_key_held_meanwhile_must_be_let_go_first(open_game: Open, written: list[str]):
+    driver = open_game(PlayScene, 4)
+    driver.frames(2)
+    driver.post(pygame.KEYDOWN, key=pygame.K_UP, mod=0, unicode="", scancode=0)
+    driver.frames(10)
+    driver.post(pygame.WINDOWSIZECHANGED, x=1280, y=720)
+    driver.frames(10)
+    assert play(driver).waiting
+    assert texts.TUTORIAL_LET_GO in written
+
+
+def test_to_try_again_is_always_in_the_hints(open_game: Open):
+    driver = open_game(PlayScene, 4)
+    driver.frames(2)
+    assert texts.HINT_RETRY in driver.hints()
+    driver.key(pygame.K_UP)
+    driver.frames(20)
+    assert texts.HINT_RETRY in driver.hints()
+    end(driver, TOO_FAST)
+    driver.frames(2)
+    assert texts.HINT_RETRY in driver.hints()
+
+
+# The rescue
+
+
+PILOT = ScriptedPilot()
+
+
+def decided(action: int) -> Callable[[Flight], int]:
+    return lambda _: action
+
+
+HANDS: dict[str, Callable[[Flight], int]] = {
+    "holds left": decided(1),
+    "holds right": decided(2),
+    "does nothing": decided(0),
+    "flies well": lambda flight: int(PILOT.act(flight.env.observe())[0]),
+}
+
+
+@pytest.mark.parametrize("hands", HANDS)
+def test_who_tries_to_crash_is_brought_down_by_the_network_that_comes_with_the_game(hands: str):
+    tutorial = Tutorial()
+    dial = tutorial.dial(Settings())
+    agent = DeepQAgent.load(MODELS_DIR / "lander" / "modern")
+    while tutorial.lesson.name != "dial":
+        tutorial.skip()
+    flight = tutorial.flight(0, agent)
+    assert tutorial.holds
+    dial.assist = 0.4
+    assert not tutorial.holds
+    flight.help(dial.assist, dial.copilot)
+    for _ in range(60 * 40):
+        flight.step(HANDS[hands](flight))
+        tutorial.follow(flight)
+        if tutorial.through:
+            break
+    assert flight.outcome is Outcome.LANDED
+    assert tutorial.through
+
+
+def test_a_rescue_that_does_not_come_down_is_helped_by_words(open_game: Open):
+    driver = open_game(PlayScene, 0, challenge=Tutorial())
+    challenge, controls = play(driver).challenge, driver.app.context.controls
+    while challenge.lesson.name != "rescue":
+        challenge.skip() if challenge.lesson.name != "dial" else challenge.follow(play(driver).flight)
+    flight = play(driver).flight
+    first, later = (words.split("{")[0] for words in texts.TUTORIAL["rescue"])
+    assert challenge.words(flight, controls).startswith(first)
+    for _ in range(1000):  # whatever it does up there
+        challenge.follow(flight)
+    assert challenge.words(flight, controls).startswith(later)
+
+
+@pytest.mark.parametrize("device", DEVICES)
+def test_the_dial_is_turned_by_the_player_and_theirs_stays_as_it_was(open_game: Open, written: list[str], device: str):
+    driver = player = Player(open_game(PlayScene, 0, challenge=Tutorial()), device)
+    while (challenge := play(driver).challenge).lesson.name != "dial":
+        challenge.skip()
+    play(driver).retry()
+    driver.frames(2)
+    player.hold("left", down=True)
+    driver.frames(20)
+    player.hold("left", down=False)
+    assert play(driver).waiting  # until the dial is turned
+    for _ in range(4):
+        if device == "keys":
+            driver.key(pygame.K_PLUS)
+        else:
+            driver.axis(pygame.CONTROLLER_AXIS_RIGHTX, 32000)
+            driver.axis(pygame.CONTROLLER_AXIS_RIGHTX, 0)
+    written.clear()
+    driver.frames(3)
+    assert any(word.startswith(texts.TUTORIAL_PATHS.split("{")[0]) for word in written)
+    assert play(driver).flight.shared
+    assert play(driver).flown.path_preview.asks
+    player.hold("left", down=True)
+    driver.frames(60)
+    assert challenge.lesson.name == "rescue"
+    assert driver.app.context.settings.assist == 0
+
+
+def test_who_skips_the_dial_skips_the_rescue(open_game: Open):
+    driver = open_game(PlayScene, 0, challenge=Tutorial())
+    while play(driver).challenge and play(driver).challenge.lesson.name != "dial":
+        driver.key(pygame.K_n)
+    driver.key(pygame.K_n)
+    assert play(driver).challenge is None
