@@ -218,8 +218,10 @@ def _elsewhere(recording: Recording) -> bool:
 
 def _as_begun(recording: Recording, seed: int, network: Policy | None) -> Flight:
     """Return a flight at the start of a recorded one."""
-    start = {"pads": recording.pads, "mission": recording.mission}
-    return Flight(seed, network, recording.spawn, **start, area=recording.area, easing=recording.easing)
+    return Flight(
+        seed, network, recording.spawn, pads=recording.pads, mission=recording.mission, area=recording.area,
+        easing=recording.easing,
+    )  # fmt: skip
 
 
 class FlownMission(Challenge):

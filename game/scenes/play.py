@@ -144,7 +144,7 @@ class PlayScene(Scene):
             Command.CHOICES: self._choose,
             Command.NEXT: self._begin_elsewhere,
             Command.RETRY: self.retry,
-            Command.PAUSE: Pop if self._leaves else self._pause,
+            Command.PAUSE: Pop if self._leaves else self.pause,
         }
 
     def _flight_actions(self) -> list[Action]:

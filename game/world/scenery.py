@@ -136,7 +136,10 @@ class Scenery:
         if self._flight.outcome is Outcome.OUT_OF_BOUNDS:
             mark_lost(canvas, view, pose)
             if self.stage.pose_after(alpha) is not None:
-                canvas.surface.set_clip(canvas.rect(0, _HEAD, VIEW_SIZE[0], VIEW_SIZE[1] - _HEAD))  # behind the words
+                whole = canvas.view
+                canvas.surface.set_clip(
+                    canvas.rect(whole.left, whole.top + _HEAD, whole.width, whole.height - _HEAD)
+                )  # behind the words
                 self.stage.draw_lander(canvas, view, pose, alpha=alpha)
                 canvas.surface.set_clip(None)
             return
