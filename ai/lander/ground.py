@@ -10,7 +10,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from ai.common.environment import Doubles
+from ai.common.environment import Bools, Doubles
 from ai.lander.rules import PARAMS, LanderParams
 from engine import Body, Polygon, World
 
@@ -23,12 +23,16 @@ _SLOPE: Final = 1.2  # metres that its flank is wide for every metre of height
 
 @dataclass(frozen=True)
 class Pad:
-    """Landing pad; the score of a landing on it is multiplied by `factor`."""
+    """Landing pad; the score of a landing on it is multiplied by `factor`, and with 0 it ends no flight.
+
+    A `bare` one is level rock: a flat spot without a pad.
+    """
 
     x: float  # metres, of its middle
     top: float
     width: float
     factor: int = 1
+    bare: bool = False
 
     @property
     def left(self) -> float:
@@ -45,15 +49,17 @@ WIDE, NARROW, TINY = (6.0, 1), (4.4, 3), (3.6, 5)  # width in metres, factor; th
 PADS: Final = (WIDE, NARROW, TINY)
 
 Hill = tuple[tuple[float, float], ...]  # its surface from left foot to right, convex from above
+Roof = tuple[tuple[float, float], ...]  # corners of a convex rock with air under it
 
 
 @dataclass(frozen=True)
 class Ground:
-    """A plain at height `base`, convex hills on it, and pads; metres."""
+    """A plain at height `base`, convex hills on it, rocks over it, and pads; metres."""
 
     pads: tuple[Pad, ...]
     hills: tuple[Hill, ...] = ()
     base: float = PARAMS.ground
+    roofs: tuple[Roof, ...] = ()
 
     def __post_init__(self) -> None:
         if not self.pads:
@@ -79,8 +85,13 @@ class Ground:
         """Width of every pad, metres, (pads,)."""
         return np.array([pad.width for pad in self.pads])
 
+    @cached_property
+    def ends(self) -> Bools:
+        """Whether standing on each pad ends a flight, (pads,)."""
+        return np.array([pad.factor > 0 for pad in self.pads])
+
     def height(self, x: Doubles | float) -> Doubles:
-        """Height in metres of what lies under x, of any shape: a pad's top, a hill, or the plain."""
+        """Height in metres of what lies under x, of any shape: a pad's top, a hill, or the plain, below any roof."""
         height = np.full(np.shape(x), self.base)
         for hill in self.hills:
             across, up = np.array(hill).T
@@ -105,9 +116,9 @@ class Ground:
 
     @cached_property
     def _land(self) -> list[Polygon]:
-        """Shapes of the plain, a deep box, and of its hills, from that box's middle; cached, as slow to make."""
-        hills = [Polygon(np.array(hill) - (0.0, self._depth)) for hill in self.hills]
-        return [Polygon.box(*_PLAIN), *hills]
+        """Shapes of the plain, a deep box, and of hills and roofs, from that box's middle; cached, as slow to make."""
+        rocks = [Polygon(np.array(rock) - (0.0, self._depth)) for rock in (*self.hills, *self.roofs)]
+        return [Polygon.box(*_PLAIN), *rocks]
 
     @property
     def _depth(self) -> float:
@@ -128,7 +139,7 @@ def hilly(rng: np.random.Generator, pads: Sequence[tuple[float, int]] = PADS) ->
         width, factor = pads[pick]
         x = gap * (row - (count - 1) / 2) + rng.uniform(-0.7, 0.7)
         rows.append(Pad(float(x), float(PARAMS.pad_top + rng.uniform(0.0, 1.4)), width, factor))
-    knolls = [_knoll(pad, base) for pad in rows]
+    knolls = [knoll(pad, base) for pad in rows]
     edge = gap * count / 2
     crests = [gap * (row - count / 2) for row in range(1, count)]  # between pads, and some beyond them
     crests += [-edge - 1.0, edge + 1.0, -edge - 5.0, edge + 5.0]
@@ -136,7 +147,7 @@ def hilly(rng: np.random.Generator, pads: Sequence[tuple[float, int]] = PADS) ->
     return Ground(tuple(rows), tuple(knolls + [hill for hill in hills if hill]), base)
 
 
-def _knoll(pad: Pad, base: float) -> Hill:
+def knoll(pad: Pad, base: float) -> Hill:
     """Return the knoll that lifts a pad off the plain: flat under it, with flanks on both sides."""
     top = pad.top - _LIP
     foot = _SLOPE * (top - base)
