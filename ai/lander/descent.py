@@ -18,6 +18,7 @@ from ai.lander.conditions import Conditions
 from ai.lander.environment import LIMITS, PARAMS, LanderEnv, Limits
 from ai.lander.ground import Ground, Hill, Pad, Roof, knoll
 
+MOST_LEGS: Final = 10_000  # of a descent: nobody flies so many
 TANK: Final = 16.0  # seconds of main engine that the tank holds
 _REFILL: Final = (5.0, 7.0)  # seconds for any landing on a pad, and more for a perfect one
 _PERFECT: Final = 100  # points
@@ -92,6 +93,11 @@ class Leg:
         env.reset()
         env.place(np.ones(1, dtype=bool), self.start[None])
         return env
+
+
+def leg_of(seed: int, start: LegStart) -> Leg:
+    """Return the leg that begins so, of the descent with that seed."""
+    return leg(seed, start.number, start.bare)
 
 
 @lru_cache(maxsize=8)

@@ -7,9 +7,11 @@ Over the goal it is shown the goal.
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 
 from ai.common.environment import Doubles, Floats
 from ai.lander.environment import LanderEnv
@@ -24,6 +26,7 @@ _MEASURED: Final = (40, 40)  # decisions until a pilot's descent is steady, and 
 _OVER_GOAL: Final = 1.0  # metres before the route's end at which the goal is shown
 
 
+@lru_cache(maxsize=4)
 def sink_of(pilot: Pilot) -> float:
     """Return how fast a pilot comes down, in m/s, over a pad that stays just below it: measured by letting it fly."""
     env = LanderEnv(1, 0, frame_skip=4)
@@ -45,13 +48,9 @@ def _over_flying_pad(env: LanderEnv, pad_velocity: Doubles) -> Floats:
 
 
 class Route:
-    """A way through the air, as points (k, 2) in metres, that ends over a pad.
+    """A way through the air, as points (k, 2) in metres, that ends over a pad."""
 
-    `sink` is how fast the pilot that is led comes down over a pad just below it, from `sink_of`.
-    """
-
-    def __init__(self, points: Doubles, sink: float) -> None:
-        self._sink = sink
+    def __init__(self, points: npt.ArrayLike) -> None:
         points = np.asarray(points, dtype=float)
         self._from, self._way = points[:-1], np.diff(points, axis=0)
         self._long = np.hypot(*self._way.T)
@@ -89,9 +88,9 @@ class Route:
         wanted: Doubles = speed * way / max(float(np.hypot(*way)), 1e-6)
         return wanted
 
-    def observe(self, env: LanderEnv) -> Floats:
-        """Return the observation (1, 9) of a lander's goal, or on the way to it of the flying pad."""
+    def observe(self, env: LanderEnv, pilot: Pilot) -> Floats:
+        """Return the observation (1, 9) that a pilot needs: of the goal, or on the way to it of the flying pad."""
         wanted = self.velocity(env.position[0])
         if wanted is None:
             return env.observe(0)
-        return _over_flying_pad(env, wanted + (0.0, self._sink))
+        return _over_flying_pad(env, wanted + (0.0, sink_of(pilot)))

@@ -10,9 +10,11 @@ import numpy as np
 
 from ai.common.decision import Decision
 from ai.common.environment import Doubles, Floats
+from ai.lander.descent import LegStart, leg_of
 from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.missions import STARTS
 from ai.lander.pilots import COAST
+from ai.lander.route import Route
 from game.flight.handicap import OWN, Handicap
 from game.flight.networks import Policy, QPolicy, decide
 from game.flight.poses import Poses
@@ -37,7 +39,8 @@ class Recording:
     """Recording of a flight for an exact replay: its start, and the action of every step.
 
     `hands` says who chose each action: with a shared stick, the person if the action is the one they asked for.
-    `gravity` lists its changes: the first step, and the share of normal gravity.
+    `gravity` lists its changes: the first step, and the share of normal gravity. `leg` is where a flight of a descent
+    begins, None for any other.
     """
 
     seed: int
@@ -47,6 +50,7 @@ class Recording:
     hands: list[StickHolder] = field(default_factory=list)
     mission: str = ""
     gravity: list[tuple[int, float]] = field(default_factory=list)
+    leg: LegStart | None = None
 
     def gravity_at(self, step: int) -> float:
         """Return the share of normal gravity during a step."""
@@ -63,7 +67,8 @@ class Flight:
         pads: 1 on a plain, or 3 among hills.
         hands: handicap of the keys, a name of `game.flight.handicap.HANDS`.
         mission: name of one of `ai.lander.missions.STARTS`, which sets the start and the conditions; empty for none.
-        shares: whether the network may share the stick, and not only take it.
+        shares: whether the network may share the stick, and not only take it; it never shares a leg's.
+        leg: where a flight of a descent begins, which sets the start and the conditions; None for any other.
 
     Attributes:
         copilot: shares the stick while its assist is above 0; None if the network has no Q-values.
@@ -71,6 +76,7 @@ class Flight:
         alone: latest decision of the network while it flies alone; None otherwise.
         asked: the action that the person asked for in the last step.
         overridden: whether another action was flown than the one the person asked for.
+        route: how a network is led around rock on a leg of a descent; None in any other flight.
 
     """
 
@@ -84,15 +90,20 @@ class Flight:
         hands: str = OWN,
         mission: str = "",
         shares: bool = True,
+        leg: LegStart | None = None,
     ) -> None:
-        if mission:
+        self.route: Route | None = None
+        if leg:
+            flown = leg_of(seed, leg)
+            self.env, self.route = flown.begin(leg.tank), Route(flown.route)
+        elif mission:
             self.env = STARTS[mission].begin()
         else:
             self.env = LanderEnv(1, seed, spawn, frame_skip=1, ground=ground_of(seed, pads))
             self.env.reset()
         self.observation: Floats = self.env.observe()
-        self.hand, self.shares = StickHolder.HUMAN, shares
-        self.recording = Recording(seed, spawn, pads, mission=mission)
+        self.hand, self.shares = StickHolder.HUMAN, shares and leg is None
+        self.recording = Recording(seed, spawn, pads, mission=mission, leg=leg)
         self.poses = Poses(self.env)
         self.asked, self.overridden = COAST, False
         self.decision: SharedDecision | None = None
@@ -218,7 +229,8 @@ class Flight:
     def _ask_network(self) -> int:
         if self.alone is None or self._held_for == 0:
             assert self.network is not None
-            self.alone = decide(self.network, self.env.observe(), self.env.actions)
+            seen = self.route.observe(self.env, self.network) if self.route else self.env.observe()
+            self.alone = decide(self.network, seen, self.env.actions)
         self._held_for = (self._held_for + 1) % DECISION_STEPS
         return int(self.alone.action[0])
 
@@ -235,5 +247,8 @@ class Flight:
 
     def _aim(self, likely: Doubles | float = 0.0) -> None:
         """Aim read-outs and network at the most `likely` (pads,) intended pad; among equals, at the nearest."""
+        if self.route:  # to the goal, whatever is nearer
+            self.env.target[:] = 0
+            return
         away = np.abs(self.env.ground.middles[:, 0] - self.env.position[0, 0])
         self.env.target[:] = int((likely - 1e-6 * away).argmax())

@@ -10,11 +10,12 @@ import errno
 import json
 import os
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, astuple, dataclass
 from itertools import groupby
 from pathlib import Path
 from typing import Annotated, Any, Final
 
+from ai.lander.descent import MOST_LEGS, TANK, LegStart
 from ai.lander.environment import NUM_ACTIONS, Outcome
 from ai.lander.missions import MISSIONS
 from ai.lander.spawns import SPAWNS
@@ -25,9 +26,9 @@ from game.core.settings import GRAVITY_SHARES
 from game.flight.flight import Recording, StickHolder
 
 FORMAT: Final = "tranquility flight"
-VERSION: Final = 4
-# Version 1 had no changes of gravity, 2 no rules of missions, 3 no reason why a flight does not count.
-_READS: Final = (1, 2, 3, 4)
+VERSION: Final = 5
+# Version 1 had no changes of gravity, 2 no rules of missions, 3 no reason why a flight does not count, 4 no descents.
+_READS: Final = (1, 2, 3, 4, 5)
 _LONGEST: Final = 120 * 60  # physics steps of a flight, at most
 _LARGEST: Final = 1_000_000  # bytes
 _LONGEST_NAME: Final = 255  # characters, as in the name of a file
@@ -65,6 +66,8 @@ class Entry:
         course: name of a mission; empty for a free flight.
         medal: 3 for gold, 2, 1, and 0 for none.
         file: name of the flight's file, for a replay.
+        leg: number of the leg in a descent; 0 for any other flight.
+        total: points of the descent so far.
 
     """
 
@@ -85,6 +88,8 @@ class Entry:
     pace: _Figure = 1.0
     rules: _Number = 0
     barred: _Name = ""
+    leg: _Number = 0
+    total: _Number = 0
 
     @property
     def practice(self) -> bool:
@@ -140,6 +145,7 @@ class _FlightFile:
     end: tuple[float, float, float]
     entry: Entry
     gravity: tuple[tuple[_Number, Annotated[float, Within(*GRAVITY_SHARES)]], ...] = ()
+    leg: tuple[Annotated[int, Within(1, MOST_LEGS)], Annotated[float, Within(0, TANK)], bool] | None = None
 
 
 def read(path: Path) -> Record:
@@ -170,7 +176,7 @@ def to_text(record: Record) -> str:
         "format": FORMAT, "version": VERSION, "seed": recording.seed, "spawn": recording.spawn,
         "pads": recording.pads, "mission": recording.mission, "actions": _packed(recording.actions),
         "hands": _packed(hand.value for hand in recording.hands), "gravity": recording.gravity,
-        "end": record.end, "entry": asdict(record.entry),
+        "leg": astuple(recording.leg) if recording.leg else None, "end": record.end, "entry": asdict(record.entry),
     }, indent=1) + "\n"  # fmt: skip
 
 
@@ -191,7 +197,8 @@ def from_text(text: str) -> Record:
     steps = [step for step, _ in file.gravity]
     if steps != sorted(set(steps)):
         raise ValueError(texts.FLIGHT_GRAVITY)
-    recording = Recording(file.seed, file.spawn, file.pads, actions, hands, file.mission, list(file.gravity))
+    leg = LegStart(*file.leg) if file.leg else None
+    recording = Recording(file.seed, file.spawn, file.pads, actions, hands, file.mission, list(file.gravity), leg)
     return Record(recording, file.entry, file.end)
 
 

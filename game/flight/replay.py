@@ -19,7 +19,7 @@ class ReplayedFlight(Flight):
     """Flight that repeats recorded actions and ignores the keys; it stops at the end of the flight or recording."""
 
     def __init__(self, source: Recording) -> None:
-        super().__init__(source.seed, spawn=source.spawn, pads=source.pads, mission=source.mission)
+        super().__init__(source.seed, spawn=source.spawn, pads=source.pads, mission=source.mission, leg=source.leg)
         self._source = source
 
     @property

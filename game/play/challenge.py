@@ -179,7 +179,7 @@ class ContinuedFlight(Challenge):
 
 def _as_begun(recording: Recording, seed: int, network: Policy | None) -> Flight:
     """Return a flight at the start of a recorded one."""
-    return Flight(seed, network, recording.spawn, pads=recording.pads, mission=recording.mission)
+    return Flight(seed, network, recording.spawn, pads=recording.pads, mission=recording.mission, leg=recording.leg)
 
 
 class FlownMission(Challenge):
