@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -49,7 +50,7 @@ WIDE, NARROW, TINY = (6.0, 1), (4.4, 3), (3.6, 5)  # width in metres, factor; th
 PADS: Final = (WIDE, NARROW, TINY)
 
 Hill = tuple[tuple[float, float], ...]  # its surface from left foot to right, convex from above
-Roof = tuple[tuple[float, float], ...]  # corners of a convex rock with air under it
+Roof = tuple[tuple[float, float], ...]  # corners, counter-clockwise, of a convex rock with air under it
 
 
 @dataclass(frozen=True)
@@ -100,6 +101,14 @@ class Ground:
             height = np.where((pad.left <= np.asarray(x)) & (np.asarray(x) <= pad.right), pad.top, height)
         return height
 
+    def roofed(self, place: Doubles) -> Bools:
+        """Whether places (k, 2) lie inside a roof, (k,)."""
+        inside = np.zeros(len(place), dtype=bool)
+        for roof in self.roofs:
+            edges = np.array([half_plane(a, b) for a, b in pairwise((*roof, roof[0]))])
+            inside |= (place @ edges[:, :2].T <= edges[:, 2]).all(axis=1)
+        return inside
+
     def build(self, world: World, **surface: Any) -> list[Body]:
         """Put the ground into a world; return the pads. What else there is comes after them."""
         pads = []
@@ -124,6 +133,14 @@ class Ground:
     def _depth(self) -> float:
         """Height of the plain's middle."""
         return self.base - _PLAIN[1] / 2
+
+
+def half_plane(start: tuple[float, float], end: tuple[float, float]) -> tuple[float, float, float]:
+    """Return nx, ny, far of an edge of a rock whose corners run counter-clockwise: outside, nx·x + ny·y > far."""
+    across, up = end[0] - start[0], end[1] - start[1]
+    long = math.hypot(across, up)
+    nx, ny = up / long, -across / long
+    return nx, ny, nx * start[0] + ny * start[1]
 
 
 def hilly(rng: np.random.Generator, pads: Sequence[tuple[float, int]] = PADS) -> Ground:

@@ -6,7 +6,7 @@ Header, corner, card, medal and logbook ask this one object, so that no two of t
 from __future__ import annotations
 
 from enum import Enum, auto
-from typing import Protocol
+from typing import Final, Protocol
 
 from ai.lander.environment import Outcome
 from game.core import texts
@@ -14,6 +14,8 @@ from game.flight.difficulty import Difficulty
 from game.flight.flight import Flight, StickHolder
 from game.flight.handicap import OWN
 from game.flight.outcomes import landing_score
+
+TOGETHER: Final = ("helped", "handed_over")  # reasons not to count that a landing together has
 
 
 class CreditRules(Protocol):
@@ -130,6 +132,11 @@ class Credit:
     def counts(self) -> bool:
         """Whether the person flew all of it without help, handicap or changed difficulty."""
         return not self.bar
+
+    @property
+    def together(self) -> bool:
+        """Whether person and network have landed it together, which earns a ring in place of a medal."""
+        return self._flight.outcome is Outcome.LANDED and self._flight.share > 0 and self.bar in TOGETHER
 
     @property
     def notice(self) -> str:

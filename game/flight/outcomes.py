@@ -15,7 +15,7 @@ class OutcomeCard:
     """Contents of an outcome card: good or not, the reason, figures as label, value, unit, and advice.
 
     For a shared flight, `stepped_in` is how often the co-pilot intervened. `medal` is 3 for gold, 2, 1, 0 for none.
-    `left` is the card's left edge.
+    `ring` is whether it was landed together with the network. `left` is the card's left edge.
     """
 
     good: bool
@@ -26,6 +26,7 @@ class OutcomeCard:
     advice: str = ""
     score: str = ""
     medal: int = 0
+    ring: bool = False
     stepped_in: int | None = None
     left: float = 400.0
 

@@ -80,9 +80,11 @@ def flight_row(hints: list[Hint]) -> HintRow:
 def card_actions(go_on: Run, runs: Mapping[Command, Run], challenge: Challenge | None, *, good: bool) -> list[Action]:
     """Return the two actions that an outcome card names: to go on, and one of the others; `good` is for a landing."""
     fixed = challenge is not None and challenge.fixed
-    if good:
-        other, hint = Command.RETRY, texts.HINT_AGAIN
-    else:
-        other, hint = (Command.PAUSE, texts.HINT_LEAVE) if fixed else (Command.NEXT, texts.HINT_NEW)
+    again, new = (challenge.again_hint, challenge.new_hint) if challenge else ("", "")
     first = (texts.CARD_FIRST_FIXED if fixed else texts.CARD_FIRST)[good]
+    if good:
+        other, hint, first = Command.RETRY, again or texts.HINT_AGAIN, new or first
+    else:
+        other, hint = (Command.PAUSE, texts.HINT_LEAVE) if fixed else (Command.NEXT, new or texts.HINT_NEW)
+        first = again or first
     return [Action(Command.CONFIRM, go_on, first), Action(other, runs[other], hint)]

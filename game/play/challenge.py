@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from datetime import date
 from typing import Final
@@ -13,7 +14,7 @@ from game.core.settings import Settings
 from game.drawing.canvas import Canvas
 from game.flight.credit import Credit
 from game.flight.flight import Flight, Recording
-from game.flight.flight_file import Record
+from game.flight.flight_file import Entry, Record
 from game.flight.networks import Policy
 from game.flight.outcomes import OutcomeCard
 from game.flight.replay import FlightReplay, ReplayedFlight
@@ -34,6 +35,8 @@ class DrawnFlight:
         clear: the part of the screen that is free of other text.
         waiting: whether the craft hangs until a control is touched.
         stuck: whether a held control must first be released.
+        calm: whether motion is reduced.
+        age: steps of 1/60 s since the flight was shown, whether or not it flies.
 
     """
 
@@ -42,6 +45,8 @@ class DrawnFlight:
     clear: ClearArea
     waiting: bool = False
     stuck: bool = False
+    calm: bool = False
+    age: int = 0
 
 
 class Challenge:
@@ -58,6 +63,8 @@ class Challenge:
         goal: goal of the flight, for the corner as well.
         opening: text while the craft hangs and waits; empty to leave the middle free.
         through: whether the challenge is finished and free flights follow.
+        total: points of the chain of flights that it is, for the logbook.
+        again_hint, new_hint: what the card calls another try, and another start; empty for the usual words.
 
     """
 
@@ -67,8 +74,22 @@ class Challenge:
     bar = ""
     alone = False
     through = False
-    next_hint = ""
+    next_hint = again_hint = new_hint = ""
     title = line = goal = opening = ""
+    total = 0
+
+    @property
+    def under_way(self) -> bool:
+        """Whether leaving now would end a chain of flights."""
+        return False
+
+    @property
+    def following(self) -> Challenge | None:
+        """The challenge that comes next after a landing; None for the way back."""
+        return None
+
+    def recall(self, entries: Iterable[Entry]) -> None:
+        """Take what is known of earlier flights, before the first begins."""
 
     def flight(self, seed: int, network: Policy | None) -> Flight:
         """Begin a flight; `network` is the one to hand over to."""
@@ -81,6 +102,9 @@ class Challenge:
     def card(self, card: OutcomeCard, flight: Flight, credit: Credit) -> OutcomeCard:  # noqa: ARG002
         """Return the outcome card of a finished flight, with what this challenge adds to it."""
         return card
+
+    def settle(self, flight: Flight, credit: Credit) -> None:
+        """Take note of a flight that has just ended, before its card or the next flight."""
 
     def follow(self, flight: Flight) -> str:  # noqa: ARG002
         """Follow a step of the flight; return the name of a sound to play, empty for none."""
@@ -187,8 +211,16 @@ class FlownMission(Challenge):
 
     title = texts.MISSION
 
-    def __init__(self, mission: Mission, rival: Record | None = None, rival_name: str = texts.MISSION_RIVAL) -> None:
+    def __init__(
+        self,
+        mission: Mission,
+        rival: Record | None = None,
+        rival_name: str = texts.MISSION_RIVAL,
+        following: Callable[[], Challenge] | None = None,
+    ) -> None:
         self.mission, self.name = mission, mission.name
+        self._following = following
+        self._own: Recording | None = None  # the player's own landing just before, to be raced next
         self._rival, self._rival_name = rival, rival_name
         self.line, self.opening = texts.MISSIONS[mission.name]
         self.goal = texts.MISSION_GOAL.format(fuel=mission.gold[0], seconds=mission.gold[1])
@@ -199,9 +231,31 @@ class FlownMission(Challenge):
 
     def ghost(self, seed: int, network: Policy | None) -> Ghost | None:
         """Begin the rival on the same mission."""
+        if self._own:
+            return Ghost(ReplayedFlight(self._own), texts.MISSION_GHOSTS["own"])
         if self._rival:
             return Ghost(ReplayedFlight(self._rival.recording), self._rival_name)
         return Ghost(Flight(seed, network, mission=self.name), self._rival_name) if network else None
+
+    @property
+    def following(self) -> Challenge | None:
+        """The next mission, if there is one and the way to it is known."""
+        return self._following() if self._following else None
+
+    @property
+    def again_hint(self) -> str:  # type: ignore[override]
+        """After a landing, another try flies against it."""
+        return texts.MISSION_AGAIN if self._own else ""
+
+    @property
+    def new_hint(self) -> str:  # type: ignore[override]
+        """What the card calls the next mission."""
+        return texts.MISSION_NEXT if self._following else ""
+
+    def settle(self, flight: Flight, credit: Credit) -> None:  # noqa: ARG002
+        """Keep a landing as the ghost of the next try."""
+        if flight.outcome is Outcome.LANDED and flight.share > 0:
+            self._own = flight.recording
 
     def medal(self, flight: Flight) -> int:
         """Return the medal of the flight if it counts, 0 to 3."""
@@ -214,6 +268,8 @@ class FlownMission(Challenge):
         if not card.good:
             return replace(card, advice=_advice(flight.env) or card.advice)
         if not credit.counts:
+            if credit.together:
+                return replace(card, score=texts.MISSION_TOGETHER, ring=True)
             return replace(card, score=card.score if credit.bar == "practice" else texts.MEDALS[0])
         medal = credit.medal
         return replace(card, score=texts.MEDALS[medal], medal=medal, reason=self._missing(medal, flight))

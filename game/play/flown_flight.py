@@ -64,6 +64,7 @@ class FlownFlight:
         self._context, self._settings = context, context.settings
         self.challenge, self.hands = challenge, hands
         self.waiting = self._held_before = True
+        self._written, self._age = False, 0
         self._was_over = False  # whether the flight was over before its latest step
         alone = check or (challenge is not None and challenge.alone)
         self._policy = None if alone else policy
@@ -105,6 +106,7 @@ class FlownFlight:
 
     def breathe(self) -> None:
         """Advance by 1/60 s what moves whether or not anything flies."""
+        self._age += 1
         self.scenery.breathe()
         self.cockpit.ease()
 
@@ -144,6 +146,8 @@ class FlownFlight:
         self.path_preview.follow(waiting=False)
         if not self._was_over:
             self.cockpit.follow()
+            if flight.over and self.challenge:
+                self.challenge.settle(flight, self.credit)
         self.scenery.clear = self.cockpit.clear
         self.scenery.follow(flight.over and not self._was_over, self.ending.shot)
         if self.challenge and (told := self.challenge.follow(flight)):
@@ -156,7 +160,10 @@ class FlownFlight:
         self.ending.make_card(self.cockpit, self.challenge, skill, self.scenery)
 
     def write_down(self, records: Records, skill: Skill, network: Network) -> None:
-        """Record the finished flight, save it as a demonstration if wished, and report failures to the player."""
+        """Record the finished flight, once; save it as a demonstration if wished, and report failures."""
+        if self._written:
+            return
+        self._written = True
         context, credit, challenge = self._context, self.credit, self.challenge
         told = (
             ""
@@ -172,6 +179,7 @@ class FlownFlight:
             course=challenge.name if challenge else "",
             medal=credit.medal,
             pace=credit.pace,
+            total=challenge.total if challenge else 0,
         )
         skill.add(entry)
         if told or records.problem:
@@ -182,7 +190,8 @@ class FlownFlight:
     def moment(self, alpha: float) -> DrawnFlight:
         """Return the moment that a challenge draws over, once the fraction `alpha` of a step has passed."""
         controls, clear = self._context.controls, self.cockpit.clear
-        return DrawnFlight(alpha, controls, clear, self.waiting, self.waiting and self._held_before)
+        stuck, calm = self.waiting and self._held_before, self._settings.reduced_motion
+        return DrawnFlight(alpha, controls, clear, self.waiting, stuck, calm, self._age)
 
     def draw(self, canvas: Canvas, alpha: float, network: Network) -> None:
         """Draw the world, the craft and the read-outs; `network` is the one whose name the title tells."""

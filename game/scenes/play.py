@@ -65,6 +65,8 @@ class PlayScene(Scene):
         self._skill = Skill(self._records.entries())
         if self._records.problem:
             context.note(self._records.problem)
+        if self.challenge:
+            self.challenge.recall(self._records.entries())
         self._begin(self._new_seed() if seed is None else seed)
 
     def enter(self) -> None:
@@ -202,6 +204,8 @@ class PlayScene(Scene):
             return
         ending.follow()
         if challenge and challenge.again():
+            if challenge.kept:
+                self.flown.write_down(self._records, self._skill, self.network)
             if ending.due:
                 self.retry()
         elif ending.card is None:
@@ -253,7 +257,11 @@ class PlayScene(Scene):
         if self.ending.card is None or not self.ending.card.good:
             self.retry()
         elif self.challenge and self.challenge.fixed:
-            return Pop()
+            following = self.challenge.following
+            if following is None:
+                return Pop()
+            self.challenge = following
+            self._begin(self.flight.recording.seed)
         else:
             self._begin_elsewhere()
         return None
@@ -283,7 +291,8 @@ class PlayScene(Scene):
     @property
     def _leaves(self) -> bool:
         """Whether Escape goes straight back: in a challenge that has not begun or is over, where nothing is lost."""
-        return self.challenge is not None and (self.waiting or self.flight.over)
+        challenge = self.challenge
+        return challenge is not None and not challenge.under_way and (self.waiting or self.flight.over)
 
     def _pause(self) -> Transition:
         self._away = 0

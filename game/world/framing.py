@@ -46,13 +46,17 @@ def follow(camera: Camera, env: LanderEnv, slot: int = 0, clear: ClearArea = ALL
 
 
 def _pads(env: LanderEnv, slot: int, x: float, y: float) -> list[tuple[tuple[float, float], float]]:
-    """Return both edges of every pad and its weight in the framing, 0 to 1; a single pad has weight 1."""
+    """Return both edges of every pad and its weight in the framing, 0 to 1.
+
+    A single pad has weight 1, as has the goal of a leg, which is its first pad.
+    """
     shift = float(env.pad_shift[slot])
     pads = env.ground.pads
     near, more = _REACH
     rows = []
-    for pad in pads:
+    first = len(pads) == 1 or not env.ground.ends.all()
+    for number, pad in enumerate(pads):
         beyond = abs(pad.x + shift - x) - (near + more * max(0.0, y - GROUND_LINE))
-        weight = 1.0 if len(pads) == 1 else float(np.clip(1 - beyond / _FADE, 0.0, 1.0))
+        weight = 1.0 if first and number == 0 else float(np.clip(1 - beyond / _FADE, 0.0, 1.0))
         rows.append(((pad.left + shift, pad.right + shift), weight))
     return rows
