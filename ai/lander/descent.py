@@ -29,6 +29,7 @@ _LENGTH: Final = (17.0, 38.0)  # from pad to pad
 _WIDTH: Final = (6.0, 3.4)  # of a pad
 _WIND: Final = (0.22, 0.22)  # N, the strongest steady wind and gusts
 _CALM: Final = 3  # legs without any wind
+_LIGHT: Final = 0.4  # share of the strongest wind that is the least
 _LEVEL: Final = 3.6  # width of a flat spot
 _DARE: Final = 3  # factor on the points for landing there
 _EDGE: Final = 0.06  # metres that a flat spot is higher than the rock around it: feet must touch the spot first
@@ -113,7 +114,8 @@ def leg(seed: int, number: int, bare: bool = False) -> Leg:
     rock = _Rock(first, goal)
     for kind in kinds:
         rock.add(kind, hard, rng)
-    wind, gust = (most * hard * rng.uniform(0.5, 1.0) * (number > _CALM) for most in _WIND)
+    windy = max(hard, _LIGHT) * (number > _CALM)
+    wind, gust = (most * windy * rng.uniform(0.5, 1.0) for most in _WIND)
     conditions = Conditions(wind=round(float(wind * rng.choice((-1, 1))), 3), gust=round(float(gust), 3))
     return Leg(kinds, rock.ground, conditions, rock.route)
 
@@ -161,7 +163,7 @@ class _Rock:
         """Put an obstacle of a kind into the way."""
         getattr(self, f"_{kind}")(hard, rng)
 
-    def _open(self, hard: float, rng: np.random.Generator) -> None:
+    def _open(self, hard: float, rng: np.random.Generator) -> None:  # noqa: ARG002
         """A low hill or two, that no sensible path comes near."""
         for share in (0.35, 0.62):
             x = self.first.x + (self.goal.x - self.first.x) * (share + rng.uniform(-0.05, 0.05))
@@ -174,7 +176,7 @@ class _Rock:
         top = self.base + min(_between((4.5, 10.0), hard) + rng.uniform(0.0, 1.0), _STEEP * room)
         self._hills.append(self._ledge(x, top, 0.7, 1 / _STEEP))
         side = float(rng.choice((-1, 1)))
-        level = self.base + rng.uniform(0.3, 0.45) * (top - self.base)
+        level = self.base + rng.uniform(0.4, 0.55) * (top - self.base)
         flank = 0.35 + (top - level) / _STEEP
         middle = x + side * (flank + _LEVEL / 2 - 0.1)
         if min(abs(middle - pad.x) - pad.width / 2 for pad in (self.first, self.goal)) > _LEVEL / 2 + 0.8:

@@ -18,7 +18,7 @@ from ai.lander.descent import TANK, LegStart, leg_of
 from ai.lander.environment import Cause, LanderEnv, Outcome
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NIGHT0, SMALL, TEXT, VIEW_SIZE
+from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NET, NIGHT0, SMALL, TEXT, VIEW_SIZE
 from game.flight.credit import Credit
 from game.flight.flight import Flight, Recording
 from game.flight.flight_file import Entry
@@ -36,7 +36,7 @@ _FADES: Final = 24  # steps in which a new leg appears
 _GAUGE: Final = (120.0, 4.0)
 _OVER_PAD: Final = 1.5  # metres above the goal at which its mark points down
 _EDGE: Final = (90.0, 420.0)  # points that marks keep from the sides, and their lowest row
-_LAMP: Final = 44.0  # points above the craft, of the words about a landing
+_ANTENNA: Final = 1.5  # metres from the middle of a craft to above its antenna, where the words stand
 
 
 def best_of(entries: Iterable[Entry]) -> tuple[int, int]:
@@ -58,7 +58,7 @@ class Descent(Challenge):
     """
 
     name = COURSE
-    title = texts.DESCENT
+    title = texts.DESCENT_TITLE
     fixed = False
     again_hint = texts.DESCENT_AGAIN
     new_hint = texts.DESCENT_NEW
@@ -189,12 +189,11 @@ class Descent(Challenge):
 
     def draw(self, canvas: Canvas, view: View, flight: Flight, scene: DrawnFlight) -> None:
         """Draw the mark of the goal and, on the ground, what the landing has brought."""
-        pose = flight.poses.at(scene.alpha)[0]
-        x, y = view.points(pose[:2]).tolist()
         if not flight.over:
             self._draw_goal(canvas, view, flight.env)
         elif self._landed:
-            self._draw_landing(canvas, (x, y), 1.0 if scene.calm else min(1.0, self._since / _FILLS))
+            craft = view.points(flight.poses.at(scene.alpha)[0, :2] + (0.0, _ANTENNA)).tolist()
+            self._draw_landing(canvas, craft, 1.0 if scene.calm else min(1.0, self._since / _FILLS))
         if scene.waiting and self.start.number > 1 and not scene.calm and scene.age < _FADES:
             _draw_veil(canvas, 1 - scene.age / _FADES)
 
@@ -205,17 +204,18 @@ class Descent(Challenge):
         side, low = _EDGE
         spot = min(max(place[0], side), VIEW_SIZE[0] - side), min(max(place[1], 0.0), low + 160)
         away = float(np.hypot(*(env.position[0] - (pad.x, pad.top + env.params.stand))))
-        canvas.text(texts.DESCENT_AWAY.format(metres=away), (spot[0], spot[1] - 12), size=SMALL, colour=MUTE,
-                    align="centre", tabular=True)  # fmt: skip
+        canvas.text(texts.DESCENT_AWAY.format(metres=away), (spot[0], spot[1] - 12), size=SMALL, colour=INK,
+                    align="centre", tabular=True, alpha=0.8)  # fmt: skip
         for lean in (-5, 5):
             canvas.line((spot[0] + lean, spot[1] - 6), (spot[0], spot[1]), INK, 1.5, 0.8)
 
     def _draw_landing(self, canvas: Canvas, craft: tuple[float, float], filled: float) -> None:
         """Write above the craft what the landing has earned, over the tank that fills."""
         (x, y), (width, height) = craft, _GAUGE
-        x, y = min(max(x, 2 * _EDGE[0]), VIEW_SIZE[0] - 2 * _EDGE[0]), y - _LAMP
-        words = texts.DESCENT_LANDED.format(count=self._points)
-        canvas.text(words, (x, y - 22), size=TEXT, colour=HUMAN, align="centre")
+        x, y = min(max(x, 2 * _EDGE[0]), VIEW_SIZE[0] - 2 * _EDGE[0]), y - 14
+        words = texts.DESCENT_LANDED.format(count=self._points) if self._points else texts.DESCENT_RELIEVED
+        colour = HUMAN if self._points else NET
+        canvas.text(words, (x, y - 22), size=TEXT, colour=colour, align="centre")
         fuel = texts.DESCENT_FUEL.format(seconds=self._gained) if self._gained > 0 else texts.DESCENT_NO_FUEL
         canvas.text(fuel, (x, y - 4), size=SMALL, colour=MUTE, align="centre")
         after = self._next.tank
