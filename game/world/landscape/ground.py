@@ -25,6 +25,7 @@ _CREST_COLOUR: Final = np.array((44, 42, 64), np.float32)
 _FOOT_COLOUR: Final = np.array((20, 22, 38), np.float32)
 _WARM: Final = np.array((255, 150, 96), np.float32)
 _SOFT: Final = 1.1  # metres over which a hill's slope changes, below its edge
+_STEEPEST: Final = 3.0  # metres a metre: a wall is in no other light than a steep slope
 _STAKE: Final = 5.0  # points
 _LIP: Final = 0.3  # metres that a knoll is lower than its pad
 
@@ -71,7 +72,7 @@ def paint_hills(ground: Ground, pixels_per_metre: float) -> tuple[WorldPicture, 
     rise = np.clip((rows - ground.base) / (top - ground.base), 0, 1)[..., None]
     colour = _FOOT_COLOUR + (0.35 + 0.65 * rise) * (_CREST_COLOUR - _FOOT_COLOUR)
     sunward, near = _sunlight(crest_x.astype(np.float32))
-    slope = np.gradient(crest, crest_x).astype(np.float32) * sunward
+    slope = np.gradient(crest, crest_x).clip(-_STEEPEST, _STEEPEST).astype(np.float32) * sunward
     across, down = _folds(below.shape, pixels_per_metre, rng)
     # Where the sun is straight ahead, folds are lit from above instead of from a side.
     lean = across * sunward + down * np.sqrt(1 - sunward**2)
