@@ -64,6 +64,7 @@ class Challenge:
         opening: text while the craft hangs and waits; empty to leave the middle free.
         through: whether the challenge is finished and free flights follow.
         total: points of the chain of flights that it is, for the logbook.
+        compares: whether the card compares the flight with the ghost's.
         again_hint, new_hint: what the card calls another try, and another start; empty for the usual words.
 
     """
@@ -77,6 +78,7 @@ class Challenge:
     next_hint = again_hint = new_hint = ""
     title = line = goal = opening = ""
     total = 0
+    compares = True
 
     @property
     def under_way(self) -> bool:

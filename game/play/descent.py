@@ -59,7 +59,7 @@ class Descent(Challenge):
 
     name = COURSE
     title = texts.DESCENT_TITLE
-    fixed = False
+    fixed = compares = False
     again_hint = texts.DESCENT_AGAIN
     new_hint = texts.DESCENT_NEW
 

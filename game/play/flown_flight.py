@@ -21,6 +21,7 @@ from game.flight.skill import Skill
 from game.play import captions
 from game.play.challenge import Challenge, DrawnFlight
 from game.play.ending import FlightEnding
+from game.play.ghost import Ghost
 from game.world.path_preview import PathPreview
 from game.world.scenery import Scenery
 
@@ -88,6 +89,11 @@ class FlownFlight:
     def _guide(self) -> Policy | None:
         """The network whose path is previewed; None beside a ghost, where one blue path is enough."""
         return None if self.challenge else self._policy
+
+    @property
+    def rival(self) -> Ghost | None:
+        """The ghost that the card compares the flight with."""
+        return self.ghost if self.challenge and self.challenge.compares else None
 
     def set_calm(self, calm: bool) -> None:
         """Set whether motion is reduced."""

@@ -112,7 +112,7 @@ class PlayScene(Scene):
         rows = [captions.flight_row(hints_of(self._flight_actions(), self._controls))]
         if self.ending.card and self.ending.shown > 0:
             hints = hints_of(self._card_actions(), self._controls)
-            rows.append(self.ending.hint_row(hints, self.flown.ghost, self._settings.show_hints))
+            rows.append(self.ending.hint_row(hints, self.flown.rival, self._settings.show_hints))
         return rows
 
     @property
@@ -158,7 +158,7 @@ class PlayScene(Scene):
         hints, *of_card = self.hint_rows(canvas)
         if self._settings.show_hints or self._controls.mouse_in_use:  # for the mouse, they are what it presses
             hints.draw(canvas)
-        self.ending.draw(canvas, self.flown.ghost, self._settings.show_hints)
+        self.ending.draw(canvas, self.flown.rival, self._settings.show_hints)
         for row in of_card:
             row.draw(canvas)
         if not self._mouse.holds:  # a mouse that flies asks for nothing

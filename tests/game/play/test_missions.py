@@ -237,7 +237,7 @@ def test_the_best_flight_of_ones_own_can_be_raced_and_a_damaged_one_is_told_of(o
     driver = open_game(MissionsScene)
     driver.key(pygame.K_RETURN)
     land(driver)
-    driver.key(pygame.K_RETURN)
+    driver.key(pygame.K_ESCAPE)
     rivals = driver.choice(texts.MISSION_RIVALS["own"])
     assert rivals.options == [texts.MISSION_RIVALS[name] for name in ("network", "recorded", "own")]
     rivals.choose(2)
