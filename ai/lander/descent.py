@@ -34,6 +34,7 @@ _LEVEL: Final = 3.6  # width of a flat spot
 _DARE: Final = 3  # factor on the points for landing there
 _EDGE: Final = 0.06  # metres that a flat spot is higher than the rock around it: feet must touch the spot first
 _OVER: Final = 3.2  # metres above rock at which to cross it
+_HALF_WAY: Final = (0.47, 0.4)  # share of the way at which a ridge stands, alone and before another obstacle
 _STEEP: Final = 1.5  # metres of height for every metre of a ridge's flank
 AREA: Final[Limits] = replace(LIMITS, half_width=26.0, time=100.0)
 
@@ -111,7 +112,7 @@ def leg(seed: int, number: int, bare: bool = False) -> Leg:
     first = Pad(-length / 2, PARAMS.pad_top, _LEVEL if bare else _between(_WIDTH, max(0.0, hard - 1 / 15)), 0, bare)
     goal = Pad(length / 2, PARAMS.pad_top + rise, _between(_WIDTH, hard))
     kinds = _kinds(number, rng)
-    rock = _Rock(first, goal)
+    rock = _Rock(first, goal, _HALF_WAY[len(kinds) - 1])
     for kind in kinds:
         rock.add(kind, hard, rng)
     windy = max(hard, _LIGHT) * (number > _CALM)
@@ -138,13 +139,14 @@ def _kinds(number: int, rng: np.random.Generator) -> tuple[str, ...]:
 class _Rock:
     """The rock of a leg while it is made, and the route around it."""
 
-    def __init__(self, first: Pad, goal: Pad) -> None:
+    def __init__(self, first: Pad, goal: Pad, half_way: float) -> None:
         self.first, self.goal, self.base = first, goal, PARAMS.ground
+        self._half_way = half_way
         self._spots: list[Pad] = []
         self._hills: list[Hill] = [knoll(pad, self.base) for pad in (first, goal) if not pad.bare]
         self._roofs: list[Roof] = []
         if first.bare:
-            self._hills.append(self._ledge(first.x, first.top, first.width))
+            self._hills.append(self._ledge(first.x, first.top - _EDGE, first.width + 0.4))
         self._above = (first.x, first.top + _OVER + 1.6)
         self._way: list[tuple[float, float]] = []
         self._last = (goal.x, goal.top + 4.5)
@@ -171,8 +173,8 @@ class _Rock:
 
     def _ridge(self, hard: float, rng: np.random.Generator) -> None:
         """A high ridge half way, with a flat spot on one of its flanks."""
-        x = (self.first.x + self.goal.x) / 2 + rng.uniform(-0.6, 0.6) - 1.0
-        room = (self.goal.x - self.first.x - self.goal.width) / 2 - 3.4  # its foot keeps clear of both knolls
+        x = self.first.x + self._half_way * (self.goal.x - self.first.x) + rng.uniform(-0.6, 0.6)
+        room = min(x - self.first.right, self.goal.left - x) - 2.4  # its foot keeps clear of both knolls
         top = self.base + min(_between((4.5, 10.0), hard) + rng.uniform(0.0, 1.0), _STEEP * room)
         self._hills.append(self._ledge(x, top, 0.7, 1 / _STEEP))
         side = float(rng.choice((-1, 1)))
