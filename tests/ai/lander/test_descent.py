@@ -67,7 +67,7 @@ def test_a_landing_on_the_goal_or_a_flat_spot_ends_a_leg_and_one_at_the_start_do
         stand_on(env, pad)
         for _ in range(60):
             env.fly(np.zeros(1, int))
-        assert (env.outcome[0] == Outcome.LANDED) is ends
+        assert bool(env.outcome[0] == Outcome.LANDED) is ends
         assert env.landed_on[0] == (pad if ends else -1)
 
 

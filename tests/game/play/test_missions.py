@@ -156,7 +156,7 @@ def test_a_gamepad_flies_a_mission_and_comes_back(open_game: Open):
     driver.axis(pygame.CONTROLLER_AXIS_TRIGGERRIGHT, 0)
     land(driver)
     driver.button(pygame.CONTROLLER_BUTTON_A)
-    assert play(driver).challenge.name == "aside"
+    assert play(driver).challenge.name == "brake"
     driver.button(pygame.CONTROLLER_BUTTON_START)
     assert driver.top_name == "MissionsScene"
 
