@@ -20,6 +20,7 @@ from ai.flights.easing import AS_IT_IS, Easing
 from ai.flights.recording import LONGEST, Recording, StickHolder
 from ai.flights.shared import Claim, SharedFlight
 from ai.flights.stick import STEPS, Shares
+from ai.lander.descent import MOST_LEGS, TANK, LegStart
 from ai.lander.environment import Outcome
 from ai.lander.missions import MISSIONS
 from ai.lander.rules import AREAS
@@ -37,6 +38,7 @@ _MOST_CHANGES: Final = 1_000  # of gravity
 _GRAVITY: Final = (0.01, 10.0)  # share of normal gravity
 _GRID: Final = 10_000  # parts of a metre and a radian in which the last pose is told
 _SIDES: Final = 2 * STEPS + 1  # shares of the jets that there are
+_TANK: Final = 1_000  # parts of a second of fuel in which a tank is told, as it is rounded in a descent
 _ALIEN: Final = re.compile(r"[^0-9A-Za-z-]+")
 
 
@@ -310,6 +312,16 @@ def _read_area(reader: _Reader, found: dict[str, Any]) -> None:
     found["area"] = area
 
 
+def _pack_leg(flight: SharedFlight) -> bytes:
+    leg = flight.recording.leg
+    return b"" if leg is None else _varint(leg.number) + _varint(round(_TANK * leg.tank)) + bytes([leg.bare])
+
+
+def _read_leg(reader: _Reader, found: dict[str, Any]) -> None:
+    number, tank, bare = reader.number(MOST_LEGS), reader.number(round(_TANK * TANK)), reader.number(1)
+    found["leg"] = LegStart(max(1, number), tank / _TANK, bool(bare))
+
+
 def _pack_course(flight: SharedFlight) -> bytes:
     return _named(flight.course) if flight.course != flight.recording.mission else b""
 
@@ -335,6 +347,7 @@ _SECTIONS: Final[dict[int, tuple[Callable[[SharedFlight], bytes], Callable[[_Rea
     6: (_pack_shares, _read_shares),
     7: (_pack_easing, _read_easing),
     8: (_pack_area, _read_area),
+    9: (_pack_leg, _read_leg),
     OPTIONAL: (_pack_course, _read_course),
     OPTIONAL + 1: (_pack_barred, _read_barred),
 }

@@ -8,6 +8,7 @@ from typing import Final
 
 from ai.flights.easing import AS_IT_IS, UNHURRIED, Easing
 from ai.flights.stick import Shares
+from ai.lander.descent import LegStart
 from ai.lander.rules import AREAS
 
 AREA: Final = len(AREAS) - 1  # version of the area in which new flights are flown
@@ -28,7 +29,8 @@ class Recording:
     `hands` says who chose each action: with a shared stick, the person if the action is the one they asked for.
     `gravity` lists its changes: the first step, and the share of normal gravity. `shares` has the shares of thrust
     of each step, by its number, in which an engine gave less than all of it. `easing` is what gave the pilot more room,
-    `area` the version of the area's edges, an index of `ai.lander.rules.AREAS`.
+    `area` the version of the area's edges, an index of `ai.lander.rules.AREAS`. `leg` is where a flight of a
+    descent begins, None for any other.
     """
 
     seed: int
@@ -41,6 +43,7 @@ class Recording:
     shares: dict[int, Shares] = field(default_factory=dict)
     easing: Easing = AS_IT_IS
     area: int = AREA
+    leg: LegStart | None = None
 
     def gravity_at(self, step: int) -> float:
         """Return the share of normal gravity during a step."""

@@ -8,6 +8,7 @@ from functools import lru_cache
 import numpy as np
 
 from ai.flights.recording import Recording
+from ai.lander.descent import leg_of
 from ai.lander.environment import LIMITS, LanderEnv
 from ai.lander.ground import PADS, Ground, Pad, hilly
 from ai.lander.rules import PARAMS
@@ -31,6 +32,8 @@ def begun(start: Recording, seeds: Sequence[int] = ()) -> LanderEnv:
     several pads the ground is that of the first seed, so all must be equal.
     """
     seeds, easing = seeds or (start.seed,), start.easing
+    if start.leg:
+        return leg_of(seeds[0], start.leg).begin(start.leg.tank)
     if start.mission:
         env = easing.mission(start.mission).begin(len(seeds))
         env.limits = env.limits.in_area(start.area)

@@ -79,16 +79,11 @@ def verified(flights: Sequence[SharedFlight]) -> Iterator[tuple[int, Earned]]:
 
 def _together(recording: Recording) -> object:
     """Return what flights must share to be flown in one environment."""
+    if recording.leg:
+        return object()  # a leg of a descent has an environment of its own
     seed = recording.seed if recording.pads > 1 else 0
-    return (
-        recording.mission,
-        recording.spawn,
-        recording.pads,
-        seed,
-        tuple(recording.gravity),
-        recording.easing,
-        recording.area,
-    )
+    rules = tuple(recording.gravity), recording.easing, recording.area
+    return recording.mission, recording.spawn, recording.pads, seed, rules
 
 
 def fly_again(recordings: Sequence[Recording]) -> list[Earned]:

@@ -367,7 +367,7 @@ class LanderEnv(Craft):
         calm &= velocity[:, 0] ** 2 + velocity[:, 1] ** 2 < limits.rest_speed**2
         calm &= (self.tilt < limits.rest_tilt) & (np.abs(self.angular_velocity) < limits.rest_spin)
         self._still = np.where(flying, (self._still + 1) * calm, self._still)
-        return calm & (self._still >= limits.rest_steps)
+        return calm & (self._still >= limits.rest_steps) & self.ground.ends[self.touched]
 
     def _touch(self, flying: Bools) -> Bools:
         """Read the step's contacts: which feet are down, how hard the touch was, and which slots it wrecked."""

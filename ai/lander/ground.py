@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,7 +11,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from ai.common.environment import Doubles
+from ai.common.environment import Bools, Doubles
 from ai.lander.rules import PARAMS, LanderParams
 from engine import Body, Polygon, World
 
@@ -24,12 +25,16 @@ _SLOPE: Final = 1.2  # metres that its flank is wide for every metre of height
 
 @dataclass(frozen=True)
 class Pad:
-    """Landing pad; the score of a landing on it is multiplied by `factor`."""
+    """Landing pad; the score of a landing on it is multiplied by `factor`, and with 0 it ends no flight.
+
+    A `bare` one is level rock: a flat spot without a pad.
+    """
 
     x: float  # metres, of its middle
     top: float
     width: float
     factor: int = 1
+    bare: bool = False
 
     @property
     def left(self) -> float:
@@ -46,11 +51,12 @@ WIDE, NARROW, TINY = (6.0, 1), (4.4, 3), (3.6, 5)  # width in metres, factor; th
 PADS: Final = (WIDE, NARROW, TINY)
 
 Hill = tuple[tuple[float, float], ...]  # its surface from left foot to right, convex from above
+Roof = tuple[tuple[float, float], ...]  # corners, counter-clockwise, of a convex rock with air under it
 
 
 @dataclass(frozen=True)
 class Ground:
-    """A plain at height `base`, convex hills on it, and pads; metres.
+    """A plain at height `base`, convex hills on it, rocks over it, and pads; metres.
 
     With `in_turn`, the pads may lie in one place, and a slot has one of them, its target.
     """
@@ -59,6 +65,7 @@ class Ground:
     hills: tuple[Hill, ...] = ()
     base: float = PARAMS.ground
     in_turn: bool = False
+    roofs: tuple[Roof, ...] = ()
 
     def __post_init__(self) -> None:
         if not self.pads:
@@ -89,8 +96,13 @@ class Ground:
         """Width of every pad, metres, (pads,)."""
         return np.array([pad.width for pad in self.pads])
 
+    @cached_property
+    def ends(self) -> Bools:
+        """Whether standing on each pad ends a flight, (pads,)."""
+        return np.array([pad.factor > 0 for pad in self.pads])
+
     def height(self, x: Doubles | float) -> Doubles:
-        """Height in metres of what lies under x, of any shape: a pad's top, a hill, or the plain."""
+        """Height in metres of what lies under x, of any shape: a pad's top, a hill, or the plain, below any roof."""
         height = np.full(np.shape(x), self.base)
         for hill in self.hills:
             across, up = np.array(hill).T
@@ -108,6 +120,14 @@ class Ground:
         x = np.linspace(-_TABLED, _TABLED, int(20 * _TABLED) + 1)
         return x, self.height(x)
 
+    def roofed(self, place: Doubles) -> Bools:
+        """Whether places (k, 2) lie inside a roof, (k,)."""
+        inside = np.zeros(len(place), dtype=bool)
+        for roof in self.roofs:
+            edges = np.array([half_plane(a, b) for a, b in pairwise((*roof, roof[0]))])
+            inside |= (place @ edges[:, :2].T <= edges[:, 2]).all(axis=1)
+        return inside
+
     def build(self, world: World, **surface: Any) -> list[Body]:
         """Put the ground into a world; return the pads. What else there is comes after them."""
         pads = []
@@ -124,14 +144,22 @@ class Ground:
 
     @cached_property
     def _land(self) -> list[Polygon]:
-        """Shapes of the plain, a deep box, and of its hills, from that box's middle; cached, as slow to make."""
-        hills = [Polygon(np.array(hill) - (0.0, self._depth)) for hill in self.hills]
-        return [Polygon.box(*_PLAIN), *hills]
+        """Shapes of the plain, a deep box, and of hills and roofs, from that box's middle; cached, as slow to make."""
+        rocks = [Polygon(np.array(rock) - (0.0, self._depth)) for rock in (*self.hills, *self.roofs)]
+        return [Polygon.box(*_PLAIN), *rocks]
 
     @property
     def _depth(self) -> float:
         """Height of the plain's middle."""
         return self.base - _PLAIN[1] / 2
+
+
+def half_plane(start: tuple[float, float], end: tuple[float, float]) -> tuple[float, float, float]:
+    """Return nx, ny, far of an edge of a rock whose corners run counter-clockwise: outside, nx·x + ny·y > far."""
+    across, up = end[0] - start[0], end[1] - start[1]
+    long = math.hypot(across, up)
+    nx, ny = up / long, -across / long
+    return nx, ny, nx * start[0] + ny * start[1]
 
 
 def hilly(rng: np.random.Generator, pads: Sequence[tuple[float, int]] = PADS) -> Ground:
@@ -147,7 +175,7 @@ def hilly(rng: np.random.Generator, pads: Sequence[tuple[float, int]] = PADS) ->
         width, factor = pads[pick]
         x = gap * (row - (count - 1) / 2) + rng.uniform(-0.7, 0.7)
         rows.append(Pad(float(x), float(PARAMS.pad_top + rng.uniform(0.0, 1.4)), width, factor))
-    knolls = [_knoll(pad, base) for pad in rows]
+    knolls = [knoll(pad, base) for pad in rows]
     edge = gap * count / 2
     crests = [gap * (row - count / 2) for row in range(1, count)]  # between pads, and some beyond them
     crests += [-edge - 1.0, edge + 1.0, -edge - 5.0, edge + 5.0]
@@ -155,7 +183,7 @@ def hilly(rng: np.random.Generator, pads: Sequence[tuple[float, int]] = PADS) ->
     return Ground(tuple(rows), tuple(knolls + [hill for hill in hills if hill]), base)
 
 
-def _knoll(pad: Pad, base: float) -> Hill:
+def knoll(pad: Pad, base: float) -> Hill:
     """Return the knoll that lifts a pad off the plain: flat under it, with flanks on both sides."""
     top = pad.top - _LIP
     foot = _SLOPE * (top - base)

@@ -24,7 +24,7 @@ class Mission:
         start: x, y, vx, vy, angle, spin; metres from the middle of the world and above its zero, m/s, rad, rad/s.
         gold, silver: fuel in seconds of main engine and time in seconds that a landing may take at most, to a tenth,
             as they are printed; any other landing by the pilot's own hands earns bronze.
-        world: where it is: moon, mars or earth.
+        world: where it is: moon, titan, mars or earth.
         night: whether only lights are seen.
         landed: how many of 20 starts near this one the network that flies here lands, as `benchmarks.missions`
             measures it.
@@ -80,6 +80,7 @@ class Mission:
 
 
 _AIR: Final = 0.06  # kg/m
+_THICK_AIR: Final = 0.12
 _STRONG_LEGS: Final = replace(LIMITS, touch_speed=3.0, slide_speed=3.0)
 
 
@@ -92,7 +93,8 @@ _ROWS: Final = (
     Mission("fall", (0.0, 6.0, 0.0, 0.0, 0.0, 0.0), (1.1, 5.0), (1.8, 8.0)),
     Mission("brake", (0.0, 19.0, 0.0, -2.5, 0.0, 0.0), (3.1, 8.0), (4.2, 12.0)),
     Mission("aside", (-12.0, 12.0, 0.0, 0.0, 0.0, 0.0), (3.5, 10.0), (4.7, 14.0)),
-    Mission("wind", (8.0, 14.0, 0.0, -0.5, 0.0, 0.0), (3.6, 10.0), (4.8, 14.0), Conditions(wind=0.25, gust=0.3)),
+    Mission("wind", (8.0, 14.0, 0.0, -0.5, 0.0, 0.0), (3.2, 9.5), (4.3, 13.0), Conditions(wind=0.25, gust=0.3),
+            params=replace(_on(1.35, 3.6), quadratic_drag=_THICK_AIR), world="titan", rules=1),
     Mission("tank", (6.0, 15.0, -0.5, -1.0, 0.0, 0.0), (2.6, 9.0), (2.8, 12.0), Conditions(tank=3.0)),
     Mission("narrow", (-9.0, 13.0, 1.0, -0.5, 0.1, 0.0), (3.3, 9.5), (4.4, 13.0), pad=Pad(3.0, 2.2, 3.2)),
     Mission("mars", (7.0, 15.0, -1.0, -1.0, 0.0, 0.0), (3.3, 8.5), (4.4, 12.0), Conditions(wind=-0.1, gust=0.2),

@@ -243,6 +243,8 @@ def draw_share(canvas: Canvas, left: float, top: float, width: float, human: flo
 
 CARD: Final = pygame.Rect(400, 136, 480, 264)
 _ADVICE_ROW: Final = 24
+_NEXT_LAMP, _FLASH = 0.3, 0.22  # seconds from one lamp of a medal to the next, and in which its flash fades
+_RING_PARTS: Final = 14
 _RIVAL_ROWS: Final = 60
 _GROWTH_ROW: Final = 22
 _LADDER_ROW: Final = 30
@@ -254,8 +256,12 @@ def draw_card(
     shown: float,
     advise: bool,
     rival: RivalOutcome | None = None,
+    lit: float = math.inf,
 ) -> None:
-    """Draw the outcome card, `shown` 0 to 1 of the way in, with its advice if wanted, and a rival's figures."""
+    """Draw the outcome card, `shown` 0 to 1 of the way in, with its advice if wanted, and a rival's figures.
+
+    The lamps of a medal light up one after another; they have done so for `lit` seconds.
+    """
     drop = 10 * (1 - shown)
     left, top, width = card.left + 32, CARD.top - drop, CARD.width - 64
     lower = _lower(card, advise)
@@ -267,8 +273,7 @@ def draw_card(
     canvas.marker(mark, (left + 10, top + 44), 18, colour)
     canvas.text(card.title, (left + 34, top + 52), size=TITLE, colour=colour)
     score = canvas.text(card.score, (left + width, top + 52), size=TEXT, colour=HUMAN, align="right")
-    for lamp in range(card.medal):
-        canvas.dot((score.left - 14 - 13 * lamp, top + 47), 4, MEDALS[card.medal])
+    _draw_medal(canvas, card, (score.left - 14, top + 47), lit)
     canvas.text(card.reason, (left, top + 86), size=TEXT, colour=INK, room=width)
     for row, (line, shade) in enumerate(_below_reason(card, advise)):
         canvas.text(line, (left, top + 110 + row * _ADVICE_ROW), size=SMALL, colour=shade, room=width)
@@ -302,6 +307,30 @@ def draw_card(
         canvas.text(card.climb, (left + LADDER_WIDTH + 8, top + 223), size=SMALL, room=width - LADDER_WIDTH - 8)
         top += _LADDER_ROW
     canvas.line((left, top + 218), (left + width, top + 218), LINE)
+
+
+def _draw_medal(canvas: Canvas, card: OutcomeCard, last: Point, lit: float) -> None:
+    """Draw the lamps of a medal from right to left, each with a flash as it lights, or the ring of a shared landing."""
+    x, y = last
+    if card.ring:
+        draw_ring(canvas, last)
+    for lamp in range(card.medal):
+        age, place = lit - _NEXT_LAMP * (lamp + 1), (x - 13 * lamp, y)
+        if age < 0:
+            canvas.dot(place, 4, FAINT)
+            continue
+        flash = math.exp(-age / _FLASH)
+        canvas.glow(place, 14 + 30 * flash, MEDALS[card.medal], 0.35 + 1.6 * flash)
+        canvas.dot(place, 4 + 3 * flash, MEDALS[card.medal])
+
+
+def draw_ring(canvas: Canvas, place: Point) -> None:
+    """Draw the ring of a landing together: half the person's, half the network's."""
+    x, y = place
+    for part in range(_RING_PARTS):
+        angle = 2 * math.pi * (part + 0.5) / _RING_PARTS
+        colour = HUMAN if math.cos(angle) < 0 else NET
+        canvas.dot((x + 5 * math.cos(angle), y + 5 * math.sin(angle)), 1.3, colour)
 
 
 def card_row(card: OutcomeCard, hints: list[Hint], shown: float, advise: bool, *, rival: bool) -> HintRow:

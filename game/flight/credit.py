@@ -6,7 +6,7 @@ Header, corner, card, medal and logbook ask this one object, so that no two of t
 from __future__ import annotations
 
 from enum import Enum, auto
-from typing import Protocol
+from typing import Final, Protocol
 
 from ai.flights.score import landing_score
 from ai.lander.environment import Outcome
@@ -14,6 +14,8 @@ from game.core import texts
 from game.flight.difficulty import Difficulty
 from game.flight.flight import Flight, StickHolder
 from game.flight.handicap import OWN
+
+TOGETHER: Final = ("helped", "handed_over")  # reasons not to count that a landing together has
 
 
 class CreditRules(Protocol):
@@ -137,6 +139,11 @@ class Credit:
     def counts(self) -> bool:
         """Whether the person flew all of it without help, handicap, changed gravity or assists that set it apart."""
         return not self.bar
+
+    @property
+    def together(self) -> bool:
+        """Whether person and network have landed it together, which earns a ring in place of a medal."""
+        return self._flight.outcome is Outcome.LANDED and self._flight.share > 0 and self.bar in TOGETHER
 
     @property
     def notice(self) -> str:

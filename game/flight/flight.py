@@ -12,8 +12,10 @@ from ai.flights.easing import AS_IT_IS, Easing
 from ai.flights.recording import AREA, Recording, StickHolder
 from ai.flights.starts import begun
 from ai.flights.stick import Shares, thrust
+from ai.lander.descent import LegStart, leg_of
 from ai.lander.environment import Outcome
 from ai.lander.pilots import COAST, ScriptedPilot
+from ai.lander.route import Route
 from game.flight.handicap import OWN, Handicap
 from game.flight.networks import Policy, QPolicy, decide
 from game.flight.poses import Poses
@@ -38,9 +40,10 @@ class Flight:
         pads: 1 on a plain, or 3 among hills.
         hands: handicap of the keys, a name of `game.flight.handicap.HANDS`.
         mission: name of one of `ai.lander.missions.STARTS`, which sets the start and the conditions; empty for none.
-        shares: whether the network may share the stick, and not only take it.
+        shares: whether the network may share the stick, and not only take it; it never shares a leg's.
         easing: changes of the rules that give the pilot more room.
         area: version of the area's edges, an index of `ai.lander.rules.AREAS`.
+        leg: where a flight of a descent begins, which sets the start and the conditions; None for any other.
 
     Attributes:
         steered: whether the jets are fired for the person, who has the main engine alone: one switch is enough.
@@ -49,6 +52,7 @@ class Flight:
         alone: latest decision of the network while it flies alone; None otherwise.
         asked: the action that the person asked for in the last step.
         overridden: whether another action was flown than the one the person asked for.
+        route: how a network is led around rock on a leg of a descent; None in any other flight.
 
     """
 
@@ -64,11 +68,13 @@ class Flight:
         shares: bool = True,
         easing: Easing = AS_IT_IS,
         area: int = AREA,
+        leg: LegStart | None = None,
     ) -> None:
-        self.recording = Recording(seed, spawn, pads, mission=mission, area=area, easing=easing)
+        self.recording = Recording(seed, spawn, pads, mission=mission, area=area, easing=easing, leg=leg)
         self.env = begun(self.recording)
+        self.route = Route(leg_of(seed, leg).route) if leg else None
         self.observation: Floats = self.env.observe()
-        self.hand, self.shares = StickHolder.HUMAN, shares
+        self.hand, self.shares = StickHolder.HUMAN, shares and leg is None
         self.steered = False
         self.poses = Poses(self.env)
         self.asked, self.overridden = COAST, False
@@ -222,7 +228,9 @@ class Flight:
     def _ask_network(self) -> int:
         if self.alone is None or self._held_for == 0:
             assert self.network is not None
-            self.alone = decide(self.network, self.env.observe_for(self.network), self.env.actions)
+            env, network = self.env, self.network
+            seen = self.route.observe(env, network) if self.route else env.observe_for(network)
+            self.alone = decide(network, seen, env.actions)
         self._held_for = (self._held_for + 1) % DECISION_STEPS
         return int(self.alone.action[0])
 
@@ -239,5 +247,8 @@ class Flight:
 
     def _aim(self, likely: Doubles | float = 0.0) -> None:
         """Aim read-outs and network at the most `likely` (pads,) intended pad; among equals, at the nearest."""
+        if self.route:  # to the goal, whatever is nearer
+            self.env.target[:] = 0
+            return
         away = np.abs(self.env.ground.middles[:, 0] - self.env.position[0, 0])
         self.env.target[:] = int((likely - 1e-6 * away).argmax())

@@ -10,7 +10,7 @@ import errno
 import json
 import os
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, astuple, dataclass
 from itertools import groupby
 from pathlib import Path
 from typing import Annotated, Any, Final
@@ -18,6 +18,7 @@ from typing import Annotated, Any, Final
 from ai.flights.easing import AS_IT_IS, Easing
 from ai.flights.recording import LONGEST, Recording, StickHolder
 from ai.flights.stick import STEPS, Shares
+from ai.lander.descent import MOST_LEGS, TANK, LegStart
 from ai.lander.environment import NUM_ACTIONS, Outcome
 from ai.lander.missions import MISSIONS
 from ai.lander.rules import AREAS
@@ -30,7 +31,7 @@ from game.core.settings import GRAVITY_SHARES
 FORMAT: Final = "tranquility flight"
 VERSION: Final = 5
 # Version 1 had no changes of gravity, 2 no rules of missions, 3 no reason why a flight does not count, 4 no shares
-# of thrust, no easing and no version of the area: it was the first.
+# of thrust, no easing, no descents and no version of the area: it was the first.
 _READS: Final = (1, 2, 3, 4, 5)
 _LARGEST: Final = 2_000_000  # bytes
 _LONGEST_NAME: Final = 255  # characters, as in the name of a file
@@ -71,6 +72,8 @@ class Entry:
         file: name of the flight's file, for a replay.
         spawn: the kind of start, a name of `ai.lander.spawns.SPAWNS`.
         intact: whether it came down whole beside the pad; its outcome is CRASHED.
+        leg: number of the leg in a descent; 0 for any other flight.
+        total: points of the descent so far.
 
     """
 
@@ -94,6 +97,8 @@ class Entry:
     guarded: Share = 0.0
     intact: bool = False
     spawn: Annotated[str, OneOf(SPAWNS)] = "random"
+    leg: _Number = 0
+    total: _Number = 0
 
     @property
     def on_ladder(self) -> bool:
@@ -157,6 +162,7 @@ class _FlightFile:
     gravity: tuple[tuple[_Number, Annotated[float, Within(*GRAVITY_SHARES)]], ...] = ()
     shares: str = ""
     easing: Easing = AS_IT_IS
+    leg: tuple[Annotated[int, Within(1, MOST_LEGS)], Annotated[float, Within(0, TANK)], bool] | None = None
 
 
 def read(path: Path) -> Record:
@@ -186,6 +192,7 @@ def to_text(record: Record) -> str:
     return json.dumps({
         "format": FORMAT, "version": VERSION, "seed": recording.seed, "spawn": recording.spawn,
         "pads": recording.pads, "mission": recording.mission, "area": recording.area,
+        "leg": astuple(recording.leg) if recording.leg else None,
         "actions": _packed(recording.actions), "hands": _packed(hand.value for hand in recording.hands),
         "gravity": recording.gravity, "shares": _packed_shares(recording), "easing": asdict(recording.easing),
         "end": record.end, "entry": asdict(record.entry),
@@ -210,9 +217,10 @@ def from_text(text: str) -> Record:
     if steps != sorted(set(steps)):
         raise ValueError(texts.FLIGHT_GRAVITY)
     shares = _unpacked_shares(file.shares, len(actions))
+    leg = LegStart(*file.leg) if file.leg else None
     recording = Recording(
         file.seed, file.spawn, file.pads, actions, hands, file.mission, list(file.gravity),
-        area=file.area, shares=shares, easing=file.easing,
+        area=file.area, shares=shares, easing=file.easing, leg=leg,
     )  # fmt: skip
     return Record(recording, file.entry, file.end)
 

@@ -130,6 +130,8 @@ def _down_to_ground(ground: Ground, places: list[Doubles]) -> Doubles:
     """Return a path (k, 2), cut where the feet would reach the ground."""
     way = np.array(places)
     clear = way[:, 1] - ground.height(way[:, 0]) - PARAMS.stand
+    if ground.roofs and (struck := np.flatnonzero(ground.roofed(way))).size:
+        way, clear = way[: struck[0] + 1], clear[: struck[0] + 1]
     low = np.flatnonzero(clear[1:] < 0)
     if not len(low):
         return way

@@ -50,6 +50,7 @@ def describe(flight: Flight, when: float, **more: Any) -> Entry:
         score=landing_score(env),
         gravity=max((share for _, share in flight.recording.gravity), key=lambda share: abs(share - 1), default=1.0),
         rules=flight_file.rules_of(more.get("course", "")),
+        leg=flight.recording.leg.number if flight.recording.leg else 0,
         **more,
     )
 

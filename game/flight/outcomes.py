@@ -18,7 +18,8 @@ class OutcomeCard:
     None for a flight without a guardian that could tell, or without a landing. `medal` is 3 for gold, 2, 1, 0 for none.
     `assists` says what made the flight easier. `left` is the card's left edge. `growth` are lines on what the flight
     has shown of the person's own skill. `intact` is whether the craft came down whole beside the pad. `rung` is the
-    place on the ladder of starts, None off it, and `climb` what the flight has changed there.
+    place on the ladder of starts, None off it, and `climb` what the flight has changed there. `ring` is
+    whether it was landed together with the network.
     """
 
     good: bool
@@ -30,6 +31,7 @@ class OutcomeCard:
     assists: str = ""
     score: str = ""
     medal: int = 0
+    ring: bool = False
     stepped_in: int | None = None
     saved: int | None = None
     left: float = 400.0

@@ -23,7 +23,7 @@ class ReplayedFlight(Flight):
     def __init__(self, source: Recording) -> None:
         super().__init__(
             source.seed, spawn=source.spawn, pads=source.pads, mission=source.mission, easing=source.easing,
-            area=source.area,
+            area=source.area, leg=source.leg,
         )  # fmt: skip
         self._source = source
 

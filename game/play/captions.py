@@ -109,10 +109,12 @@ def card_actions(
     `good` is for a landing; `nearer` is whether the next try begins nearer to the pad.
     """
     fixed = challenge is not None and challenge.fixed
-    if good:
-        other, hint = Command.RETRY, texts.HINT_AGAIN
-    else:
-        other, hint = (Command.PAUSE, texts.HINT_LEAVE) if fixed else (Command.NEXT, texts.HINT_NEW)
+    again, new = (challenge.again_hint, challenge.new_hint) if challenge else ("", "")
     first = (texts.CARD_FIRST_FIXED if fixed else texts.CARD_FIRST)[good]
     first = texts.LADDER_NEARER if nearer else first
+    if good:
+        other, hint, first = Command.RETRY, again or texts.HINT_AGAIN, new or first
+    else:
+        other, hint = (Command.PAUSE, texts.HINT_LEAVE) if fixed else (Command.NEXT, new or texts.HINT_NEW)
+        first = again or first
     return [Action(Command.CONFIRM, go_on, first), Action(other, runs[other], hint)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -35,6 +36,8 @@ class DrawnFlight:
         clear: the part of the screen that is free of other text.
         waiting: whether the craft hangs until a control is touched.
         stuck: whether a held control must first be released.
+        calm: whether motion is reduced.
+        age: steps of 1/60 s since the flight was shown, whether or not it flies.
 
     """
 
@@ -43,6 +46,8 @@ class DrawnFlight:
     clear: ClearArea
     waiting: bool = False
     stuck: bool = False
+    calm: bool = False
+    age: int = 0
 
 
 class Challenge:
@@ -63,6 +68,9 @@ class Challenge:
         eases: whether the player's easing applies to its flights.
         easing: the easing of its next flight.
         elsewhere: whether it is flown where it is not as on the moon.
+        total: points of the chain of flights that it is, for the logbook.
+        compares: whether the card compares the flight with the ghost's.
+        again_hint, new_hint: what the card calls another try, and another start; empty for the usual words.
 
     """
 
@@ -75,9 +83,24 @@ class Challenge:
     eases = False
     easing = AS_IT_IS
     elsewhere = False
-    next_hint = ""
     copy_hint = texts.CODE_HINT_COPY
+    next_hint = again_hint = new_hint = ""
     title = line = goal = opening = ""
+    total = 0
+    compares = True
+
+    @property
+    def under_way(self) -> bool:
+        """Whether leaving now would end a chain of flights."""
+        return False
+
+    @property
+    def following(self) -> Challenge | None:
+        """The challenge that comes next after a landing; None for the way back."""
+        return None
+
+    def recall(self, entries: Iterable[Entry]) -> None:
+        """Take what is known of earlier flights, before the first begins."""
 
     def flight(self, seed: int, network: Policy | None) -> Flight:
         """Begin a flight; `network` is the one to hand over to."""
@@ -90,6 +113,9 @@ class Challenge:
     def card(self, card: OutcomeCard, flight: Flight, credit: Credit) -> OutcomeCard:  # noqa: ARG002
         """Return the outcome card of a finished flight, with what this challenge adds to it."""
         return card
+
+    def settle(self, flight: Flight, credit: Credit) -> None:
+        """Take note of a flight that has just ended, before its card or the next flight."""
 
     def follow(self, flight: Flight) -> str:  # noqa: ARG002
         """Follow a step of the flight; return the name of a sound to play, empty for none."""
@@ -220,7 +246,7 @@ def _as_begun(recording: Recording, seed: int, network: Policy | None) -> Flight
     """Return a flight at the start of a recorded one."""
     return Flight(
         seed, network, recording.spawn, pads=recording.pads, mission=recording.mission, area=recording.area,
-        easing=recording.easing,
+        easing=recording.easing, leg=recording.leg,
     )  # fmt: skip
 
 
@@ -230,8 +256,16 @@ class FlownMission(Challenge):
     title = texts.MISSION
     eases = True
 
-    def __init__(self, mission: Mission, rival: Record | None = None, rival_name: str = texts.MISSION_RIVAL) -> None:
+    def __init__(
+        self,
+        mission: Mission,
+        rival: Record | None = None,
+        rival_name: str = texts.MISSION_RIVAL,
+        following: Callable[[], Challenge] | None = None,
+    ) -> None:
         self.mission, self.name, self.elsewhere = mission, mission.name, mission.elsewhere
+        self._following = following
+        self._own: Recording | None = None  # the player's own landing just before, to be raced next
         self._rival, self._rival_name = rival, rival_name
         self.line, self.opening = texts.MISSIONS[mission.name]
         self.goal = texts.MISSION_GOAL.format(fuel=mission.gold[0], seconds=mission.gold[1])
@@ -242,9 +276,31 @@ class FlownMission(Challenge):
 
     def ghost(self, seed: int, network: Policy | None) -> Ghost | None:
         """Begin the rival on the same mission."""
+        if self._own:
+            return Ghost(ReplayedFlight(self._own), texts.MISSION_GHOSTS["own"])
         if self._rival:
             return Ghost(ReplayedFlight(self._rival.recording), self._rival_name)
         return Ghost(Flight(seed, network, mission=self.name), self._rival_name) if network else None
+
+    @property
+    def following(self) -> Challenge | None:
+        """The next mission, if there is one and the way to it is known."""
+        return self._following() if self._following else None
+
+    @property
+    def again_hint(self) -> str:  # type: ignore[override]
+        """After a landing, another try flies against it."""
+        return texts.MISSION_AGAIN if self._own else ""
+
+    @property
+    def new_hint(self) -> str:  # type: ignore[override]
+        """What the card calls the next mission."""
+        return texts.MISSION_NEXT if self._following else ""
+
+    def settle(self, flight: Flight, credit: Credit) -> None:  # noqa: ARG002
+        """Keep a landing as the ghost of the next try."""
+        if flight.outcome is Outcome.LANDED and flight.share > 0:
+            self._own = flight.recording
 
     def medal(self, flight: Flight) -> int:
         """Return the medal of the flight if it counts, 0 to 3."""
@@ -257,6 +313,8 @@ class FlownMission(Challenge):
         if not card.good:
             return replace(card, advice=_advice(flight.env) or card.advice)
         if not credit.counts:
+            if credit.together:
+                return replace(card, score=texts.MISSION_TOGETHER, ring=True)
             return replace(card, score=card.score if credit.bar in ("practice", "assists") else texts.MEDALS[0])
         medal = credit.medal
         return replace(card, score=texts.MEDALS[medal], medal=medal, reason=self._missing(medal, flight))

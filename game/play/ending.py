@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from typing import Final
 
 from game.cockpit import hud
 from game.cockpit.cockpit import Cockpit
+from game.core.clock import STEP
 from game.core.pace import SlowMotion
 from game.drawing.canvas import Canvas
 from game.flight import outcomes
@@ -52,6 +54,11 @@ class FlightEnding:
         return 1.0 if self.calm else 1 - (1 - min(1.0, since / _CARD_RISE)) ** 3
 
     @property
+    def _lit(self) -> float:
+        """Seconds that a medal has been lit; with reduced motion, always."""
+        return math.inf if self.calm else (self._since - _CARD_AFTER - _CARD_RISE) * STEP
+
+    @property
     def shot(self) -> CameraTarget | None:
         """Shot for the camera instead of the craft; None to keep following the craft."""
         return self._whole if self.due else None
@@ -79,7 +86,7 @@ class FlightEnding:
         """Draw the card, if there is one."""
         if self.card is None or self.shown == 0:
             return
-        hud.draw_card(canvas, self.card, self.shown, advise, ghost.row(self._flight.env) if ghost else None)
+        hud.draw_card(canvas, self.card, self.shown, advise, ghost.row(self._flight.env) if ghost else None, self._lit)
 
     def hint_row(self, hints: list[Hint], ghost: Ghost | None, advise: bool) -> HintRow:
         """Return the row of hints at the foot of the card."""

@@ -24,6 +24,7 @@ from game.flight.skill import Skill
 from game.play import captions
 from game.play.challenge import Challenge, DrawnFlight
 from game.play.ending import FlightEnding
+from game.play.ghost import Ghost
 from game.world.chance_map import ChanceMap
 from game.world.path_preview import PathPreview
 from game.world.scenery import Scenery
@@ -73,6 +74,7 @@ class FlownFlight:
         self._context, self._settings = context, context.settings
         self.challenge, self.hands = challenge, hands
         self.waiting = self._held_before = True
+        self._written, self._age = False, 0
         self.record: Record | None = None
         self.begun = False
         self._was_over = False  # whether the flight was over before its latest step
@@ -108,6 +110,11 @@ class FlownFlight:
         """The network whose path is previewed; None where none is."""
         return None if self.challenge and not self.challenge.guides else self._policy
 
+    @property
+    def rival(self) -> Ghost | None:
+        """The ghost that the card compares the flight with."""
+        return self.ghost if self.challenge and self.challenge.compares else None
+
     def set_calm(self, calm: bool) -> None:
         """Set whether motion is reduced."""
         self.scenery.calm = self.ending.calm = calm
@@ -125,6 +132,7 @@ class FlownFlight:
 
     def breathe(self) -> None:
         """Advance by 1/60 s what moves whether or not anything flies."""
+        self._age += 1
         self.scenery.breathe()
         self.cockpit.ease()
         meter = self.cockpit.chance_meter
@@ -174,6 +182,8 @@ class FlownFlight:
         self.path_preview.follow(waiting=False)
         if not self._was_over:
             self.cockpit.follow()
+            if flight.over and self.challenge:
+                self.challenge.settle(flight, self.credit)
         self.scenery.clear = self.cockpit.clear
         self.scenery.follow(flight.over and not self._was_over, self.ending.shot)
         if self.challenge and (told := self.challenge.follow(flight)):
@@ -186,7 +196,10 @@ class FlownFlight:
         self.ending.make_card(self.cockpit, self.challenge, skill, self.scenery)
 
     def write_down(self, records: Records, skill: Skill, network: Network) -> None:
-        """Record the finished flight, save it as a demonstration if wished, and report failures to the player."""
+        """Record the finished flight, once; save it as a demonstration if wished, and report failures."""
+        if self._written:
+            return
+        self._written = True
         context, credit, challenge = self._context, self.credit, self.challenge
         told = (
             ""
@@ -203,6 +216,7 @@ class FlownFlight:
             medal=credit.medal,
             pace=credit.pace,
             guarded=max(0.0, self.cockpit.rescues.throughout),
+            total=challenge.total if challenge else 0,
         )
         x, y, angle = self.flight.poses.now[0].tolist()
         self.record = Record(self.flight.recording, entry, (x, y, angle))
@@ -216,7 +230,8 @@ class FlownFlight:
     def moment(self, alpha: float) -> DrawnFlight:
         """Return the moment that a challenge draws over, once the fraction `alpha` of a step has passed."""
         controls, clear = self._context.controls, self.cockpit.free
-        return DrawnFlight(alpha, controls, clear, self.waiting, self.waiting and self._held_before)
+        stuck, calm = self.waiting and self._held_before, self._settings.reduced_motion
+        return DrawnFlight(alpha, controls, clear, self.waiting, stuck, calm, self._age)
 
     def draw(self, canvas: Canvas, alpha: float, network: Network) -> None:
         """Draw the world, the craft and the read-outs; `network` is the one whose name the title tells."""

@@ -252,6 +252,8 @@ def entry_row(entry: Entry) -> Row:
 
 def _challenge(entry: Entry) -> str:
     """Return the name of the challenge that a flight belongs to."""
+    if entry.leg:
+        return texts.DESCENT_COURSE.format(number=entry.leg)
     if entry.course == "daily":
         return texts.DAILY
     if entry.on_ladder and not entry.course:

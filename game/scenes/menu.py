@@ -19,12 +19,14 @@ from game.ui.widgets import TextButton
 _TITLE_SIZE: Final = 88.0
 _WORD_SIZE: Final = 22.0
 _FIRST_WORD: Final = 284
-_LINE: Final = 36
+_LINE: Final = 34
 _HALVES: Final = 12  # points between the two halves of the column
 
 
 # Entries: the route of a screen and its key in `texts.MENU`; the last one closes the game.
-ROWS: Final = ("play", "missions", "watch", "train", "digits", "learn", "physics", "logbook", "settings", "quit")
+ROWS: Final = (
+    "play", "descent", "missions", "watch", "train", "digits", "learn", "physics", "logbook", "settings", "quit",
+)  # fmt: skip
 
 
 class MenuScene(FormScene):
@@ -82,4 +84,8 @@ class MenuScene(FormScene):
 
 
 def _open(name: str) -> Transition:
+    if name == "descent":
+        from game.play.descent import Descent  # loaded when it is first flown: the menu shows at once
+
+        return push("play", challenge=Descent())
     return Quit() if name == "quit" else push(name)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Final
 
 import pygame
 
 from ai.lander.missions import FIRST, MISSIONS
 from ai.lander.rules import tenths
+from game.cockpit.hud import draw_ring
 from game.core import texts
 from game.core.scene import Transition, push
 from game.drawing.canvas import Canvas
@@ -16,6 +18,7 @@ from game.drawing.glyphs import icon
 from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import HUMAN, INK, MARGIN, MEDALS, MUTE, SMALL, TEXT, TITLE, VIEW_SIZE
 from game.flight import flight_file
+from game.flight.credit import TOGETHER
 from game.flight.flight_file import Entry, Record
 from game.flight.logbook import Records, rank
 from game.play.challenge import Challenge, FlownMission
@@ -35,6 +38,7 @@ _LAYOUT: Final = ListLayout(
     verbs=(_LEFT, 524),
     foot=608,
 )
+_RING: Final = 14.0  # from a ring to its words
 _LAMP, _LAMPS = 13.0, 62.0  # from one lamp of a medal to the next, and from the last to the end of its column
 _WIDTH: Final = VIEW_SIZE[0] - MARGIN - _LEFT
 _RIVAL: Final = (_LEFT, 412, _WIDTH, 32)
@@ -60,7 +64,7 @@ class MissionsScene(ListScene[str]):
         self._best = _best_by_course(self._records.entries())
         if self._records.problem:
             self.context.note(self._records.problem)
-        self._kept = self._records.kept()
+        self._kept, self._together = self._records.kept(), landed_together(self._records.entries())
         gold = sum(entry.medal == 3 for name, entry in self._best.items() if name in MISSIONS)
         self._line = texts.MISSIONS_LINE.format(gold=gold, count=len(MISSIONS))
         self._show(_NAMES, self.items and self.chosen, otherwise=1)
@@ -73,10 +77,22 @@ class MissionsScene(ListScene[str]):
     def _challenge(self) -> Challenge:
         if self.chosen == FIRST.name:
             return Tutorial()
-        mission, record = MISSIONS[self.chosen], self._rival_record()
-        return (
-            FlownMission(mission, record, texts.MISSION_GHOSTS[self._chosen_rival]) if record else FlownMission(mission)
-        )
+        return self._mission(self.chosen, self._chosen_rival)
+
+    def _mission(self, name: str, rival: str) -> FlownMission:
+        """Return a mission beside a ghost, with the way to the next one."""
+        mission, record = MISSIONS[name], self._rival_record(name, rival)
+        names = list(MISSIONS)
+        later = names[names.index(name) + 1 :]
+        following = partial(self._go_to, later[0]) if later else None
+        if record is None:
+            return FlownMission(mission, following=following)
+        return FlownMission(mission, record, texts.MISSION_GHOSTS[rival], following)
+
+    def _go_to(self, name: str) -> FlownMission:
+        """Choose a mission, so that the way back leads to it, and return it beside its usual ghost."""
+        self._list.index = _NAMES.index(name)
+        return self._mission(name, _usual_rival(name))
 
     def _press_row(self) -> Transition:
         return self._fly()
@@ -99,7 +115,7 @@ class MissionsScene(ListScene[str]):
         """The player's choice of ghost if available; else the network where it lands, or a recorded landing."""
         if self._rival in self._offered:
             return self._rival
-        return "network" if MISSIONS[self.chosen].network_lands else "recorded"
+        return _usual_rival(self.chosen)
 
     def _make_verbs(self) -> list[Widget]:
         """Return the choice of ghosts for the chosen mission, and the button that begins it."""
@@ -117,13 +133,13 @@ class MissionsScene(ListScene[str]):
 
         return choose
 
-    def _rival_record(self) -> Record | None:
+    def _rival_record(self, name: str, rival: str) -> Record | None:
         """Return the recorded flight to race, None for the network; tell the player of one that can't be read."""
         try:
-            if self._chosen_rival == "own":
-                return self._records.read(self._best[self.chosen].file)
-            if self._chosen_rival == "recorded":
-                return flight_file.read(self.context.assets_dir / _FLIGHTS / f"{self.chosen}.json")
+            if rival == "own":
+                return self._records.read(self._best[name].file)
+            if rival == "recorded":
+                return flight_file.read(self.context.assets_dir / _FLIGHTS / f"{name}.json")
         except ValueError as error:
             self.context.note(str(error))
         return None
@@ -134,7 +150,7 @@ class MissionsScene(ListScene[str]):
         if name == FIRST.name:
             return title, texts.TUTORIAL_FLOWN if self.context.settings.first_flown else "–", ""
         if best is None:
-            return title, "–", ""
+            return title, texts.MISSION_TOGETHER if name in self._together else "–", ""
         if name == _DAILY:
             return title, "", texts.SCORE.format(count=best.score)
         return title, texts.MEDALS[best.medal], f"{tenths(best.fuel):.1f} s"
@@ -147,6 +163,9 @@ class MissionsScene(ListScene[str]):
             if name in MISSIONS and name in self._best:
                 end, medal = self._list.right - _LAYOUT.columns[0] - _LAMPS, self._best[name].medal
                 _draw_lamps(canvas, (end - _LAMP * medal, self._list.baseline(row) - 4), medal)
+            elif name in self._together:
+                end = self._list.right - _LAYOUT.columns[0] - canvas.text_width(texts.MISSION_TOGETHER)
+                draw_ring(canvas, (end - _RING, self._list.baseline(row) - 4))
         self._draw_mission(canvas, self.chosen)
 
     def _draw_mission(self, canvas: Canvas, name: str) -> None:
@@ -184,6 +203,20 @@ _TOLD: Final = {
     FIRST.name: (texts.TUTORIAL_TITLE, texts.TUTORIAL_ASKS),
     _DAILY: (texts.DAILY, texts.DAILY_BEGIN),
 }
+
+
+def landed_together(entries: list[Entry]) -> set[str]:
+    """Return the missions that player and network have landed together, under the current rules."""
+    return {
+        entry.course
+        for entry in entries
+        if entry.course in MISSIONS and entry.landed and entry.human > 0 and entry.bar in TOGETHER
+    }
+
+
+def _usual_rival(name: str) -> str:
+    """Return the ghost of a mission that nobody has chosen: the network where it lands, or a recorded landing."""
+    return "network" if MISSIONS[name].network_lands else "recorded"
 
 
 def _network_words(name: str) -> str:

@@ -75,6 +75,8 @@ class PlayScene(Scene):
         self._offer = RescueOffer(context.settings)
         if self._records.problem:
             context.note(self._records.problem)
+        if self.challenge:
+            self.challenge.recall(self._records.entries())
         self._begin(self._new_seed() if seed is None else seed)
 
     def enter(self) -> None:
@@ -133,7 +135,7 @@ class PlayScene(Scene):
         rows = [captions.flight_row(hints_of(self._flight_actions(), self._controls), canvas.view)]
         if self.ending.card and self.ending.shown > 0:
             hints = hints_of(self._card_actions(), self._controls)
-            rows.append(self.ending.hint_row(hints, self.flown.ghost, self._settings.show_hints))
+            rows.append(self.ending.hint_row(hints, self.flown.rival, self._settings.show_hints))
         return rows
 
     @property
@@ -200,7 +202,7 @@ class PlayScene(Scene):
         hints, *of_card = self.hint_rows(canvas)
         if self._settings.show_hints or self._controls.mouse_in_use:  # for the mouse, they are what it presses
             hints.draw(canvas)
-        self.ending.draw(canvas, self.flown.ghost, self._settings.show_hints)
+        self.ending.draw(canvas, self.flown.rival, self._settings.show_hints)
         for row in of_card:
             row.draw(canvas)
         if not self._stick.mouse_flies:  # a mouse that flies asks for nothing
@@ -253,6 +255,8 @@ class PlayScene(Scene):
             return
         ending.follow()
         if challenge and challenge.again():
+            if challenge.kept:
+                self.flown.write_down(self._records, self._skill, self.network)
             if ending.due:
                 self.retry()
         elif ending.card is None:
@@ -354,7 +358,11 @@ class PlayScene(Scene):
             spawn = "" if card and card.rung is not None else self.flight.recording.spawn
             self._begin(self.flight.recording.seed, spawn)
         elif self.challenge and self.challenge.fixed:
-            return Pop()
+            following = self.challenge.following
+            if following is None:
+                return Pop()
+            self.challenge = following
+            self._begin(self.flight.recording.seed)
         else:
             self._begin_elsewhere()
         return None
@@ -384,7 +392,8 @@ class PlayScene(Scene):
     @property
     def _leaves(self) -> bool:
         """Whether Escape goes straight back: in a challenge that has not begun or is over, where nothing is lost."""
-        return self.challenge is not None and (not self.flown.begun or self.flight.over)
+        challenge = self.challenge
+        return challenge is not None and not challenge.under_way and (not self.flown.begun or self.flight.over)
 
     def pause(self) -> Transition:
         """Pause the flight."""

@@ -16,6 +16,7 @@ ALL: Final = ClearArea()
 _AROUND: Final = 2.2  # metres beside a craft, and above it
 _BESIDE: Final = 1.6  # metres beside a pad
 _BEYOND: Final = 0.4  # metres above the upper edge of the area
+_ROCK, _FAR = 6.0, 15.0  # metres shown beside the goal of a leg, for the rock there, to one so far away
 _LEAD: Final = 0.6  # seconds: how far ahead of a craft the camera looks
 # Of several pads, only those count that a craft at that height can still reach.
 _REACH: Final = (6.0, 2.2)  # metres to the side at the height of the ground, and more for every metre above it
@@ -55,13 +56,18 @@ def follow(camera: Camera, env: LanderEnv, slot: int = 0, clear: ClearArea = ALL
 
 
 def _pads(env: LanderEnv, slot: int, x: float, y: float) -> list[tuple[tuple[float, float], float]]:
-    """Return both edges of every pad and its weight in the framing, 0 to 1; a single pad has weight 1."""
+    """Return both edges of every pad and its weight in the framing, 0 to 1.
+
+    A single pad has weight 1, as has the goal of a leg, which is its first pad.
+    """
     shift = float(env.pad_shift[slot])
     pads = env.ground.pads
-    near, more = _REACH
+    near, wider = _REACH
     rows = []
-    for pad in pads:
-        beyond = abs(pad.x + shift - x) - (near + more * max(0.0, y - GROUND_LINE))
-        weight = 1.0 if len(pads) == 1 else float(np.clip(1 - beyond / _FADE, 0.0, 1.0))
-        rows.append(((pad.left + shift, pad.right + shift), weight))
+    first = len(pads) == 1 or not env.ground.ends.all()
+    for number, pad in enumerate(pads):
+        beyond = abs(pad.x + shift - x) - (near + wider * max(0.0, y - GROUND_LINE))
+        weight = 1.0 if first and number == 0 else float(np.clip(1 - beyond / _FADE, 0.0, 1.0))
+        more = _ROCK * min(1.0, abs(pad.x - x) / _FAR) if first and number == 0 and len(pads) > 1 else 0.0
+        rows.append(((pad.left + shift - more, pad.right + shift + more), weight))
     return rows

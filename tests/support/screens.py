@@ -19,6 +19,7 @@ from game.flight.flight_file import Record
 from game.flight.skill import Skill
 from game.learn.path import FIRST, PATH
 from game.play.challenge import FlownMission
+from game.play.descent import Descent
 from game.scenes.assists import AssistsScene
 from game.scenes.bindings import BindingsScene
 from game.scenes.chapter import ChapterScene
@@ -88,6 +89,7 @@ FLOWN: dict[str, Make] = {
     "Play": lambda context: PlayScene(context, 3),
     "swarm": lambda context: WatchScene(context, 16, seed=2),
     "mission": lambda context: PlayScene(context, 0, challenge=FlownMission(MISSIONS["wind"])),
+    "descent": lambda context: PlayScene(context, 3, challenge=Descent()),
     **{f"chapter, {key}": partial(ChapterScene, key=key) for key in PATH if key != FIRST},
 }
 OVER_OTHERS: dict[str, Callable[[Scene], Scene]] = {

@@ -25,6 +25,7 @@ from game.learn.path import PATH
 from game.play.challenge import FlownMission
 from game.play.daily import DailyStart
 from game.play.days import Days
+from game.play.descent import Descent
 from game.play.race import race
 from game.scenes.chapter import ChapterScene
 from game.scenes.dialog import ListDialog, NameDialog, QuestionDialog
@@ -99,6 +100,7 @@ def makers(context: Context) -> dict[str, Callable[[], Scene | None]]:
         "PhysicsStepScene": lambda: PhysicsStepScene(context, EXHIBITS[str(rng.choice(list(EXHIBITS)))](9.81)),
         "mission": lambda: PlayScene(context, 0, challenge=FlownMission(missions[rng.integers(len(missions))])),
         "daily": lambda: PlayScene(context, 1, challenge=DailyStart(date(2026, 1, 1), Days(context.user_dir))),
+        "descent": lambda: PlayScene(context, 1, challenge=Descent()),
         "race": lambda: replayed(lambda _, record: PlayScene(context, record.recording.seed, challenge=race(record))),
         "LessonScene": lambda: LessonScene(context, lesson_of("modern")),
         "ReplayScene": lambda: replayed(ReplayScene),

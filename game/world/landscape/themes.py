@@ -71,6 +71,9 @@ LOOKS: Final[dict[str, Theme]] = {
     "earth": Theme(
         (0.85, 0.95, 1.0), (0.75, 1.05, 0.95), (40.0, 74.0, 112.0), 0.18, (0.0, 4.0, 4.0), stars=False, earth=False
     ),
+    "titan": Theme(
+        (0.9, 0.6, 0.34), (1.25, 0.86, 0.5), (150.0, 92.0, 30.0), 0.42, (26.0, 13.0, 2.0), stars=False, earth=False
+    ),
     "night": Theme((_DARK,) * 3, (_DARK,) * 3, _NIGHT, 1.0, _NIGHT, light=0.4, earth=False),
 }
 

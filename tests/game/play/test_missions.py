@@ -127,15 +127,23 @@ def rows(driver: Driver) -> dict[str, tuple[str, ...]]:
 
 def test_the_campaign_is_walked_through_by_keys_and_a_landing_is_remembered(open_game: Open):
     driver = open_game()
-    driver.keys(pygame.K_DOWN, pygame.K_RETURN)
+    driver.keys(pygame.K_DOWN, pygame.K_DOWN, pygame.K_RETURN)
     assert driver.top_name == "MissionsScene"
     driver.keys(pygame.K_DOWN, pygame.K_RETURN)
     assert play(driver).challenge.name == "brake"
     assert play(driver).flown.ghost is not None
     land(driver)
     assert play(driver).ending.card.score == "gold"
+    driver.key(pygame.K_r)
+    assert play(driver).flown.ghost.name == texts.MISSION_GHOSTS["own"]  # the landing just flown is there to be beaten
+    land(driver)
     driver.key(pygame.K_RETURN)
+    assert play(driver).challenge.name == "aside"  # the next one
+    assert play(driver).flown.ghost.name == texts.MISSION_RIVAL
+    driver.key(pygame.K_ESCAPE)
     assert driver.top_name == "MissionsScene"
+    assert driver.top.chosen == "aside"
+    driver.key(pygame.K_UP)
     assert rows(driver)["brake"][1] == texts.MEDALS[3]
     assert driver.top.chosen == "brake"
 
@@ -149,7 +157,23 @@ def test_a_gamepad_flies_a_mission_and_comes_back(open_game: Open):
     driver.axis(pygame.CONTROLLER_AXIS_TRIGGERRIGHT, 0)
     land(driver)
     driver.button(pygame.CONTROLLER_BUTTON_A)
+    assert play(driver).challenge.name == "brake"
+    driver.button(pygame.CONTROLLER_BUTTON_START)
     assert driver.top_name == "MissionsScene"
+
+
+def test_a_landing_with_help_earns_a_ring_on_the_card_and_in_the_list(open_game: Open):
+    driver = open_game(MissionsScene)
+    driver.key(pygame.K_RETURN)
+    for _ in range(2):  # to the network and back
+        driver.frames(3)
+        driver.key(pygame.K_TAB)
+    driver.frames(3)
+    land(driver)
+    card = play(driver).ending.card
+    assert (card.score, card.ring, card.medal) == (texts.MISSION_TOGETHER, True, 0)
+    driver.key(pygame.K_ESCAPE)
+    assert rows(driver)["fall"][1] == texts.MISSION_TOGETHER
 
 
 def test_the_card_says_what_the_next_medal_asks():
@@ -238,7 +262,7 @@ def test_the_best_flight_of_ones_own_can_be_raced_and_a_damaged_one_is_told_of(o
     driver = open_game(MissionsScene)
     driver.key(pygame.K_RETURN)
     land(driver)
-    driver.key(pygame.K_RETURN)
+    driver.key(pygame.K_ESCAPE)
     rivals = driver.choice(texts.MISSION_RIVALS["own"])
     assert rivals.options == [texts.MISSION_RIVALS[name] for name in ("network", "recorded", "own")]
     rivals.choose(2)

@@ -1,0 +1,130 @@
+"""A descent's legs: what they follow from, that they can be flown, and the routes that lead networks through them."""
+
+import numpy as np
+import pytest
+
+from ai.agent.agent import DeepQAgent
+from ai.lander.descent import TANK, LegStart, leg, leg_of, refill
+from ai.lander.environment import Cause, LanderEnv, Outcome
+from ai.lander.pilots import ScriptedPilot
+from ai.lander.route import Route, sink_of
+from game.core.assets import MODELS_DIR
+from tests.support.descent import QUICK, SLOW, descend, fly_leg, stand_on
+
+SEEDS = range(4)
+NUMBERS = (1, 2, 3, 4, 5, 7, 9, 11, 13, 16, 40)
+CLEAR = 1.6  # metres around a craft's middle, which reaches 1.1 sideways and 1 down
+
+
+def test_a_leg_follows_from_seed_number_and_start_alone():
+    first = leg_of(5, LegStart(7))
+    leg.cache_clear()
+    assert leg_of(5, LegStart(7)) == first
+    assert leg_of(6, LegStart(7)) != first
+    assert leg_of(5, LegStart(7, tank=3.0)) == first  # what is in the tank changes no ground
+
+
+def test_legs_become_longer_windier_and_end_on_smaller_pads():
+    def means(number: int) -> tuple[float, float, float]:
+        legs = [leg(seed, number) for seed in range(20)]
+        longer = np.mean([each.ground.pads[0].x - each.ground.pads[-1].x for each in legs])
+        smaller = np.mean([each.ground.pads[0].width for each in legs])
+        windier = np.mean([abs(each.conditions.wind) + each.conditions.gust for each in legs])
+        return float(longer), -float(smaller), float(windier)
+
+    rows = np.array([means(number) for number in (1, 5, 9, 13, 16)])
+    assert (np.diff(rows, axis=0) > 0).all()
+
+
+def test_the_first_legs_meet_every_kind_of_ground_once():
+    assert {leg(1, number).kinds for number in range(1, 6)} == {
+        ("open",), ("ridge",), ("canyon",), ("overhang",), ("cave",),
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("number", NUMBERS)
+def test_a_route_keeps_clear_of_all_rock_and_the_start_stands_free(number: int):
+    for seed in SEEDS:
+        for bare in (False, True):
+            flown = leg(seed, number, bare)
+            route = Route(flown.route)
+            way = np.array([route.point(along) for along in np.arange(0, route.length, 0.25)])
+            around = np.linspace(0, 2 * np.pi, 12, endpoint=False)
+            ring = (way[:, None] + CLEAR * np.stack([np.cos(around), np.sin(around)], axis=1)).reshape(-1, 2)
+            assert (ring[:, 1] > flown.ground.height(ring[:, 0])).all(), (seed, flown.kinds)
+            assert not flown.ground.roofed(ring).any(), (seed, flown.kinds)
+            env = flown.begin(TANK)
+            for _ in range(40):
+                env.fly(np.zeros(1, int))
+            assert env.outcome[0] == Outcome.FLYING  # it stands, and standing where it began ends nothing
+            assert env.contacts.all()
+
+
+def test_a_landing_on_the_goal_or_a_flat_spot_ends_a_leg_and_one_at_the_start_does_not():
+    flown = next(each for seed in SEEDS if len((each := leg(seed, 3)).ground.pads) == 3)
+    for pad, ends in ((0, True), (1, True), (2, False)):
+        env = flown.begin(TANK)
+        stand_on(env, pad)
+        for _ in range(60):
+            env.fly(np.zeros(1, int))
+        assert bool(env.outcome[0] == Outcome.LANDED) is ends
+        assert env.landed_on[0] == (pad if ends else -1)
+
+
+def test_rock_that_hangs_is_struck_from_below_and_lies_over_open_ground():
+    flown = leg(0, 4)
+    (roof,) = flown.ground.roofs
+    corners = np.array(roof)
+    middle = corners.mean(axis=0)
+    assert flown.ground.roofed(middle[None])[0]
+    assert flown.ground.height(middle[0]) < corners[:, 1].min() - 4
+    env = flown.begin(TANK)
+    env.place(np.ones(1, bool), np.array([[middle[0], corners[:, 1].min() - 1.6, 0, 1.5, 0, 0]]))
+    for _ in range(90):
+        env.fly(np.array([3]))
+    assert env.outcome[0] == Outcome.CRASHED
+    assert env.cause[0] in (Cause.HULL, Cause.TERRAIN)
+
+
+def test_the_tank_goes_from_leg_to_leg_and_a_better_landing_brings_more():
+    assert refill(100, bare=False) > refill(50, bare=False) > refill(0, bare=False) > 0 == refill(300, bare=True)
+    after = LegStart(3, 9.0).after(6.5, 60, bare=False)
+    assert after == LegStart(4, round(2.5 + refill(60, bare=False), 3))
+    assert LegStart(3, TANK).after(0.5, 100, bare=False).tank == TANK  # no more than it holds
+    assert LegStart(3, 9.0).after(6.5, 240, bare=True) == LegStart(4, 2.5, bare=True)
+
+
+def test_a_pilot_is_led_at_the_speed_at_which_it_comes_down_itself():
+    class Falls:
+        def act(self, observation: np.ndarray, *, held: np.ndarray | None = None) -> np.ndarray:
+            return np.where(observation[:, 3] < -1.0, 3, 0)  # brakes below 2 m/s, as scaled
+
+    assert sink_of(Falls()) == pytest.approx(2.0, abs=0.15)
+
+
+def test_a_route_leads_on_from_its_nearest_point_and_ends_over_the_goal():
+    route = Route([(0, 5), (4, 5), (4, 9)])
+    assert route.length == 8
+    assert route.nearest(np.array([1.0, 6.0])) == 1
+    assert route.nearest(np.array([9.0, 7.0])) == 6
+    across, up = route.velocity(np.array([1.0, 6.0]))
+    assert across > 0 > up  # on, and back to the route
+    assert route.velocity(np.array([4.0, 8.9])) is None
+    plain = LanderEnv(1, 0)
+    plain.place(np.ones(1, bool), np.array([[4.0, 8.9, 0, 0, 0, 0]]))
+    assert (route.observe(plain, ScriptedPilot()) == plain.observe()).all()
+
+
+def test_the_network_lands_the_first_six_legs():
+    agent = DeepQAgent.load(MODELS_DIR / "lander" / "modern")
+    assert descend(0, agent, QUICK, most=6).legs == 6
+
+
+def test_slow_hands_land_the_first_five_legs():
+    assert descend(0, ScriptedPilot(), SLOW, most=5).legs == 5
+
+
+def test_a_leg_is_flown_alike_again():
+    first, second = (fly_leg(2, LegStart(2), ScriptedPilot()) for _ in range(2))
+    assert (first.position == second.position).all()
+    assert first.fuel == second.fuel

@@ -1,0 +1,176 @@
+"""Descent as it is played: one leg after another, what it counts, and how it ends."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.lander.descent import LegStart, refill
+from ai.lander.environment import Outcome
+from game.core import texts
+from game.flight.flight import Flight, StickHolder
+from game.flight.logbook import Records
+from game.flight.outcomes import landing_score
+from game.flight.replay import FlightReplay
+from game.play.descent import Descent, best_of
+from game.scenes.play import PlayScene
+from game.ui.context import Context
+from tests.support.descent import stand_on
+from tests.support.driver import Driver
+from tests.support.flights import play
+
+Open = Callable[..., Driver]
+pytestmark = pytest.mark.usefixtures("scripted_network")
+
+
+@pytest.fixture
+def game(open_game: Open) -> Driver:
+    return open_game(PlayScene, 3, challenge=Descent())
+
+
+def descent(driver: Driver) -> Descent:
+    challenge = play(driver).challenge
+    assert isinstance(challenge, Descent)
+    return challenge
+
+
+def land(driver: Driver, pad: int = 0) -> None:
+    """Stand on a pad until the next leg hangs there."""
+    scene, number = play(driver), descent(driver).start.number
+    scene.flown.waiting = False
+    stand_on(scene.flight.env, pad)
+    while descent(driver).start.number == number:
+        driver.skip()
+
+
+def crash(driver: Driver) -> None:
+    """Fall from high up, on the head, until the card is there."""
+    scene = play(driver)
+    scene.flown.waiting = False
+    scene.flight.env.place(np.ones(1, bool), np.array([[0.0, 20.0, 0.0, -6.0, 3.0, 0.0]]))
+    while scene.ending.shown < 1:
+        driver.skip(5)
+
+
+def test_a_landing_leads_to_the_next_leg_which_hangs_on_its_feet_with_what_is_in_the_tank(game: Driver):
+    land(game)
+    scene = play(game)
+    assert scene.waiting
+    assert descent(game).start == scene.flight.recording.leg
+    assert (descent(game).start.number, descent(game).legs, descent(game).streak) == (2, 1, 1)
+    place = scene.flight.env.position.copy()
+    game.frames(60)
+    assert (scene.flight.env.position == place).all()
+    assert scene.flight.env.contacts.sum() == 0  # not a step has been flown
+
+
+def test_points_grow_with_the_row_of_landings_and_are_in_the_logbook(game: Driver, context: Context):
+    totals = []
+    for _ in range(3):
+        land(game)
+        totals.append(descent(game).total)
+    entries = Records(context.user_dir).entries()
+    assert [(entry.course, entry.leg, entry.total) for entry in entries] == [
+        ("descent", leg, total) for leg, total in enumerate(totals, 1)
+    ]
+    assert [entry.score * factor for factor, entry in enumerate(entries, 1)] == np.diff([0, *totals]).tolist()
+    assert best_of(entries) == (3, totals[-1])
+
+
+def test_every_leg_can_be_watched_again_to_the_bit(game: Driver, context: Context):
+    land(game)
+    game.frames(2)  # a key that is down already when a leg begins must be let go first
+    for kind in (pygame.KEYDOWN, pygame.KEYUP):  # up and over, so that it comes down on its head
+        for key in (pygame.K_UP, pygame.K_RIGHT):
+            game.post(kind, key=key, mod=0)
+        game.frames(90)
+    while not play(game).ending.card:
+        game.skip(10)
+    records = Records(context.user_dir)
+    record = records.read(records.entries()[-1].file)
+    assert record.recording.leg == LegStart(2, descent(game).start.tank)
+    again = FlightReplay(record)
+    again.scout(10_000)
+    assert again.complete
+    assert again.faithful
+
+
+def test_a_crash_ends_the_run_with_how_far_it_came_and_a_key_flies_the_same_ground_beside_ones_ghost(game: Driver):
+    land(game)
+    crash(game)
+    card = play(game).ending.card
+    assert not card.good
+    assert card.score == texts.DESCENT_LEGS.format(count=1)
+    assert card.figures[0][1] == card.figures[2][1] == "1"
+    assert card.advice == texts.DESCENT_NEW_BEST
+    ground = play(game).flight.recording.seed
+    game.key(pygame.K_RETURN)
+    assert (descent(game).start, descent(game).best[0]) == (LegStart(), 1)
+    assert play(game).flight.recording.seed == ground
+    assert play(game).flown.ghost.name == texts.MISSION_GHOSTS["own"]
+    land(game)
+    land(game)
+    assert play(game).flown.ghost.name == texts.MISSION_RIVAL  # so far it has not come before
+
+
+def test_another_key_begins_on_new_ground(game: Driver):
+    crash(game)
+    ground = play(game).flight.recording.seed
+    game.key(pygame.K_n)
+    assert play(game).flight.recording.seed != ground
+    assert descent(game).start == LegStart()
+
+
+def test_a_leg_that_the_network_has_flown_brings_fuel_but_no_points_and_the_run_counts_no_more(
+    game: Driver, context: Context
+):
+    land(game)
+    total = descent(game).total
+    game.key(pygame.K_TAB)
+    game.frames(5)
+    assert play(game).flight.hand is StickHolder.NETWORK
+    land(game)
+    assert (descent(game).total, descent(game).streak, descent(game).legs) == (total, 0, 2)
+    assert play(game).flight.hand is StickHolder.HUMAN  # a relief, for one leg
+    land(game)
+    entries = Records(context.user_dir).entries()
+    assert [entry.bar for entry in entries] == ["", "relieved", "relieved"]
+    assert best_of(entries)[0] == 1
+
+
+def test_a_flat_spot_pays_three_times_and_brings_no_fuel():
+    run = Descent()
+    run.flight(3, None)
+    seed = next(seed for seed in range(20) if len(Flight(seed, leg=LegStart(3)).env.ground.pads) == 3)
+    flight = Flight(seed, leg=LegStart(3, 10.0))
+    stand_on(flight.env, 1)
+    for _ in range(60):
+        flight.step(0)
+    assert flight.outcome is Outcome.LANDED
+    assert landing_score(flight.env) > 200
+    assert refill(landing_score(flight.env), bare=True) == 0
+
+
+def test_escape_pauses_a_run_under_way_and_leaves_one_that_has_not_begun(game: Driver):
+    land(game)
+    game.key(pygame.K_ESCAPE)
+    assert game.top_name == "PauseScene"
+
+
+def test_the_menu_leads_to_it_and_escape_back(open_game: Open):
+    driver = open_game()
+    driver.keys(pygame.K_DOWN, pygame.K_RETURN)
+    assert descent(driver).start.number == 1
+    driver.key(pygame.K_ESCAPE)
+    assert driver.top_name == "MenuScene"
+
+
+def test_without_a_network_it_is_flown_alone(open_game: Open, monkeypatch: pytest.MonkeyPatch):
+    from game.flight import networks
+
+    monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("none", None, "gone"))
+    driver = open_game(PlayScene, 3, challenge=Descent())
+    assert play(driver).flown.ghost is None
+    land(driver)
+    assert descent(driver).start.number == 2
