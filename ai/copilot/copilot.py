@@ -17,7 +17,7 @@ from ai.copilot.clock import FlightClock
 from ai.copilot.critic import SafetyCritic, critic_beside
 from ai.copilot.guardian import Guardian
 from ai.copilot.intent import Intent, in_question
-from ai.lander.environment import NUM_ACTIONS
+from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.lander.pilots import COAST
 
 # Points of reward by which the guardian's action must be better than the pilot's, at an assist of one half.
@@ -227,10 +227,13 @@ class CoPilot:
         assert self.critic is not None
         slots, pads, features = observation.shape
         rows = np.arange(slots)
-        if surroundings is None:
-            surroundings, new = self._clock.read(observation)
+        nine = observation[:, :, :NUM_FEATURES]
+        if surroundings is None and features > NUM_FEATURES:
+            surroundings = observation[:, :, NUM_FEATURES:]
+        elif surroundings is None:
+            surroundings, new = self._clock.read(nine)
             self.guardian.forget(new)
-        chances = self.critic.chances(observation.reshape(-1, features), surroundings.reshape(slots * pads, -1))
+        chances = self.critic.chances(nine.reshape(-1, NUM_FEATURES), surroundings.reshape(slots * pads, -1))
         chances = chances.reshape(slots, pads, NUM_ACTIONS)
         open_ = in_question(likely)
         chances = np.where(open_[:, :, None], chances, -1.0)

@@ -13,12 +13,13 @@ from ai.common.environment import Bools, Doubles, Floats, Ints
 from ai.copilot.copilot import CoPilot, Mode
 from ai.copilot.critic import CriticFacts, Reliability, SafetyCritic, fingerprint, logistic
 from ai.copilot.hands import any_hands
-from ai.copilot.moments import Moments, flown, moon, saved
-from ai.lander.environment import MIRROR_ACTIONS, NUM_ACTIONS, LanderEnv
-from ai.lander.sensing import AROUND, SURROUNDINGS, SURROUNDINGS_SCALE, TERRAIN
+from ai.copilot.moments import Moments, anywhere, flown, moon, saved
+from ai.lander.environment import MIRROR_ACTIONS, NUM_ACTIONS, NUM_FEATURES, LanderEnv
+from ai.lander.sensing import AROUND, LONG, SURROUNDINGS, SURROUNDINGS_SCALE, TERRAIN
 from ai.nn import OPTIMIZERS, ActivationFunctions, ActivationLayer, CostFunctions, FullyConnectedLayer, NeuralNetwork
+from engine import DT
 
-INPUTS: Final = ("time left", "pad width", *TERRAIN)  # of what is around a lander on the moon
+MOON: Final = ("time left", "pad width", *TERRAIN)  # of what is around a lander on the moon
 _HIDDEN: Final = (128, 128, 128)
 _FLIGHTS: Final = 384  # of clumsy hands in a round
 _PER_ROUND: Final = 8000  # moments that are kept of those
@@ -71,10 +72,13 @@ class CriticTraining:
     agent: DeepQAgent
     rng: np.random.Generator
     rounds: int = 40
-    make_env: MakeEnv = moon
-    inputs: tuple[str, ...] = INPUTS
     lessons: list[Lessons] = field(default_factory=list)
     critic: SafetyCritic = field(init=False)
+
+    def __post_init__(self) -> None:
+        far = self.agent.num_features > NUM_FEATURES  # it lands anywhere
+        self._make_env: MakeEnv = anywhere if far else moon
+        self.inputs = SURROUNDINGS if far else MOON
 
     def run(self) -> Iterator[Progress]:
         """Train round by round; the last round's critic is calibrated.
@@ -101,7 +105,7 @@ class CriticTraining:
         With a `critic`, it guards most of the flights, and moments in doubt come more often; `plain` takes them as
         they come.
         """
-        env = self.make_env(_FLIGHTS, self.rng)
+        env = self._make_env(_FLIGHTS, self.rng)
         share = None if critic is None else self._guarded(critic)
         moments = flown(env, any_hands(env.num_envs, self.rng, self.agent), share)
         weight = np.ones(len(moments))
@@ -112,7 +116,7 @@ class CriticTraining:
         size = min(_PER_ROUND if not plain else _PLAIN, len(moments))
         moments = moments.take(self.rng.choice(len(moments), size, replace=False, p=weight / weight.sum()))
         if not plain:
-            self._hurry(moments, env)
+            self._hurry(moments)
         action = np.where(
             self.rng.random(size) < (1.0 if plain else _ASKED),
             moments.action,
@@ -130,15 +134,14 @@ class CriticTraining:
 
         return share
 
-    def _hurry(self, moments: Moments, env: LanderEnv) -> None:
+    def _hurry(self, moments: Moments) -> None:
         """Move some moments to the last seconds of their flights."""
         hurried = self.rng.random(len(moments)) < _HURRIED
         left = self.rng.uniform(0.5, 15.0, len(moments))
-        steps = np.maximum(moments.steps, ((env.limits.time - left) * 60).astype(np.intp))
+        steps = np.maximum(moments.steps, ((moments.longest - left) / DT).astype(np.intp))
         moments.steps = np.where(hurried, steps, moments.steps)
-        moments.surroundings[:, _TIME] = (
-            np.minimum(20.0, env.limits.time - moments.steps / 60) * SURROUNDINGS_SCALE[_TIME]
-        )
+        seconds = np.minimum(moments.longest - moments.steps * DT, LONG)
+        moments.surroundings[:, _TIME] = seconds * SURROUNDINGS_SCALE[_TIME]
 
     def _inputs(self, moments: Moments) -> Floats:
         columns = [AROUND.index(name) for name in self.inputs]

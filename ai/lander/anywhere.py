@@ -161,9 +161,14 @@ class AnywhereEnv(LanderEnv):
         self._settle()
         return super().reset(mask)
 
-    def settle(self, sites: Sequence[Site]) -> None:
-        """Let every slot be at a given site from now on, until the next reset."""
-        self._sites[:] = np.array(sites)
+    @property
+    def settled(self) -> Doubles:
+        """Numbers of every slot's Site, (n, k)."""
+        return self._sites
+
+    def settle(self, sites: Sequence[Site] | Doubles, mask: Bools | None = None) -> None:
+        """Let every slot, or those of `mask` (n,), be at a given site from now on, until the next reset."""
+        self._sites[slice(None) if mask is None else mask] = np.array(sites)
         self._settle()
 
     def observe(self, pad: Any = None) -> Floats:

@@ -8,7 +8,7 @@ from typing import Any, Final, Protocol
 import numpy as np
 
 from ai.common.environment import Floats, Ints
-from ai.lander.environment import OBSERVATION_SCALE
+from ai.lander.environment import NUM_FEATURES, OBSERVATION_SCALE
 
 COAST: Final = 0
 
@@ -50,7 +50,7 @@ class ScriptedPilot:
 
     def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:  # noqa: ARG002
         """Actions (n,) for observations (n, 9)."""
-        x, y, vx, vy, sin, cos, spin, *_ = (np.atleast_2d(observation) / OBSERVATION_SCALE).T
+        x, y, vx, vy, sin, cos, spin, *_ = (np.atleast_2d(observation)[:, :NUM_FEATURES] / OBSERVATION_SCALE).T
         gains = self.gains
         angle = np.arctan2(sin, cos)
         wanted_vx = np.clip(-gains.approach * x, -2.5, 2.5)

@@ -46,7 +46,7 @@ AROUND: Final = (*SURROUNDINGS, *TERRAIN)
 # Swaps left and right: multiply what is around by the signs, and take its columns in this order.
 AROUND_SIGNS: Final = np.concatenate([SURROUNDINGS_MIRROR, np.ones(len(TERRAIN), np.float32)])
 AROUND_ORDER: Final = np.array([*range(len(SURROUNDINGS)), *reversed(range(len(SURROUNDINGS), len(AROUND)))])
-_LONG, _AHEAD, _SOON = 20.0, 8.0, 2.0  # seconds: what is farther off than the first two is shown as they are
+LONG, _AHEAD, _SOON = 20.0, 8.0, 2.0  # seconds: what is farther off than the first two is shown as they are
 
 
 def sensed(
@@ -83,7 +83,7 @@ def surroundings(craft: Craft, limits: Limits, pad: Any) -> Floats:
     """
     conditions, params, time = craft.conditions, craft.params, craft.time
     numbers = np.zeros((craft.num_envs, len(SURROUNDINGS)))
-    numbers[:, 0] = np.minimum(limits.time - time, _LONG)
+    numbers[:, 0] = np.minimum(limits.time - time, LONG)
     numbers[:, 1] = craft.ground.widths[pad]
     numbers[:, 2] = -craft.world.gravity[..., 1]
     numbers[:, 3] = params.main_thrust / params.mass

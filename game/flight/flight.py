@@ -239,7 +239,8 @@ class Flight:
         assert self.copilot is not None
         decision = self.decision
         if decision is None or self._held_for == 0 or self.asked != decision.pilot[0]:
-            self.decision = decision = self.copilot.decide(self.env.observe_pads(self.network), np.array([self.asked]))
+            seen, around = self.env.observe_pads(self.network), self.env.around_pads()
+            self.decision = decision = self.copilot.decide(seen, np.array([self.asked]), around)
             self._held_for = 0
             self._aim(decision.likely[0])
         self._held_for = (self._held_for + 1) % DECISION_STEPS
