@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ai.flights.score import landing_score
 from ai.lander.descent import LegStart, leg_of
 from ai.lander.environment import Cause, LanderEnv, Outcome
 from ai.lander.pilots import Pilot
 from ai.lander.route import Route
-from game.flight.outcomes import landing_score
 
 QUICK = (4, 0)  # physics steps of a decision, and how many decisions old what it is made from is
 SLOW = (12, 1)  # a person's hands: five decisions a second, each a fifth of a second late

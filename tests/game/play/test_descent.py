@@ -6,12 +6,12 @@ import numpy as np
 import pygame
 import pytest
 
+from ai.flights.score import landing_score
 from ai.lander.descent import LegStart, refill
 from ai.lander.environment import Outcome
 from game.core import texts
 from game.flight.flight import Flight, StickHolder
 from game.flight.logbook import Records
-from game.flight.outcomes import landing_score
 from game.flight.replay import FlightReplay
 from game.play.descent import Descent, best_of
 from game.scenes.play import PlayScene

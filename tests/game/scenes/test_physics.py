@@ -192,7 +192,7 @@ def test_between_two_steps_bodies_are_drawn_in_between(open_game: Open):
 
 def test_menu_leads_to_physics_and_back(open_game: Open):
     driver = open_game()
-    driver.keys(*[pygame.K_DOWN] * 6, pygame.K_RETURN)
+    driver.keys(*[pygame.K_DOWN] * 7, pygame.K_RETURN)
     assert driver.top_name == "PhysicsScene"
     driver.key(pygame.K_BACKSPACE)
     assert driver.top_name == "MenuScene"

@@ -58,14 +58,14 @@ class Probe(Scene):
 
 
 def test_menu_leads_to_settings_and_back_by_keyboard(game: Driver):
-    game.keys(*[pygame.K_DOWN] * 8, pygame.K_RETURN)
+    game.keys(*[pygame.K_DOWN] * 9, pygame.K_RETURN)
     assert game.top_name == "SettingsScene"
     game.key(pygame.K_ESCAPE)
     assert game.top_name == "MenuScene"
 
 
 def test_menu_leads_to_settings_by_mouse_and_by_pad(game: Driver):
-    game.click((90, 585))
+    game.click((90, 616))
     assert game.top_name == "SettingsScene"
     game.button(pygame.CONTROLLER_BUTTON_B)
     assert game.top_name == "MenuScene"
@@ -122,7 +122,7 @@ def test_the_view_is_16_to_9_in_any_window_and_the_mouse_is_in_points(open_game,
 @pytest.mark.parametrize("size", SIZES)
 def test_every_screen_works_at_every_size(game: Driver, size: tuple[int, int]):
     game.resize(size)
-    game.click((90, 585))
+    game.click((90, 616))
     assert game.top_name == "SettingsScene"
     game.frames(3)
     game.click((80, 640))
@@ -303,7 +303,7 @@ def test_pause_offers_retry_settings_and_the_way_out(open_game):
 
 
 def test_a_scene_that_is_left_for_good_is_in_memory_no_more(game: Driver):
-    game.keys(*[pygame.K_DOWN] * 8, pygame.K_RETURN)
+    game.keys(*[pygame.K_DOWN] * 9, pygame.K_RETURN)
     settings = weakref.ref(game.top)
     game.frames(20)
     gc.disable()
