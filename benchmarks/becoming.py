@@ -35,9 +35,10 @@ _FLIGHTS: Final = (5, 10, 25)
 
 def chosen(pilot: Any, pilots: Ints) -> ClumsyHands:
     """Return hands for slots (n,) in which the drawn pilots of those numbers fly."""
-    either = pilot.pilot
-    gains = Gains(*(values[pilots] for values in vars(either.other.gains).values()))
-    wishes = OneOrOther(either.first[pilots], either.pilot, ScriptedPilot(gains))
+    either, rest = pilot.pilot, pilot.pilot.other
+    gains = Gains(*(values[pilots] for values in vars(rest.other.gains).values()))
+    others = OneOrOther(rest.first[pilots], rest.pilot, ScriptedPilot(gains))
+    wishes = OneOrOther(either.first[pilots], either.pilot, others)
     faults = Faults(**{name: getattr(pilot, name)[pilots] for name in vars(Faults())})
     return ClumsyHands(wishes, len(pilots), pilot.rng, faults)
 
