@@ -34,7 +34,7 @@ def decisions(copilot: CoPilot, ground: Ground, rounds: int) -> list[float]:
     for _ in range(rounds):
         pilot = rng.integers(0, NUM_ACTIONS, 1)
         start, work = time.perf_counter(), time.process_time()
-        action, _ = copilot.share(env.observe_pads(), pilot)
+        action, _ = copilot.share(env.observe_pads(), pilot, env.around_pads())
         took.append(time.perf_counter() - start)
         worked.append(time.process_time() - work)
         if env.step(action).ended[0]:
