@@ -27,9 +27,9 @@ CALM_SECONDS: Final = 1.6  # that a guardian may have changed in a flight that i
 # For some assists of a guardian: log-odds of a calm landing = base + slope · log-odds of a landing alone + spread · a
 # standard normal number that each pilot has. From `benchmarks/becoming.py --calibrate`.
 ASSISTS: Final = (0.1, 0.2, 0.4, 0.6)
-BASE: Final = (0.48, -0.01, -0.78, -1.91)
-SLOPE: Final = (0.66, 0.57, 0.41, 0.39)
-SPREAD: Final = (0.9, 0.92, 1.21, 1.63)
+BASE: Final = (1.74, 1.74, 1.74, 1.6)
+SLOPE: Final = (0.93, 0.9, 0.96, 0.86)
+SPREAD: Final = (0.84, 1.09, 1.25, 1.15)
 
 _ODDS: Final[Doubles] = np.linspace(-5.0, 5.0, 41)  # log-odds of a landing alone
 _PRONE, _PRONE_WEIGHTS = np.polynomial.hermite_e.hermegauss(5)
