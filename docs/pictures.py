@@ -31,6 +31,7 @@ from ai.training.loop import Training
 from game.core.scene import Scene
 from game.core.settings import Settings
 from game.play.challenge import FlownMission
+from game.play.descent import Descent
 from game.scenes import scene_of
 from game.scenes.chapter import ChapterScene
 from game.scenes.digits import DigitsScene
@@ -44,6 +45,7 @@ from game.shell.app import App
 from game.ui.context import Context
 
 IMAGES = Path(__file__).resolve().parent / "images"
+HELD = 12  # frames that a key is held
 EIGHT_UNITS = {5: pygame.K_n, 30: pygame.K_RIGHT, 60: pygame.K_RIGHT, 90: pygame.K_RIGHT}  # of chapter 2, tried
 
 
@@ -63,6 +65,8 @@ PICTURES: tuple[tuple[str, Callable[[Context], Scene], dict[int, int], int], ...
     ("cockpit", partial(PlayScene, seed=12), {5: pygame.K_UP, 40: pygame.K_RIGHT, 80: pygame.K_UP}, 89),
     ("watch", partial(WatchScene, count=64, seed=3), {}, 260),
     ("map", partial(WatchScene, seed=4), {30: pygame.K_m}, 110),
+    ("edge", partial(PlayScene, seed=12), {5: pygame.K_RIGHT, 40: pygame.K_RIGHT, 60: pygame.K_RIGHT}, 150),
+    ("descent", partial(PlayScene, seed=4, challenge=Descent()), dict.fromkeys(range(5, 160, HELD), pygame.K_UP), 100),
     ("learn", partial(ChapterScene, key="plane"), EIGHT_UNITS, 700),
     ("train", TrainScene, {5: pygame.K_RETURN}, 30),
     ("lesson", lesson, {5: pygame.K_RIGHT}, 60),
@@ -75,10 +79,12 @@ PICTURES: tuple[tuple[str, Callable[[Context], Scene], dict[int, int], int], ...
         110,
     ),
 )
-HELD = 12  # frames that a key is held
 SHARP = 90
 # What has been chosen where a picture needs it.
-CHOSEN = {"cockpit": Settings(assist=0.6, copilot="guardian", three_pads=True)}
+CHOSEN = {
+    "cockpit": Settings(assist=0.6, copilot="guardian", three_pads=True),
+    "edge": Settings(assist=0.4, copilot="guardian", edge=True),
+}
 
 MOVING = "flight"
 # A person falls, steers askew and is corrected on the way; then hands over, and the network lands. Key, from, until.
