@@ -48,7 +48,8 @@ class Callouts:
         self._contact += self._contact >= 0
         self._crash += self._crash >= 0
         down = bool(env.contacts[0].all()) and not crashed
-        if down and not self._was_down and self._contact < 0:
+        began_down = env.steps[0] <= 2  # as a leg of a descent does, on its last pad
+        if down and not self._was_down and self._contact < 0 and not began_down:
             self._contact = 0
         if crashed and not self._was_over:
             self._crash, self._contact = 0, -1

@@ -59,6 +59,8 @@ class PadFactors:
         shift = float(self._flight.env.pad_shift[0])
         metre = view.pixels_per_metre / view.scale
         for pad, meant in zip(self._pads, self.meant.tolist(), strict=False):
+            if not pad.factor:  # nothing is earned there
+                continue
             x, deck = view.points((pad.x + shift, pad.top)).tolist()
             word = f"×{pad.factor}"
             width, rise = canvas.text_width(word, size=_SIZE, weight="medium"), _CAPITAL * _SIZE
