@@ -128,6 +128,7 @@ class Falls:
 
     def draw(self, canvas: Canvas) -> None:
         """Draw the lane, and the sentence where it leads nowhere."""
+        canvas = canvas.at(*self._form.anchor)
         left, top = self._place
         if self.words and not self._buttons:
             canvas.text(self.words, (left, top + 13), size=SMALL, colour=MUTE)

@@ -102,6 +102,7 @@ class Claimed:
     def draw(self, canvas: Canvas) -> None:
         """Draw the claim in the corner, and what comes of checking it below the strip of time."""
         hud.draw_corner(canvas, texts.FRIEND_TITLE, self.line)
+        canvas = canvas.at(0, -1)
         true, left = self.true, MARGIN
         colour = MUTE if true is None else canvas.palette.good if true else canvas.palette.warn
         if true is not None:

@@ -11,7 +11,7 @@ from game.core import texts
 from game.core.names import LibraryError
 from game.core.settings import Settings
 from game.flight.logbook import Records
-from game.flight.progress import Progress
+from game.play.progress import Progress
 from game.scenes.menu import MenuScene
 from game.scenes.play import PlayScene
 from game.scenes.settings import SettingsScene
@@ -96,7 +96,7 @@ def test_a_disk_that_refuses_keeps_everything_where_it_is(context: Context, monk
     def full(*_: object, **__: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("game.flight.progress.write_text", full)
+    monkeypatch.setattr("game.play.progress.write_text", full)
     with pytest.raises(LibraryError, match="No space left"):
         Progress(context.user_dir, context.settings).reset()
     assert files(context) == before
