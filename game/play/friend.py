@@ -21,8 +21,8 @@ from game.ui.clipboard import pasted
 from game.ui.context import Context
 from game.world.camera import ClearArea
 
-BELOW_CLAIM: Final = ClearArea(head=222.0)  # keeps the world clear of what comes of the check
-_ROW: Final = 192.0  # baseline of that
+BELOW_CLAIM: Final = ClearArea(head=262.0)  # keeps the world clear of what comes of the check
+_ROW: Final = 236.0  # baseline of that, under the sentence on where the chance fell
 _CONTROL: Final = pygame.KMOD_CTRL | pygame.KMOD_META
 
 
