@@ -26,13 +26,12 @@ _ROW: Final = 236.0  # baseline of that, under the sentence on where the chance 
 _CONTROL: Final = pygame.KMOD_CTRL | pygame.KMOD_META
 
 
-def arrival(event: pygame.event.Event, scene: Scene) -> Push | None:
+def arrival(event: pygame.event.Event, scene: Scene, context: Context) -> Push | None:
     """Return the way to the page of a flight that is dropped on the window or pasted; None for all other events.
 
     Tells the player why a flight is refused. A text that is typed takes what is pasted, and a scene that takes files
     of its own keeps those which are no flights.
     """
-    context = scene.context
     if event.type == pygame.DROPTEXT:
         return _page_of_text(context, str(event.text))
     if event.type == pygame.DROPFILE:
