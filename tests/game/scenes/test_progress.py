@@ -6,11 +6,14 @@ from collections.abc import Callable
 import pygame
 import pytest
 
+from ai.lander.spawns import RUNGS
 from game.audio.mixer import Sound
 from game.core import texts
 from game.core.names import LibraryError
 from game.core.settings import Settings
 from game.flight.logbook import Records
+from game.play.days import Attempt, Days
+from game.play.ladder import Ladder
 from game.play.progress import Progress
 from game.scenes.menu import MenuScene
 from game.scenes.play import PlayScene
@@ -78,6 +81,22 @@ def test_what_is_flown_since_stays_after_what_comes_back(context: Context):
     assert {entry.file for entry in first + later} == Records(context.user_dir).kept()
     assert (context.settings.learnt, context.settings.chapter) == ({"neuron": 3}, "backwards")
     assert not progress.restorable
+
+
+def test_the_ladder_and_the_days_are_put_away_and_come_back(context: Context):
+    context.settings.rung = 4
+    Days(context.user_dir).note(Attempt("2026-11-20", score=70))
+    progress = Progress(context.user_dir, context.settings)
+    progress.reset()
+    assert (context.settings.rung, dict(Days(context.user_dir).attempts)) == (-1, {})
+    assert Ladder(context.settings, []).spawn == RUNGS[0]
+    Days(context.user_dir).note(Attempt("2026-11-22", score=90))
+    progress.restore()
+    assert context.settings.rung == 4
+    assert {day: each.score for day, each in Days(context.user_dir).attempts.items()} == {
+        "2026-11-20": 70,
+        "2026-11-22": 90,
+    }
 
 
 def test_nothing_flown_is_nothing_lost(context: Context):
