@@ -93,9 +93,8 @@ class Progress:
         sound, _ = sound_fields(Settings, {name: values[name] for name in SETTINGS if name in values and name in known})
         untouched = Settings()
         for name, value in sound.items():
-            if name == "rung":  # the ladder's bottom rung is where everybody begins again, so the higher one is kept
-                value = max(value, self._settings.rung)
-            if name == "rung" or getattr(self._settings, name) == getattr(untouched, name):
+            now = getattr(self._settings, name)
+            if now == getattr(untouched, name) or (name == "rung" and value > now):  # everybody begins at the lowest
                 setattr(self._settings, name, value)
 
     def _take_back(self, box: Path) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import pygame
 import pytest
 
-from ai.lander.spawns import RUNGS
+from ai.lander.spawns import LADDER
 from game.audio.mixer import Sound
 from game.core import texts
 from game.core.names import LibraryError
@@ -85,11 +85,12 @@ def test_what_is_flown_since_stays_after_what_comes_back(context: Context):
 
 def test_the_ladder_and_the_days_are_put_away_and_come_back(context: Context):
     context.settings.rung = 4
+    ladder = Ladder(context.settings, [])  # of a flight that is paused meanwhile
     Days(context.user_dir).note(Attempt("2026-11-20", score=70))
     progress = Progress(context.user_dir, context.settings)
     progress.reset()
     assert (context.settings.rung, dict(Days(context.user_dir).attempts)) == (-1, {})
-    assert Ladder(context.settings, []).spawn == RUNGS[0]
+    assert ladder.spawn == LADDER.spawn(0)
     Days(context.user_dir).note(Attempt("2026-11-22", score=90))
     progress.restore()
     assert context.settings.rung == 4
