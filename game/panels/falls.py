@@ -128,6 +128,7 @@ class Falls:
 
     def draw(self, canvas: Canvas) -> None:
         """Draw the lane, and the sentence where it leads nowhere."""
+        canvas = canvas.at(*self._form.anchor)
         left, top = self._place
         if self.words and not self._buttons:
             canvas.text(self.words, (left, top + 13), size=SMALL, colour=MUTE)
@@ -136,10 +137,12 @@ class Falls:
         box = self._timeline.box
         start, width = self._timeline.track
         y = box.bottom - HEIGHT
-        canvas.text(texts.FALLS_LANE, (box.left, y + 13), size=LABEL - 1, colour=MUTE)
         shows = len(self.chances.chances), self.chances.complete
         self._lane.draw(canvas, (start, y - 2, width, HEIGHT), shows, self._paint_lane)
-        now = self.chances.at(self._replay.at)
+        now, name = self.chances.at(self._replay.at), texts.FALLS_LANE
+        taken = 0.0 if now is None else canvas.text_width(of_hundred(now), size=LABEL, tabular=True) + 6
+        if box.left + canvas.text_width(name, size=LABEL - 1) + taken <= start - 10:  # large figures need all the room
+            canvas.text(name, (box.left, y + 13), size=LABEL - 1, colour=MUTE)
         if now is not None:
             canvas.dot((self._timeline.place(self._replay.at), y + _down(now)), 3.0, INK)
             figure = (start - 10, y + 13)

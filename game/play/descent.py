@@ -19,7 +19,7 @@ from ai.lander.descent import TANK, LegStart, leg_of
 from ai.lander.environment import Cause, LanderEnv, Outcome
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NET, NIGHT0, SMALL, TEXT, VIEW_SIZE
+from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NET, NIGHT0, SMALL, TEXT
 from game.flight.credit import Credit
 from game.flight.flight import Flight, Recording
 from game.flight.flight_file import Entry
@@ -28,15 +28,15 @@ from game.flight.outcomes import OutcomeCard
 from game.flight.replay import ReplayedFlight
 from game.play.challenge import Challenge, DrawnFlight
 from game.play.ghost import Ghost
-from game.world.camera import View
+from game.world.camera import ClearArea, View
 
 COURSE: Final = "descent"
 _MOST: Final = 5  # the highest factor of a row of landings
 _FILLS: Final = 40  # steps in which the tank is seen to fill
 _FADES: Final = 24  # steps in which a new leg appears
 _GAUGE: Final = (120.0, 4.0)
-_OVER_PAD: Final = 1.5  # metres above the goal at which its mark points down
-_EDGE: Final = (90.0, 420.0)  # points that marks keep from the sides, and their lowest row
+_OVER_PAD: Final = (0.75, 42.0)  # metres and points above the goal at which its mark points down, over its factor
+_EDGE: Final = (90.0, 140.0)  # points that marks keep from the sides, and from the lower edge
 _ANTENNA: Final = 1.5  # metres from the middle of a craft to above its antenna, where the words stand
 
 
@@ -201,9 +201,10 @@ class Descent(Challenge):
     def _draw_goal(self, canvas: Canvas, view: View, env: LanderEnv) -> None:
         """Point to the goal and write how far it is, at the edge of the view where it lies beyond."""
         pad = env.ground.pads[0]
-        place = view.points((pad.x, pad.top + _OVER_PAD)).tolist()
-        side, low = _EDGE
-        spot = min(max(place[0], side), VIEW_SIZE[0] - side), min(max(place[1], 0.0), low + 160)
+        x, y = view.points((pad.x, pad.top + _OVER_PAD[0])).tolist()
+        (side, low), seen = _EDGE, canvas.view
+        row = min(max(y - _OVER_PAD[1], seen.top + ClearArea.head), seen.bottom - low)
+        spot = min(max(x, seen.left + side), seen.right - side), row
         away = float(np.hypot(*(env.position[0] - (pad.x, pad.top + env.params.stand))))
         canvas.text(texts.DESCENT_AWAY.format(metres=away), (spot[0], spot[1] - 12), size=SMALL, colour=INK,
                     align="centre", tabular=True, alpha=0.8)  # fmt: skip
@@ -213,7 +214,7 @@ class Descent(Challenge):
     def _draw_landing(self, canvas: Canvas, craft: tuple[float, float], filled: float) -> None:
         """Write above the craft what the landing has earned, over the tank that fills."""
         (x, y), (width, height) = craft, _GAUGE
-        x, y = min(max(x, 2 * _EDGE[0]), VIEW_SIZE[0] - 2 * _EDGE[0]), y - 14
+        x, y = min(max(x, canvas.view.left + 2 * _EDGE[0]), canvas.view.right - 2 * _EDGE[0]), y - 14
         words = texts.DESCENT_LANDED.format(count=self._points) if self._points else texts.DESCENT_RELIEVED
         colour = HUMAN if self._points else NET
         canvas.text(words, (x, y - 22), size=TEXT, colour=colour, align="centre")

@@ -21,18 +21,17 @@ from game.ui.clipboard import pasted
 from game.ui.context import Context
 from game.world.camera import ClearArea
 
-BELOW_CLAIM: Final = ClearArea(head=222.0)  # keeps the world clear of what comes of the check
-_ROW: Final = 192.0  # baseline of that
+BELOW_CLAIM: Final = ClearArea(head=262.0)  # keeps the world clear of what comes of the check
+_ROW: Final = 236.0  # baseline of that, under the sentence on where the chance fell
 _CONTROL: Final = pygame.KMOD_CTRL | pygame.KMOD_META
 
 
-def arrival(event: pygame.event.Event, scene: Scene) -> Push | None:
+def arrival(event: pygame.event.Event, scene: Scene, context: Context) -> Push | None:
     """Return the way to the page of a flight that is dropped on the window or pasted; None for all other events.
 
     Tells the player why a flight is refused. A text that is typed takes what is pasted, and a scene that takes files
     of its own keeps those which are no flights.
     """
-    context = scene.context
     if event.type == pygame.DROPTEXT:
         return _page_of_text(context, str(event.text))
     if event.type == pygame.DROPFILE:
@@ -102,6 +101,7 @@ class Claimed:
     def draw(self, canvas: Canvas) -> None:
         """Draw the claim in the corner, and what comes of checking it below the strip of time."""
         hud.draw_corner(canvas, texts.FRIEND_TITLE, self.line)
+        canvas = canvas.at(0, -1)
         true, left = self.true, MARGIN
         colour = MUTE if true is None else canvas.palette.good if true else canvas.palette.warn
         if true is not None:

@@ -32,7 +32,7 @@ class Ladder:
     @property
     def spawn(self) -> str:
         """The kind of start of the next flight."""
-        return LADDER.spawn(self._settings.rung)
+        return LADDER.spawn(max(0, self._settings.rung))  # progress can be put away during a flight
 
     def climb(self, flight: Flight, card: OutcomeCard) -> OutcomeCard:
         """Move a rung up after a landing and down after a crash; return the card, which says so.

@@ -132,7 +132,7 @@ class ChoicesScene(FormScene):
         )
         change, limits = self._changes("rung"), (0.0, float(TOP_RUNG))
         slider = Slider(
-            self.form.manager, self._box, texts.CHOICES_LADDER, float(settings.rung), limits,
+            self.form.manager, self._box, texts.CHOICES_LADDER, max(0.0, settings.rung), limits,
             lambda rung: change(round(rung)), step=1.0, figure=_rung,
         )  # fmt: skip
         self._rows[self.form.add(slider)] = lambda: texts.CHOICES_LADDER_HELP

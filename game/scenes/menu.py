@@ -18,8 +18,8 @@ from game.ui.widgets import TextButton
 
 _TITLE_SIZE: Final = 88.0
 _WORD_SIZE: Final = 22.0
-_FIRST_WORD: Final = 284
-_LINE: Final = 34
+_FIRST_WORD: Final = 278
+_LINE: Final = 33
 _HALVES: Final = 12  # points between the two halves of the column
 
 

@@ -14,8 +14,8 @@ from game.core.scene import Pop, Push, Transition, push
 from game.drawing.canvas import Canvas
 from game.drawing.sky import NightSky
 from game.drawing.tokens import INK, LABEL, LINE, MARGIN, MUTE, SMALL, TEXT, TEXT_SIZES, VIEW_SIZE
-from game.flight.progress import Progress
 from game.input.controls import Command, Held, names
+from game.play.progress import Progress
 from game.scenes.dialog import QuestionDialog
 from game.ui.actions import Table
 from game.ui.context import Context

@@ -225,7 +225,7 @@ class App:
         if chosen:
             self.scenes.apply(transition)
             return
-        if page := arrival(event, self.scenes.top):
+        if page := arrival(event, self.scenes.top, self.context):
             self.scenes.apply(page)
             return
         if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:

@@ -10,10 +10,11 @@ from ai.common.environment import Doubles
 from ai.lander.environment import Outcome
 from game.core.clock import STEP
 from game.drawing.canvas import Canvas
+from game.drawing.tokens import VIEW_SIZE
 from game.flight.flight import Flight, StickHolder
 from game.world import framing
 from game.world.callouts import Callouts
-from game.world.camera import Camera, CameraTarget, ClearArea, View
+from game.world.camera import WIDEST, Camera, CameraTarget, ClearArea, View
 from game.world.edges import draw_edges
 from game.world.landscape.backdrop import EARTH, landscape
 from game.world.landscape.ground import draw_ground
@@ -24,6 +25,7 @@ from game.world.stage import Stage, flames
 
 _EDGE, _FOOT = 24.0, 100.0  # points that a mark keeps from the sides, and from the lower edge with its read-outs
 
+_BORDER: Final = 40.0  # points from the sides within which a craft is about to leave a view that rests
 _HEAD: Final = 84.0  # points at the top into which a craft that leaves flies no farther
 
 
@@ -75,6 +77,15 @@ class Scenery:
             self._camera.cut(shot)
         elif shot.zoom < self._camera.shot.zoom:
             self._camera.cut(CameraTarget(zoom=shot.zoom))
+        if self._calm:
+            self._keep_in_view()
+
+    def _keep_in_view(self) -> None:
+        """With reduced motion, show all of the world, once and for good, before the craft leaves what is seen."""
+        x, y = self._camera.view(1.0).points(self._flight.env.position[0]).tolist()
+        seen = _BORDER <= x <= VIEW_SIZE[0] - _BORDER and y >= _HEAD
+        if not seen and self._camera.shot.zoom > WIDEST:
+            self._camera.cut(CameraTarget(zoom=WIDEST))
 
     def wind_to(self) -> None:
         """Show the flight at another moment, without the traces of the steps before."""
@@ -98,6 +109,7 @@ class Scenery:
         self._callouts.follow()
         self._factors.follow(self._calm)
         if self._calm:
+            self._keep_in_view()
             return
         self._camera.shake(self.stage.jolt)
         if shot is None:

@@ -6,12 +6,15 @@ from collections.abc import Callable
 import pygame
 import pytest
 
+from ai.lander.spawns import LADDER
 from game.audio.mixer import Sound
 from game.core import texts
 from game.core.names import LibraryError
 from game.core.settings import Settings
 from game.flight.logbook import Records
-from game.flight.progress import Progress
+from game.play.days import Attempt, Days
+from game.play.ladder import Ladder
+from game.play.progress import Progress
 from game.scenes.menu import MenuScene
 from game.scenes.play import PlayScene
 from game.scenes.settings import SettingsScene
@@ -80,6 +83,23 @@ def test_what_is_flown_since_stays_after_what_comes_back(context: Context):
     assert not progress.restorable
 
 
+def test_the_ladder_and_the_days_are_put_away_and_come_back(context: Context):
+    context.settings.rung = 4
+    ladder = Ladder(context.settings, [])  # of a flight that is paused meanwhile
+    Days(context.user_dir).note(Attempt("2026-11-20", score=70))
+    progress = Progress(context.user_dir, context.settings)
+    progress.reset()
+    assert (context.settings.rung, dict(Days(context.user_dir).attempts)) == (-1, {})
+    assert ladder.spawn == LADDER.spawn(0)
+    Days(context.user_dir).note(Attempt("2026-11-22", score=90))
+    progress.restore()
+    assert context.settings.rung == 4
+    assert {day: each.score for day, each in Days(context.user_dir).attempts.items()} == {
+        "2026-11-20": 70,
+        "2026-11-22": 90,
+    }
+
+
 def test_nothing_flown_is_nothing_lost(context: Context):
     progress = Progress(context.user_dir, context.settings)
     assert (progress.told.flights, progress.restorable) == (0, False)
@@ -96,7 +116,7 @@ def test_a_disk_that_refuses_keeps_everything_where_it_is(context: Context, monk
     def full(*_: object, **__: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("game.flight.progress.write_text", full)
+    monkeypatch.setattr("game.play.progress.write_text", full)
     with pytest.raises(LibraryError, match="No space left"):
         Progress(context.user_dir, context.settings).reset()
     assert files(context) == before

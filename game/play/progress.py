@@ -20,9 +20,10 @@ from game.core.names import LibraryError, free_path, library_errors
 from game.core.settings import Settings
 from game.core.trash import Trash
 from game.flight.logbook import FOLDER, LOGBOOK, Records
+from game.play.days import FILE_NAME as DAYS
 
-FILES: Final = (LOGBOOK, FOLDER)  # files and folders of the player's folder that are progress
-SETTINGS: Final = ("tutored", "first_flown", "learnt", "chapter")  # and fields of the settings
+FILES: Final = (LOGBOOK, DAYS, FOLDER)  # files and folders of the player's folder that are progress
+SETTINGS: Final = ("tutored", "first_flown", "rung", "learnt", "chapter")  # and fields of the settings
 _PREFIX: Final = "progress "  # of the folder that progress is put away in
 _VALUES: Final = "progress.json"
 _LARGEST: Final = 1_000_000  # bytes of the settings put away
@@ -92,7 +93,8 @@ class Progress:
         sound, _ = sound_fields(Settings, {name: values[name] for name in SETTINGS if name in values and name in known})
         untouched = Settings()
         for name, value in sound.items():
-            if getattr(self._settings, name) == getattr(untouched, name):
+            now = getattr(self._settings, name)
+            if now == getattr(untouched, name) or (name == "rung" and value > now):  # everybody begins at the lowest
                 setattr(self._settings, name, value)
 
     def _take_back(self, box: Path) -> None:
@@ -102,6 +104,6 @@ class Progress:
             home.parent.mkdir(parents=True, exist_ok=True)
             if not home.exists():
                 path.rename(home)
-            elif home.name == LOGBOOK:
+            elif home.name in (LOGBOOK, DAYS):  # a line for each flight or day: what was put away is older
                 write_bytes(home, path.read_bytes().rstrip(b"\n") + b"\n" + home.read_bytes())
         shutil.rmtree(box)
