@@ -21,8 +21,8 @@ from game.ui.clipboard import pasted
 from game.ui.context import Context
 from game.world.camera import ClearArea
 
-BELOW_CLAIM: Final = ClearArea(head=222.0)  # keeps the world clear of what comes of the check
-_ROW: Final = 192.0  # baseline of that
+BELOW_CLAIM: Final = ClearArea(head=258.0)  # keeps the world clear of what comes of the check
+_ROW: Final = 242.0  # baseline of that, below the sentence on the falls
 _CONTROL: Final = pygame.KMOD_CTRL | pygame.KMOD_META
 
 
@@ -100,7 +100,7 @@ class Claimed:
         return texts.FRIEND_WRONG.format(earned=sharing.words(real.outcome, real.points))
 
     def draw(self, canvas: Canvas) -> None:
-        """Draw the claim in the corner, and what comes of checking it below the strip of time."""
+        """Draw the claim in the corner, and what comes of checking it below the words of the replay."""
         hud.draw_corner(canvas, texts.FRIEND_TITLE, self.line)
         true, left = self.true, MARGIN
         colour = MUTE if true is None else canvas.palette.good if true else canvas.palette.warn
