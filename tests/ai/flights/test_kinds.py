@@ -1,5 +1,7 @@
 """Every kind of flight, sent as a code: it is read again to the same flight, which earns the same, bit for bit."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -14,7 +16,6 @@ from ai.lander.descent import LegStart
 from ai.lander.environment import Outcome
 from ai.lander.pilots import ScriptedPilot
 from ai.lander.rules import ACTION_SHARES
-from ai.lander.spawns import SPAWNS
 
 STARTS = {
     "a leg of a descent": {"leg": LegStart(2, 11.375)},
@@ -23,7 +24,7 @@ STARTS = {
     "wider pads among hills": {"easing": Easing(wider_pads=True), "pads": 3},
     "without a time limit": {"easing": Easing(untimed=True), "mission": "wind"},
     "an earlier area": {"area": 0},
-    **{f"from {spawn}": {"spawn": spawn} for spawn in SPAWNS},
+    "a rung of the ladder": {"spawn": "rung_4"},
 }
 
 
@@ -46,10 +47,18 @@ def flown(analogue=False, **start):
     return SharedFlight(recording, Claim(real.outcome, real.points, real.end), recording.mission), real
 
 
+KINDS = [(name, analogue) for name in STARTS for analogue in (False, True)]
+
+
+@cache
+def kind(name, analogue):
+    return flown(analogue, **STARTS[name])
+
+
 @pytest.mark.parametrize("analogue", [False, True], ids=["keys", "sticks"])
-@pytest.mark.parametrize("start", STARTS.values(), ids=STARTS)
-def test_a_code_is_read_to_the_same_flight_and_verified(start, analogue):
-    flight, real = flown(analogue, **start)
+@pytest.mark.parametrize("name", STARTS)
+def test_a_code_is_read_to_the_same_flight_and_verified(name, analogue):
+    flight, real = kind(name, analogue)
     assert bool(flight.recording.shares) == analogue
     read = flight_of(code_of(flight))
     assert read.recording == flight.recording
@@ -59,6 +68,6 @@ def test_a_code_is_read_to_the_same_flight_and_verified(start, analogue):
 
 
 def test_flights_of_every_kind_are_verified_together():
-    rows = [flown(analogue, **start) for start in STARTS.values() for analogue in (False, True)]
+    rows = [kind(*each) for each in KINDS]
     found = dict(verified([flight_of(code_of(flight)) for flight, _ in rows]))
     assert [found[index] for index in range(len(rows))] == [real for _, real in rows]
