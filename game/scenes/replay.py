@@ -53,6 +53,7 @@ from game.world.scenery import Scenery
 
 SPEEDS: Final = (0.25, 0.5, 1.0, 2.0)
 _EARTH: Final = (208.0, 306.0)  # points; clear of the words
+_EARTH_BELOW_CLAIM: Final = (208.0, 336.0)
 _SCOUT: Final = 10  # steps looked ahead in every frame: a few milliseconds
 _STRIP: Final = (MARGIN, 78.0, VIEW_SIZE[0] - 2 * MARGIN, 60.0 + falls.HEIGHT)
 _FIGURE: Final = 88.0  # half of what the seconds take, and who flies
@@ -303,7 +304,7 @@ class ReplayScene(FormScene):
     def draw_world(self, canvas: Canvas, alpha: float) -> None:
         """Draw the moment that is shown, the way there and on, and its figures."""
         between = self.playback.between(alpha)
-        self._scenery.draw_land(canvas, between, _EARTH)
+        self._scenery.draw_land(canvas, between, _EARTH_BELOW_CLAIM if self.claimed else _EARTH)
         _draw_way(canvas, self._scenery.view(canvas.scale, between).filling(canvas), self.flight_replay, self._clear.head)
         self._scenery.draw_craft(canvas, between)
         hud.draw_readouts(canvas, self._readouts)
