@@ -305,7 +305,9 @@ class ReplayScene(FormScene):
         """Draw the moment that is shown, the way there and on, and its figures."""
         between = self.playback.between(alpha)
         self._scenery.draw_land(canvas, between, _EARTH_BELOW_CLAIM if self.claimed else _EARTH)
-        _draw_way(canvas, self._scenery.view(canvas.scale, between).filling(canvas), self.flight_replay, self._clear.head)
+        _draw_way(
+            canvas, self._scenery.view(canvas.scale, between).filling(canvas), self.flight_replay, self._clear.head
+        )
         self._scenery.draw_craft(canvas, between)
         hud.draw_readouts(canvas, self._readouts)
 
