@@ -136,6 +136,8 @@ def _made(
 ) -> SharedFlight:
     """Return a flight of what the sections hold."""
     seed, spawn, pads, mission = start
+    if "leg" in more and (mission or gravity or pads != 1):
+        raise ValueError("a leg of a descent has a start and rules of its own")
     recording = Recording(seed, spawn, pads, actions, hands, mission, gravity or [], **more)
     return SharedFlight(recording, claim, course or mission, barred)
 
@@ -319,7 +321,9 @@ def _pack_leg(flight: SharedFlight) -> bytes:
 
 def _read_leg(reader: _Reader, found: dict[str, Any]) -> None:
     number, tank, bare = reader.number(MOST_LEGS), reader.number(round(_TANK * TANK)), reader.number(1)
-    found["leg"] = LegStart(max(1, number), tank / _TANK, bool(bare))
+    if number < 1:
+        raise ValueError("there is no such leg")
+    found["leg"] = LegStart(number, tank / _TANK, bool(bare))
 
 
 def _pack_course(flight: SharedFlight) -> bytes:

@@ -95,6 +95,11 @@ class Challenge:
         return False
 
     @property
+    def stake(self) -> tuple[str, str] | None:
+        """Question before another start, and what would be lost, while that is more than the present flight."""
+        return None
+
+    @property
     def following(self) -> Challenge | None:
         """The challenge that comes next after a landing; None for the way back."""
         return None

@@ -66,6 +66,11 @@ class DailyStart(Challenge):
         self._begun = True
         return ""
 
+    @property
+    def stake(self) -> tuple[str, str] | None:
+        """The first attempt is lost with another start."""
+        return (texts.DAILY_STAKE, texts.DAILY_STAKE_MORE) if self._begun and not self.bar else None
+
     def written(self, entry: Entry) -> str:
         """Note how the first attempt ended; return what went wrong with that."""
         if not self.bar:

@@ -134,6 +134,11 @@ class Descent(Challenge):
         """Whether leaving would end a run that has landed."""
         return self.legs > 0 and (self._landed or self.start.number > 1)
 
+    @property
+    def stake(self) -> tuple[str, str] | None:
+        """A run that has landed is lost with another start."""
+        return (texts.DESCENT_STAKE, texts.DESCENT_STAKE_MORE.format(count=self.legs)) if self.under_way else None
+
     def again(self) -> bool:
         """Whether the next leg follows: after every landing."""
         return self._landed

@@ -99,7 +99,7 @@ class Claimed:
         return texts.FRIEND_WRONG.format(earned=sharing.words(real.outcome, real.points))
 
     def draw(self, canvas: Canvas) -> None:
-        """Draw the claim in the corner, and what comes of checking it below the strip of time."""
+        """Draw the claim in the corner, and what comes of checking it below the words of the replay."""
         hud.draw_corner(canvas, texts.FRIEND_TITLE, self.line)
         canvas = canvas.at(0, -1)
         true, left = self.true, MARGIN

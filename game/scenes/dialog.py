@@ -60,7 +60,7 @@ class Dialog(FormScene):
 
     def actions(self) -> Table:
         """Choose, or close without effect."""
-        return [self.form.confirms(texts.HINT_CHOOSE), self.form.goes_back(texts.HINT_LEAVE)]
+        return [self.form.confirms(texts.HINT_CHOOSE), self.form.goes_back(texts.HINT_BACK)]
 
     def hint_rows(self, canvas: Canvas) -> list[HintRow]:
         """Return the hints below the box."""

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Final
 
 import pygame
 
 from game.core import texts
-from game.core.scene import Pop, Scene, Transition, push
+from game.core.scene import Pop, Push, Scene, Transition, push
 from game.drawing.canvas import Canvas
 from game.flight import fading, networks
 from game.flight.assists import eased, sets_apart
@@ -144,10 +146,22 @@ class PlayScene(Scene):
         return {
             Command.HANDOVER: self._hand_over,
             Command.CHOICES: self._choose,
-            Command.NEXT: self._begin_elsewhere,
-            Command.RETRY: self.retry,
+            Command.NEXT: self._asking(self._begin_elsewhere),
+            Command.RETRY: self._asking(self.retry),
             Command.PAUSE: Pop if self._leaves else self.pause,
         }
+
+    def _asking(self, begin: Callable[[], None]) -> Run:
+        """Return what a key for another start does: ask first, where more than the present flight would be lost."""
+        challenge = self.challenge
+        stake = challenge.stake if challenge and (not self.flight.over or challenge.again()) else None
+        return partial(self._ask, stake, begin) if stake else begin
+
+    def _ask(self, stake: tuple[str, str], begin: Callable[[], None]) -> Transition:
+        from game.scenes.dialog import QuestionDialog
+
+        answers = [(texts.STAKE_FLY_ON, lambda: None), (texts.STAKE_END, begin)]
+        return Push(QuestionDialog(self, *stake, answers))
 
     def _flight_actions(self) -> list[Action]:
         actions = captions.flight_actions(self._runs, self.flight, self.challenge, leaves=self._leaves)

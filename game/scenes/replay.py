@@ -53,6 +53,7 @@ from game.world.scenery import Scenery
 
 SPEEDS: Final = (0.25, 0.5, 1.0, 2.0)
 _EARTH: Final = (208.0, 306.0)  # points; clear of the words
+_EARTH_BELOW_CLAIM: Final = (208.0, 336.0)
 _SCOUT: Final = 10  # steps looked ahead in every frame: a few milliseconds
 _STRIP: Final = (MARGIN, 78.0, VIEW_SIZE[0] - 2 * MARGIN, 60.0 + falls.HEIGHT)
 _FIGURE: Final = 88.0  # half of what the seconds take, and who flies
@@ -87,8 +88,8 @@ class ReplayScene(FormScene):
         self.flight_replay.scout(1)
         self.form.anchor = (0, -1)
         self.claimed = Claimed(friend, self.flight_replay) if friend else None
-        clear = BELOW_CLAIM if friend else _CLEAR
-        self._scenery = Scenery(self.flight_replay.flight, context.settings.reduced_motion, clear)
+        self._clear = BELOW_CLAIM if friend else _CLEAR
+        self._scenery = Scenery(self.flight_replay.flight, context.settings.reduced_motion, self._clear)
         self._heard = FlightSound(context.sound, self.flight_replay.flight.env, self._pace, warns=False)
         self._build()
         network = networks.chosen(context.models_dir, context.user_dir, context.settings.model)
@@ -297,14 +298,16 @@ class ReplayScene(FormScene):
         """Draw the moment that is shown, and the strip of time."""
         self.draw_world(canvas, alpha)
         view = self._scenery.view(canvas.scale, self.playback.between(alpha))
-        self.falls.draw_way(canvas, view, self.flight_replay.path, _CLEAR.head)
+        self.falls.draw_way(canvas, view, self.flight_replay.path, self._clear.head)
         self._draw_words(canvas)
 
     def draw_world(self, canvas: Canvas, alpha: float) -> None:
         """Draw the moment that is shown, the way there and on, and its figures."""
         between = self.playback.between(alpha)
-        self._scenery.draw_land(canvas, between, _EARTH)
-        _draw_way(canvas, self._scenery.view(canvas.scale, between).filling(canvas), self.flight_replay)
+        self._scenery.draw_land(canvas, between, _EARTH_BELOW_CLAIM if self.claimed else _EARTH)
+        _draw_way(
+            canvas, self._scenery.view(canvas.scale, between).filling(canvas), self.flight_replay, self._clear.head
+        )
         self._scenery.draw_craft(canvas, between)
         hud.draw_readouts(canvas, self._readouts)
 
@@ -355,10 +358,10 @@ class ReplayScene(FormScene):
                 canvas.line((x, 45), (x, 57), INK, 2)
 
 
-def _draw_way(canvas: Canvas, view: View, flight_replay: FlightReplay) -> None:
+def _draw_way(canvas: Canvas, view: View, flight_replay: FlightReplay, head: float) -> None:
     """Draw the path so far in the colour of who flew, and the path to come faintly."""
     path, hands = flight_replay.path, flight_replay.record.recording.hands
-    at, head = min(flight_replay.at, len(path) - 1), canvas.scale * _CLEAR.head
+    at, head = min(flight_replay.at, len(path) - 1), canvas.scale * head
     if at + 4 < len(path):
         draw_faint(canvas.surface, view.pixels(path[at::4]), MUTE, 0.35, head)
     for start, stop, hand in runs(hands[:at]):

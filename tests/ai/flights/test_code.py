@@ -10,11 +10,15 @@ from hypothesis import strategies as st
 
 from ai.flights import letters
 from ai.flights.code import BEGIN, END, OPTIONAL, REFUSALS, CodeError, code_of, codes_in, flight_of
+from ai.flights.easing import Easing
 from ai.flights.key_presses import packed, unpacked
 from ai.flights.recording import LONGEST, Recording, StickHolder
 from ai.flights.shared import Claim, SharedFlight
+from ai.flights.stick import STEPS
+from ai.lander.descent import MOST_LEGS, TANK, LegStart
 from ai.lander.environment import Outcome
 from ai.lander.missions import MISSIONS
+from ai.lander.rules import AREAS
 from ai.lander.spawns import SPAWNS
 
 PERSON, NETWORK = StickHolder.HUMAN, StickHolder.NETWORK
@@ -37,6 +41,13 @@ def refusal(text):
     return caught.value.kind
 
 
+legs = st.builds(
+    LegStart,
+    st.integers(1, MOST_LEGS),
+    st.integers(0, round(1000 * TANK)).map(lambda parts: parts / 1000),
+    st.booleans(),
+)
+thrusts = st.tuples(st.integers(0, STEPS), st.integers(-STEPS, STEPS))
 runs = st.lists(st.tuples(st.integers(0, 5), st.integers(1, 40)), max_size=30)
 
 
@@ -46,10 +57,13 @@ def flights(draw):
     cut = draw(st.integers(0, len(actions)))
     hands = [NETWORK] * cut + [PERSON] * (len(actions) - cut)
     steps = draw(st.lists(st.integers(0, LONGEST), unique=True, max_size=4).map(sorted))
-    mission = draw(st.sampled_from(["", *MISSIONS]))
+    leg = draw(st.none() | legs)
+    mission = "" if leg else draw(st.sampled_from(["", *MISSIONS]))
     recording = Recording(
-        draw(st.integers(0, 10**40)), draw(st.sampled_from(list(SPAWNS))), draw(st.sampled_from([1, 3])), actions,
-        hands, mission, [(step, draw(st.floats(0.6, 1.4))) for step in steps],
+        draw(st.integers(0, 10**40)), draw(st.sampled_from(list(SPAWNS))), 1 if leg else draw(st.sampled_from([1, 3])),
+        actions, hands, mission, [] if leg else [(step, draw(st.floats(0.6, 1.4))) for step in steps],
+        draw(st.dictionaries(st.integers(0, len(actions) - 1), thrusts, max_size=9)) if actions else {},
+        draw(st.builds(Easing, st.booleans(), st.booleans())), draw(st.integers(0, len(AREAS) - 1)), leg,
     )  # fmt: skip
     numbers = st.integers(-(10**6), 10**6).map(lambda number: number / 10_000)
     claim = Claim(draw(st.sampled_from(Outcome)), draw(st.integers(0, 500)), draw(st.tuples(numbers, numbers, numbers)))
@@ -111,7 +125,7 @@ def test_every_code_of_a_text_is_found_and_one_that_is_cut_is_said_to_be():
         (BEGIN + "000" + END, "damaged"),
         (sealed(bytes([9])), "newer"),
         (sealed(bytes([1])), "nonsense"),
-        (sealed(bytes([1, 9, 0])), "newer"),
+        (sealed(bytes([1, OPTIONAL - 1, 0])), "newer"),
         (sealed(bytes([1, OPTIONAL + 9, 0])), "nonsense"),  # passed over, but then there is nothing else
         (sealed(bytes([1, 2, 200])), "nonsense"),
         (BEGIN + "0" * 60_000 + END, "nonsense"),
@@ -173,3 +187,56 @@ def varint_of(value):
         out.append(value & 127 | 128)
         value >>= 7
     return bytes([*out, value])
+
+
+# The sections of shares of thrust, easing, area and leg: one that says what no flight can be is refused.
+
+START = [bytes([1, 4, 5, 1, 0, 0]), bytes([2, 3, 2, 1, 0]), bytes([3, 1, 0]), bytes([5, 5, 1, 0, 0, 0, 0])]
+
+
+def with_section(tag, content, start=START[0]):
+    """The code of a flight of two steps with one more section."""
+    rows = [start, *START[1:], bytes([tag, len(content)]) + content]
+    return sealed(bytes([1]) + b"".join(sorted(rows, key=lambda row: row[0])))
+
+
+@pytest.mark.parametrize(
+    ("tag", "content"),
+    [
+        (6, varint_of((STEPS + 1) * (2 * STEPS + 1)) + varint_of(2)),  # all thrust there is, in both steps
+        (7, bytes([3])),
+        (8, bytes([1])),
+        (9, varint_of(MOST_LEGS) + varint_of(round(1000 * TANK)) + bytes([1])),
+    ],
+)
+def test_the_utmost_of_each_section_is_read(tag, content):
+    assert len(flight_of(with_section(tag, content)).recording.actions) == 2
+
+
+@pytest.mark.parametrize(
+    ("tag", "content", "kind"),
+    [
+        (6, varint_of((STEPS + 1) * (2 * STEPS + 1) + 1) + varint_of(2), "nonsense"),  # more thrust than there is
+        (6, varint_of(5) + varint_of(3), "nonsense"),  # for more steps than are flown
+        (6, varint_of(5), "nonsense"),  # for no number of steps
+        (6, varint_of(5) + varint_of(2**60), "nonsense"),
+        (7, bytes([4]), "nonsense"),
+        (7, bytes([1, 1]), "newer"),
+        (8, bytes([len(AREAS)]), "newer"),
+        (9, bytes([0]) + varint_of(1000) + bytes([0]), "nonsense"),  # legs are counted from one
+        (9, varint_of(MOST_LEGS + 1) + varint_of(1000) + bytes([0]), "nonsense"),
+        (9, bytes([2]) + varint_of(round(1000 * TANK) + 1) + bytes([0]), "nonsense"),  # more than the tank holds
+        (9, bytes([2]) + varint_of(1000) + bytes([2]), "nonsense"),
+        (9, bytes([2]), "nonsense"),
+        (9, b"", "nonsense"),
+    ],
+)
+def test_a_section_that_no_flight_can_have_is_refused(tag, content, kind):
+    assert refusal(with_section(tag, content)) == kind
+
+
+@pytest.mark.parametrize("start", [bytes([5, 3, 0, 0]), bytes([5, 1, 0, 4]) + b"fall"])
+def test_a_leg_is_no_mission_and_has_a_ground_of_its_own(start):
+    assert refusal(with_section(9, bytes([2]) + varint_of(1000) + bytes([0]), bytes([1, len(start)]) + start)) == (
+        "nonsense"
+    )

@@ -174,3 +174,29 @@ def test_without_a_network_it_is_flown_alone(open_game: Open, monkeypatch: pytes
     assert play(driver).flown.ghost is None
     land(driver)
     assert descent(driver).start.number == 2
+
+
+@pytest.mark.parametrize("key", [pygame.K_r, pygame.K_n])
+def test_another_start_asks_before_it_ends_a_run(game: Driver, key: int):
+    land(game)
+    game.keys(key)
+    assert game.top_name == "QuestionDialog"
+    assert "1 leg landed" in game.top.more
+    game.keys(pygame.K_RETURN)  # the answer in focus is the harmless one
+    assert (game.top_name, descent(game).start.number) == ("PlayScene", 2)
+    game.keys(key, pygame.K_ESCAPE)
+    assert (game.top_name, descent(game).start.number) == ("PlayScene", 2)
+    game.keys(key, pygame.K_RIGHT, pygame.K_RETURN)
+    assert (game.top_name, descent(game).start.number) == ("PlayScene", 1)
+
+
+@pytest.mark.parametrize("key", [pygame.K_r, pygame.K_n])
+def test_another_start_comes_at_once_where_no_run_is_lost(game: Driver, key: int):
+    play(game).flown.waiting = False
+    game.frames(3)
+    game.keys(key)
+    assert game.top_name == "PlayScene"
+    land(game)
+    crash(game)
+    game.keys(key)
+    assert (game.top_name, descent(game).start.number) == ("PlayScene", 1)
