@@ -59,8 +59,9 @@ def chances_to_any_pad(critic: Critic, moments: Floats) -> Floats:
     """
     rows, pads, numbers = moments.shape
     flat = moments.reshape(-1, numbers)
-    chances: Floats = critic.chances(flat[:, :NUM_FEATURES], flat[:, NUM_FEATURES:])
-    return chances.reshape(rows, pads, NUM_ACTIONS).max(axis=1)
+    every = critic.chances(flat[:, :NUM_FEATURES], flat[:, NUM_FEATURES:]).reshape(rows, pads, NUM_ACTIONS)
+    chances: Floats = every.max(axis=1)
+    return chances
 
 
 @dataclass(frozen=True)
