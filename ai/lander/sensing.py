@@ -108,9 +108,13 @@ def surroundings(craft: Craft, limits: Limits, pad: Any) -> Floats:
     return numbers.astype(np.float32)
 
 
-def terrain(craft: Craft, pad: Any) -> Floats:
-    """Return the ground's height beside each lander, (n, 5): `TERRAIN` names the places. Pads count where they rest."""
-    heights = craft.ground.height_near(craft.position[:, :1] + np.array(_BESIDE))
+def terrain(craft: Craft, pad: Any, x: Doubles | None = None) -> Floats:
+    """Return the ground's height beside each lander, (n, 5), or beside places x (n,) in metres.
+
+    `TERRAIN` names the five places. Pads count where they rest.
+    """
+    middle = craft.position[:, :1] if x is None else x[:, None]
+    heights = craft.ground.height_near(middle + np.array(_BESIDE))
     above = heights - np.reshape(craft.ground.middles[pad, 1], (-1, 1))
     return (_HEIGHT * above).astype(np.float32)
 

@@ -48,6 +48,7 @@ class ChanceMeter:
         self._reason = texts.CHANCE_NO_NETWORK
         self.chance: float | None = None
         self.required: float | None = None
+        self._held = False  # whether the guardian has the stick
         self._shown = 1.0
         self._seen: object = None
         self._flight = flight
@@ -78,13 +79,14 @@ class ChanceMeter:
         chance = decision.chance if decision is not None and flight.shared else None
         if decision is not None and chance is not None and decision.required is not None:
             self.chance, self.required = _finite(float(chance[0])), float(decision.required[0])
+            self._held = int(decision.source[0]) > 0
             return
         self.required = None
         if not self.wished:
             self.chance = None
         elif self.chance is None or len(flight.recording.actions) % DECISION_STEPS == 0:
             assert self.critic is not None
-            chances = chances_to_any_pad(self.critic, flight.env.observe_pads())
+            chances = chances_to_any_pad(self.critic, flight.env.observe_around())
             self.chance = _finite(float(chances[0, flight.recording.actions[-1]]))
 
     def ease(self) -> None:
@@ -117,7 +119,8 @@ class ChanceMeter:
         if self.required is None:
             return texts.EXPLAIN_RING_NOW.format(chance=of_hundred(self.chance))
         chance, required = told_apart(self.chance, self.required)
-        return texts.EXPLAIN_RING_ASKED[self.low].format(chance=chance, required=required)
+        held = 2 if self._held and not self.low else int(self.low)
+        return texts.EXPLAIN_RING_ASKED[held].format(chance=chance, required=required)
 
 
 def _finite(chance: float) -> float | None:

@@ -75,7 +75,9 @@ class Cockpit:
     def lacks(self) -> str:
         """Text that says why a guardian goes by points of reward; empty where it does not, or does not help."""
         copilot, settings = self._flight.copilot, self._settings
-        if copilot is None or copilot.critic is not None or settings.copilot != MODES[1] or settings.assist == 0:
+        if self.credit.alone or not self._flight.shares or copilot is None:
+            return ""
+        if copilot.critic is not None or settings.copilot != MODES[1] or settings.assist == 0:
             return ""
         return no_critic(copilot)
 

@@ -51,6 +51,8 @@ def why_saved(decision: SharedDecision, values: ChanceValues) -> Why:
     title = texts.COPILOT_PANEL_WHY[source.name][0]
     if not values.readable:
         return title, *texts.VALUES_DAMAGED
+    if source is not ActionSource.PILOT and values.flown == values.asked:  # it has the stick, and agrees
+        title = texts.GUARDIAN_AGREES[0]
     asked, flown = (texts.said(ACTION_NAMES[action]) for action in (values.asked, values.flown))
     chance, required = told_apart(values.chances[values.asked], values.required)
     if source is ActionSource.PILOT:
@@ -58,6 +60,10 @@ def why_saved(decision: SharedDecision, values: ChanceValues) -> Why:
         lines = texts.GUARDIAN_YOURS if enough else texts.GUARDIAN_NO_BETTER
     elif values.chances[values.asked] >= values.required:  # it has stepped in, and gives back a little later
         lines = texts.GUARDIAN_NOT_YET
+    elif values.flown == values.asked:
+        lines = texts.GUARDIAN_AGREES[1:]
+    elif values.chances[values.flown] <= values.chances[values.asked]:
+        lines = texts.GUARDIAN_HOLDS
     else:
         lines = texts.GUARDIAN_STEPS_IN
     saved = told_apart(values.chances[values.flown], values.chances[values.asked])[0]

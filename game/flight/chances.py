@@ -14,7 +14,7 @@ import numpy as np
 
 from ai.common.environment import Floats
 from ai.lander.conditions import CALM
-from ai.lander.environment import NUM_ACTIONS, PARAMS, LanderEnv, Outcome
+from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES, PARAMS, LanderEnv, Outcome
 from game.core import texts
 from game.flight.flight import DECISION_STEPS, Flight, StickHolder
 from game.flight.networks import Policy, QPolicy
@@ -31,8 +31,11 @@ _CALM: Final = 60  # steps without a dangerous action after which another one is
 class Critic(Protocol):
     """Protocol of a safety critic, such as `ai.copilot.critic.SafetyCritic`."""
 
-    def chances(self, observation: Floats) -> Floats:
-        """Return the chance (n, 6), 0 to 1, to be saved after each action, for observations (n, 9)."""
+    def chances(self, observation: Floats, surroundings: Floats) -> Floats:
+        """Return the chance (n, 6), 0 to 1, to be saved after each action.
+
+        `observation` is (n, 9), `surroundings` (n, k) are those of `LanderEnv.around`.
+        """
 
 
 def critic_of(policy: Policy | None) -> tuple[Critic | None, str]:
@@ -49,10 +52,15 @@ def known_for(env: LanderEnv) -> bool:
     return env.conditions == CALM and env.params == PARAMS and env.gravity == PARAMS.gravity
 
 
-def chances_to_any_pad(critic: Critic, observations: Floats) -> Floats:
-    """Return the chances (n, 6) to be saved to one of the pads or another, for observations (n, pads, 9)."""
-    rows, pads, features = observations.shape
-    chances: Floats = critic.chances(observations.reshape(-1, features)).reshape(rows, pads, NUM_ACTIONS).max(axis=1)
+def chances_to_any_pad(critic: Critic, moments: Floats) -> Floats:
+    """Return the chances (n, 6) to be saved to one of the pads or another for moments (n, pads, 9 + k).
+
+    `LanderEnv.observe_around` returns such.
+    """
+    rows, pads, numbers = moments.shape
+    flat = moments.reshape(-1, numbers)
+    every = critic.chances(flat[:, :NUM_FEATURES], flat[:, NUM_FEATURES:]).reshape(rows, pads, NUM_ACTIONS)
+    chances: Floats = every.max(axis=1)
     return chances
 
 

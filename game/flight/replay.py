@@ -62,7 +62,8 @@ class FlightReplay:
         flight: the flight at the step that is shown.
         length: physics steps of the whole flight.
         path: positions (steps + 1, 2) up to the scout's step.
-        observations: what could be observed of each pad, (pads, 9), before every decision of the scout in the air.
+        observations: what is known on the way to each pad, (pads, 9 + k) of `LanderEnv.observe_around`, before every
+            decision of the scout in the air.
 
     """
 
@@ -130,7 +131,7 @@ class FlightReplay:
         """Keep what a pilot could observe before the scout's next decision, up to the first touch."""
         self._touched = self._touched or self.touching
         if self.reached % DECISION_STEPS == 0 and not self._touched:
-            self.observations.append(self._scout.env.observe_pads()[0])
+            self.observations.append(self._scout.env.observe_around()[0])
 
     def step(self) -> None:
         """Show the next step."""

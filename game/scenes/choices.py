@@ -10,7 +10,7 @@ import pygame
 from game.cockpit.cockpit import MODES
 from game.core import texts
 from game.core.scene import Pop, Scene
-from game.core.settings import GRAVITY_SHARES, PACES, TOP_RUNG
+from game.core.settings import GRAVITY_SHARES, PACES, TOP_RUNG, Settings
 from game.drawing.canvas import Canvas, Point
 from game.drawing.prose import draw_wrapped
 from game.drawing.shapes import Shape
@@ -35,6 +35,7 @@ _LABELS: Final = 142
 _FIRST: Final = 136
 _ROW: Final = 40
 _HELP: Final = 18  # from the last row to the sentence on the one in focus
+_HELP_ROOM: Final = 700  # points, for two lines
 _TOGGLES: Final = 34
 _TOGGLE_ROW: Final = 50
 _CHART: Final = pygame.Rect(800, 152, 372, 150)
@@ -85,7 +86,7 @@ class ChoicesScene(FormScene):
             "assist",
             (0.0, 1.0),
             texts.CHOICES_ASSIST,
-            lambda: texts.CHOICES_ASSIST_HELP[settings.assist > 0].format(**keys),
+            lambda: texts.CHOICES_ASSIST_HELP[_helped(settings)].format(**keys),
         )
         self._choice(
             texts.CHOICES_MODE,
@@ -148,7 +149,7 @@ class ChoicesScene(FormScene):
         self.form.draw(canvas)
         if self.form.focused in self._rows:
             y = _FIRST + len(self._rows) * _ROW + _HELP
-            canvas.text(self._rows[self.form.focused](), (MARGIN, y), size=SMALL, colour=MUTE)
+            draw_wrapped(canvas, self._rows[self.form.focused](), (MARGIN, y), _HELP_ROOM, colour=MUTE, leading=17)
         if self._begun and not self._challenge:
             canvas.text(texts.CHOICES_LATER, (MARGIN + 112, 645), size=SMALL, colour=MUTE)
         self._draw_skill(canvas)
@@ -231,6 +232,11 @@ class ChoicesScene(FormScene):
 
 def _index(names: tuple[str, ...] | list[str], name: str) -> int:
     return names.index(name) if name in names else 0
+
+
+def _helped(settings: Settings) -> int:
+    """Return which help is on: 0 none, 1 a co-pilot's, 2 a guardian's."""
+    return (1 + _index(MODES, settings.copilot)) * (settings.assist > 0)
 
 
 def _rung(rung: float) -> str:

@@ -65,6 +65,7 @@ class PlayScene(Scene):
         self._stick = FlightControls(context.controls, context.settings)
         self.explained = Explained(flies=True)
         self._away = 0  # steps since the window was left; 0 while it is in use
+        self._told = ""  # why the guardian goes by points, as the player was told last
         self._controls, self._settings, self._sound = context.controls, context.settings, context.sound
         self._load_network()
         if self.challenge is None and seed is None and not context.settings.tutored:
@@ -93,6 +94,10 @@ class PlayScene(Scene):
         other = not challenge and self._chosen() != self._begun_with
         if not (self.flown.begun or self.flight.over) and (eases or other):
             self._begin(self.flight.recording.seed)
+        problem = self.flown.cockpit.lacks
+        if problem and problem != self._told:  # once: it holds for every flight with this network
+            self.context.note(problem)
+        self._told = problem
 
     def exit(self) -> None:
         """Keep the flight for the return, and save the dial's setting."""

@@ -13,13 +13,13 @@ import numpy as np
 import pygame
 
 from ai.common.environment import Doubles, Floats
-from ai.lander.environment import NUM_ACTIONS, LanderEnv
+from ai.lander.environment import LanderEnv
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import INK, NET, NIGHT0, Colour
-from game.flight.chances import Critic
+from game.flight.chances import Critic, chances_to_any_pad
 from game.world.camera import GROUND_LINE, View
 from game.world.contours import contours, smooth
 from game.world.paths import draw_faint
@@ -113,9 +113,7 @@ class ChanceMap:
             self._finish()
             return
         rows = self._observations[done : done + _PIECE]
-        count, pads, features = rows.shape
-        chances = critic.chances(rows.reshape(-1, features)).reshape(count, pads * NUM_ACTIONS)
-        self._chances.append(chances.max(axis=1))
+        self._chances.append(chances_to_any_pad(critic, rows).max(axis=1))
 
     def _begin(self, env: LanderEnv, slot: int) -> None:
         """Begin a new map, unless nothing has changed since the last."""
@@ -124,7 +122,9 @@ class ChanceMap:
             return
         self._state, self._chances = state, []
         places = self._places.reshape(-1, 2)
-        self._observations = np.stack([env.observe_at(slot, places, pad) for pad in range(len(env.ground.pads))], 1)
+        around = [(env.observe_at(slot, places, pad), env.around_at(slot, places, pad))
+                  for pad in range(len(env.ground.pads))]  # fmt: skip
+        self._observations = np.stack([np.concatenate(parts, axis=1) for parts in around], axis=1)
 
     def _finish(self) -> None:
         chances = np.concatenate(self._chances).astype(float).reshape(self._places.shape[:2])

@@ -4,6 +4,7 @@ from dataclasses import asdict
 import pytest
 
 from ai.copilot.alone import LandingAlone
+from ai.lander.spawns import RUNGS
 from game.core import texts
 from game.flight.becoming import KINDS, Becoming, kind_of
 from game.flight.flight_file import Entry
@@ -24,12 +25,20 @@ def guarded(**more) -> Entry:
 
 def test_kinds_of_starts_have_estimates_of_their_own():
     assert set(KINDS) == set(texts.BECOMING_KINDS)
-    assert [kind_of(each) for each in (alone(), alone(pads=3), alone(course="night"))] == list(KINDS)
+    starts = {
+        "ladder": {"spawn": next(iter(RUNGS))},
+        "plain": {},
+        "hills": {"pads": 3},
+        "missions": {"course": "night"},
+    }
+    assert {kind: kind_of(alone(**start)) for kind, start in starts.items()} == {kind: kind for kind in KINDS}
     becoming = Becoming([alone()] * 10 + [alone(landed=False, pads=3)] * 10)
     assert becoming.estimate("plain").mean > 0.8
     assert becoming.estimate("hills").mean < 0.2
     assert not becoming.estimate("missions").known
-    assert [len(becoming.curves[kind]) for kind in KINDS] == [10, 10, 0]
+    assert {kind: len(curve) for kind, curve in becoming.curves.items()} == {
+        "ladder": 0, "plain": 10, "hills": 10, "missions": 0
+    }  # fmt: skip
 
 
 @pytest.mark.parametrize("entry", [
