@@ -192,7 +192,8 @@ class Tutorial(Challenge):
         if flight.outcome is not Outcome.LANDED:
             return outcome_card(flight.env, flight.share).reason
         if flight.hand is StickHolder.NETWORK:
-            return texts.TUTORIAL_NETWORK_LANDED
+            sooner = self.lesson.name == "take_back"
+            return texts.TUTORIAL_TAKE_EARLIER if sooner else texts.TUTORIAL_NETWORK_LANDED
         return texts.TUTORIAL_LANDED_EARLY
 
     # The picture
