@@ -40,7 +40,7 @@ from game.play.tutorial_lessons import (
 from game.world.camera import View
 
 _PRAISE: Final = 40  # steps that a finished lesson stays on the screen, with a tick
-_LONG: Final = 720  # steps in flight after which the network lands a rescue that does not come down
+_LONG: Final = 840  # steps in flight after which the network lands a rescue that does not come down
 _NEAR: Final = 4.0  # metres above the pad, below which the craft should be upright
 _TOLD_WHY: Final = 240  # steps in flight that the reason for a restart stays on the screen
 _SIDEWAYS: Final = 12.0  # metres from the pad that count as far

@@ -274,6 +274,7 @@ HANDS: dict[str, Callable[[Flight], int]] = {
     "holds left": decided(1),
     "holds right": decided(2),
     "does nothing": decided(0),
+    "holds the engine and left": decided(4),
     "flies well": lambda flight: int(PILOT.act(flight.env.observe())[0]),
 }
 
@@ -299,7 +300,7 @@ def test_who_tries_to_crash_is_brought_down_by_the_network_that_comes_with_the_g
     assert tutorial.through
 
 
-def test_a_rescue_that_does_not_come_down_is_helped_by_words(open_game: Open):
+def test_a_rescue_that_does_not_come_down_is_landed_by_the_network(open_game: Open):
     driver = open_game(PlayScene, 0, challenge=Tutorial())
     challenge, controls = play(driver).challenge, driver.app.context.controls
     while challenge.lesson.name != "rescue":
@@ -309,6 +310,11 @@ def test_a_rescue_that_does_not_come_down_is_helped_by_words(open_game: Open):
     assert challenge.words(flight, controls).startswith(first)
     for _ in range(1000):  # whatever it does up there
         challenge.follow(flight)
+    assert flight.hand is StickHolder.NETWORK
+    assert challenge.words(flight, controls) == texts.TUTORIAL_BROUGHT
+    flight.hand_over()  # the player may still take it back
+    challenge.follow(flight)
+    assert flight.hand is StickHolder.HUMAN
     assert challenge.words(flight, controls).startswith(later)
 
 
