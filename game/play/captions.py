@@ -50,8 +50,7 @@ def _draw_free_title(canvas: Canvas, flight: Flight, network: Network, hands: st
     rung = rung_of(flight)
     if rung is not None:
         title = texts.LADDER_TITLE.format(number=rung + 1, count=COUNT)
-        left = canvas.view.left + MARGIN + canvas.text_width(title, size=SMALL) + 12
-        draw_ladder(canvas, left, canvas.view.top + 38, rung)
+        draw_ladder(canvas.at(-1, -1), MARGIN + canvas.text_width(title, size=SMALL) + 12, 38, rung)
     hud.draw_corner(canvas, title, flown, notice)
 
 
