@@ -66,8 +66,8 @@ class Guardian:
         known = np.isfinite(chance).all(axis=1)
         self._safe_for = np.where(enough[0], self._safe_for + 1, 0)
         enough[0] &= ~self.saving | (self._safe_for > np.minimum(PATIENCE * self.rescues**2, _LONGEST))
-        none = ~enough[1:].any(axis=0)
-        enough[1:, none] = (offered[1:] == offered[1:].max(axis=0))[:, none]
+        none = ~enough.any(axis=0)
+        enough[:, none] = (offered == offered.max(axis=0))[:, none]
         chosen = np.where(known, enough.argmax(axis=0), 0)
         saving = chosen > 0
         self.rescues += saving & ~self.saving

@@ -40,7 +40,7 @@ from game.play.tutorial_lessons import (
 from game.world.camera import View
 
 _PRAISE: Final = 40  # steps that a finished lesson stays on the screen, with a tick
-_LONG: Final = 900  # steps in flight after which a rescue that does not come down is helped by words
+_LONG: Final = 840  # steps in flight after which the network lands a rescue that does not come down
 _NEAR: Final = 4.0  # metres above the pad, below which the craft should be upright
 _TOLD_WHY: Final = 240  # steps in flight that the reason for a restart stays on the screen
 _SIDEWAYS: Final = 12.0  # metres from the pad that count as far
@@ -115,6 +115,8 @@ class Tutorial(Challenge):
             if not self.praise:
                 self._begin_lesson(self._number + 1)
             return ""
+        if self.lesson.guarded and self._flown_for == _LONG and flight.hand is StickHolder.HUMAN:
+            flight.hand_over()  # kept from crashing by a co-pilot, one may hover without end
         done = flight.hand is (self.lesson.by or flight.hand) and self.lesson.done(flight)
         self._done_for = self._done_for + 1 if done else 0 if self.lesson.held else self._done_for
         if self._done_for < self.lesson.steps:
@@ -192,7 +194,8 @@ class Tutorial(Challenge):
         if flight.outcome is not Outcome.LANDED:
             return outcome_card(flight.env, flight.share).reason
         if flight.hand is StickHolder.NETWORK:
-            return texts.TUTORIAL_NETWORK_LANDED
+            sooner = self.lesson.name == "take_back"
+            return texts.TUTORIAL_TAKE_EARLIER if sooner else texts.TUTORIAL_NETWORK_LANDED
         return texts.TUTORIAL_LANDED_EARLY
 
     # The picture
@@ -233,6 +236,8 @@ class Tutorial(Challenge):
             return urgent
         if self.praise:
             return texts.TUTORIAL_GOOD[lesson.name]
+        if lesson.guarded and flight.hand is StickHolder.NETWORK:
+            return texts.TUTORIAL_BROUGHT
         if lesson.guarded:
             return told[1] if self._begun > 2 or self._flown_for > _LONG else told[0]
         if flight.hand is StickHolder.NETWORK:

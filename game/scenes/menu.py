@@ -18,8 +18,8 @@ from game.ui.widgets import TextButton
 
 _TITLE_SIZE: Final = 88.0
 _WORD_SIZE: Final = 22.0
-_FIRST_WORD: Final = 278
-_LINE: Final = 33
+_FIRST_WORD: Final = 260
+_LINE: Final = 34
 _HALVES: Final = 12  # points between the two halves of the column
 
 
@@ -57,8 +57,8 @@ class MenuScene(FormScene):
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the moon, the title, the column and the hints."""
         self._background.draw(canvas, alpha)
-        canvas.text(texts.GAME, (MARGIN - 2, 208), size=_TITLE_SIZE, weight="extralight")
-        canvas.text(texts.MENU_LINE, (MARGIN, 248), size=TEXT, colour=MUTE)
+        canvas.text(texts.GAME, (MARGIN - 2, 184), size=_TITLE_SIZE, weight="extralight")
+        canvas.text(texts.MENU_LINE, (MARGIN, 224), size=TEXT, colour=MUTE)
         self.form.draw(canvas)
         for word, line in self._lines:
             if word.warmth > 0.02:

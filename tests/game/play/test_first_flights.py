@@ -16,7 +16,7 @@ from game.core.settings import TOP_RUNG, Settings
 from game.flight import networks
 from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Entry
-from game.flight.logbook import Records, best, skill
+from game.flight.logbook import Records, best
 from game.flight.replay import FlightReplay
 from game.flight.skill import Skill
 from game.play.ladder import Ladder
@@ -168,7 +168,7 @@ def test_flights_from_the_ladder_replay_but_do_not_measure_skill(context: Contex
     assert record.recording.spawn == "rung_3"
     [entry] = Records(context.user_dir).entries()
     assert entry.on_ladder
-    assert skill([entry]) == Skill([entry]).own == []
+    assert Skill([entry]).own == []
     assert best([entry])
 
 
@@ -274,6 +274,7 @@ HANDS: dict[str, Callable[[Flight], int]] = {
     "holds left": decided(1),
     "holds right": decided(2),
     "does nothing": decided(0),
+    "holds the engine and left": decided(4),
     "flies well": lambda flight: int(PILOT.act(flight.env.observe())[0]),
 }
 
@@ -299,7 +300,7 @@ def test_who_tries_to_crash_is_brought_down_by_the_network_that_comes_with_the_g
     assert tutorial.through
 
 
-def test_a_rescue_that_does_not_come_down_is_helped_by_words(open_game: Open):
+def test_a_rescue_that_does_not_come_down_is_landed_by_the_network(open_game: Open):
     driver = open_game(PlayScene, 0, challenge=Tutorial())
     challenge, controls = play(driver).challenge, driver.app.context.controls
     while challenge.lesson.name != "rescue":
@@ -309,6 +310,11 @@ def test_a_rescue_that_does_not_come_down_is_helped_by_words(open_game: Open):
     assert challenge.words(flight, controls).startswith(first)
     for _ in range(1000):  # whatever it does up there
         challenge.follow(flight)
+    assert flight.hand is StickHolder.NETWORK
+    assert challenge.words(flight, controls) == texts.TUTORIAL_BROUGHT
+    flight.hand_over()  # the player may still take it back
+    challenge.follow(flight)
+    assert flight.hand is StickHolder.HUMAN
     assert challenge.words(flight, controls).startswith(later)
 
 

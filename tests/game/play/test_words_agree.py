@@ -100,7 +100,7 @@ def test_header_panel_hints_card_and_logbook_say_the_same(
     page = reading.check(6)
     reading.check(30)
     land(driver)
-    page = reading.check(70)
+    page = reading.check(140)  # at half speed the card takes twice as long to come
     challenge = play(driver).challenge
     if challenge and not challenge.kept:
         return
