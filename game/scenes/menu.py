@@ -40,7 +40,7 @@ class MenuScene(FormScene):
         self._lines: list[tuple[TextButton, str]] = []
         for number, name in enumerate(ROWS):
             label, line = texts.MENU[name]
-            lower = number >= len(ROWS) // 2
+            lower = number >= ROWS.index("learn")
             box = (MARGIN, _FIRST_WORD + number * _LINE + lower * _HALVES, 160, _LINE)
             word = TextButton(self.form.manager, box, label, partial(_open, name), size=_WORD_SIZE, weight="light")
             self._lines.append((self.form.add(word), line))

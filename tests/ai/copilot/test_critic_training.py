@@ -83,7 +83,7 @@ def test_whether_a_moment_could_be_saved_is_what_comes_of_flying_on(agent):
     together = saved(agent, moments, action)
     assert 0 < together.sum() < 30
     for k in range(30):
-        alone = LanderEnv(1, 0, ground=moments.ground)
+        alone = LanderEnv(1, 0, ground=moments.env.ground)
         alone.place(np.ones(1, bool), moments.start[[k]])
         alone.steps[:], alone.target[:] = moments.steps[k], moments.target[k]
         alone.fly(action[[k]])

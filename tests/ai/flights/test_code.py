@@ -84,7 +84,7 @@ def test_actions_come_back_as_they_were(actions):
 
 
 def test_the_longest_flight_with_a_change_in_every_step_has_a_code():
-    actions = np.random.default_rng(0).integers(0, 6, LONGEST).tolist()
+    actions = np.random.default_rng(0).integers(0, 6, 2 * 3600).tolist()
     assert flight_of(code_of(shared(actions))).recording.actions == actions
 
 

@@ -103,7 +103,7 @@ def test_a_mission_is_found_flown_and_left(open_screen):
     player.fly()
     assert player.top.flight.outcome is Outcome.LANDED
     player.skip(90)
-    player.press("confirm")
+    player.press("pause")  # Enter leads on to the next one
     assert player.top_name == "MissionsScene"
     assert player.the(Listing).rows[1][1] in texts.MEDALS[1:]
     player.press("back")

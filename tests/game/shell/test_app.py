@@ -65,7 +65,7 @@ def test_menu_leads_to_settings_and_back_by_keyboard(game: Driver):
 
 
 def test_menu_leads_to_settings_by_mouse_and_by_pad(game: Driver):
-    game.click((90, 616))
+    game.click((90, 595))
     assert game.top_name == "SettingsScene"
     game.button(pygame.CONTROLLER_BUTTON_B)
     assert game.top_name == "MenuScene"
@@ -122,7 +122,7 @@ def test_the_view_is_16_to_9_in_any_window_and_the_mouse_is_in_points(open_game,
 @pytest.mark.parametrize("size", SIZES)
 def test_every_screen_works_at_every_size(game: Driver, size: tuple[int, int]):
     game.resize(size)
-    game.click((90, 616))
+    game.click((90, 595))
     assert game.top_name == "SettingsScene"
     game.frames(3)
     game.click((80, 640))
