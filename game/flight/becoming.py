@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 from ai.copilot.alone import Estimate, LandingAlone
 from game.flight.flight_file import Entry
 
-KINDS: Final = ("ladder", "plain", "hills", "missions")  # keys of `texts.BECOMING_KINDS`
+KINDS: Final = ("plain", "ladder", "hills", "missions")  # keys of `texts.BECOMING_KINDS`
 _MOST: Final = 300  # latest flights of a kind that are looked at: older ones are forgotten anyway
 
 

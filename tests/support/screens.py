@@ -83,9 +83,9 @@ SCREENS: dict[str, Make] = {
     "AssistsScene": AssistsScene,
     "NetworksScene": NetworksScene,
     "ReplayScene": lambda context: ReplayScene(context, flown(context)),
-    "friend": friend,
 }
 FLOWN: dict[str, Make] = {
+    "friend": friend,
     "Play": lambda context: PlayScene(context, 3),
     "swarm": lambda context: WatchScene(context, 16, seed=2),
     "mission": lambda context: PlayScene(context, 0, challenge=FlownMission(MISSIONS["wind"])),

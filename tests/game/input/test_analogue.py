@@ -151,5 +151,4 @@ def test_a_real_pad_flies_with_shares_that_the_flame_follows_and_is_pulled_out(
     assert game.top_name == "PauseScene"
     game.key(pygame.K_ESCAPE)
     game.frames(5)
-    assert play.flight.recording.actions[-1] == 0
-    assert len(play.flight.recording.actions) - 1 not in play.flight.recording.shares
+    assert play.waiting  # it hangs until it is touched

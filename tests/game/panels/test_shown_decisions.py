@@ -153,6 +153,7 @@ def test_the_co_pilots_panel_draws_the_shared_decision_and_its_words_say_why(
     flight, drawn = Flight(5, agent, pads=pads), Drawn(monkeypatch)
     copilot_panel = CopilotPanel(flight.env.ground)
     flight.help(0.5, mode)
+    flight.copilot.critic = None  # chances have a panel of their own
     rng = np.random.default_rng(1)
     titles, held = set(), 0
     while not flight.over and len(flight.recording.actions) < 900:

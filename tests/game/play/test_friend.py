@@ -243,7 +243,7 @@ def test_without_a_clipboard_the_code_is_written_to_a_file(
     driver.frames(2)
     driver.press_on(texts.CODE_COPY)
     (path,) = (context.user_dir / "codes").iterdir()
-    assert driver.said == texts.CODE_NO_CLIPBOARD.format(path=path)
+    assert path.name in driver.said
     assert sharing.flight_in_file(path).recording == record.recording
     driver.press_on(texts.CODE_PASTE)
     assert driver.said == texts.CODE_PASTE_EMPTY

@@ -156,7 +156,10 @@ def test_settings_are_changed_and_kept(open_screen):
     assert player.saved()["effects_volume"] == pytest.approx(0.7)
     while player.form.focused.label != texts.BACK:
         player.press("down")
-    player.press("right", "up", "confirm")
+    player.press("right")
+    while player.form.focused.label != texts.BINDINGS_OPEN:
+        player.press("up")
+    player.press("confirm")
     assert player.top_name == "BindingsScene"
     kind = "keys" if player.device == "keys" else "buttons"
     while player.form.focused.label != texts.BINDINGS["PREVIOUS"]:

@@ -23,13 +23,13 @@ def setting(window: Window, name: str) -> object:
 
 def test_a_setting_chosen_with_real_keys_survives_a_restart(display: str, tmp_path: Path):
     with start(display, tmp_path / "user") as window:
-        window.key(*["Down"] * 8, "Return")  # Settings
+        window.key(*["Down"] * 9, "Return")  # Settings
         window.key("Down", "Return")  # Reduced motion
         window.wait_for(lambda: setting(window, "reduced_motion") is True, "the setting to be saved")
         window.key("Escape")
         assert window.close() == 0
     with start(display, tmp_path / "user") as window:
-        window.key(*["Down"] * 8, "Return", "Down", "Return")
+        window.key(*["Down"] * 9, "Return", "Down", "Return")
         window.wait_for(lambda: setting(window, "reduced_motion") is False, "the setting to change back")
         assert window.close() == 0
 
@@ -38,7 +38,7 @@ def test_the_mouse_meets_what_it_sees_in_a_letterboxed_window(display: str, tmp_
     with start(display, tmp_path / "user") as window:
         window.resize(900, 760)
         scale, top = 900 / 1280, (760 - 900 * 9 / 16) / 2
-        window.click(round(90 * scale), round(603 * scale + top))  # Settings
+        window.click(round(90 * scale), round(595 * scale + top))  # Settings
         window.click(round(464 * scale), round((124 + 60 + 28) * scale + top))
         window.wait_for(lambda: setting(window, "reduced_motion") is True, "the setting to be saved")
         assert window.close() == 0
@@ -94,7 +94,7 @@ def test_the_mouse_meets_what_it_sees_in_full_screen_and_back(tmp_path: Path):
             if wide == 1366:
                 window.key("F11")
                 window.wait_for(lambda: window.picture().get_size() == (1366, 768), "the whole screen")
-                window.key(*["Down"] * 8, "Return")
+                window.key(*["Down"] * 9, "Return")
             else:
                 window.key("F11")
                 window.wait_for(lambda: window.picture().get_size() == (1280, 720), "the window")

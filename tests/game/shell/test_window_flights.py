@@ -60,7 +60,7 @@ def test_play_hand_over_take_back_hand_over_and_it_lands(display: str, tmp_path:
 @needs_a_network
 def test_watch_flies_a_swarm_and_counts_its_landings(display: str, tmp_path: Path):
     with start(display, tmp_path / "user") as window:
-        window.key("Down", "Down", "Return")
+        window.key("Down", "Down", "Down", "Return")
         window.wait_for(lambda: shows(window, NET, LAMP_AT_THE_TOP), "the network to fly")
         window.key("Down", "Right", "Right", "plus", "plus")
         window.wait_for(lambda: shows(window, PALETTE.good, pygame.Rect(60, 88, 80, 36)), "landings", 40)
