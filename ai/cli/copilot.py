@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from ai.agent.agent import DeepQAgent
     from ai.copilot.measurement import AssistedFlights
 
-ROUNDS: Final = 40
-ROUNDS_ALLOWED: Final = (4, 1000)
+ROUNDS: Final = 80
+ROUNDS_ALLOWED: Final = (7, 1000)
 MODEL: Final = Path(__file__).parents[2] / "models" / "lander" / "modern"
 
 
@@ -55,13 +55,16 @@ def _train_guardian(arguments: argparse.Namespace) -> int:
     import numpy as np
     from tqdm import tqdm
 
+    from ai.agent.config import ANYWHERE, LANDER
     from ai.agent.storage import GUARDIAN
     from ai.copilot.critic_training import CriticTraining
 
     if problem := out_of_range(arguments, rounds=ROUNDS_ALLOWED, seed=SEEDS):
         return fail(problem)
     try:
-        training = CriticTraining(_lander(arguments.model), np.random.default_rng(arguments.seed), arguments.rounds)
+        training = CriticTraining(
+            _lander(arguments.model, (LANDER, ANYWHERE)), np.random.default_rng(arguments.seed), arguments.rounds
+        )
         with (
             stoppable() as stop,
             tqdm(total=arguments.rounds, desc="training", unit="round", disable=None) as bar,
@@ -82,13 +85,12 @@ def _train_guardian(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _lander(model: Path) -> DeepQAgent:
-    """Read the agent of a folder; raises ValueError for one that does not fly the lander, and as `DeepQAgent.load`."""
+def _lander(model: Path, envs: tuple[str, ...]) -> DeepQAgent:
+    """Read the agent of a folder; raises ValueError for one of other environments, and as `DeepQAgent.load`."""
     from ai.agent.agent import DeepQAgent
-    from ai.agent.config import LANDER
 
     agent = DeepQAgent.load(model)
-    if agent.config.env != LANDER:
+    if agent.config.env not in envs:
         raise ValueError(f"the co-pilot flies the lander; this network is for {agent.config.env}")
     return agent
 
@@ -96,13 +98,14 @@ def _lander(model: Path) -> DeepQAgent:
 def _table(arguments: argparse.Namespace) -> int:
     from tqdm import tqdm
 
+    from ai.agent.config import LANDER
     from ai.copilot.measurement import INTENT_PILOTS, ONE_PAD, PILOTS, THREE_PADS, one_pad, three_pads
     from ai.lander.pilots import Pilot, ScriptedPilot
 
     if problem := out_of_range(arguments, episodes=EPISODES, seed=SEEDS):
         return fail(problem)
     try:
-        agent = _lander(arguments.model)
+        agent = _lander(arguments.model, (LANDER,))
     except REFUSED as error:
         return fail(reason(error))
     good: Pilot = ScriptedPilot() if arguments.good == "scripted" else agent

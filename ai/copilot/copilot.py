@@ -73,11 +73,6 @@ class SharedDecision:
         """Chance to be saved after the pilot's own action, (n,); None without a critic."""
         return None if self.chances is None else self.chances[np.arange(len(self.pilot)), self.pilot]
 
-    @property
-    def flown_chance(self) -> Floats | None:
-        """Chance to be saved after the action that is flown, (n,); None without a critic."""
-        return None if self.chances is None else self.chances[np.arange(len(self.action)), self.action]
-
     @cached_property
     def points(self) -> Floats:
         """Values (n, pads, 6) in points of reward."""
@@ -97,6 +92,11 @@ class SharedDecision:
         return overridden
 
 
+def _candidates(pilot: Ints, best: Ints) -> Ints:
+    """Return what may be flown, (4, n), the least change first, in the order of `ActionSource`."""
+    return np.stack([pilot, pilot - pilot % _STEERS + best % _STEERS, best - best % _STEERS + pilot % _STEERS, best])
+
+
 def guardian_margin(assist: Any) -> Any:
     """Return by how many points of reward the guardian must be better than the pilot, for assist (n,), 0 to 1."""
     with np.errstate(divide="ignore"):
@@ -107,16 +107,18 @@ class CoPilot:
     """Shared control between a pilot and an agent (Reddy, Dragan and Levine 2018).
 
     `assist` runs from 0, where every action of the pilot's is flown, to 1, where only the best are good enough.
-    A pilot who asks for nothing has their hands off the stick: then the co-pilot flies, whatever the assist.
 
     In tolerance mode an action is feasible if its value above the worst is at least `assist` times that of the
-    best. In guardian mode every action is after which the agent can still save the flight: with a chance, by its
-    safety `critic`, of at least `required_chance(assist)`; here hands off the stick ask for nothing, and get it. Once
-    the guardian has stepped in, it gives the stick back when that is a little safer than it had to be.
+    best. A pilot who asks for nothing has their hands off the stick: then the co-pilot flies, whatever the assist.
 
-    Without a critic, a guardian (after McMahan et al. 2024) lets every action pass unless the co-pilot's own is worth
-    more on the way to every pad by a margin, which falls from infinity at assist 0 to 0 at assist 1. The critic is the
-    one beside the agent's files unless another is given; `critic_problem` says why there is none.
+    In guardian mode with a safety `critic`, an action is feasible if the chance that the agent can still save the
+    flight after it is at least what `Guardian` asks for, which begins at `required_chance(assist)`. Asking for nothing
+    is an action as any other here. When the stick goes back to the pilot, `Guardian` says as well.
+
+    A guardian without a critic (after McMahan et al. 2024) lets every action pass unless the co-pilot's own is worth
+    more on the way to every pad by a margin, which falls from infinity at assist 0 to 0 at assist 1; hands off are as
+    in tolerance mode. The critic is the one beside the agent's files unless another is given; `critic_problem` says
+    why there is none.
 
     Of several pads, only those count that may still be meant, by what the pilot has done so far
     (`ai.copilot.intent`); with `infers_intent` off, all do. Hands off, the co-pilot flies to the likeliest. So it
@@ -166,7 +168,7 @@ class CoPilot:
         """Return the actions to fly (n,), and where they are not the pilot's, (n,).
 
         `observation` is (n, 9), or (n, pads, 9) relative to each pad that may be meant; `pilot_action` is (n,)
-        of 0 to 5. `surroundings` (n, k), or (n, pads, k), are those of `LanderEnv.surroundings`, if they are known.
+        of 0 to 5. `surroundings` (n, k), or (n, pads, k), are those of `LanderEnv.around`, if they are known.
         Raises ValueError for others.
         """
         decision = self.decide(observation, pilot_action, surroundings)
@@ -190,9 +192,7 @@ class CoPilot:
         assist = np.where(pilot == COAST, 1.0, self.assist)
         weigh = self._guard if self.mode is Mode.GUARDIAN else self._tolerate
         best, feasible = weigh(meant, pilot, assist)
-        candidates = np.stack(
-            [pilot, pilot - pilot % _STEERS + best % _STEERS, best - best % _STEERS + pilot % _STEERS, best]
-        )
+        candidates = _candidates(pilot, best)
         rows = np.arange(slots)
         source = feasible[rows, candidates].argmax(axis=0)
         action = candidates[source, rows]
@@ -243,9 +243,7 @@ class CoPilot:
         pad = np.where(within >= required[:, None], 1.0 + likely, within).argmax(axis=1)
         best = values[rows, pad].argmax(axis=1)
         chance = chances.max(axis=1)
-        candidates = np.stack(
-            [pilot, pilot - pilot % _STEERS + best % _STEERS, best - best % _STEERS + pilot % _STEERS, best]
-        )
+        candidates = _candidates(pilot, best)
         source, asked = self.guardian.choose(chance, candidates, required)
         action = candidates[source, rows]
         feasible = chance >= asked[:, None]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from functools import cache
 from hashlib import sha256
@@ -68,7 +69,7 @@ class SafetyCritic:
 
     def __init__(self, network: NeuralNetwork, facts: CriticFacts) -> None:
         self.network, self.facts = network, facts
-        self._columns = [AROUND.index(name) for name in facts.inputs]
+        self._columns = columns(facts.inputs)
         self._order = [facts.inputs.index(AROUND[AROUND_ORDER[column]]) for column in self._columns]
 
     def chances(self, observation: Floats, surroundings: Floats | None = None) -> Floats:
@@ -84,7 +85,7 @@ class SafetyCritic:
             surroundings = np.broadcast_to(usual_surroundings(), (len(observation), len(SURROUNDINGS)))
         if surroundings.shape[1] == len(SURROUNDINGS):
             surroundings = np.concatenate([surroundings, plain(observation, surroundings)], axis=1)
-        output = self.outputs(np.concatenate([observation, surroundings[:, self._columns]], axis=1))
+        output = self.outputs(joined_inputs(observation, surroundings, self._columns))
         return logistic(np.float32(self.facts.slope) * output + np.float32(self.facts.offset))
 
     def outputs(self, inputs: Floats) -> Floats:
@@ -140,6 +141,16 @@ class _CriticFile:
     offset: float
     moments: int
     reliability: tuple[tuple[float, float, int], ...]
+
+
+def columns(names: Sequence[str]) -> list[int]:
+    """Return the columns of what `LanderEnv.around` returns that have these names."""
+    return [AROUND.index(name) for name in names]
+
+
+def joined_inputs(observation: Floats, around: Floats, chosen: list[int]) -> Floats:
+    """Return inputs (n, 9 + k) of a critic's network: observations (n, 9) and the chosen columns of what is around."""
+    return np.concatenate([observation, around[:, chosen]], axis=1)
 
 
 @cache

@@ -11,19 +11,28 @@ import numpy as np
 from ai.agent.agent import DeepQAgent
 from ai.common.environment import Bools, Doubles, Floats, Ints
 from ai.copilot.copilot import CoPilot, Mode
-from ai.copilot.critic import CriticFacts, Reliability, SafetyCritic, fingerprint, logistic
+from ai.copilot.critic import (
+    CriticFacts,
+    Reliability,
+    SafetyCritic,
+    columns,
+    fingerprint,
+    joined_inputs,
+    logistic,
+)
 from ai.copilot.hands import any_hands
 from ai.copilot.moments import Moments, anywhere, flown, moon, saved
 from ai.lander.environment import MIRROR_ACTIONS, NUM_ACTIONS, NUM_FEATURES, LanderEnv
-from ai.lander.sensing import AROUND, LONG, SURROUNDINGS, SURROUNDINGS_SCALE, TERRAIN
+from ai.lander.sensing import LONG, SURROUNDINGS, SURROUNDINGS_SCALE, TERRAIN
 from ai.nn import OPTIMIZERS, ActivationFunctions, ActivationLayer, CostFunctions, FullyConnectedLayer, NeuralNetwork
 from engine import DT
 
 MOON: Final = ("time left", "pad width", *TERRAIN)  # of what is around a lander on the moon
 _HIDDEN: Final = (128, 128, 128)
-_FLIGHTS: Final = 384  # of clumsy hands in a round
-_PER_ROUND: Final = 8000  # moments that are kept of those
-_FIRST: Final = 3  # rounds of any moments, before there is a critic to say which are in doubt
+_FLIGHTS: Final = 192  # of clumsy hands in a round
+_PER_ROUND: Final = 4000  # moments that are kept of those
+_FIRST: Final = 6  # rounds of any moments, before there is a critic to say which are in doubt
+_FITS: Final = 8  # rounds from one critic to the next
 _BATCH: Final = 512
 _RATE: Final = 2e-3
 _ASKED: Final = 0.6  # share of moments in which the action asked for is flown, and not a random one
@@ -31,8 +40,8 @@ _ALONE: Final = 0.15  # share of flights without help
 _HURRIED: Final = 0.2  # share of moments that are moved to the last seconds of a flight
 _TIME: Final = SURROUNDINGS.index("time left")
 _LEAST_SAVED: Final = 0.3  # share of any moments that the agent must still save, to be worth a critic
-_PLAIN: Final = 2000  # moments of a round that takes them as they come
-_CALIBRATED, _TESTED = 8, 8  # such rounds: for slope and offset, and for the table
+_PLAIN: Final = 1500  # moments of a round that takes them as they come
+_CALIBRATED, _TESTED = 12, 12  # such rounds: for slope and offset, and for the table
 _EDGES: Final = (0.0, 0.01, 0.1, 0.5, 0.9, 0.97, 0.99, 0.998, 1.0)  # of the reliability table
 
 MakeEnv = Callable[[int, np.random.Generator], LanderEnv]
@@ -71,7 +80,7 @@ class CriticTraining:
 
     agent: DeepQAgent
     rng: np.random.Generator
-    rounds: int = 40
+    rounds: int = 80
     lessons: list[Lessons] = field(default_factory=list)
     critic: SafetyCritic = field(init=False)
 
@@ -92,7 +101,7 @@ class CriticTraining:
             self.lessons.append(lessons)
             if number == _FIRST and np.mean([some.saved.mean() for some in self.lessons]) < _LEAST_SAVED:
                 raise ValueError("this network lands too seldom to be anybody's guardian; train it for longer first")
-            if number >= _FIRST and (number % 4 == _FIRST % 4 or number == self.rounds):
+            if number >= _FIRST and (number % _FITS == _FIRST % _FITS or number == self.rounds):
                 self.critic = self.fit(4000 if number < self.rounds else 10_000)
             elif number < _FIRST:
                 continue
@@ -122,7 +131,8 @@ class CriticTraining:
             moments.action,
             self.rng.integers(0, NUM_ACTIONS, size),
         )
-        return Lessons(self._inputs(moments), action, saved(self.agent, moments, action))
+        inputs = joined_inputs(moments.observation, moments.surroundings, columns(self.inputs))
+        return Lessons(inputs, action, saved(self.agent, moments, action))
 
     def _guarded(self, critic: SafetyCritic) -> Callable[[LanderEnv, Ints], Ints]:
         """Return a guardian with its dial somewhere, and some flights without it."""
@@ -142,10 +152,6 @@ class CriticTraining:
         moments.steps = np.where(hurried, steps, moments.steps)
         seconds = np.minimum(moments.longest - moments.steps * DT, LONG)
         moments.surroundings[:, _TIME] = seconds * SURROUNDINGS_SCALE[_TIME]
-
-    def _inputs(self, moments: Moments) -> Floats:
-        columns = [AROUND.index(name) for name in self.inputs]
-        return np.concatenate([moments.observation, moments.surroundings[:, columns]], axis=1)
 
     def fit(self, steps: int) -> SafetyCritic:
         """Return a critic learnt from all lessons so far by logistic regression on the action flown; half mirrored."""

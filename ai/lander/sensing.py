@@ -41,7 +41,11 @@ SURROUNDINGS_MIRROR: Final = np.array(
 _BESIDE: Final = (-5.0, -2.5, 0.0, 2.5, 5.0)  # metres
 _HEIGHT: Final = 0.3
 _WIDTH: Final = SURROUNDINGS.index("pad width")
-TERRAIN: Final = ("ground far left", "ground left", "ground below", "ground right", "ground far right")
+_BEYOND: Final = np.linspace(5.0, 15.0, 11)  # metres: the highest of these is a crest that may be in the way
+_PLACES: Final = np.concatenate([-_BEYOND[::-1], _BESIDE, _BEYOND])
+TERRAIN: Final = (
+    "crest left", "ground far left", "ground left", "ground below", "ground right", "ground far right", "crest right"
+)  # fmt: skip
 AROUND: Final = (*SURROUNDINGS, *TERRAIN)
 # Swaps left and right: multiply what is around by the signs, and take its columns in this order.
 AROUND_SIGNS: Final = np.concatenate([SURROUNDINGS_MIRROR, np.ones(len(TERRAIN), np.float32)])
@@ -109,18 +113,25 @@ def surroundings(craft: Craft, limits: Limits, pad: Any) -> Floats:
 
 
 def terrain(craft: Craft, pad: Any, x: Doubles | None = None) -> Floats:
-    """Return the ground's height beside each lander, (n, 5), or beside places x (n,) in metres.
+    """Return the ground's height beside each lander, (n, 7), or beside places x (n,) in metres.
 
-    `TERRAIN` names the five places. Pads count where they rest.
+    `TERRAIN` names the places. Pads count where they rest.
     """
     middle = craft.position[:, :1] if x is None else x[:, None]
-    heights = craft.ground.height_near(middle + np.array(_BESIDE))
+    heights = _in_order(craft.ground.height_near(middle + _PLACES))
     above = heights - np.reshape(craft.ground.middles[pad, 1], (-1, 1))
     return (_HEIGHT * above).astype(np.float32)
 
 
 def plain(observation: Floats, surroundings: Floats) -> Floats:
-    """Return the ground's height beside landers over a plain with one pad, (n, 5), given (n, 9) and (n, k) of them."""
-    x = observation[:, :1] / OBSERVATION_SCALE[0] + np.array(_BESIDE)
+    """Return the ground's height beside landers over a plain with one pad, (n, 7), given (n, 9) and (n, k) of them."""
+    x = observation[:, :1] / OBSERVATION_SCALE[0] + _PLACES
     half = surroundings[:, [_WIDTH]] / (2 * SURROUNDINGS_SCALE[_WIDTH])
-    return np.where(np.abs(x) <= half, 0.0, _HEIGHT * (PARAMS.ground - PARAMS.pad_top)).astype(np.float32)
+    heights = np.where(np.abs(x) <= half, 0.0, _HEIGHT * (PARAMS.ground - PARAMS.pad_top))
+    return _in_order(heights).astype(np.float32)
+
+
+def _in_order(heights: Doubles) -> Doubles:
+    """Return what `TERRAIN` names, (n, 7), of the ground's heights at `_PLACES`."""
+    left, beside, right = np.split(heights, (len(_BEYOND), len(_BEYOND) + len(_BESIDE)), axis=1)
+    return np.column_stack([left.max(axis=1), beside, right.max(axis=1)])

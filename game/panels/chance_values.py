@@ -10,16 +10,10 @@ from typing import Final
 from ai.lander.environment import ACTION_NAMES
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.drawing.paint import mix
-from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL, TEXT
+from game.panels.action_rows import ActionRow, ActionRows
 
 HUNDRED: Final = 100.0
-_NAME: Final = 96.0
-_FIGURE: Final = 52.0
-_FIRST: Final = 28.0  # the first bar, below the first baseline
-_ROW: Final = 23.0
-_AXIS: Final = _FIRST + 6 * _ROW + 6.0
-_BAR: Final = 3.0
+_DIMMED: Final = (0.6, 0.2)  # words and bar of an action that is not safe enough
 _MOST: Final = 3  # digits after the point, where two figures must be told apart
 
 
@@ -71,43 +65,16 @@ def told_apart(one: float, other: float) -> tuple[str, str]:
 
 def draw_chances(canvas: Canvas, values: ChanceValues, left: float, top: float, width: float) -> None:
     """Draw a bar for each action from 0 to 100, with a line for the chance asked for; `top` is the first baseline."""
-    start, track = left + _NAME, width - _NAME - _FIGURE
-    canvas.text(texts.CHANCE_ASKED, (left, top), size=SMALL, colour=MUTE, room=width - _FIGURE - 72)
-    asked = of_hundred(values.required)
-    canvas.text(asked, (start + track, top), size=TEXT, align="right", tabular=True)
-    canvas.text(texts.CHANCE_UNIT, (left + width, top), size=LABEL, colour=MUTE, align="right", room=_FIGURE - 8)
+    rows = ActionRows(canvas, left, top, width)
+    rows.draw_heading(texts.CHANCE_ASKED, of_hundred(values.required), texts.CHANCE_UNIT)
     canvas.explain((left, top - 14, width, 20), texts.EXPLAIN_CHANCE_ASKED)
-    for action in range(len(ACTION_NAMES)):
-        _draw_row(canvas, values, action, left, top + _FIRST + _ROW * action, width)
-        row = (left, top + _FIRST + _ROW * (action - 0.5), width, _ROW)
-        canvas.explain(row, texts.EXPLAIN_CHANCE, partial(chance_words, values, action))
-    y = top + _AXIS
-    canvas.line((start, y - 13), (start + track, y - 13), LINE)
-    for share in (0.0, 0.5, 1.0):
-        canvas.line((start + share * track, y - 16), (start + share * track, y - 12), MUTE)
-    canvas.text("0", (start, y), size=LABEL, colour=MUTE, align="centre")
-    canvas.text("100", (start + track, y), size=LABEL, colour=MUTE, align="centre")
-    x, y = start + values.required * track, top + _FIRST
-    canvas.line((x, y - 9), (x, y + 5 * _ROW + 9), MUTE)
-    canvas.marker("triangle_down", (x, y - 11), 6, INK, 0.8)
-
-
-def _draw_row(canvas: Canvas, values: ChanceValues, action: int, left: float, y: float, width: float) -> None:
-    x, track, chance = left + _NAME, width - _NAME - _FIGURE, values.chances[action]
-    flown, enough = action == values.flown, chance >= values.required
-    colour = INK if flown else MUTE
-    alpha = 1.0 if enough or flown else 0.6
-    name = texts.said(ACTION_NAMES[action])
-    canvas.text(name, (left, y + 4), size=SMALL, colour=colour, alpha=alpha, room=_NAME - 20)
-    fraction = chance if math.isfinite(chance) else 0.0
-    canvas.bar((x, y - 1, track, _BAR), fraction, NET if flown else mix(FAINT, NET, 0.45 if enough else 0.2))
-    if flown:
-        canvas.marker("triangle", (x - 8, y), 6, NET)
-    if action == values.asked:
-        canvas.dot((x + fraction * track, y), 4, HUMAN)
-    figure = of_hundred(chance)
-    place = (left + width, y + 4)
-    canvas.text(figure, place, size=SMALL, colour=colour, align="right", tabular=True, alpha=alpha)
+    for action, chance in enumerate(values.chances):
+        fraction = chance if math.isfinite(chance) else 0.0
+        flown, asked, enough = action == values.flown, action == values.asked, chance >= values.required
+        rows.draw_row(action, ActionRow(fraction, of_hundred(chance), flown, asked, enough), _DIMMED)
+        canvas.explain(rows.box(action), texts.EXPLAIN_CHANCE, partial(chance_words, values, action))
+    rows.draw_scale("0", "100")
+    rows.draw_limit(values.required)
 
 
 def chance_words(values: ChanceValues, action: int) -> str:

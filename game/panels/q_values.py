@@ -14,19 +14,14 @@ from ai.common.decision import Decision
 from ai.lander.environment import ACTION_NAMES
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.drawing.paint import mix
-from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL, TEXT
+from game.drawing.tokens import INK, MUTE, NET, SMALL
+from game.panels.action_rows import AXIS, NAME, ROW, ActionRow, ActionRows
 
 # Points of reward from one end of the scale to the other, for every network and every moment. Over whole flights of
 # both shipped networks 82% (modern) and 93% (classic) of the actions that are not the best lie within it.
 SPAN: Final = 5.0
 HEIGHT: Final = 174.0  # from the first baseline to the last
-_NAME: Final = 96.0
-_FIGURE: Final = 52.0
-_FIRST: Final = 28.0  # the first bar, below the first baseline
-_ROW: Final = 23.0
-_AXIS: Final = _FIRST + 6 * _ROW + 6.0
-_BAR: Final = 3.0
+_DIMMED: Final = (0.5, 0.12)  # words and bar of an action that the co-pilot does not let pass
 
 
 @dataclass(frozen=True)
@@ -79,67 +74,36 @@ def draw_q_values(canvas: Canvas, values: QValues, left: float, top: float, widt
 
     `top` is the first baseline; the last is `HEIGHT` below it.
     """
-    track = (left + _NAME, width - _NAME - _FIGURE)
-    canvas.text(texts.Q_EXPECTED, (left, top), size=SMALL, colour=MUTE, room=width - _FIGURE - 72)
-    canvas.text(signed(values.expected), (track[0] + track[1], top), size=TEXT, align="right", tabular=True)
-    canvas.text(texts.Q_UNIT, (left + width, top), size=LABEL, colour=MUTE, align="right", room=_FIGURE - 8)
-    box, points = (left, top - 14, width, 20), signed(values.expected)
+    rows, points = ActionRows(canvas, left, top, width), signed(values.expected)
+    rows.draw_heading(texts.Q_EXPECTED, points, texts.Q_UNIT)
+    box = (left, top - 14, width, 20)
     canvas.explain(box, texts.EXPLAIN_EXPECTED, lambda: texts.EXPLAIN_EXPECTED_NOW.format(points=points))
     for action in range(len(ACTION_NAMES)):
-        _draw_row(canvas, values, action, left, top + _FIRST + _ROW * action, width)
-        row = (left, top + _FIRST + _ROW * (action - 0.5), width, _ROW)
-        canvas.explain(row, texts.EXPLAIN_VALUE, partial(value_words, values, action))
-    _draw_axis(canvas, left, top + _AXIS, width)
+        rows.draw_row(action, _row(values, action), _DIMMED)
+        canvas.explain(rows.box(action), texts.EXPLAIN_VALUE, partial(value_words, values, action))
+    canvas.explain((left, top + AXIS - 16, width, 22), texts.EXPLAIN_ADVANTAGE.format(span=SPAN))
+    rows.draw_scale(f"−{SPAN:g}", "0")
+    rows.draw_scale_names(texts.Q_ADVANTAGE, texts.Q_UNIT)
     if values.allowed is not None and values.allowed < SPAN:
-        x, y = track[0] + values.fraction(values.allowed) * track[1], top + _FIRST
-        canvas.line((x, y - 9), (x, y + 5 * _ROW + 9), MUTE)
-        canvas.marker("triangle_down", (x, y - 11), 6, INK, 0.8)
+        x, y = rows.draw_limit(values.fraction(values.allowed))
         canvas.explain((x - 8, y - 18, 16, 14), texts.EXPLAIN_COPILOT_ALLOWED)
+
+
+def _row(values: QValues, action: int) -> ActionRow:
+    loss = values.loss(action)
+    figure = texts.Q_BEST if loss == 0 else behind(loss)
+    flown, asked = action == values.flown, action == values.asked
+    return ActionRow(values.fraction(loss), figure, flown, asked, values.feasible[action], beyond=loss > SPAN)
 
 
 def draw_actions(canvas: Canvas, flown: int, left: float, top: float) -> None:
     """Draw which action is flown, for a pilot without Q-values; `top` is the first baseline."""
     for action, name in enumerate(ACTION_NAMES):
-        y, here = top + _ROW * action, action == flown
-        canvas.text(texts.said(name), (left, y), size=SMALL, colour=INK if here else MUTE, room=_NAME - 20)
+        y, here = top + ROW * action, action == flown
+        canvas.text(texts.said(name), (left, y), size=SMALL, colour=INK if here else MUTE, room=NAME - 20)
         if here:
-            canvas.marker("triangle", (left + _NAME - 8, y - 4), 6, NET)
-            canvas.text(texts.DECISION_SCRIPTED_FLOWN, (left + _NAME, y), size=SMALL, colour=MUTE)
-
-
-def _draw_row(canvas: Canvas, values: QValues, action: int, left: float, y: float, width: float) -> None:
-    x, track = left + _NAME, width - _NAME - _FIGURE
-    flown, feasible = action == values.flown, values.feasible[action]
-    alpha = 1.0 if feasible or flown else 0.5
-    colour = INK if flown else MUTE
-    canvas.text(
-        texts.said(ACTION_NAMES[action]), (left, y + 4), size=SMALL, colour=colour, alpha=alpha, room=_NAME - 20
-    )
-    loss = values.loss(action)
-    fraction = values.fraction(loss)
-    tone = NET if flown else mix(FAINT, NET, 0.45 if feasible else 0.12)
-    canvas.bar((x, y - 1, track, _BAR), fraction, tone)
-    if flown:
-        canvas.marker("triangle", (x - 8, y), 6, NET)
-    if loss > SPAN:  # beyond the scale
-        canvas.line((x + 5, y - 4), (x, y), MUTE, 1.5)
-        canvas.line((x, y), (x + 5, y + 4), MUTE, 1.5)
-    if action == values.asked:
-        canvas.dot((x + fraction * track, y), 4, HUMAN)
-    words = texts.Q_BEST if loss == 0 else behind(loss)
-    canvas.text(words, (left + width, y + 4), size=SMALL, colour=colour, align="right", tabular=True, alpha=alpha)
-
-
-def _draw_axis(canvas: Canvas, left: float, y: float, width: float) -> None:
-    x, end = left + _NAME, left + width - _FIGURE
-    canvas.line((x, y - 13), (end, y - 13), LINE)
-    for place in (x, (x + end) / 2, end):
-        canvas.line((place, y - 16), (place, y - 12), MUTE)
-    canvas.explain((left, y - 16, width, 22), texts.EXPLAIN_ADVANTAGE.format(span=SPAN))
-    canvas.text(texts.Q_ADVANTAGE, (left, y), size=LABEL, colour=MUTE, room=_NAME - 6)
-    canvas.text(f"−{SPAN:g}", (x, y), size=LABEL, colour=MUTE, align="centre")
-    canvas.text("0", (end, y), size=LABEL, colour=MUTE, align="centre")
-    canvas.text(texts.Q_UNIT, (left + width, y), size=LABEL, colour=MUTE, align="right", room=_FIGURE - 8)
+            canvas.marker("triangle", (left + NAME - 8, y - 4), 6, NET)
+            canvas.text(texts.DECISION_SCRIPTED_FLOWN, (left + NAME, y), size=SMALL, colour=MUTE)
 
 
 def decision_words(decision: Decision) -> Sequence[str]:

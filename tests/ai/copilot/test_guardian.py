@@ -61,7 +61,7 @@ def test_the_stick_is_the_pilots_while_the_flight_can_be_saved_and_then_as_littl
     decision = guardian(chances).decide(seen(), [pilot])
     assert (decision.action[0], decision.source[0]) == (action, source)
     assert decision.chance[0] == pytest.approx(chances[pilot])
-    assert decision.flown_chance[0] == pytest.approx(chances[action])
+    assert decision.chances[0, decision.action[0]] == pytest.approx(chances[action])
     assert decision.feasible[0, action]
     assert decision.required[0] == pytest.approx(REQUIRED)
 
