@@ -1,6 +1,6 @@
 """Length of flights' codes, and how many flights a second are read from codes and flown again.
 
-    python -m benchmarks.codes [--flights 200] [--json]
+    python -m benchmarks.codes [--flights 60] [--json]
 
 Random starts are flown by the game's own network, by the scripted pilot (a decision every four steps, and in every
 step), and by clumsy hands: what the scripted pilot wanted a fifth of a second ago, each key by itself, in taps that
@@ -70,7 +70,7 @@ def fly(seed: int, pilot: Pilot, every: int) -> SharedFlight:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--flights", type=int, default=200, help="flights of each pilot")
+    parser.add_argument("--flights", type=int, default=60, help="flights of each pilot")
     parser.add_argument("--json", action="store_true")
     arguments = parser.parse_args()
     agent = DeepQAgent.load(MODEL)
@@ -99,9 +99,7 @@ def main() -> None:
     read = time.process_time() - began
     many = flights * REPEATS
     began = time.process_time()
-    right = sum(
-        is_true(many[index].claim, len(many[index].recording.actions), real) for index, real in verified(many)
-    )
+    right = sum(is_true(many[index].claim, len(many[index].recording.actions), real) for index, real in verified(many))
     flown = time.process_time() - began
     assert right == len(many)
     told["verify"] = {"flights": len(many), "read a second": len(flights) / read, "flown a second": len(many) / flown}

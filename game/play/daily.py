@@ -67,6 +67,7 @@ class DailyStart(Challenge):
 
     def written(self, entry: Entry) -> str:
         """Note how the first attempt ended; return what went wrong with that."""
+        self._days.add(entry)
         if not self.bar:
             self._days.note(Attempt(self.line, entry.outcome, entry.score, entry.barred, entry.file))
         return self._days.problem

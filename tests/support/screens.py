@@ -19,6 +19,8 @@ from game.flight.flight_file import Record
 from game.flight.skill import Skill
 from game.learn.path import FIRST, PATH
 from game.play.challenge import FlownMission
+from game.play.daily import DailyStart
+from game.play.days import Days
 from game.scenes.bindings import BindingsScene
 from game.scenes.chapter import ChapterScene
 from game.scenes.choices import ChoicesScene
@@ -82,7 +84,15 @@ SCREENS: dict[str, Make] = {
     "ReplayScene": lambda context: ReplayScene(context, flown(context)),
     "friend": friend,
 }
+
+
+def daily(context: Context) -> PlayScene:
+    """The start of a day."""
+    return PlayScene(context, 0, challenge=DailyStart(date(2026, 11, 22), Days(context.user_dir)))
+
+
 FLOWN: dict[str, Make] = {
+    "daily": daily,
     "Play": lambda context: PlayScene(context, 3),
     "swarm": lambda context: WatchScene(context, 16, seed=2),
     "mission": lambda context: PlayScene(context, 0, challenge=FlownMission(MISSIONS["wind"])),
