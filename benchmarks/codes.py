@@ -41,7 +41,7 @@ class ClumsyHands:
         self._seen: list[int] = [0] * LATE
         self._keys, self._left = [0, 0], [0, 0]
 
-    def act(self, observation: np.ndarray, *, held: object = None) -> np.ndarray:
+    def act(self, observation: np.ndarray, *, held: object = None) -> np.ndarray:  # noqa: ARG002
         """The action (1,) of the next step."""
         self._seen.append(int(self._pilot.act(observation)[0]))
         wanted = divmod(self._seen[-LATE], 3)
