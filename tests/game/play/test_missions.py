@@ -288,7 +288,7 @@ def test_who_begins_with_help_is_told_that_medals_are_for_ones_own_hand(
 
 def test_the_start_of_the_day_is_one_for_everybody(open_game: Open):
     driver = open_game(MissionsScene)
-    driver.keys(pygame.K_END, pygame.K_RETURN)
+    driver.keys(pygame.K_END, pygame.K_RETURN, pygame.K_RETURN)  # by way of the day's page
     first = play(driver).flight
     driver.key(pygame.K_n)
     assert np.array_equal(play(driver).flight.env.position, first.env.position)
