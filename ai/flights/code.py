@@ -36,6 +36,7 @@ _LARGEST_SEED: Final = 10**40
 _LONGEST_NAME: Final = 40  # bytes
 _MOST_CHANGES: Final = 1_000  # of gravity
 _GRAVITY: Final = (0.01, 10.0)  # share of normal gravity
+_FAR: Final = 10**6  # metres
 _GRID: Final = 10_000  # parts of a metre and a radian in which the last pose is told
 _SIDES: Final = 2 * STEPS + 1  # shares of the jets that there are
 _TANK: Final = 1_000  # parts of a second of fuel in which a tank is told, as it is rounded in a descent
@@ -120,7 +121,7 @@ def _unpacked(data: bytes) -> SharedFlight:
         return _made(**found)
     except CodeError:
         raise
-    except (ValueError, TypeError) as error:  # a TypeError if a section is missing
+    except (ValueError, TypeError, KeyError) as error:  # the last two if a section is missing
         raise CodeError("nonsense") from error
 
 
@@ -189,7 +190,7 @@ def _varint(value: int) -> bytes:
 
 
 def _named(text: str) -> bytes:
-    data = text.encode()[:_LONGEST_NAME]
+    data = text.encode()[:_LONGEST_NAME].decode(errors="ignore").encode()  # never half of a letter
     return _varint(len(data)) + data
 
 
@@ -257,14 +258,14 @@ def _read_gravity(reader: _Reader, found: dict[str, Any]) -> None:
 
 def _pack_claim(flight: SharedFlight) -> bytes:
     claim = flight.claim
-    pose = (round(number * _GRID) for number in claim.end)
+    pose = (round(min(max(number, -_FAR), _FAR) * _GRID) for number in claim.end)
     zigzag = (2 * number if number >= 0 else -2 * number - 1 for number in pose)
     return b"".join(map(_varint, (claim.outcome, claim.points, *zigzag)))
 
 
 def _read_claim(reader: _Reader, found: dict[str, Any]) -> None:
     outcome, points = Outcome(reader.number(max(Outcome))), reader.number(_MOST)
-    zigzag = [reader.number(_MOST * _GRID) for _ in range(3)]
+    zigzag = [reader.number(2 * _FAR * _GRID) for _ in range(3)]
     x, y, angle = ((-(number + 1) // 2 if number % 2 else number // 2) / _GRID for number in zigzag)
     found["claim"] = Claim(outcome, points, (x, y, angle))
 

@@ -73,8 +73,10 @@ class DailyStart(Challenge):
 
     def written(self, entry: Entry) -> str:
         """Note how the first attempt ended; return what went wrong with that."""
-        if not self.bar:
-            self._days.note(Attempt(self.line, entry.outcome, entry.score, entry.barred, entry.file))
+        self._days.add(entry)
+        if self.bar:
+            return ""
+        self._days.note(Attempt(self.line, entry.outcome, entry.score, entry.barred, entry.file))
         return self._days.problem
 
     def message(self, record: Record) -> tuple[str, str]:

@@ -70,6 +70,7 @@ class Days:
 
     def __init__(self, user_dir: Path) -> None:
         self._path, self._records = user_dir / FILE_NAME, Records(user_dir)
+        self._flown: list[Entry] | None = None  # flights of starts of the day, once they have been asked for
         self.problem = ""
         self.attempts: Mapping[str, Attempt] = self._read()
 
@@ -107,16 +108,18 @@ class Days:
         except OSError as error:
             self.problem = texts.DAYS_NOT_KEPT.format(reason=error.strerror or error)
 
+    def add(self, entry: Entry) -> None:
+        """Add a flight that has just been written into the logbook."""
+        if self._flown is not None:
+            self._flown.append(entry)
+
     def best_flight(self, day: date) -> Record | None:
         """Return the player's best flight of a day that can be replayed; None if there is none."""
-        noon = datetime(day.year, day.month, day.day, 12).timestamp()
-        kept = self._records.kept()
-
-        def fits(entry: Entry) -> bool:
-            return entry.course == COURSE and entry.file in kept and abs(entry.when - noon) < _AROUND
-
-        flown = sorted(filter(fits, self._records.entries()), key=lambda entry: (not entry.landed, -entry.score))
-        for entry in flown[:_MOST_READ]:
+        if self._flown is None:
+            self._flown = [entry for entry in self._records.entries() if entry.course == COURSE]
+        noon, kept = datetime(day.year, day.month, day.day, 12).timestamp(), self._records.kept()
+        near = [entry for entry in self._flown if abs(entry.when - noon) < _AROUND and entry.file in kept]
+        for entry in sorted(near, key=lambda entry: (not entry.landed, -entry.score))[:_MOST_READ]:
             try:
                 record = self._records.read(entry.file)
             except ValueError:  # the logbook says what is wrong with it

@@ -273,6 +273,8 @@ OTHERS: dict[str, Make] = {
 STATES: dict[str, tuple[str, dict[str, object], Happens]] = {
     "a crash": ("Play", {}, crashed),
     "a mission's crash": ("mission", {}, crashed),
+    "a day's crash": ("daily", {}, crashed),
+    "a claim": ("friend", {}, lambda driver: driver.skip(240)),
     "sharing the stick": ("Play", {"assist": 0.6, "three_pads": True}, shared),
     "practice": ("Play", {"gravity": 0.8, "pace": 0.7, "hands": "laggy"}, shared),
     "assists": ("Play", {"wider_pads": True, "untimed": True, "pace": 0.5, "toggle_thrust": True}, crashed),

@@ -19,6 +19,8 @@ from game.flight.flight_file import Record
 from game.flight.skill import Skill
 from game.learn.path import FIRST, PATH
 from game.play.challenge import FlownMission
+from game.play.daily import DailyStart
+from game.play.days import Days
 from game.play.descent import Descent
 from game.scenes.assists import AssistsScene
 from game.scenes.bindings import BindingsScene
@@ -84,8 +86,16 @@ SCREENS: dict[str, Make] = {
     "NetworksScene": NetworksScene,
     "ReplayScene": lambda context: ReplayScene(context, flown(context)),
 }
+
+
+def daily(context: Context) -> PlayScene:
+    """The start of a day."""
+    return PlayScene(context, 0, challenge=DailyStart(date(2026, 11, 22), Days(context.user_dir)))
+
+
 FLOWN: dict[str, Make] = {
     "friend": friend,
+    "daily": daily,
     "Play": lambda context: PlayScene(context, 3),
     "swarm": lambda context: WatchScene(context, 16, seed=2),
     "mission": lambda context: PlayScene(context, 0, challenge=FlownMission(MISSIONS["wind"])),

@@ -2,6 +2,7 @@
 
 import tracemalloc
 import zlib
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -128,12 +129,18 @@ def test_every_code_of_a_text_is_found_and_one_that_is_cut_is_said_to_be():
         (sealed(bytes([1, OPTIONAL - 1, 0])), "newer"),
         (sealed(bytes([1, OPTIONAL + 9, 0])), "nonsense"),  # passed over, but then there is nothing else
         (sealed(bytes([1, 2, 200])), "nonsense"),
+        (sealed(bytes([1, 3, 1, 0])), "nonsense"),  # hands without actions
         (BEGIN + "0" * 60_000 + END, "nonsense"),
     ],
 )
 def test_what_is_no_flight_is_refused_with_the_reason(text, kind):
     assert refusal(text) == kind
     assert kind in REFUSALS
+
+
+def test_a_claim_and_a_name_out_of_all_bounds_have_a_code_too():
+    flight = replace(shared([0, 3]), course="ü" * 99, claim=Claim(Outcome.CRASHED, 0, (1e300, -1e306, 0.0)))
+    assert flight_of(code_of(flight)).recording == flight.recording
 
 
 def test_a_wrong_sign_is_found_wherever_it_is():

@@ -198,3 +198,35 @@ def test_a_disk_that_cannot_be_written_is_told(open_game: Open, context: Context
     driver = open_game(lambda context: PlayScene(context, 0, challenge=DailyStart(TODAY, Days(context.user_dir))))
     crash(driver)
     assert texts.DAYS_NOT_KEPT.partition("{")[0] in driver.said
+
+
+def test_a_gamepad_alone_gets_there_flies_and_copies(open_game: Open, context: Context, clipboard: list[str]):
+    driver = open_game(MissionsScene)
+    driver.frames(2)
+    driver.button(pygame.CONTROLLER_BUTTON_DPAD_UP)
+    for _ in range(20):
+        if not isinstance(driver.top, DaysScene):
+            driver.button(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
+            if driver.top.chosen == "daily":
+                driver.button(pygame.CONTROLLER_BUTTON_A)
+    assert isinstance(driver.top, DaysScene)
+    driver.button(pygame.CONTROLLER_BUTTON_A)
+    scene = play(driver)
+    driver.frames(3)
+    driver.button(pygame.CONTROLLER_BUTTON_DPAD_LEFT)
+    while not scene.flight.over:
+        driver.skip(10)
+    driver.skip(240)
+    driver.button(pygame.CONTROLLER_BUTTON_RIGHTSTICK)
+    assert clipboard[-1].startswith("Tranquility ")
+
+
+def test_a_mouse_alone_flies_and_copies(open_game: Open, context: Context, clipboard: list[str]):
+    Days(context.user_dir).note(Attempt(TODAY.isoformat(), "LANDED", 84))
+    driver = open_game(day_scene)
+    driver.frames(2)
+    driver.click(driver.widget(texts.DAYS_COPY).box.center)
+    assert clipboard[-1].endswith("first attempt")
+    driver.click(driver.widget(texts.DAYS_FLY_AGAIN).box.center)
+    driver.frames(2)
+    assert play(driver).credit.bar == "day_again"
