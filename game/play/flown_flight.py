@@ -22,7 +22,7 @@ from game.flight.skill import Skill
 from game.play import captions
 from game.play.challenge import Challenge, DrawnFlight
 from game.play.ending import FlightEnding
-from game.world.chance_map import ChanceMap
+from game.world.chance_map import LINES_GRID, ChanceMap
 from game.world.path_preview import PathPreview
 from game.world.scenery import Scenery
 
@@ -85,7 +85,7 @@ class FlownFlight:
         self.ending = FlightEnding(self.flight, self.pace, calm)
         self._readouts = hud.flight_readouts(self.flight.env)
         self.path_preview = PathPreview(self.flight, self._guide)
-        self.chance_map = ChanceMap()
+        self.chance_map = ChanceMap(LINES_GRID)
 
     @property
     def _guide(self) -> Policy | None:

@@ -297,7 +297,8 @@ def test_a_replay_says_by_what_key_the_chance_fell_and_goes_there_by_key_and_cli
         flight.step(1 if len(flight.recording.actions) < 60 else 0)
     record = kept(context, flight)
     driver = open_game(ReplayScene, record)
-    scene = driver.the(ReplayScene)
+    scene = driver.top
+    assert isinstance(scene, ReplayScene)
     for _ in range(40):
         driver.frames(10)
         if scene.falls.words:
@@ -313,14 +314,15 @@ def test_a_replay_says_by_what_key_the_chance_fell_and_goes_there_by_key_and_cli
     driver.frames(2)
     driver.press_on(scene.falls.words)
     assert scene.flight_replay.at == fall.begins
-    assert texts.HINT_FALL in driver.said or texts.HINT_FALL in driver.hints()
+    assert texts.HINT_FALL in [hint.meaning for row in scene.hint_rows(driver.app.canvas) for hint in row.hints]
 
 
 def test_a_landing_says_how_low_the_chance_was_and_a_mission_elsewhere_that_it_is_not_known(
     open_game: Open, context: Context, record: Record
 ):
     driver = open_game(ReplayScene, record)
-    scene = driver.the(ReplayScene)
+    scene = driver.top
+    assert isinstance(scene, ReplayScene)
     driver.frames(120)
     chances = scene.falls.chances
     assert chances is not None
