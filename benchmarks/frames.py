@@ -70,7 +70,9 @@ RUNS = 3
 LIMITS = {"1280x720": 8.0, "1920x1080": 16.0}  # milliseconds
 FLOWN = (pygame.K_r, pygame.K_UP, pygame.K_LEFT, pygame.K_RIGHT)
 SHARED: dict[str, Any] = {"assist": 0.6}
+GUARDED: dict[str, Any] = {"assist": 0.4, "copilot": "guardian"}
 PADS: dict[str, Any] = {**SHARED, "copilot": "guardian", "three_pads": True}
+EDGE: dict[str, Any] = {**GUARDED, "edge": True}  # with the edge of no return over the sky
 
 
 @dataclass(frozen=True)
@@ -108,7 +110,10 @@ def rows() -> dict[str, Row]:
         "play, by hand": play,
         "play, network": Row(play.make, (pygame.K_r, pygame.K_TAB)),
         "play, shared": Row(play.make, FLOWN, SHARED),
+        "play, guarded": Row(play.make, FLOWN, GUARDED),
         "play, three pads": Row(play.make, FLOWN, PADS),
+        "play, edge": Row(play.make, FLOWN, EDGE),
+        "play, edge, three pads": Row(play.make, FLOWN, {**PADS, "edge": True}),
         **{
             f"mission, {name}": Row(lambda context, m=m: PlayScene(context, 0, challenge=FlownMission(m)), FLOWN)
             for name, m in MISSIONS.items()
@@ -123,6 +128,10 @@ def rows() -> dict[str, Row]:
         "watch, map of actions": Row(lambda context: WatchScene(context, 1, seed=4), (pygame.K_m,)),
         "watch, map of scores": Row(
             lambda context: WatchScene(context, 16, seed=4), (pygame.K_m, pygame.K_LSHIFT, pygame.K_m)
+        ),
+        "watch, map of chances": Row(
+            lambda context: WatchScene(context, 1, seed=4),
+            (pygame.K_m, pygame.K_LSHIFT, pygame.K_m, pygame.K_LSHIFT, pygame.K_m),
         ),
         "watch, touched": Row(lambda context: WatchScene(context, 1, seed=4), (pygame.K_m, pygame.K_g, pygame.K_LEFT)),
         **{f"physics, {name}": Row(lambda context, n=name: PhysicsScene(context, n)) for name in EXHIBITS},

@@ -54,7 +54,7 @@ def why_saved(decision: SharedDecision, values: ChanceValues) -> Why:
     if source is not ActionSource.PILOT and values.flown == values.asked:  # it has the stick, and agrees
         title = texts.GUARDIAN_AGREES[0]
     asked, flown = (texts.said(ACTION_NAMES[action]) for action in (values.asked, values.flown))
-    chance, required = told_apart(values.chances[values.asked], values.required)
+    chance, required, saved = told_apart(values.chances[values.asked], values.required, values.chances[values.flown])
     if source is ActionSource.PILOT:
         enough = values.chances[values.asked] >= values.required
         lines = texts.GUARDIAN_YOURS if enough else texts.GUARDIAN_NO_BETTER
@@ -66,7 +66,6 @@ def why_saved(decision: SharedDecision, values: ChanceValues) -> Why:
         lines = texts.GUARDIAN_HOLDS
     else:
         lines = texts.GUARDIAN_STEPS_IN
-    saved = told_apart(values.chances[values.flown], values.chances[values.asked])[0]
     words = {"asked": asked.capitalize(), "flown": flown.capitalize()}
     first, second = (line.format(chance=chance, required=required, saved=saved, **words) for line in lines)
     return title, first, second

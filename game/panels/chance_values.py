@@ -53,13 +53,14 @@ def of_hundred(chance: float, digits: int = 0) -> str:
     return f"{figure:.{digits}f}"
 
 
-def told_apart(one: float, other: float) -> tuple[str, str]:
-    """Format two chances as so many of 100, with enough digits that the larger one also reads as larger."""
-    words = of_hundred(one), of_hundred(other)
-    for digits in range(1, _MOST + 1):
-        if one == other or float(words[0].replace("–", "nan")) != float(words[1].replace("–", "nan")):
+def told_apart(*chances: float) -> tuple[str, ...]:
+    """Format chances as so many of 100, with enough digits that different ones also read as different."""
+    different = len({chance for chance in chances if math.isfinite(chance)})
+    words: tuple[str, ...] = ()
+    for digits in range(_MOST + 1):
+        words = tuple(of_hundred(chance, digits) for chance in chances)
+        if len({float(word) for word in words if word != "–"}) == different:
             break
-        words = of_hundred(one, digits), of_hundred(other, digits)
     return words
 
 

@@ -25,7 +25,7 @@ from game.play import captions
 from game.play.challenge import Challenge, DrawnFlight
 from game.play.ending import FlightEnding
 from game.play.ghost import Ghost
-from game.world.chance_map import ChanceMap
+from game.world.chance_map import LINES_GRID, ChanceMap
 from game.world.path_preview import PathPreview
 from game.world.scenery import Scenery
 
@@ -94,7 +94,7 @@ class FlownFlight:
         self.ending = FlightEnding(self.flight, self.pace, calm)
         self._readouts, self._thrust = hud.flight_readouts(self.flight.env), hud.thrust_readout(self.flight.env)
         self.path_preview = PathPreview(self.flight, self._guide)
-        self.chance_map = ChanceMap()
+        self.chance_map = ChanceMap(LINES_GRID)
 
     def _begin(self, seed: int, spawn: str, pads: int) -> Flight:
         """Return the flight at its start, eased as the player has chosen, where that may be."""

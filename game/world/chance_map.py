@@ -7,6 +7,7 @@ theory the backward reachable set, here by the chances of a safety critic). Its 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -22,12 +23,14 @@ from game.drawing.tokens import INK, NET, NIGHT0, Colour
 from game.flight.chances import Critic, chances_to_any_pad
 from game.world.camera import GROUND_LINE, View
 from game.world.contours import contours, smooth
-from game.world.paths import draw_faint
+from game.world.paths import draw_faint, draw_stretch
 from game.world.policy_map import HALF, TOP, finer, grid_places
 
 EDGE: Final = 0.5  # chance on the edge of no return: as many are lost as are saved
 SAFE: Final = 0.97  # chance on the line within which nearly all are saved
 GRID: Final = (65, 29)  # places across and up
+LINES_GRID: Final = (45, 20)  # enough for the lines alone
+_REST: Final = 6  # updates between two maps of a lander that moves
 _PIECE: Final = 400  # places asked about in one update: about a third of a millisecond
 _FADE: Final = 2.0  # metres over which it fades out at its top and sides
 _LOW: Final = 0.6  # and at the ground
@@ -72,6 +75,21 @@ class ChanceCells:
         ]
         return cls(places, chances, odds, *lines)
 
+    @cached_property
+    def veil(self) -> pygame.Surface:
+        """What lies over the sky, four times as fine as the grid: its colours, and in alpha how much it covers."""
+        odds = finer(finer(finer(finer(self.odds).T).T).T).T
+        up, across = odds.shape
+        x, y = np.linspace(-HALF, HALF, across), np.linspace(TOP, GROUND_LINE, up)
+        fade = np.minimum((TOP - y) / _FADE, (y - GROUND_LINE) / _LOW).clip(0, 1)[:, None]
+        fade = fade * ((HALF - np.abs(x)) / _FADE).clip(0, 1)
+        tone = np.round((odds + _STEEPEST) * (len(_VEIL) - 1) / (2 * _STEEPEST)).astype(int).T
+        veil = pygame.Surface((across, up), pygame.SRCALPHA)
+        pygame.surfarray.pixels3d(veil)[:] = _VEIL[tone, :3].astype(np.uint8)
+        cover = _VEIL[tone, 3] * (fade**2 * (3 - 2 * fade)).T
+        pygame.surfarray.pixels_alpha(veil)[:] = cover.astype(np.uint8)
+        return veil
+
 
 class ChanceMap:
     """Map of the chance to be saved, computed in pieces; call `follow` once per update.
@@ -81,8 +99,9 @@ class ChanceMap:
 
     """
 
-    def __init__(self) -> None:
+    def __init__(self, grid: tuple[int, int] = GRID) -> None:
         self._picture = PaintCache()
+        self._places: Doubles = grid_places(*grid)
         self.forget()
 
     @property
@@ -99,12 +118,13 @@ class ChanceMap:
         self.cells: ChanceCells | None = None
         self._state = b""
         self._observations: Floats | None = None
-        self._places: Doubles = grid_places(*GRID)
         self._chances: list[Floats] = []
+        self._rested = _REST
 
     def follow(self, env: LanderEnv, slot: int, critic: Critic) -> None:
         """Compute a piece of the map for the tilt, turn and speed of a lander; nothing while it is up to date."""
-        if self._observations is None:
+        self._rested += 1
+        if self._observations is None and self._rested > _REST:
             self._begin(env, slot)
         if self._observations is None:
             return
@@ -128,7 +148,7 @@ class ChanceMap:
 
     def _finish(self) -> None:
         chances = np.concatenate(self._chances).astype(float).reshape(self._places.shape[:2])
-        self.cells, self._observations = ChanceCells.of(self._places, chances), None
+        self.cells, self._observations, self._rested = ChanceCells.of(self._places, chances), None, 0
 
     # The picture
 
@@ -155,18 +175,8 @@ class ChanceMap:
     def _paint(self, sheet: Canvas) -> None:
         """Paint the veil on a sheet whose corners are the outermost places; at half resolution, since it is soft."""
         assert self.cells is not None
-        odds = finer(finer(finer(finer(self.cells.odds).T).T).T).T
-        up, across = odds.shape
-        x, y = np.linspace(-HALF, HALF, across), np.linspace(TOP, GROUND_LINE, up)
-        fade = np.minimum((TOP - y) / _FADE, (y - GROUND_LINE) / _LOW).clip(0, 1)[:, None]
-        fade = fade * ((HALF - np.abs(x)) / _FADE).clip(0, 1)
-        tone = np.round((odds + _STEEPEST) * (len(_VEIL) - 1) / (2 * _STEEPEST)).astype(int).T
-        veil = pygame.Surface((across, up), pygame.SRCALPHA)
-        pygame.surfarray.pixels3d(veil)[:] = _VEIL[tone, :3].astype(np.uint8)
-        cover = _VEIL[tone, 3] * (fade**2 * (3 - 2 * fade)).T
-        pygame.surfarray.pixels_alpha(veil)[:] = cover.astype(np.uint8)
         half = (max(2, sheet.size[0] // 2), max(2, sheet.size[1] // 2))
-        pygame.transform.scale(pygame.transform.smoothscale(veil, half), sheet.size, sheet.surface)
+        pygame.transform.scale(pygame.transform.smoothscale(self.cells.veil, half), sheet.size, sheet.surface)
 
 
 def _table() -> Doubles:
@@ -213,7 +223,10 @@ def _draw_ticks(canvas: Canvas, view: View, line: Doubles, head: float) -> None:
     at = np.stack([np.interp(marks, lengths, line[:, k]) for k in range(2)], axis=1)
     way = steps[np.minimum(np.searchsorted(lengths, marks, "right") - 1, len(steps) - 1)]
     way = way / np.maximum(np.hypot(*way.T), 1e-9)[:, None]
+    scale, area = canvas.scale, canvas.surface.get_rect()
     lost = np.stack([-way[:, 1], way[:, 0]], axis=1)
     for start, end in zip(view.points(at).tolist(), view.points(at + _TICK * lost).tolist(), strict=True):
-        if start[1] > head:
-            canvas.line(start, end, INK, alpha=0.5)
+        place = (int(start[0] * scale), int(start[1] * scale))
+        if start[1] > head and area.collidepoint(place):
+            tone = canvas.surface.get_at(place).lerp(INK, 0.4)
+            draw_stretch(canvas.surface, tone, [(x * scale, y * scale) for x, y in (start, end)])

@@ -79,9 +79,14 @@ def read_panel(drawn: Drawn) -> Panel:
     """Return what the panel shows; every row is found by its name alone."""
     return Panel(
         _beside(drawn, texts.Q_EXPECTED),
-        [_row(drawn, name) for name in ACTION_NAMES],
+        read_rows(drawn),
         [_beside(drawn, name) for name in texts.INPUTS if name in drawn.words],
     )
+
+
+def read_rows(drawn: Drawn) -> list[Row]:
+    """Return the rows of the six actions alone, of values or of chances."""
+    return [_row(drawn, name) for name in ACTION_NAMES]
 
 
 def _place(drawn: Drawn, word: str) -> tuple[float, float]:
