@@ -3,8 +3,9 @@
     python -m benchmarks.codes [--flights 60] [--json]
 
 Random starts are flown by the game's own network, by the scripted pilot (a decision every four steps, and in every
-step), and by clumsy hands: what the scripted pilot wanted a fifth of a second ago, each key by itself, in taps that
-last 0.05 to 0.25 seconds and begin at any step. Times are of the processor, one thread.
+step), by clumsy hands: what the scripted pilot wanted a fifth of a second ago, each key by itself, in taps that last
+0.05 to 0.25 seconds and begin at any step, and by sticks that follow what it wanted then, and tremble. Times are of the
+processor, one thread.
 """
 
 import os
@@ -23,13 +24,17 @@ from ai.flights.code import code_of, flight_of
 from ai.flights.recording import Recording, StickHolder
 from ai.flights.shared import Claim, SharedFlight
 from ai.flights.starts import begun
+from ai.flights.stick import Stick, full, pushed, thrust
 from ai.flights.verification import earned, is_true, verified
 from ai.lander.environment import Outcome
 from ai.lander.pilots import Pilot, ScriptedPilot
+from ai.lander.rules import ACTION_SHARES
 
 MODEL = Path(__file__).parents[1] / "models" / "lander" / "modern"
 LATE = 12  # steps from what clumsy hands see to what they do
 TAP = (3, 16)  # steps that a tap lasts, and the pause after it
+SLOW, TREMOR = 0.12, 0.006  # shares of the way: of sticks in a step, and of hands that tremble
+DECIDES = 12  # steps from one decision to the next
 REPEATS = 10  # how often the flights are verified, to fill batches
 
 
@@ -55,16 +60,43 @@ class ClumsyHands:
         return np.array([3 * self._keys[0] + self._keys[1]])
 
 
-def fly(seed: int, pilot: Pilot, every: int) -> SharedFlight:
+class Sticks:
+    """Late hands on a throttle and a stick, which take a while from one end to the other, and tremble a little."""
+
+    def __init__(self, seed: int) -> None:
+        self._rng, self._pilot = np.random.default_rng(seed), ScriptedPilot()
+        self._seen: list[int] = [0] * LATE
+        self._place, self._tremor, self._shares = np.zeros(2), np.zeros(2), full(0)
+
+    def push(self, observation: np.ndarray) -> Stick:
+        """Return the stick in the next step."""
+        if len(self._seen) % DECIDES == 0:
+            self._seen += [int(self._pilot.act(observation)[0])] * DECIDES
+        else:
+            self._seen.append(self._seen[-1])
+        wanted = ACTION_SHARES[self._seen[len(self._seen) - 1 - LATE]]
+        self._place += (wanted - self._place).clip(-SLOW, SLOW)
+        self._tremor = 0.9 * self._tremor + self._rng.normal(0.0, TREMOR, 2)
+        stick = pushed(*np.where(self._place == 0, 0, self._place + self._tremor).tolist(), self._shares)
+        self._shares = stick.shares or full(stick.action)
+        return stick
+
+
+def fly(seed: int, pilot: Pilot | Sticks, every: int) -> SharedFlight:
     """Fly a random start to its end; the pilot decides every so many steps."""
-    env, actions, action = begun([seed], "random"), [], 0
+    recording, stick = Recording(seed, "random"), Stick()
+    env = begun(recording)
     while env.outcome[0] == Outcome.FLYING:
-        if len(actions) % every == 0:
-            action = int(pilot.act(env.observe(), held=np.array([action]))[0])
-        env.fly(np.array([action]))
-        actions.append(action)
+        if isinstance(pilot, Sticks):
+            stick = pilot.push(env.observe())
+        elif len(recording.actions) % every == 0:
+            stick = Stick(int(pilot.act(env.observe(), held=np.array([stick.action]))[0]))
+        env.fly(np.array([stick.action]), thrust(stick.shares))
+        if stick.shares:
+            recording.shares[len(recording.actions)] = stick.shares
+        recording.actions.append(stick.action)
+        recording.hands.append(StickHolder.HUMAN)
     real = earned(env, "")
-    recording = Recording(seed, "random", 1, actions, [StickHolder.HUMAN] * len(actions))
     return SharedFlight(recording, Claim(real.outcome, real.points, real.end))
 
 
@@ -79,6 +111,7 @@ def main() -> None:
         "scripted": (lambda _: ScriptedPilot(), 4),
         "scripted, every step": (lambda _: ScriptedPilot(), 1),
         "clumsy hands": (ClumsyHands, 1),
+        "sticks": (Sticks, 1),
     }
     told, codes = {}, []
     for name, (pilot, every) in pilots.items():

@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterator
 from itertools import groupby
 from typing import Any, Final
 
-from ai.flights import key_presses, letters
+from ai.flights import key_presses, letters, stick_positions
 from ai.flights.easing import AS_IT_IS, Easing
 from ai.flights.recording import LONGEST, Recording, StickHolder
 from ai.flights.shared import Claim, SharedFlight
@@ -39,6 +39,7 @@ _GRAVITY: Final = (0.01, 10.0)  # share of normal gravity
 _FAR: Final = 10**6  # metres
 _GRID: Final = 10_000  # parts of a metre and a radian in which the last pose is told
 _SIDES: Final = 2 * STEPS + 1  # shares of the jets that there are
+_STICK: Final = 1  # how the shares of thrust are told; so their section is never empty
 _TANK: Final = 1_000  # parts of a second of fuel in which a tank is told, as it is rounded in a descent
 _ALIEN: Final = re.compile(r"[^0-9A-Za-z-]+")
 
@@ -270,20 +271,12 @@ def _read_claim(reader: _Reader, found: dict[str, Any]) -> None:
     found["claim"] = Claim(outcome, points, (x, y, angle))
 
 
-def _pack_shares(flight: SharedFlight) -> bytes:
-    shares, steps = flight.recording.shares, len(flight.recording.actions)
-    if not shares:
-        return b""
-    rows = ((each, len(list(same))) for each, same in groupby(shares.get(step) for step in range(steps)))
-    return b"".join(_varint(_pair(each)) + _varint(length) for each, length in rows)
+def _pack_no_shares(flight: SharedFlight) -> bytes:  # noqa: ARG001
+    """Leave out the older section, which took several times as many letters."""
+    return b""
 
 
-def _pair(shares: Shares | None) -> int:
-    """Return shares of thrust as one number; 0 for all of the action's."""
-    return 0 if shares is None else 1 + shares[0] * _SIDES + shares[1] + STEPS
-
-
-def _read_shares(reader: _Reader, found: dict[str, Any]) -> None:
+def _read_older_shares(reader: _Reader, found: dict[str, Any]) -> None:
     total, step, shares = len(found["actions"]), 0, dict[int, Shares]()
     while reader.left:
         pair, length = reader.number((STEPS + 1) * _SIDES), reader.number(total - step)
@@ -292,6 +285,17 @@ def _read_shares(reader: _Reader, found: dict[str, Any]) -> None:
             shares |= dict.fromkeys(range(step, step + length), (main, side - STEPS))
         step += length
     found["shares"] = shares
+
+
+def _pack_shares(flight: SharedFlight) -> bytes:
+    recording = flight.recording
+    return bytes([_STICK]) + stick_positions.packed(recording.actions, recording.shares) if recording.shares else b""
+
+
+def _read_shares(reader: _Reader, found: dict[str, Any]) -> None:
+    if reader.number(_MOST) != _STICK:
+        raise CodeError("newer")
+    found["shares"] = stick_positions.unpacked(reader.bytes(reader.left), found["actions"])
 
 
 def _pack_easing(flight: SharedFlight) -> bytes:
@@ -349,10 +353,11 @@ _SECTIONS: Final[dict[int, tuple[Callable[[SharedFlight], bytes], Callable[[_Rea
     3: (_pack_hands, _read_hands),
     4: (_pack_gravity, _read_gravity),
     5: (_pack_claim, _read_claim),
-    6: (_pack_shares, _read_shares),
+    6: (_pack_no_shares, _read_older_shares),
     7: (_pack_easing, _read_easing),
     8: (_pack_area, _read_area),
     9: (_pack_leg, _read_leg),
+    10: (_pack_shares, _read_shares),
     OPTIONAL: (_pack_course, _read_course),
     OPTIONAL + 1: (_pack_barred, _read_barred),
 }

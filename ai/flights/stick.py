@@ -10,6 +10,8 @@ from ai.common.environment import Doubles
 from ai.lander.rules import ACTION_SHARES, nearest_action
 
 STEPS: Final = 16  # from no thrust to all of it: a flight is recorded in them, so that it can be flown again exactly
+_ENDS: Final = (-STEPS, 0, STEPS)  # these are always reached
+_TREMBLE: Final = 0.75  # of a step
 
 Shares = tuple[int, int]  # of the main engine, 0 to STEPS, and of the jets, -STEPS, left, to STEPS, right
 
@@ -27,11 +29,22 @@ class Stick(NamedTuple):
     shares: Shares | None = None
 
 
-def pushed(main: float, side: float) -> Stick:
-    """Return the stick at shares of thrust, `main` 0 to 1 and `side` -1, left, to 1, right, rounded to a step."""
-    shares = round(STEPS * min(max(main, 0.0), 1.0)), round(STEPS * min(max(side, -1.0), 1.0))
+def pushed(main: float, side: float, before: Shares | None = None) -> Stick:
+    """Return the stick at shares of thrust, `main` 0 to 1 and `side` -1, left, to 1, right, rounded to a step.
+
+    A share that is hardly another than `before` stays as it was, because hands tremble.
+    """
+    last_main, last_side = before or (None, None)
+    shares = _rounded(min(max(main, 0.0), 1.0), last_main), _rounded(min(max(side, -1.0), 1.0), last_side)
     action = nearest_action(shares[0] / STEPS, shares[1] / STEPS)
     return Stick(action, None if shares == full(action) else shares)
+
+
+def _rounded(share: float, before: int | None) -> int:
+    nearest = round(STEPS * share)
+    if not before or nearest in _ENDS or abs(STEPS * share - before) > _TREMBLE:
+        return nearest
+    return before
 
 
 def full(action: int) -> Shares:

@@ -6,7 +6,8 @@ from typing import Final
 
 import pygame
 
-from ai.flights.stick import Stick, pushed
+from ai.flights.stick import Stick, full, pushed
+from ai.lander.pilots import COAST
 from game.core.settings import Settings
 from game.input.controls import Controls, Held
 from game.input.mouse import MouseStick
@@ -21,6 +22,7 @@ class FlightControls:
         self._controls, self._settings = controls, settings
         self._mouse = MouseStick()
         self._latched = self._held_before = False
+        self._shares = full(COAST)  # that were asked for in the step before
 
     @property
     def mouse_flies(self) -> bool:
@@ -54,7 +56,9 @@ class FlightControls:
         main, side = self._thrust(craft)
         if self._controls.holds(Held.FINE) or self._mouse.fine:
             side *= FINE
-        return pushed(main, side)
+        stick = pushed(main, side, self._shares)
+        self._shares = stick.shares or full(stick.action)
+        return stick
 
     def _thrust(self, craft: float) -> tuple[float, float]:
         """Return the shares of thrust asked for, of the main engine and, -1 to 1, of the jets."""

@@ -210,7 +210,6 @@ def with_section(tag, content, start=START[0]):
 @pytest.mark.parametrize(
     ("tag", "content"),
     [
-        (6, varint_of((STEPS + 1) * (2 * STEPS + 1)) + varint_of(2)),  # all thrust there is, in both steps
         (7, bytes([3])),
         (8, bytes([1])),
         (9, varint_of(MOST_LEGS) + varint_of(round(1000 * TANK)) + bytes([1])),
@@ -220,9 +219,29 @@ def test_the_utmost_of_each_section_is_read(tag, content):
     assert len(flight_of(with_section(tag, content)).recording.actions) == 2
 
 
+def test_an_older_section_of_shares_is_read():
+    most = (STEPS + 1) * (2 * STEPS + 1)  # all thrust there is
+    code = with_section(6, varint_of(most) + varint_of(1) + varint_of(0) + varint_of(1))
+    assert flight_of(code).recording.shares == {0: (STEPS, STEPS)}
+
+
+def test_a_flight_by_sticks_takes_few_letters_and_any_at_all_comes_back():
+    steps = np.arange(1200)
+    places = np.column_stack([8 + 7.6 * np.sin(steps / 31), 15 * np.sin(steps / 47)]).round().astype(int).tolist()
+    shares = {step: (main, side) for step, (main, side) in enumerate(places) if main < STEPS and side}
+    flight = shared([0] * 1200, shares=shares)
+    assert flight_of(code_of(flight)) == flight
+    assert len(code_of(flight)) < 1_000  # a move in two of three steps
+    moves = np.random.default_rng(0).integers([0, -STEPS], [STEPS + 1, STEPS + 1], (1200, 2)).tolist()
+    flight = shared([0] * 1200, shares=dict(enumerate(map(tuple, moves))))
+    assert flight_of(code_of(flight)) == flight
+
+
 @pytest.mark.parametrize(
     ("tag", "content", "kind"),
     [
+        (10, b"", "nonsense"),
+        (10, bytes([2, 7]), "newer"),
         (6, varint_of((STEPS + 1) * (2 * STEPS + 1) + 1) + varint_of(2), "nonsense"),  # more thrust than there is
         (6, varint_of(5) + varint_of(3), "nonsense"),  # for more steps than are flown
         (6, varint_of(5), "nonsense"),  # for no number of steps

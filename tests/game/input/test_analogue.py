@@ -66,6 +66,21 @@ def test_the_stick_turns_to_both_sides_alike_and_finely_near_its_rest(controls: 
     assert stick(controls).shares[1] < STEPS * 16000 / 32767  # the curve
 
 
+def test_a_hand_that_trembles_does_not_move_the_throttle_but_both_ends_are_reached(controls: Controls):
+    reader = FlightControls(controls, Settings())
+
+    def at(value: int) -> Stick:
+        push(controls, PULL, value)
+        return reader.read(640.0)
+
+    rest = at(16384)
+    assert rest.shares == (8, 0)
+    assert at(16384 + 1100) == at(16384 - 1100) == rest  # a little more than half of a step
+    assert at(16384 + 2200).shares == (9, 0)
+    assert at(32767) == Stick(3)
+    assert at(0) == Stick()
+
+
 def test_a_trigger_that_rests_below_zero_is_learnt_from_its_first_value(controls: Controls):
     push(controls, PULL, -32767)
     assert stick(controls) == Stick()

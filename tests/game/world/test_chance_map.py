@@ -50,7 +50,9 @@ def test_a_cell_is_what_the_critic_says_of_a_lander_that_is_really_there(critic:
     assert cells.chances.shape == GRID[::-1]
     for row, column in ((2, 5), (9, 30), (14, 50), (20, 33)):
         env.begin_at(0, np.array([*cells.places[row, column], *FALLING[2:]]))
-        assert cells.chances[row, column] == pytest.approx(float(critic.chances(env.observe(), env.around()).max()), abs=1e-5)
+        assert cells.chances[row, column] == pytest.approx(
+            float(critic.chances(env.observe(), env.around()).max()), abs=1e-5
+        )
 
 
 def test_of_several_pads_the_one_that_can_be_reached_counts(critic: SafetyCritic):
