@@ -76,6 +76,20 @@ def test_what_cannot_be_done_is_said_in_a_line(arguments, message, capsys, tmp_p
 ENDINGS = [("SIGINT", 0), ("SIGTERM", 128 + 15), ("SIGHUP", 128 + 1)]
 
 
+@pytest.fixture
+def heard():
+    """Signals that end a run; those that the tests were told to ignore, as under nohup, are heard again."""
+    numbers = [getattr(signal, name) for name, _ in ENDINGS if hasattr(signal, name)]
+    before = {number: signal.getsignal(number) for number in numbers}
+    for number, handler in before.items():
+        if handler is signal.SIG_IGN:
+            signal.signal(number, signal.SIG_DFL)
+    yield
+    for number, handler in before.items():
+        signal.signal(number, handler)
+
+
+@pytest.mark.usefixtures("heard")
 @pytest.mark.parametrize(("name", "code"), [ending for ending in ENDINGS if hasattr(signal, ending[0])])
 def test_whoever_ends_a_run_by_a_signal_keeps_the_work(tmp_path, name, code, capsys, monkeypatch):
     advance, before = Training.advance, signal.getsignal(getattr(signal, name))
