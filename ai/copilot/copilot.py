@@ -22,6 +22,7 @@ from ai.lander.pilots import COAST
 
 # Points of reward by which the guardian's action must be better than the pilot's, at an assist of one half.
 GUARDIAN_MARGIN: Final = 3.0
+OUT_OF_REACH: Final = 0.6  # chance to be saved on a pad below which it counts as lost
 _STEERS: Final = 3  # action = 3 * main + steer
 
 
@@ -222,7 +223,8 @@ class CoPilot:
     ) -> SharedDecision:
         """Let the pilot fly while the chance to be saved is what the dial asks for; else do the least that restores it.
 
-        Of several pads that may be meant, one on which the flight can be saved is enough.
+        Of several pads that may be meant, one on which the flight can be saved is enough; where there is none left,
+        any pad is.
         """
         assert self.critic is not None
         slots, pads, features = observation.shape
@@ -235,16 +237,18 @@ class CoPilot:
             self.guardian.forget(new)
         chances = self.critic.chances(nine.reshape(-1, NUM_FEATURES), surroundings.reshape(slots * pads, -1))
         chances = chances.reshape(slots, pads, NUM_ACTIONS)
-        open_ = in_question(likely)
-        chances = np.where(open_[:, :, None], chances, -1.0)
         required = self.guardian.required(self.assist, slots)
+        within, open_ = chances.max(axis=2), in_question(likely)
+        # Where the pads that may be meant can hardly be reached any more, any other will do.
+        open_ |= (np.where(open_, within, 0.0).max(axis=1) < OUT_OF_REACH)[:, None]
+        chances = np.where(open_[:, :, None], chances, -1.0)
         # The likeliest of the pads that can still be reached, else the one that is nearest to it.
         within = chances.max(axis=2)
         pad = np.where(within >= required[:, None], 1.0 + likely, within).argmax(axis=1)
         best = values[rows, pad].argmax(axis=1)
         chance = chances.max(axis=1)
         candidates = _candidates(pilot, best)
-        source, asked = self.guardian.choose(chance, candidates, required)
+        source, asked = self.guardian.choose(chance, candidates, required, among_hills=pads > 1)
         action = candidates[source, rows]
         feasible = chance >= asked[:, None]
         feasible[rows, action] = True

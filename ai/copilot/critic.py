@@ -72,6 +72,11 @@ class SafetyCritic:
         self._columns = columns(facts.inputs)
         self._order = [facts.inputs.index(AROUND[AROUND_ORDER[column]]) for column in self._columns]
 
+    @property
+    def anywhere(self) -> bool:
+        """Whether it was made for a network that lands anywhere, from flights in worlds of many kinds."""
+        return "gravity" in self.facts.inputs
+
     def chances(self, observation: Floats, surroundings: Floats | None = None) -> Floats:
         """Return the chance, 0 to 1, to land for each action, (n, 6), for observations (n, 9).
 

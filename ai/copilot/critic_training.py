@@ -33,6 +33,7 @@ _FLIGHTS: Final = 192  # of clumsy hands in a round
 _PER_ROUND: Final = 4000  # moments that are kept of those
 _FIRST: Final = 6  # rounds of any moments, before there is a critic to say which are in doubt
 _FITS: Final = 8  # rounds from one critic to the next
+_STEPS: Final = 5000  # of a fit; with twice as many, a critic is surer of itself, and saves fewer
 _BATCH: Final = 512
 _RATE: Final = 2e-3
 _ASKED: Final = 0.6  # share of moments in which the action asked for is flown, and not a random one
@@ -102,7 +103,7 @@ class CriticTraining:
             if number == _FIRST and np.mean([some.saved.mean() for some in self.lessons]) < _LEAST_SAVED:
                 raise ValueError("this network lands too seldom to be anybody's guardian; train it for longer first")
             if number >= _FIRST and (number % _FITS == _FIRST % _FITS or number == self.rounds):
-                self.critic = self.fit(4000 if number < self.rounds else 10_000)
+                self.critic = self.fit(_STEPS)
             elif number < _FIRST:
                 continue
             yield Progress(number, self.rounds, sum(map(len, self.lessons)), right, self.critic)

@@ -64,11 +64,11 @@ class ChanceMeter:
         flight = self._flight
         if not (self._settings.edge and self._wishes):
             return ""
-        if not known_for(flight.env):
-            return texts.CHANCE_MOON_ONLY
         if flight.network is not self._policy:
             self._policy = flight.network
             self.critic, self._reason = critic_of(flight.network)
+        if not known_for(flight.env, self.critic):
+            return texts.CHANCE_MOON_ONLY
         return "" if self.critic is not None else texts.MAP_NO_CRITIC.format(problem=self._reason)
 
     def follow(self) -> None:

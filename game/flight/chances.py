@@ -31,6 +31,10 @@ _CALM: Final = 60  # steps without a dangerous action after which another one is
 class Critic(Protocol):
     """Protocol of a safety critic, such as `ai.copilot.critic.SafetyCritic`."""
 
+    @property
+    def anywhere(self) -> bool:
+        """Whether it has learnt from flights in other gravity, in wind, on small tanks, with a failing engine."""
+
     def chances(self, observation: Floats, surroundings: Floats) -> Floats:
         """Return the chance (n, 6), 0 to 1, to be saved after each action.
 
@@ -47,8 +51,10 @@ def critic_of(policy: Policy | None) -> tuple[Critic | None, str]:
     return critic_beside(policy)
 
 
-def known_for(env: LanderEnv) -> bool:
-    """Whether critics have learnt from such flights: on the moon, no wind, a pad at rest, a full tank."""
+def known_for(env: LanderEnv, critic: Critic | None) -> bool:
+    """Whether a critic has learnt from such flights; most know the moon alone: calm, a pad at rest, a full tank."""
+    if critic is not None and critic.anywhere:
+        return True
     return env.conditions == CALM and env.params == PARAMS and env.gravity == PARAMS.gravity
 
 

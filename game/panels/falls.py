@@ -69,7 +69,8 @@ class Falls:
             return
         recording = self._replay.record.recording
         critic, problem = critic_of(policy)
-        if not known_for(self._replay.flight.env) or recording.gravity:
+        changed = recording.gravity and not (critic and critic.anywhere)
+        if changed or not known_for(self._replay.flight.env, critic):
             self.words = texts.CHANCE_MOON_ONLY
         elif critic is None:
             self.words = texts.FALLS_NO_CRITIC.format(problem=problem)

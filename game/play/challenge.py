@@ -199,7 +199,7 @@ class Race(Challenge):
 
     def __init__(self, record: Record, name: str) -> None:
         self._record, self._name = record, name
-        self.elsewhere = _elsewhere(record.recording)
+        self.elsewhere = flown_elsewhere(record.recording)
         self.line = texts.DUEL_RIVAL.format(name=name)
         self.opening = texts.DUEL_BEGIN.format(name=name)
 
@@ -225,7 +225,7 @@ class ContinuedFlight(Challenge):
     def __init__(self, flight_replay: FlightReplay, name: str) -> None:
         self._recording, self._step, self._name = flight_replay.record.recording, flight_replay.at, name
         self._moment = flight_replay.flight.env.snapshot()
-        self.elsewhere = _elsewhere(self._recording)
+        self.elsewhere = flown_elsewhere(self._recording)
         self.name = flight_replay.record.recording.mission or flight_replay.record.entry.course
         self.line = texts.FLY_ON_LINE.format(seconds=flight_replay.at / 60)
 
@@ -242,7 +242,7 @@ class ContinuedFlight(Challenge):
         return Ghost(rerun, self._name)
 
 
-def _elsewhere(recording: Recording) -> bool:
+def flown_elsewhere(recording: Recording) -> bool:
     """Whether a recorded flight was flown where it is not as on the moon."""
     return bool(recording.gravity) or (recording.mission != "" and STARTS[recording.mission].elsewhere)
 

@@ -36,6 +36,7 @@ from game.input.controls import Command
 from game.panels import falls
 from game.panels.explained import Explained
 from game.panels.timeline import Timeline, runs
+from game.play.challenge import flown_elsewhere
 from game.play.friend import BELOW_CLAIM, Claimed
 from game.play.race import fly_on, race
 from game.ui.actions import Action, Table
@@ -92,7 +93,8 @@ class ReplayScene(FormScene):
         self._scenery = Scenery(self.flight_replay.flight, context.settings.reduced_motion, self._clear)
         self._heard = FlightSound(context.sound, self.flight_replay.flight.env, self._pace, warns=False)
         self._build()
-        network = networks.chosen(context.models_dir, context.user_dir, context.settings.model)
+        elsewhere = flown_elsewhere(record.recording)
+        network = networks.chosen(context.models_dir, context.user_dir, context.settings.model, elsewhere)
         self.falls.judge(network.policy)
         self._look()
 

@@ -5,6 +5,7 @@ import pytest
 
 import main
 from ai.agent.agent import DeepQAgent
+from ai.cli import copilot as commands
 from ai.cli.copilot import MODEL
 from ai.copilot import critic_training
 from ai.copilot.copilot import CoPilot
@@ -13,8 +14,11 @@ from ai.copilot.critic_training import CriticTraining, _platt
 from ai.copilot.hands import FAMILIES, UNSEEN, ClumsyHands, Faults, any_hands
 from ai.copilot.moments import flown, moon, present, saved
 from ai.copilot.oracle import Oracle
-from ai.lander.environment import LanderEnv, Outcome
+from ai.lander.environment import NUM_FEATURES, LanderEnv, Outcome
 from ai.lander.pilots import ScriptedPilot
+from ai.lander.sensing import SURROUNDINGS
+
+ANYWHERE = MODEL.parent / "anywhere"
 
 
 @pytest.fixture(scope="module")
@@ -126,8 +130,11 @@ def small(monkeypatch):
         ("_CALIBRATED", 1),
         ("_TESTED", 2),
         ("_HIDDEN", (32,)),
+        ("_FIRST", 3),
+        ("_FITS", 4),
     ):
         monkeypatch.setattr(critic_training, name, value)
+    monkeypatch.setattr(commands, "ROUNDS_ALLOWED", (4, 5))
 
 
 def test_a_critic_learns_to_tell_moments_apart_and_follows_from_its_seed(agent, small):
@@ -158,6 +165,20 @@ def test_the_command_trains_one_and_the_co_pilot_finds_it(agent, small, tmp_path
     critic = SafetyCritic.load(tmp_path / "mine" / "guardian")
     assert CoPilot(DeepQAgent.load(tmp_path / "mine"), 0.4, "guardian").critic is not None
     assert critic.facts.moments == 2000
+
+
+def test_for_a_network_that_lands_anywhere_it_learns_from_worlds_of_many_kinds(monkeypatch, small):
+    monkeypatch.setattr(critic_training, "_FLIGHTS", 12)
+    monkeypatch.setattr(critic_training, "_PER_ROUND", 40)
+    training = CriticTraining(DeepQAgent.load(ANYWHERE), np.random.default_rng(2))
+    lessons = training.gather(None)
+    assert lessons.inputs.shape == (40, NUM_FEATURES + len(SURROUNDINGS))
+    gravity = lessons.inputs[:, NUM_FEATURES + SURROUNDINGS.index("gravity")]
+    assert len(np.unique(gravity)) > 3
+    training.lessons.append(lessons)
+    critic = training.fit(3)
+    assert critic.anywhere
+    assert critic.chances(lessons.inputs[:, :NUM_FEATURES], lessons.inputs[:, NUM_FEATURES:]).shape == (40, 6)
 
 
 def test_the_command_refuses_what_makes_no_sense(tmp_path, capsys, small):

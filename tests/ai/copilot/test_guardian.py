@@ -137,6 +137,29 @@ def test_of_several_pads_one_where_the_flight_can_be_saved_is_enough():
     assert guardian(row(a3=LOST), lost).share(seen(1, 2), [3])[0][0] == 4
 
 
+def test_among_hills_it_steps_in_only_where_another_action_is_much_better():
+    """The network itself may miss a narrow pad: what the dial asks for is then out of reach, whatever is done."""
+    best = 0.96
+    for chance, kept in ((1.0 - 1.4 * (1.0 - best), False), (1.0 - 1.6 * (1.0 - best), True)):
+        rows = np.full(6, best)
+        rows[3] = chance
+        assert guardian(rows, rows).share(seen(1, 2), [3])[1][0] == kept
+        assert guardian(rows).share(seen(), [3])[1][0]  # over a plain, what is asked for can be reached
+
+
+def test_where_no_pad_that_is_meant_can_be_reached_another_will_do():
+    """A pilot who heads for the first pad until it is lost; the second lies below."""
+    copilot = guardian(row(), row(), best=4)
+    copilot.agent = SimpleNamespace(q_values=lambda _: np.array([[0, 0, 9, 0, 0, 0], [9, 0, 0, 0, 0, 0.0]], np.float32))
+    for _ in range(40):
+        decision = copilot.decide(seen(1, 2), [2])
+    assert decision.likely[0, 0] > 0.9
+    copilot.critic.rows = (np.full(6, LOST), row(a2=LOST))
+    decision = copilot.decide(seen(1, 2), [2])
+    assert decision.action[0] == 0  # the way to the second pad
+    assert decision.chances[0, 0] == pytest.approx(SAFE)
+
+
 def test_what_the_critic_cannot_judge_stays_the_pilots():
     decision = guardian(np.full(6, np.nan)).decide(seen(), [2])
     assert decision.action[0] == 2
