@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from itertools import count
 from pathlib import Path
@@ -343,13 +343,19 @@ class Walk:
         self._written = Written(setattr)
         self._whole = {text for text in strings(vars(texts)) if text.endswith("…")}
 
-    def visit(self, name: str, size: str, settings: dict[str, object], happens: Happens) -> None:
-        """Open a scene; note what stands there, and, at the largest size, with each widget and option chosen."""
+    def visit(self, name: str, sizes: Sequence[str], settings: dict[str, object], happens: Happens) -> None:
+        """Open a scene; note what stands there at some sizes of text, and at the last with each widget and option."""
+        *others, size = sizes
         driver = self._open(name, size, settings)
         try:
             happens(driver)
             self._note(driver, f"{name}, {size}")
-            for widget in list(self._widgets(driver)) if size == SIZES[-1] else ():
+            for other in others:
+                self._grow(driver, other)
+                self._note(driver, f"{name}, {other}")
+            if others:
+                self._grow(driver, size)
+            for widget in list(self._widgets(driver)):
                 if widget not in self._widgets(driver):
                     break
                 driver.form.focus(widget)
@@ -361,6 +367,12 @@ class Walk:
                     self._note(driver, f"{name}, {widget.label} {number}, {size}")
         finally:
             driver.app.close()
+
+    def _grow(self, driver: Driver, size: str) -> None:
+        """Change the size of text while the scene is open, as the player can."""
+        driver.app.context.settings.text_size = size
+        driver.app.apply_settings()
+        driver.frames(2)
 
     def _widgets(self, driver: Driver) -> list[object]:
         form = getattr(driver.top, "form", None)
@@ -407,10 +419,9 @@ def main() -> None:
         walk = Walk(Path(folder))
         stock(Context(Path(folder), Settings(), rng=np.random.default_rng(1)))
         for name in (*SCREENS, *FLOWN, *OVER_OTHERS):
-            for size in SIZES:
-                walk.visit(name, size, {}, lambda _: None)
+            walk.visit(name, SIZES, {}, lambda _: None)
         for name, settings, happens in STATES.values():
-            walk.visit(name, SIZES[-1], settings, happens)
+            walk.visit(name, SIZES[-1:], settings, happens)
         json.dump({"seen": walk.seen, "wrong": walk.wrong}, sys.stdout)
 
 

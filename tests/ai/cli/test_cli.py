@@ -77,22 +77,26 @@ ENDINGS = [("SIGINT", 0), ("SIGTERM", 128 + 15), ("SIGHUP", 128 + 1)]
 
 
 @pytest.fixture
-def usual_answer(name):
-    """Answer a signal as a program does that nothing was asked of: under nohup, tests would ignore a hang-up."""
-    number = getattr(signal, name)
-    before = signal.signal(number, signal.SIG_DFL)
-    yield number
-    signal.signal(number, before)
+def heard():
+    """Signals that end a run; those that the tests were told to ignore, as under nohup, are heard again."""
+    numbers = [getattr(signal, name) for name, _ in ENDINGS if hasattr(signal, name)]
+    before = {number: signal.getsignal(number) for number in numbers}
+    for number, handler in before.items():
+        if handler is signal.SIG_IGN:
+            signal.signal(number, signal.SIG_DFL)
+    yield
+    for number, handler in before.items():
+        signal.signal(number, handler)
 
 
+@pytest.mark.usefixtures("heard")
 @pytest.mark.parametrize(("name", "code"), [ending for ending in ENDINGS if hasattr(signal, ending[0])])
-def test_whoever_ends_a_run_by_a_signal_keeps_the_work(tmp_path, usual_answer, code, capsys, monkeypatch):
-    advance = Training.advance
+def test_whoever_ends_a_run_by_a_signal_keeps_the_work(tmp_path, name, code, capsys, monkeypatch):
+    advance, before = Training.advance, signal.getsignal(getattr(signal, name))
 
     def signalled(training):
         if training.agent.decisions == 160:
-            signal.raise_signal(usual_answer)
-        assert training.agent.decisions <= 160, "the signal has ended nothing"
+            signal.raise_signal(getattr(signal, name))
         return advance(training)
 
     monkeypatch.setattr(Training, "advance", signalled)
@@ -103,7 +107,7 @@ def test_whoever_ends_a_run_by_a_signal_keeps_the_work(tmp_path, usual_answer, c
     assert described["decisions"] == 168
     assert described["best"]["episodes"] == 4, "what is kept is measured"
     assert (tmp_path / "run" / "last" / "config.json").exists()
-    assert signal.getsignal(usual_answer) == signal.SIG_DFL
+    assert signal.getsignal(getattr(signal, name)) == before
 
 
 TELLING = """

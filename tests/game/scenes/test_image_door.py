@@ -10,20 +10,14 @@ from game.core.worker import WorkerState
 from game.scenes.digit_training import DigitTrainingScene
 from game.scenes.lesson import LessonScene
 from game.ui.hints import HintRow
-from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.lessons import digit_lesson_of
 from tests.support.small import DIGITS
 
 
 @pytest.fixture
-def train(open_game: Callable[..., Driver], monkeypatch: pytest.MonkeyPatch) -> Driver:
-    """The screen, with a run within this process."""
-    inline_worker.install(monkeypatch.setattr)
-    driver = open_game(DigitTrainingScene)
-    driver.frames(2)
-    driver.top.knobs.set_config(DIGITS, 3)
-    return driver
+def small_run() -> tuple[type[DigitTrainingScene], object]:
+    return DigitTrainingScene, DIGITS
 
 
 def start(driver: Driver) -> None:
