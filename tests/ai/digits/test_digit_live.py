@@ -172,7 +172,7 @@ def test_a_ruined_network_can_go_back_to_its_best(data):
     ticks = count()
     training.clock = lambda: float(
         next(ticks)
-    )  # it is measured for a share of the time, which a busy machine stretches
+    )  # it is measured for a share of the time, whatever else runs here
     told = ruin(run)
     assert [each.after for each in kinds(told, DigitSettingChanged)] == [1.0, 1.0, 0.02, 1e-6]
     scores = [each.accuracy for each in kinds(told, HeldOutScore)]
