@@ -125,7 +125,7 @@ def experimented(driver: Driver) -> None:
     """Guess, and fly two runs side by side for a moment."""
     asked(driver)
     driver.press_on(texts.LAB_GUESSES["later"])
-    driver.wait(lambda: driver.top.lander_run.twin and len(driver.top.lander_run.twin.history) >= 2, 90.0)
+    driver.wait(lambda: driver.top.lander_run.twin and len(driver.top.lander_run.twin.history) >= 2)
     driver.press_on(texts.TRAIN_PAUSE)
     driver.frames(5)
 
@@ -133,7 +133,7 @@ def experimented(driver: Driver) -> None:
 def learn(driver: Driver, run: TrainingRun, config: object, enough: Callable[[], object]) -> None:
     driver.top.knobs.set_config(config, 3)
     driver.key(pygame.K_RETURN)
-    driver.wait(enough, 90.0)
+    driver.wait(enough)
     driver.key(pygame.K_RETURN)
     driver.wait(lambda: run.state is WorkerState.PAUSED)
     driver.frames(5)

@@ -34,7 +34,7 @@ from tests.support.written import words_written
 
 
 def wait(driver: Driver, until: Callable[[], object]) -> None:
-    driver.wait(until, seconds=90.0)
+    driver.wait(until)
 
 
 @pytest.fixture

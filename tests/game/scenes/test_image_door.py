@@ -24,7 +24,7 @@ def start(driver: Driver) -> None:
     """Start a run, and wait until it has learnt for a moment."""
     driver.form.focus(driver.top.start_button)
     driver.key(pygame.K_RETURN)
-    driver.wait(lambda: driver.top.digit_run.curves.points, seconds=90.0)
+    driver.wait(lambda: driver.top.digit_run.curves.points)
 
 
 def open_lesson(driver: Driver) -> None:
