@@ -147,6 +147,11 @@ class Driver:
             if hint.run
         }
 
+    def write_in(self, text_size: str) -> None:
+        """Change the size of text, as the settings do while a scene is open."""
+        self.app.context.settings.text_size = text_size
+        self.app.apply_settings()
+
     def resize(self, size: tuple[int, int]) -> None:
         self.app.window.size = size
         self.frames(10)  # until the window has settled

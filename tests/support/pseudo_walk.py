@@ -351,10 +351,12 @@ class Walk:
             happens(driver)
             self._note(driver, f"{name}, {size}")
             for other in others:
-                self._grow(driver, other)
+                driver.write_in(other)
+                driver.frames(2)
                 self._note(driver, f"{name}, {other}")
             if others:
-                self._grow(driver, size)
+                driver.write_in(size)
+                driver.frames(2)
             for widget in list(self._widgets(driver)):
                 if widget not in self._widgets(driver):
                     break
@@ -367,12 +369,6 @@ class Walk:
                     self._note(driver, f"{name}, {widget.label} {number}, {size}")
         finally:
             driver.app.close()
-
-    def _grow(self, driver: Driver, size: str) -> None:
-        """Change the size of text while the scene is open, as the player can."""
-        driver.app.context.settings.text_size = size
-        driver.app.apply_settings()
-        driver.frames(2)
 
     def _widgets(self, driver: Driver) -> list[object]:
         form = getattr(driver.top, "form", None)

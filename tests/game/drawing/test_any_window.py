@@ -75,8 +75,7 @@ def test_nor_in_flight_or_at_its_end(open_game, context, written: Written, setti
         if shape != size:
             reshape(driver, shape)
         for text_size in ("largest", "normal"):
-            context.settings.text_size = text_size
-            driver.app.apply_settings()
+            driver.write_in(text_size)
             driver.frames(2)
             assert not wrong(written, driver), (shape, text_size)
 
