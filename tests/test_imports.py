@@ -155,7 +155,7 @@ for name in {names!r}:
         sys.exit(f"{{name}} loads {{suspect}}")
 """
     done = subprocess.run(
-        [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False, timeout=60
+        [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False, timeout=300
     )
     return done.stderr
 

@@ -41,7 +41,7 @@ if __name__ == "__main__":
 
 
 def run(*command: str, **options) -> str:
-    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120, **options)
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600, **options)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 

@@ -1,6 +1,7 @@
 """The game without a window: SDL draws into memory, and a clock of our own ticks 1/60 s a frame."""
 
 import os
+import time
 
 os.environ["SDL_VIDEODRIVER"] = "dummy"
 os.environ["SDL_AUDIODRIVER"] = "dummy"
@@ -85,6 +86,9 @@ def open_game(context: Context) -> Iterator[Callable[..., Driver]]:
     yield open_it
     for driver in reversed(opened):  # whatever one has closed, the others still have scenes to leave
         driver.app.close()
+    end = time.monotonic() + 20.0
+    while active_children() and time.monotonic() < end:  # on a busy machine, one that was ended takes a moment to go
+        time.sleep(0.01)
     assert not active_children()
     pygame.event.get() if pygame.display.get_init() else None
 

@@ -73,7 +73,7 @@ class Driver:
         window.minimised = False
         return goes_on
 
-    def wait(self, until: Callable[[], object], seconds: float = 40.0) -> None:
+    def wait(self, until: Callable[[], object], seconds: float = 300.0) -> None:
         """Play frames until something holds, few of them drawn; the limit is only there so that a failure ends."""
         end = time.monotonic() + seconds
         while not until():
@@ -146,6 +146,11 @@ class Driver:
             for hint, box in zip(row.hints, row.boxes(canvas), strict=True)
             if hint.run
         }
+
+    def write_in(self, text_size: str) -> None:
+        """Change the size of text, as the settings do while a scene is open."""
+        self.app.context.settings.text_size = text_size
+        self.app.apply_settings()
 
     def resize(self, size: tuple[int, int]) -> None:
         self.app.window.size = size

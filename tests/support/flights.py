@@ -1,5 +1,7 @@
 """Flights as tests fly them: to the end, by the scripted pilot."""
 
+from functools import cache
+
 from ai.lander.pilots import ScriptedPilot
 from game.flight.flight import Flight
 from game.flight.flight_file import Record
@@ -25,6 +27,12 @@ def scripted(seed: int = 3, *, by_hand: int = 0, pads: int = 1, mission: str = "
         flight.step(0)
     flight.hand_over()
     return fly_out(flight)
+
+
+@cache
+def landed() -> Flight:
+    """A landing of the scripted pilot, flown once: for tests that keep it or look at it, and change nothing."""
+    return scripted()
 
 
 def kept(context: Context, flight: Flight, when: float = NOON, **more: object) -> Record:

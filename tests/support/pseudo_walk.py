@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from itertools import count
 from pathlib import Path
@@ -125,7 +125,7 @@ def experimented(driver: Driver) -> None:
     """Guess, and fly two runs side by side for a moment."""
     asked(driver)
     driver.press_on(texts.LAB_GUESSES["later"])
-    driver.wait(lambda: driver.top.lander_run.twin and len(driver.top.lander_run.twin.history) >= 2, 90.0)
+    driver.wait(lambda: driver.top.lander_run.twin and len(driver.top.lander_run.twin.history) >= 2)
     driver.press_on(texts.TRAIN_PAUSE)
     driver.frames(5)
 
@@ -133,7 +133,7 @@ def experimented(driver: Driver) -> None:
 def learn(driver: Driver, run: TrainingRun, config: object, enough: Callable[[], object]) -> None:
     driver.top.knobs.set_config(config, 3)
     driver.key(pygame.K_RETURN)
-    driver.wait(enough, 90.0)
+    driver.wait(enough)
     driver.key(pygame.K_RETURN)
     driver.wait(lambda: run.state is WorkerState.PAUSED)
     driver.frames(5)
@@ -345,13 +345,21 @@ class Walk:
         self._written = Written(setattr)
         self._whole = {text for text in strings(vars(texts)) if text.endswith("…")}
 
-    def visit(self, name: str, size: str, settings: dict[str, object], happens: Happens) -> None:
-        """Open a scene; note what stands there, and, at the largest size, with each widget and option chosen."""
+    def visit(self, name: str, sizes: Sequence[str], settings: dict[str, object], happens: Happens) -> None:
+        """Open a scene; note what stands there at some sizes of text, and at the last with each widget and option."""
+        *others, size = sizes
         driver = self._open(name, size, settings)
         try:
             happens(driver)
             self._note(driver, f"{name}, {size}")
-            for widget in list(self._widgets(driver)) if size == SIZES[-1] else ():
+            for other in others:
+                driver.write_in(other)
+                driver.frames(2)
+                self._note(driver, f"{name}, {other}")
+            if others:
+                driver.write_in(size)
+                driver.frames(2)
+            for widget in list(self._widgets(driver)):
                 if widget not in self._widgets(driver):
                     break
                 driver.form.focus(widget)
@@ -409,10 +417,9 @@ def main() -> None:
         walk = Walk(Path(folder))
         stock(Context(Path(folder), Settings(), rng=np.random.default_rng(1)))
         for name in (*SCREENS, *FLOWN, *OVER_OTHERS):
-            for size in SIZES:
-                walk.visit(name, size, {}, lambda _: None)
+            walk.visit(name, SIZES, {}, lambda _: None)
         for name, settings, happens in STATES.values():
-            walk.visit(name, SIZES[-1], settings, happens)
+            walk.visit(name, SIZES[-1:], settings, happens)
         json.dump({"seen": walk.seen, "wrong": walk.wrong}, sys.stdout)
 
 

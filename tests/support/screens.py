@@ -50,7 +50,7 @@ from game.scenes.watch import WatchScene
 from game.scenes.why_not import WhyNotScene
 from game.ui.context import Context
 from tests.support.driver import Driver
-from tests.support.flights import kept, play, scripted
+from tests.support.flights import kept, landed, play
 from tests.support.lessons import lesson_of
 
 Make = Callable[[Context], Scene]
@@ -131,7 +131,7 @@ def seven() -> Image:
 
 def flown(context: Context) -> Record:
     """A flight in the player's logbook."""
-    return kept(context, scripted(), time.time(), alone=True)
+    return kept(context, landed(), time.time(), alone=True)
 
 
 def settle(context: Context, **settings: object) -> None:

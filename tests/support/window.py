@@ -39,7 +39,7 @@ def screen(size: str = "1280x800x24") -> Iterator[str]:
             yield f":{number.readline().strip()}"
     finally:
         server.terminate()
-        server.wait(10)
+        server.wait(60)
 
 
 class Window:
@@ -86,7 +86,7 @@ class Window:
     def picture(self) -> pygame.Surface:
         """What the window shows now."""
         path = self.user_dir.parent / "seen.bmp"  # ImageMagick takes seconds to pack a PNG
-        subprocess.run(["import", "-window", self.id, str(path)], env=self._environment, check=True, timeout=20)
+        subprocess.run(["import", "-window", self.id, str(path)], env=self._environment, check=True, timeout=120)
         return pygame.image.load(path)
 
     def picture_is_bright(self) -> bool:
@@ -99,18 +99,18 @@ class Window:
         manager there is no button.
         """
         self.process.send_signal(signal.SIGTERM)
-        return self.process.wait(10)
+        return self.process.wait(60)
 
     def interrupt(self) -> int:
         """Send what Ctrl-C sends, and return the exit code."""
         self.process.send_signal(signal.SIGINT)
-        return self.process.wait(10)
+        return self.process.wait(60)
 
     def end(self) -> None:
         """End the process by force if it still runs, and let go of its output."""
         if self.process.poll() is None:
             self.process.kill()
-            self.process.wait(10)
+            self.process.wait(60)
         if self.process.stdout:
             self.process.stdout.close()
 
@@ -118,7 +118,7 @@ class Window:
         assert self.process.stdout is not None
         return self.process.stdout.read()
 
-    def wait_for(self, happened: Callable[[], object], what: str, seconds: float = 15) -> None:
+    def wait_for(self, happened: Callable[[], object], what: str, seconds: float = 120) -> None:
         deadline = time.monotonic() + seconds
         while time.monotonic() < deadline:
             with suppress(OSError, subprocess.SubprocessError, ValueError):
@@ -146,7 +146,7 @@ class Window:
             capture_output=True,
             check=False,
             text=True,
-            timeout=20,
+            timeout=120,
         )
         return finished.stdout
 

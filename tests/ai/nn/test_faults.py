@@ -445,7 +445,7 @@ def test_a_lock_that_was_let_go_is_free_at_once_and_leaves_nothing(tmp_path):
 def test_a_pipe_in_place_of_a_lock_lets_nobody_wait(tmp_path):
     os.mkfifo(tmp_path / ".run.lock")
     waiter = "from ai.nn.lock import take_folder; import sys; take_folder(sys.argv[1]).release()"
-    subprocess.run([sys.executable, "-c", waiter, tmp_path / "run"], check=True, timeout=30)
+    subprocess.run([sys.executable, "-c", waiter, tmp_path / "run"], check=True, timeout=300)
 
 
 def test_a_reader_that_puts_the_old_folder_back_does_not_stop_a_save(run, monkeypatch):

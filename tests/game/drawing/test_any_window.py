@@ -29,11 +29,6 @@ from tests.support.written import Written, misplaced
 SHAPES = [(1290, 430), (640, 1280), (800, 800)]  # three to one, one to two, square
 
 
-@pytest.fixture
-def written(monkeypatch: pytest.MonkeyPatch) -> Written:
-    return Written(monkeypatch.setattr)
-
-
 def wrong(written: Written, driver: Driver) -> set[tuple[str, str]]:
     """Draw a frame, and return each text in it that leaves the view, its panel or its place, or meets another."""
     page = written.turn(driver.app.canvas)
@@ -53,29 +48,36 @@ PAGES = ["SettingsScene", "PauseScene", "QuestionDialog"]
 
 
 @pytest.mark.parametrize("name", [*WORLDS, *PAGES])
-@pytest.mark.parametrize("size", SHAPES)
-def test_nothing_leaves_the_view_and_no_texts_meet(
-    open_game, context: Context, written: Written, name: str, size: tuple[int, int]
-):
+def test_nothing_leaves_the_view_and_no_texts_meet(open_game, context: Context, written: Written, name: str):
     settle(context)
     driver = opened(open_game, name)
     as_usual = wrong(written, driver)
-    reshape(driver, size)
-    assert wrong(written, driver) <= as_usual  # a figure over another on purpose is so in every window
+    for size in SHAPES:
+        reshape(driver, size)
+        assert wrong(written, driver) <= as_usual, size  # a figure over another on purpose is so in every window
 
 
-@pytest.mark.parametrize("text_size", ["normal", "largest"])
-@pytest.mark.parametrize("size", SHAPES)
 @pytest.mark.parametrize(
-    ("settings", "happens"),
-    [({}, crashed), ({"assist": 0.4, "three_pads": True}, shared), ({"assist": 0.4, "explain": False}, shared)],
+    ("settings", "happens", "size"),
+    [
+        ({}, crashed, SHAPES[0]),
+        ({"assist": 0.4, "three_pads": True}, shared, SHAPES[1]),
+        ({"assist": 0.4, "explain": False}, shared, SHAPES[2]),
+    ],
 )
-def test_nor_in_flight_or_at_its_end(open_game, context, written: Written, settings, happens, size, text_size: str):
-    settle(context, text_size=text_size, **settings)
+def test_nor_in_flight_or_at_its_end(open_game, context, written: Written, settings, happens, size):
+    """Each happens in a window of one shape, and is looked at in all of them, at two sizes of text."""
+    settle(context, text_size="largest", **settings)
     driver = opened(open_game, "Play")
     reshape(driver, size)
     happens(driver)
-    assert not wrong(written, driver)
+    for shape in (size, *[each for each in SHAPES if each != size]):
+        if shape != size:
+            reshape(driver, shape)
+        for text_size in ("largest", "normal"):
+            driver.write_in(text_size)
+            driver.frames(2)
+            assert not wrong(written, driver), (shape, text_size)
 
 
 def boxes(written: Written, driver: Driver) -> dict[str, pygame.FRect]:

@@ -23,14 +23,14 @@ from game.scenes.menu import MenuScene
 from game.scenes.replay import ReplayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
-from tests.support.flights import kept, scripted
+from tests.support.flights import kept, landed
 
 SMALL = {".gif": VideoKind("PIL", (160, 90), 60, True), ".mp4": VideoKind("av", (160, 90), 60, False)}
 
 
 @pytest.fixture
 def record(context: Context) -> Record:
-    return kept(context, scripted())
+    return kept(context, landed())
 
 
 @pytest.fixture

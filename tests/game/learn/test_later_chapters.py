@@ -25,7 +25,7 @@ from game.learn.runs import RunsChapter
 from game.learn.target import TargetChapter
 from game.ui.context import Context
 from game.ui.form import Form
-from tests.support.flights import scripted
+from tests.support.flights import landed
 from tests.support.inline_worker import InlineWorker
 
 Made = Callable[[type[Chapter]], Chapter]
@@ -188,13 +188,13 @@ def test_the_list_ticks_what_was_really_done_and_nothing_before(made: Made, cont
     context.settings.model = "mine"
     assert look(chapter) == {"train", "choose"}
     records = Records(context.user_dir)
-    records.keep(scripted(), time.time(), network="modern")
+    records.keep(landed(), time.time(), network="modern")
     assert look(chapter) == {"train", "choose"}  # another network flew
-    records.keep(scripted(), time.time(), network="mine")
+    records.keep(landed(), time.time(), network="mine")
     assert "hand" in look(chapter)
     assert "race" not in look(chapter)
     pushed = race.press()
     assert isinstance(pushed, Push)
     assert "race" not in look(chapter)  # opened, and not flown yet
-    records.keep(scripted(), time.time() + 5, network="mine")
+    records.keep(landed(), time.time() + 5, network="mine")
     assert "race" in look(chapter)

@@ -141,20 +141,14 @@ def test_who_has_landed_often_before_begins_at_the_top(context: Context):
 
 def test_the_choices_move_on_the_ladder_and_off_it(open_game: Open):
     driver = open_game(PlayScene, ladder=True)
-    driver.frames(2)
-    driver.key(pygame.K_c)
-    while driver.form.focused.label != texts.CHOICES_LADDER:
-        driver.key(pygame.K_DOWN)
-    driver.keys(*[pygame.K_RIGHT] * 12)
-    driver.key(pygame.K_ESCAPE)
-    assert play(driver).flight.recording.spawn == "random"
-    driver.frames(2)
-    driver.key(pygame.K_c)
-    while driver.form.focused.label != texts.CHOICES_LADDER:
-        driver.key(pygame.K_DOWN)
-    driver.keys(*[pygame.K_LEFT] * 12)
-    driver.key(pygame.K_ESCAPE)
-    assert play(driver).flight.recording.spawn == "rung_1"
+    for direction, spawn in ((pygame.K_RIGHT, "random"), (pygame.K_LEFT, "rung_1")):
+        driver.frames(2)
+        driver.key(pygame.K_c)
+        while driver.form.focused.label != texts.CHOICES_LADDER:
+            driver.key(pygame.K_DOWN)
+        driver.keys(*[direction] * 12)
+        driver.key(pygame.K_ESCAPE)
+        assert play(driver).flight.recording.spawn == spawn
 
 
 def test_flights_from_the_ladder_replay_but_do_not_measure_skill(context: Context):

@@ -20,14 +20,14 @@ from game.scenes.replay import ReplayScene
 from game.scenes.runs import NetworksScene
 from game.ui.context import Context
 from tests.support.driver import Driver
-from tests.support.flights import kept, play, scripted
+from tests.support.flights import kept, landed, play, scripted
 
 Open = Callable[..., Driver]
 
 
 @pytest.fixture
 def record(context: Context) -> Record:
-    return kept(context, scripted(), alone=True)
+    return kept(context, landed(), alone=True)
 
 
 @pytest.fixture

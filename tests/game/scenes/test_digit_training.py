@@ -27,7 +27,6 @@ from game.scenes.quiz import QuizScene
 from game.training.digit_run import DigitCurves, DigitRun
 from game.training.knob_descriptions import knob_descriptions
 from game.training.run_settings import RunSettings
-from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.player import Player
 from tests.support.small import DIGITS as SMALL
@@ -35,23 +34,12 @@ from tests.support.written import words_written
 
 
 def wait(driver: Driver, until: Callable[[], object]) -> None:
-    driver.wait(until, seconds=90.0)
+    driver.wait(until)
 
 
 @pytest.fixture
-def beside(open_game: Callable[..., Driver]) -> Driver:
-    """The screen, with a process of its own for its run."""
-    driver = open_game(DigitTrainingScene)
-    driver.frames(2)
-    driver.top.knobs.set_config(SMALL, 3)
-    return driver
-
-
-@pytest.fixture
-def train(beside: Driver, monkeypatch: pytest.MonkeyPatch) -> Driver:
-    """The screen, with a run within this process."""
-    inline_worker.install(monkeypatch.setattr)
-    return beside
+def small_run() -> tuple[type[DigitTrainingScene], object]:
+    return DigitTrainingScene, SMALL
 
 
 def confusion() -> Confusion:

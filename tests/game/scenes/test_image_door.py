@@ -10,27 +10,21 @@ from game.core.worker import WorkerState
 from game.scenes.digit_training import DigitTrainingScene
 from game.scenes.lesson import LessonScene
 from game.ui.hints import HintRow
-from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.lessons import digit_lesson_of
 from tests.support.small import DIGITS
 
 
 @pytest.fixture
-def train(open_game: Callable[..., Driver], monkeypatch: pytest.MonkeyPatch) -> Driver:
-    """The screen, with a run within this process."""
-    inline_worker.install(monkeypatch.setattr)
-    driver = open_game(DigitTrainingScene)
-    driver.frames(2)
-    driver.top.knobs.set_config(DIGITS, 3)
-    return driver
+def small_run() -> tuple[type[DigitTrainingScene], object]:
+    return DigitTrainingScene, DIGITS
 
 
 def start(driver: Driver) -> None:
     """Start a run, and wait until it has learnt for a moment."""
     driver.form.focus(driver.top.start_button)
     driver.key(pygame.K_RETURN)
-    driver.wait(lambda: driver.top.digit_run.curves.points, seconds=90.0)
+    driver.wait(lambda: driver.top.digit_run.curves.points)
 
 
 def open_lesson(driver: Driver) -> None:

@@ -1,9 +1,6 @@
 """Into a lesson from Train: by a word, a click on a lander, a mark on the charts, after a step; and back to the run."""
 
-from collections.abc import Callable
-
 import pygame
-import pytest
 
 from game.charts.scrubber import Scrubber
 from game.core import texts
@@ -11,19 +8,8 @@ from game.core.worker import WorkerState
 from game.scenes.lesson import LessonScene
 from game.scenes.train import TrainScene
 from game.ui.virtual_pointer import VirtualPointer
-from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.small import LANDERS
-
-
-@pytest.fixture
-def train(open_game: Callable[..., Driver], monkeypatch: pytest.MonkeyPatch) -> Driver:
-    """The screen, with a run within this process that has begun to learn."""
-    inline_worker.install(monkeypatch.setattr)
-    driver = open_game(TrainScene)
-    driver.frames(2)
-    driver.top.knobs.set_config(LANDERS, 3)
-    return driver
 
 
 def toggle(driver: Driver) -> None:

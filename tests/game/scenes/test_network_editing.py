@@ -1,7 +1,5 @@
 """The large network of a live run, edited by mouse, by keys and by gamepad, and the way back."""
 
-from collections.abc import Callable
-
 import numpy as np
 import pygame
 import pytest
@@ -15,18 +13,13 @@ from game.panels.network_picking import Link, Unit
 from game.scenes.train import TrainScene
 from game.ui.virtual_pointer import VirtualPointer
 from game.ui.widgets import Slider
-from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.networks import on_a_link
 from tests.support.small import LANDERS as SMALL
 
 
-def opened(open_game: Callable[..., Driver], monkeypatch: pytest.MonkeyPatch, **options: object) -> Driver:
-    """A run within this process, paused, with its network large."""
-    inline_worker.install(monkeypatch.setattr)
-    driver = open_game(TrainScene)
-    driver.frames(2)
-    driver.top.knobs.set_config(SMALL.changed(**options), 3)
+def paused(driver: Driver) -> Driver:
+    """A run that has begun to learn, paused, with its network large."""
     driver.key(pygame.K_RETURN)
     driver.wait(lambda: len(driver.top.lander_run.history) >= 2)
     driver.key(pygame.K_RETURN)
@@ -38,8 +31,8 @@ def opened(open_game: Callable[..., Driver], monkeypatch: pytest.MonkeyPatch, **
 
 
 @pytest.fixture
-def train(open_game: Callable[..., Driver], monkeypatch: pytest.MonkeyPatch) -> Driver:
-    return opened(open_game, monkeypatch)
+def train(train: Driver) -> Driver:
+    return paused(train)
 
 
 def editing(driver: Driver) -> NetworkEditing:
@@ -193,8 +186,8 @@ def test_an_earlier_moment_cannot_be_edited_nor_a_run_that_has_ended(train: Driv
     assert texts.EDIT_SILENCE not in words(train)
 
 
-def test_what_cannot_be_edited_says_why(open_game: Callable[..., Driver], monkeypatch: pytest.MonkeyPatch) -> None:
-    train = opened(open_game, monkeypatch, dueling=True)
+@pytest.mark.parametrize("small_run", [(TrainScene, SMALL.changed(dueling=True))], ids=["dueling"])
+def test_what_cannot_be_edited_says_why(train: Driver) -> None:
     before = values(train)
     train.click(on_a_link(train.top.inside.view, 1))
     train.frames(2)

@@ -20,7 +20,7 @@ from game.scenes.play import PlayScene
 from game.scenes.settings import SettingsScene
 from game.ui.context import Context
 from tests.support.driver import Driver
-from tests.support.flights import kept, scripted
+from tests.support.flights import kept, landed
 from tests.support.player import DEVICES, Player
 from tests.support.screens import settle
 
@@ -29,7 +29,7 @@ Open = Callable[..., Driver]
 
 def fly(context: Context, flights: int = 2) -> None:
     for _ in range(flights):
-        kept(context, scripted(), time.time(), alone=True)
+        kept(context, landed(), time.time(), alone=True)
 
 
 def files(context: Context) -> dict[str, bytes]:

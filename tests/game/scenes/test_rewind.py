@@ -14,26 +14,20 @@ from game.core.worker import WorkerState
 from game.panels.run_timeline import RunTimeline
 from game.panels.training_status import lander_status
 from game.scenes.train import TrainScene
-from tests.support import inline_worker
 from tests.support.driver import Driver
-from tests.support.small import LANDERS as SMALL
 
 POINTS = 8
 
 
 @pytest.fixture
-def train(open_game: Callable[..., Driver], monkeypatch: pytest.MonkeyPatch) -> Driver:
-    """A run within this process that has learnt for a while, and is paused."""
-    inline_worker.install(monkeypatch.setattr)
-    driver = open_game(TrainScene)
-    driver.frames(2)
-    driver.top.knobs.set_config(SMALL, 3)
-    driver.key(pygame.K_RETURN)
-    driver.wait(lambda: len(driver.top.lander_run.history) >= POINTS)
-    driver.key(pygame.K_RETURN)
-    driver.wait(lambda: driver.top.lander_run.state is WorkerState.PAUSED)
-    driver.frames(14)
-    return driver
+def train(train: Driver) -> Driver:
+    """A run that has learnt for a while, and is paused."""
+    train.key(pygame.K_RETURN)
+    train.wait(lambda: len(train.top.lander_run.history) >= POINTS)
+    train.key(pygame.K_RETURN)
+    train.wait(lambda: train.top.lander_run.state is WorkerState.PAUSED)
+    train.frames(14)
+    return train
 
 
 def halfway(driver: Driver, chart: int = 0) -> tuple[float, float]:

@@ -37,27 +37,10 @@ from game.ui import focus
 from game.ui.entry import Entry
 from game.ui.widget import Widget
 from game.ui.widgets import Choice
-from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.small import LANDERS as SMALL
 
 KNOB_PAGE = texts.KNOB_PAGES["learning"]  # one of the pages of knobs
-
-
-@pytest.fixture
-def beside(open_game: Callable[..., Driver]) -> Driver:
-    """The screen, with a process of its own for its run."""
-    driver = open_game(TrainScene)
-    driver.frames(2)
-    driver.top.knobs.set_config(SMALL, 3)
-    return driver
-
-
-@pytest.fixture
-def train(beside: Driver, monkeypatch: pytest.MonkeyPatch) -> Driver:
-    """The screen, with a run within this process."""
-    inline_worker.install(monkeypatch.setattr)
-    return beside
 
 
 def all_knobs() -> str:

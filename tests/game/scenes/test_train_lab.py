@@ -22,29 +22,12 @@ from game.scenes.train import TrainScene
 from game.training.knob_descriptions import knob_descriptions
 from game.training.library import Library
 from game.training.split_run import AHEAD
-from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.small import LANDERS as SMALL
 
 ALL = texts.KNOBS_ALL.format(count=len(knob_descriptions()))
 FEW = texts.KNOBS_FEW.format(count=3)
 TIMES = texts.LAB_TIMES.format(factor=100.0)
-
-
-@pytest.fixture
-def beside(open_game: Callable[..., Driver]) -> Driver:
-    """The screen, with processes of their own for its runs."""
-    driver = open_game(TrainScene)
-    driver.frames(2)
-    driver.top.knobs.set_config(SMALL, 3)
-    return driver
-
-
-@pytest.fixture
-def train(beside: Driver, monkeypatch: pytest.MonkeyPatch) -> Driver:
-    """The screen, with its runs within this process."""
-    inline_worker.install(monkeypatch.setattr)
-    return beside
 
 
 def knobs(driver: Driver) -> list[str]:

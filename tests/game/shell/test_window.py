@@ -80,7 +80,7 @@ def test_no_screen_is_a_message_and_exit_code_2(tmp_path: Path):
         capture_output=True,
         check=False,
         text=True,
-        timeout=30,
+        timeout=300,
     )
     assert finished.returncode == 2
     assert "needs a screen" in finished.stderr

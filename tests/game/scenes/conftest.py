@@ -1,0 +1,34 @@
+"""The scenes that train, with small runs beside the window or within its process."""
+
+from collections.abc import Callable
+
+import pytest
+
+from game.core.scene import Scene
+from game.scenes.train import TrainScene
+from tests.support import inline_worker
+from tests.support.driver import Driver
+from tests.support.small import LANDERS
+
+
+@pytest.fixture
+def small_run() -> tuple[type[Scene], object]:
+    """The scene that is opened and what it will train; files about another scene have a fixture of this name."""
+    return TrainScene, LANDERS
+
+
+@pytest.fixture
+def beside(open_game: Callable[..., Driver], small_run: tuple[type[Scene], object]) -> Driver:
+    """The screen, with processes of their own for its runs."""
+    scene, config = small_run
+    driver = open_game(scene)
+    driver.frames(2)
+    driver.top.knobs.set_config(config, 3)  # type: ignore[attr-defined]
+    return driver
+
+
+@pytest.fixture
+def train(beside: Driver, monkeypatch: pytest.MonkeyPatch) -> Driver:
+    """The screen, with its runs within this process."""
+    inline_worker.install(monkeypatch.setattr)
+    return beside
