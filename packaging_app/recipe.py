@@ -30,8 +30,10 @@ PACKAGE_DATA: Final = {
 
 # Parts of the standard library with libraries of their own that nothing here uses. hashlib, hmac and zipfile do
 # without theirs.
-_UNUSED_STANDARD: Final = ("_tkinter", "tkinter", "ssl", "_ssl", "_hashlib", "sqlite3", "_sqlite3", "readline", "curses",
-                           "_curses", "_curses_panel", "_gdbm", "_dbm", "lib2to3", "pydoc_data", "idlelib", "ensurepip")  # fmt: skip
+_UNUSED_STANDARD: Final = (
+    "tkinter", "_tkinter", "ssl", "_ssl", "_hashlib", "sqlite3", "_sqlite3", "readline", "curses", "_curses",
+    "_curses_panel", "_gdbm", "_dbm", "lib2to3", "pydoc_data", "idlelib", "ensurepip",
+)  # fmt: skip
 # Formats of pictures that are neither read nor written, MIDI, cameras, compilers, and others' tests.
 _UNUSED_PARTS: Final = (
     "PIL._avif", "PIL._imagingcms", "PIL._imagingft", "PIL._imagingtk", "PIL._webp", "PIL.ImageTk", "PIL.ImageQt",

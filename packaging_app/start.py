@@ -1,12 +1,66 @@
-"""Where the packed program begins: the window, a command, or a worker process of either."""
+"""Where the packed program begins: the window, a command, or a worker process of either.
+
+Who starts it by a double click sees no terminal, so what keeps it from starting is said in a box as well.
+"""
 
 from __future__ import annotations
 
+import os
 import sys
+import traceback
 from multiprocessing import freeze_support
+from pathlib import Path
+from tempfile import gettempdir
+
+FAILED = 70  # the exit code: "internal software error" in sysexits.h
+REPORT = "tranquility-failure.txt"
+
+
+def start() -> int:
+    """Run the program. Return its exit code; a failure is told in one sentence, and kept in whole in a file."""
+    try:
+        from tranquility.__main__ import main
+
+        return main()
+    except Exception as error:
+        reason = " ".join(str(error).split()) or type(error).__name__
+        tell(f"Tranquility could not go on: {reason}\n{_kept(traceback.format_exc())}")
+        return FAILED
+
+
+def tell(message: str) -> None:
+    """Write a message to the terminal, and where there is none, show it in a box."""
+    if sys.stderr is not None:
+        print(message, file=sys.stderr, flush=True)
+    if sys.stderr is None or not sys.stderr.isatty():
+        _show(message)
+
+
+def _show(message: str) -> None:
+    """Show a box with the message, if there is a screen and somebody to close it."""
+    if sys.platform == "linux" and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        return
+    if os.environ.get("SDL_VIDEODRIVER") in ("dummy", "offscreen"):
+        return
+    try:
+        import pygame
+
+        pygame.display.message_box("Tranquility", message, message_type="error")
+    except Exception as error:  # it is the last that can be tried
+        print(f"No box can be shown: {error}", file=sys.stderr)
+
+
+def _kept(trace: str) -> str:
+    """Write a traceback to the first folder that takes it. Return where it is, or the traceback itself."""
+    for folder in (Path.home(), Path(gettempdir())):
+        try:
+            (folder / REPORT).write_text(trace, encoding="utf-8")
+        except OSError:
+            continue
+        return f"The details are in {folder / REPORT}."
+    return trace
+
 
 if __name__ == "__main__":
     freeze_support()  # a packaged program is its own interpreter, also for the processes it starts
-    from tranquility.__main__ import main
-
-    sys.exit(main())
+    sys.exit(start())
