@@ -14,7 +14,7 @@ from tempfile import TemporaryDirectory
 from packaging_app import recipe
 from packaging_app.archive import EPOCH, needed_glibc, pack, size, strip_python
 from packaging_app.extras import add_extras, draw_icons, write_metadata
-from packaging_app.licences import collect, libraries_in
+from packaging_app.licences import FOLDER, collect, libraries_in
 
 SPEC = Path(__file__).parent / "tranquility.spec"
 
@@ -23,43 +23,40 @@ def main() -> int:
     """Build, and say how large each part is."""
     parser = argparse.ArgumentParser(prog="python -m packaging_app", description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--output", type=Path, default=Path("dist"), metavar="DIR", help="default: dist")
-    parser.add_argument("--mp4", action="store_true", help="with PyAV, to save MP4: larger, and under the GNU GPL")
     arguments = parser.parse_args()
     try:
         import PyInstaller  # noqa: F401
     except ModuleNotFoundError:
         print('PyInstaller is missing. Install it: pip install -e ".[app]"', file=sys.stderr)
         return 2
-    archive = build(arguments.output.resolve(), with_video=arguments.mp4)
+    archive = build(arguments.output.resolve())
     print(f"{archive}: {archive.stat().st_size / 1e6:.1f} MB")
     return 0
 
 
-def build(output: Path, *, with_video: bool = False) -> Path:
+def build(output: Path) -> Path:
     """Build the folder and its archive in `output`; return the archive's path."""
     app = output / (f"{recipe.TITLE}.app" if sys.platform == "darwin" else recipe.TITLE)
+    beside = app / "Contents" / "Resources" if sys.platform == "darwin" else app
     with TemporaryDirectory(prefix="tranquility-app-") as work:
         made = Path(work) / "made"
         draw_icons(made)
         write_metadata(made)
-        _freeze(output, Path(work), made, with_video)
-        add_extras(app if sys.platform != "darwin" else app / "Contents" / "Resources", made)
+        _freeze(output, Path(work), made)
+        add_extras(beside, made)
     strip_python(app)
-    packages = [*recipe.PACKAGES, *([recipe.VIDEO] if with_video else [])]
-    licences = app if sys.platform != "darwin" else app / "Contents" / "Resources"
-    collect(packages, licences)
+    collect(recipe.PACKAGES, app, beside / FOLDER)
     _report(app)
     return pack(app, f"{recipe.NAME}-{recipe.version()}-{_system()}")
 
 
-def _freeze(output: Path, work: Path, made: Path, with_video: bool) -> None:
+def _freeze(output: Path, work: Path, made: Path) -> None:
     """Let PyInstaller make the folder, in a process of its own: in one hash order, so that it does the same again."""
     shutil.rmtree(output / recipe.TITLE, ignore_errors=True)
     environment = os.environ | {
         "PYTHONHASHSEED": "0",
         "SOURCE_DATE_EPOCH": str(EPOCH),
         "TRANQUILITY_MADE": str(made),
-        "TRANQUILITY_VIDEO": str(int(with_video)),
     }
     command = [sys.executable, "-m", "PyInstaller", "--noconfirm", "--clean", "--log-level", "ERROR", "--distpath",
                str(output), "--workpath", str(work / "work"), str(SPEC)]  # fmt: skip

@@ -41,9 +41,8 @@ folder of the program, and may be replaced by others of the same interface.
 """
 
 
-def collect(packages: Iterable[str], app: Path) -> None:
-    """Write the folder of licences of these packages, of Python, and of the libraries that lie in the app."""
-    folder = app / FOLDER
+def collect(packages: Iterable[str], app: Path, folder: Path) -> None:
+    """Write into a folder the licences of these packages, of Python, and of the libraries that lie in the app."""
     folder.mkdir(exist_ok=True)
     shutil.copy(ROOT / "LICENSE", folder / "LICENSE")
     shutil.copy(_LGPL, folder / _LGPL.name)

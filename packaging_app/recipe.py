@@ -14,9 +14,8 @@ TITLE: Final = "Tranquility"
 ENTRY: Final = ROOT / "packaging_app" / "start.py"
 
 OWN: Final = ("tranquility", "engine", "ai", "game")
-# All that the game imports, and all that these import.
+# All that the game imports, and all that these import. PyAV, for MP4, is left out: see docs/app.md.
 PACKAGES: Final = ("numpy", "pygame", "pygame_gui", "i18n", "font_manrope", "platformdirs", "tqdm", "PIL")
-VIDEO: Final = "av"  # MP4; its encoders are under the GNU GPL, see docs/app.md
 _BUILDS: Final = ("PyInstaller", "_pyinstaller_hooks_contrib")  # at work while it is built
 
 # Folders of data, and which files of them: each is found beside the packages, as in a checkout.
@@ -64,9 +63,9 @@ def data_files() -> list[tuple[Path, Path]]:
     return found
 
 
-def excluded(with_video: bool = False) -> list[str]:
+def excluded() -> list[str]:
     """Return the modules to leave out: all that is installed and not on the list above, and parts of what is."""
-    kept = {*OWN, *PACKAGES, *_BUILDS, *((VIDEO,) if with_video else ())}
+    kept = {*OWN, *PACKAGES, *_BUILDS}
     installed = {name for name in packages_distributions() if name.isidentifier()}
     return sorted({*(installed - kept), *_UNUSED_STANDARD, *_UNUSED_PARTS})
 
