@@ -46,6 +46,8 @@ def build(output: Path) -> Path:
         add_extras(beside, made)
     strip_python(app)
     collect(recipe.PACKAGES, app, beside / FOLDER)
+    if sys.platform == "darwin":  # what was added has broken the seal that PyInstaller had put on it
+        subprocess.run(["codesign", "--force", "--deep", "--sign", "-", str(app)], check=True)
     _report(app)
     return pack(app, f"{recipe.NAME}-{recipe.version()}-{_system()}")
 
