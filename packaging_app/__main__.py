@@ -8,6 +8,7 @@ import platform
 import shutil
 import subprocess
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -24,9 +25,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m packaging_app", description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--output", type=Path, default=Path("dist"), metavar="DIR", help="default: dist")
     arguments = parser.parse_args()
-    try:
-        import PyInstaller  # noqa: F401
-    except ModuleNotFoundError:
+    if find_spec("PyInstaller") is None:
         print('PyInstaller is missing. Install it: pip install -e ".[app]"', file=sys.stderr)
         return 2
     archive = build(arguments.output.resolve())

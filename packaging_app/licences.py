@@ -82,7 +82,8 @@ def _keep(package: Distribution, folder: Path) -> str:
         target = own / file.as_posix().partition(".dist-info/")[2]
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(str(package.locate_file(file)), target)
-    said = package.metadata.get("License-Expression") or package.metadata.get("License") or ""
+    names = ("License-Expression", "License")
+    said = next((package.metadata[name] for name in names if name in package.metadata), "")
     return f"{package.name} {package.version}: {said.splitlines()[0] if said else f'see {own.name}'}"
 
 
