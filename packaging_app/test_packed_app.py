@@ -112,10 +112,6 @@ def started(app: Path, home: Path, display: str, *arguments: str) -> Iterator[Wi
     window = Window(display, pictures / "user", command=command(app, home, *arguments, DISPLAY=display), seconds=SLOW)
     try:
         yield window
-    except BaseException:
-        with suppress(Exception):
-            pygame.image.save(window.picture(), "/tmp/app_failed.png")
-        raise
     finally:
         window.end()
 
