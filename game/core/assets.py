@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import Final
 
@@ -10,6 +11,7 @@ import platformdirs
 _ROOT: Final = Path(__file__).resolve().parents[2]
 ASSETS_DIR: Final = _ROOT / "assets"
 MODELS_DIR: Final = _ROOT / "models"
+PACKED: Final = bool(getattr(sys, "frozen", False))  # whether this is the app, to which nothing can be installed
 
 
 def user_dir() -> Path:

@@ -15,8 +15,8 @@ _CABIN: Final = [(100, 84), (120, 68), (148, 68), (164, 88), (164, 122), (92, 12
 _LEGS: Final = [((84, 150), (60, 198)), ((172, 150), (196, 198)), ((48, 198), (74, 198)), ((182, 198), (208, 198))]
 
 
-def draw_icon() -> pygame.Surface:
-    """Return the icon, 64 pixels wide."""
+def draw_icon(size: int = _SIZE) -> pygame.Surface:
+    """Return the icon, `size` pixels wide."""
     sheet = pygame.Surface((_LARGE, _LARGE), pygame.SRCALPHA)
     whole = sheet.get_rect()
     mask = sheet.copy()
@@ -32,4 +32,4 @@ def draw_icon() -> pygame.Surface:
     pygame.draw.line(sheet, INK, (140, 68), (140, 44), 5)
     pygame.draw.circle(sheet, HUMAN, (140, 40), 9)
     sheet.blit(mask, (0, 0), special_flags=pygame.BLEND_RGBA_MULT)
-    return pygame.transform.smoothscale(sheet, (_SIZE, _SIZE))
+    return pygame.transform.smoothscale(sheet, (size, size))

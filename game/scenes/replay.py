@@ -16,6 +16,7 @@ from ai.lander.environment import Outcome
 from game.audio.flight_sounds import FlightSound
 from game.cockpit import hud
 from game.core import texts
+from game.core.assets import PACKED
 from game.core.clock import STEP
 from game.core.collection import exports_dir
 from game.core.names import LONGEST_NAME, fitting, free_path
@@ -265,7 +266,8 @@ class ReplayScene(FormScene):
                 for suffix, kind in KINDS.items()
                 if not kind.missing
             ]
-            more = texts.EXPORT_GIF_ONLY if KINDS[".mp4"].missing else texts.EXPORT_MORE
+            less = texts.EXPORT_GIF_PACKED if PACKED else texts.EXPORT_GIF_ONLY
+            more = less if KINDS[".mp4"].missing else texts.EXPORT_MORE
             return Push(QuestionDialog(self, texts.EXPORT_AS, more, [*answers, (texts.EXPORT_CANCEL, lambda: None)]))
         self._stop_export()
         return None

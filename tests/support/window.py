@@ -8,7 +8,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -43,9 +43,20 @@ def screen(size: str = "1280x800x24") -> Iterator[str]:
 
 
 class Window:
-    """One run of the game on a display."""
+    """One run of the game on a display: of this checkout, or of the copy that `command` starts.
 
-    def __init__(self, display: str, user_dir: Path, *arguments: str) -> None:
+    Args:
+        display: name of the display.
+        user_dir: the player's folder; pictures are put beside it.
+        arguments: further arguments of the checkout's command.
+        command: the whole command of another copy.
+        seconds: how long its window may take to open.
+
+    """
+
+    def __init__(
+        self, display: str, user_dir: Path, *arguments: str, command: Sequence[str] = (), seconds: float = 15
+    ) -> None:
         self.user_dir = user_dir
         self._environment = {
             **{k: v for k, v in os.environ.items() if not k.startswith("SDL_")},
@@ -53,13 +64,13 @@ class Window:
             "SDL_VIDEODRIVER": "x11",
             "SDL_AUDIODRIVER": "dummy",
         }
-        command = [sys.executable, str(ROOT / "main.py"), "--user-dir", str(user_dir), *arguments]
+        command = command or [sys.executable, str(ROOT / "main.py"), "--user-dir", str(user_dir), *arguments]
         self.process = subprocess.Popen(
             command, env=self._environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
         )
         try:
-            self.id = self._find()
-            self.wait_for(self.picture_is_bright, "the first picture")
+            self.id = self._find(seconds)
+            self.wait_for(self.picture_is_bright, "the first picture", seconds)
         except BaseException:
             self.end()  # or its pipe would be found by another test
             raise
@@ -78,6 +89,13 @@ class Window:
     def click(self, x: int, y: int) -> None:
         self._xdotool("mousemove", "--window", self.id, str(x), str(y), "click", "1")
         time.sleep(0.1)
+
+    def drag(self, points: Sequence[tuple[int, int]]) -> None:
+        """Draw a stroke through points, with the mouse held down."""
+        for number, (x, y) in enumerate(points):
+            self._xdotool("mousemove", "--window", self.id, str(x), str(y), *(("mousedown", "1") if not number else ()))
+            time.sleep(0.02)
+        self._xdotool("mouseup", "1")
 
     def resize(self, width: int, height: int) -> None:
         self._xdotool("windowsize", self.id, str(width), str(height))
@@ -128,7 +146,7 @@ class Window:
             time.sleep(0.05)
         raise AssertionError(f"waited {seconds} s for {what}")
 
-    def _find(self) -> str:
+    def _find(self, seconds: float) -> str:
         found = ""
 
         def visible() -> bool:
@@ -136,7 +154,7 @@ class Window:
             found = self._xdotool("search", "--onlyvisible", "--class", "tranquility").strip()
             return bool(found)
 
-        self.wait_for(visible, "the window")
+        self.wait_for(visible, "the window", seconds)
         return found.splitlines()[0]
 
     def _xdotool(self, *arguments: str) -> str:
