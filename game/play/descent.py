@@ -16,7 +16,7 @@ import pygame
 
 from ai.flights.score import landing_score
 from ai.lander.descent import TANK, LegStart, leg_of
-from ai.lander.environment import Cause, LanderEnv, Outcome
+from ai.lander.environment import LanderEnv, Outcome
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NET, NIGHT0, SMALL, TEXT
@@ -184,11 +184,9 @@ class Descent(Challenge):
             (texts.DESCENT_FIGURES[1], f"{self.total}", ""),
             (texts.DESCENT_FIGURES[2], f"{max(self.best[0], self.legs if best else 0)}", ""),
         )
-        cause = Cause(int(flight.env.cause[0]))
-        reason = texts.DESCENT_ROCK if cause in (Cause.TERRAIN, Cause.HULL) else card.reason
         empty = float(flight.env.fuel[0]) >= flight.env.conditions.tank
         told = texts.DESCENT_NEW_BEST if best else texts.NOT_COUNTED[self.bar] if self._relieved else card.advice
-        return replace(card, reason=reason, figures=figures, score=texts.DESCENT_LEGS.format(count=self.legs),
+        return replace(card, figures=figures, score=texts.DESCENT_LEGS.format(count=self.legs),
                        advice=texts.DESCENT_EMPTY if empty else told)  # fmt: skip
 
     # The picture

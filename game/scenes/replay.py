@@ -191,8 +191,8 @@ class ReplayScene(FormScene):
     def _look(self) -> None:
         """Update the read-outs; at the end they keep the values of the last moment before."""
         self._reward_bar.at = self.flight_replay.at
-        if not self.flight_replay.flight.over:
-            self._readouts = hud.flight_readouts(self.flight_replay.flight.env)
+        flight = self.flight_replay.flight
+        self._readouts = hud.at_touch(self._readouts, flight.env) if flight.over else hud.flight_readouts(flight.env)
 
     def _stop_or_go(self) -> None:
         if self.ended:
