@@ -45,6 +45,11 @@ class ChanceValues:
         """Whether all chances are finite."""
         return all(map(math.isfinite, self.chances))
 
+    @property
+    def told(self) -> tuple[str, str]:
+        """The chance after the action asked for, and the one required, as every figure and sentence has them."""
+        return told_apart(self.chances[self.asked], self.required)
+
 
 def of_hundred(chance: float, digits: int = 0) -> str:
     """Format a chance as so many of 100; what is not certain never reads as 0 or 100."""
@@ -73,8 +78,7 @@ def draw_chances(canvas: Canvas, values: ChanceValues, left: float, top: float, 
     """Draw a bar for each action from 0 to 100, with a line for the chance asked for; `top` is the first baseline."""
     start, track = left + _NAME, width - _NAME - _FIGURE
     canvas.text(texts.CHANCE_ASKED, (left, top), size=SMALL, colour=MUTE, room=width - _FIGURE - 72)
-    asked = of_hundred(values.required)
-    canvas.text(asked, (start + track, top), size=TEXT, align="right", tabular=True)
+    canvas.text(values.told[1], (start + track, top), size=TEXT, align="right", tabular=True)
     canvas.text(texts.CHANCE_UNIT, (left + width, top), size=LABEL, colour=MUTE, align="right", room=_FIGURE - 8)
     canvas.explain((left, top - 14, width, 20), texts.EXPLAIN_CHANCE_ASKED)
     for action in range(len(ACTION_NAMES)):
@@ -105,7 +109,7 @@ def _draw_row(canvas: Canvas, values: ChanceValues, action: int, left: float, y:
         canvas.marker("triangle", (x - 8, y), 6, NET)
     if action == values.asked:
         canvas.dot((x + fraction * track, y), 4, HUMAN)
-    figure = of_hundred(chance)
+    figure = values.told[0] if action == values.asked else of_hundred(chance)
     place = (left + width, y + 4)
     canvas.text(figure, place, size=SMALL, colour=colour, align="right", tabular=True, alpha=alpha)
 

@@ -37,7 +37,8 @@ _FADES: Final = 24  # steps in which a new leg appears
 _GAUGE: Final = (120.0, 4.0)
 _OVER_PAD: Final = (0.75, 42.0)  # metres and points above the goal at which its mark points down, over its factor
 _EDGE: Final = (90.0, 140.0)  # points that marks keep from the sides, and from the lower edge
-_ANTENNA: Final = 1.5  # metres from the middle of a craft to above its antenna, where the words stand
+_ANTENNA: Final = 2.0  # metres from the middle of a craft to the word of its contact light
+_CLEAR: Final = 44.0  # points from there up to what the landing has brought
 
 
 def best_of(entries: Iterable[Entry]) -> tuple[int, int]:
@@ -217,7 +218,7 @@ class Descent(Challenge):
     def _draw_landing(self, canvas: Canvas, craft: tuple[float, float], filled: float) -> None:
         """Write above the craft what the landing has earned, over the tank that fills."""
         (x, y), (width, height) = craft, _GAUGE
-        x, y = min(max(x, canvas.view.left + 2 * _EDGE[0]), canvas.view.right - 2 * _EDGE[0]), y - 14
+        x, y = min(max(x, canvas.view.left + 2 * _EDGE[0]), canvas.view.right - 2 * _EDGE[0]), y - _CLEAR
         words = texts.DESCENT_LANDED.format(count=self._points) if self._points else texts.DESCENT_RELIEVED
         colour = HUMAN if self._points else NET
         canvas.text(words, (x, y - 22), size=TEXT, colour=colour, align="centre")

@@ -47,7 +47,10 @@ class Ladder:
             self._settings.rung = rung + 1
         elif mine and not flight.intact:
             self._settings.rung = max(0, rung - 1)
-        return replace(card, rung=self._settings.rung, climb=_words(rung, self._settings.rung))
+        reason = (
+            texts.OUTCOMES[Outcome.LANDED.name][1] if landed else card.reason
+        )  # the line below is on what it counts for
+        return replace(card, reason=reason, rung=self._settings.rung, climb=_words(rung, self._settings.rung))
 
 
 def rung_of(flight: Flight) -> int | None:

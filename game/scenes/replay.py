@@ -94,6 +94,7 @@ class ReplayScene(FormScene):
         self._build()
         network = networks.chosen(context.models_dir, context.user_dir, context.settings.model)
         self.falls.judge(network.policy)
+        self._readouts: list[hud.Readout] = []
         self._look()
 
     def enter(self) -> None:
