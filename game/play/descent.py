@@ -104,7 +104,7 @@ class Descent(Challenge):
         """Begin the ghost: the player's earlier flight of this leg or, without one, the network."""
         number = self.start.number
         if number <= len(self._before):
-            return Ghost(ReplayedFlight(self._before[number - 1]), texts.MISSION_GHOSTS["own"])
+            return Ghost(ReplayedFlight(self._before[number - 1]), texts.GHOST_BEFORE)
         return Ghost(Flight(seed, network, leg=self.start), texts.MISSION_RIVAL) if network else None
 
     def settle(self, flight: Flight, credit: Credit) -> None:

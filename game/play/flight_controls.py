@@ -87,9 +87,9 @@ class FlightControls:
         main = float(Held.MAIN in held or self._mouse.fires) or throttle
         left, right = Held.LEFT in held, Held.RIGHT in held
         side = (right - left) or stick or self._mouse.side(craft)
-        return self._latch(
-            controls.main or Held.MAIN in held or self._mouse.fires
-        ) if settings.toggle_thrust else main, side
+        if settings.toggle_thrust:
+            main = self._latch(controls.main or Held.MAIN in held or self._mouse.fires)
+        return main, side
 
     def _latch(self, held: bool) -> float:
         """Switch the main engine on or off at each new press; return its share of thrust."""

@@ -108,7 +108,7 @@ def test_a_crash_ends_the_run_with_how_far_it_came_and_a_key_flies_the_same_grou
     game.key(pygame.K_RETURN)
     assert (descent(game).start, descent(game).best[0]) == (LegStart(), 1)
     assert play(game).flight.recording.seed == ground
-    assert play(game).flown.ghost.name == texts.MISSION_GHOSTS["own"]
+    assert play(game).flown.ghost.name == texts.GHOST_BEFORE
     land(game)
     land(game)
     assert play(game).flown.ghost.name == texts.MISSION_RIVAL  # so far it has not come before
