@@ -95,8 +95,12 @@ class PlayScene(Scene):
         other = not challenge and self._chosen() != self._begun_with
         if not (self.flown.begun or self.flight.over) and (eases or other):
             self._begin(self.flight.recording.seed)
+        self._tell_lack()
+
+    def _tell_lack(self) -> None:
+        """Tell why the guardian goes by points, once: it holds for every flight with this network."""
         problem = self.flown.cockpit.lacks
-        if problem and problem != self._told:  # once: it holds for every flight with this network
+        if problem and problem != self._told:
             self.context.note(problem)
         self._told = problem
 
@@ -207,6 +211,7 @@ class PlayScene(Scene):
         action, shares = self._stick.read(self.flown.scenery.across)
         due = self.flown.due(action)
         if self.waiting:
+            self._tell_lack()
             return None
         if due:
             self.flown.prepare()
