@@ -23,6 +23,7 @@ from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NET, NIGHT0, SMALL, TEX
 from game.flight.credit import Credit
 from game.flight.flight import Flight, Recording
 from game.flight.flight_file import Entry
+from game.flight.logbook import DESCENT
 from game.flight.networks import Policy
 from game.flight.outcomes import OutcomeCard
 from game.flight.replay import ReplayedFlight
@@ -30,7 +31,6 @@ from game.play.challenge import Challenge, DrawnFlight
 from game.play.ghost import Ghost
 from game.world.camera import ClearArea, View
 
-COURSE: Final = "descent"
 _MOST: Final = 5  # the highest factor of a row of landings
 _FILLS: Final = 40  # steps in which the tank is seen to fill
 _FADES: Final = 24  # steps in which a new leg appears
@@ -43,7 +43,7 @@ _CLEAR: Final = 44.0  # points from there up to what the landing has brought
 
 def best_of(entries: Iterable[Entry]) -> tuple[int, int]:
     """Return the most legs landed in one descent by the player alone, and its points; (0, 0) without any."""
-    own = ((e.leg, e.total) for e in entries if e.course == COURSE and e.landed and not e.bar)
+    own = ((e.leg, e.total) for e in entries if e.course == DESCENT and e.landed and not e.bar)
     return max(own, default=(0, 0))
 
 
@@ -59,7 +59,7 @@ class Descent(Challenge):
 
     """
 
-    name = COURSE
+    name = DESCENT
     title = texts.DESCENT_TITLE
     fixed = compares = False
     again_hint = texts.DESCENT_AGAIN
