@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from ai.lander.environment import ACTION_NAMES
 from game.core import texts
-from game.panels.chance_values import ChanceValues, of_hundred, told_apart
+from game.panels.chance_values import ChanceValues, of_hundred
 
 if TYPE_CHECKING:
     from ai.copilot.copilot import CoPilot, SharedDecision
@@ -54,7 +54,7 @@ def why_saved(decision: SharedDecision, values: ChanceValues) -> Why:
     if source is not ActionSource.PILOT and values.flown == values.asked:  # it has the stick, and agrees
         title = texts.GUARDIAN_AGREES[0]
     asked, flown = (texts.said(ACTION_NAMES[action]) for action in (values.asked, values.flown))
-    chance, required, saved = told_apart(values.chances[values.asked], values.required, values.chances[values.flown])
+    chance, required, saved = values.told
     if source is ActionSource.PILOT:
         enough = values.chances[values.asked] >= values.required
         lines = texts.GUARDIAN_YOURS if enough else texts.GUARDIAN_NO_BETTER

@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.lander.environment import LanderEnv
+from ai.lander.environment import Cause, LanderEnv, Outcome
 from ai.lander.rules import tenths
 from game.cockpit.ladder_mark import WIDTH as LADDER_WIDTH
 from game.cockpit.ladder_mark import draw_ladder
@@ -37,6 +37,7 @@ from game.drawing.tokens import (
     VIEW_SIZE,
     Colour,
 )
+from game.flight import outcomes
 from game.flight.outcomes import OutcomeCard, RivalOutcome
 from game.ui.hints import Hint, HintRow
 
@@ -58,6 +59,7 @@ _WORDS: Final = (180.0, 66.0)
 _FIGURES: Final = PaintCache(64)
 OPENING: Final = 122.0  # row of the words over a craft that waits
 _LITTLE_TIME: Final = 5.0
+_NAMED: Final = {Cause.HARD: 1, Cause.SLIDING: 2, Cause.TILTED: 3}  # which of the read-outs a crash is named by
 _PLENTY_OF_TIME: Final = 120.0
 
 
@@ -100,6 +102,24 @@ def flight_readouts(env: LanderEnv, slot: int = 0) -> list[Readout]:
         _fuel(env, slot),
         _time(env, slot),
     ]
+
+
+def at_touch(readouts: list[Readout], env: LanderEnv) -> list[Readout]:
+    """Return the last read-outs before a crash, with the figure marked that the reason of the crash names.
+
+    On level ground it becomes what the foot felt, which a turning craft puts down faster than it falls itself.
+    """
+    cause = outcomes.cause_of(env)
+    if env.outcome[0] != Outcome.CRASHED or cause not in _NAMED:
+        return readouts
+    speed, slide, tilt = env.impact[0].tolist()
+    felt = {Cause.HARD: f"{speed:.1f}", Cause.SLIDING: f"{slide:.1f}", Cause.TILTED: f"{math.degrees(tilt):.0f}"}
+    named, figure = _NAMED[cause], felt[cause]
+    if outcomes.struck_side(env):  # neither down nor across, but the faster of the two is nearer to it
+        named = max(_NAMED[Cause.HARD], _NAMED[Cause.SLIDING], key=lambda row: readouts[row].fill or 0.0)
+        figure = readouts[named].figure
+    marked = replace(readouts[named], figure=figure, within=False)
+    return [*readouts[:named], marked, *readouts[named + 1 :]]
 
 
 def _time(env: LanderEnv, slot: int) -> Readout:

@@ -36,6 +36,7 @@ def draw_surroundings(canvas: Canvas, env: LanderEnv) -> None:
 def surroundings(env: LanderEnv) -> Iterator[tuple[str, float, bool]]:
     """Yield the rows: text, wind in m/s² to the right (0 on other rows), and whether the row is a warning."""
     conditions, params, time = env.conditions, env.params, float(env.time[0])
+    yield from _edges(env)  # first: lower down, the glow above the craft would cross it
     if params.gravity != PARAMS.gravity:
         yield texts.GRAVITY.format(gravity=params.gravity, times=params.gravity / PARAMS.gravity), 0.0, False
     if conditions.pushes:
@@ -49,17 +50,16 @@ def surroundings(env: LanderEnv) -> Iterator[tuple[str, float, bool]]:
         yield texts.ENGINE_DEAD.format(seconds=end - time), 0.0, True
     elif time < start < math.inf:
         yield texts.ENGINE_FAILS.format(seconds=start - time), 0.0, start - time < _SOON
-    yield from _edges(env)
     if float(env.fuel[0]) >= conditions.tank:
         yield texts.TANK_EMPTY, 0.0, True
 
 
 def _edges(env: LanderEnv) -> Iterator[tuple[str, float, bool]]:
-    """Yield the distance to each edge of the area that the flight comes near and heads for."""
+    """Yield one row with the distances to the edges of the area that the flight comes near and heads for, if any."""
     words = {"above": texts.EDGE_ABOVE, "left": texts.EDGE_LEFT, "right": texts.EDGE_RIGHT}
-    for edge in near_edges(env):
-        if edge.ahead:
-            yield words[edge.side].format(metres=math.ceil(edge.away)), 0.0, True
+    ahead = [words[edge.side].format(metres=math.ceil(edge.away)) for edge in near_edges(env) if edge.ahead]
+    if ahead:
+        yield texts.EDGE_ENDS.format(where=texts.AND.join(ahead)), 0.0, True
 
 
 def _draw_arrow(canvas: Canvas, start: tuple[float, float], push: float) -> None:

@@ -26,8 +26,9 @@ from game.flight.flight_file import Entry, Record
 
 FOLDER: Final = "flights"
 LOGBOOK: Final = "logbook.jsonl"
+DESCENT: Final = "descent"  # the course of its legs
 RECENT: Final = 100  # latest flights, whose files are kept whatever their outcome
-BEST: Final = 5  # best landings of each mission, whose files are kept too
+BEST: Final = 5  # best landings of each mission, whose files are kept too, as are those of the longest descent
 _LARGEST: Final = 16_000_000  # last bytes of the logbook that are read: 50,000 flights
 SLACK: Final = 25  # surplus files before they are cleared
 MOST_THROWN: Final = 50  # deleted files that can be restored
@@ -175,7 +176,7 @@ class Records:
             return
         entries = self.entries()
         self.problem = ""
-        spared = {entry.file for entry in best(entries)}
+        spared = {entry.file for entry in [*best(entries), *longest_descent(entries)]}
         flown = [entry.file for entry in entries if entry.file in files]  # not by date: a clock can be set back
         spared |= set(flown[-RECENT:])
         for name in set(flown) - spared:  # a file that the logbook does not list is not deleted
@@ -184,6 +185,18 @@ class Records:
 
 
 # Summaries of the logbook
+
+
+def longest_descent(entries: Iterable[Entry]) -> list[Entry]:
+    """Return the legs of the longest descent by the person alone, in their order; of equal ones, most points count."""
+    longest, run = list[Entry](), list[Entry]()
+    for entry in entries:
+        if entry.course != DESCENT or not entry.landed or entry.bar:
+            continue
+        run = [*run, entry] if entry.leg == len(run) + 1 else [entry][: entry.leg == 1]
+        if run and (len(run), run[-1].total) > (len(longest), longest[-1].total if longest else -1):
+            longest = run
+    return longest
 
 
 def best(entries: Iterable[Entry], most: int = BEST) -> list[Entry]:

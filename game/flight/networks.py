@@ -70,8 +70,13 @@ class Network:
 
 
 def word(name: str) -> str:
-    """Return a network's name for the player, and the word for the scripted pilot."""
-    return texts.NETWORK_SCRIPTED if name == SCRIPTED else name
+    """Return a network's name for the player, and words for the scripted pilot and for the one that flies anywhere."""
+    return {SCRIPTED: texts.NETWORK_SCRIPTED, ANYWHERE: texts.NETWORK_ANYWHERE}.get(name, name)
+
+
+def titled(name: str) -> str:
+    """Return a network as a sentence calls it."""
+    return texts.NETWORK_EVERYWHERE if name == ANYWHERE else texts.NETWORK_TITLED.format(name=word(name))
 
 
 def folders(models_dir: Path, user_dir: Path) -> dict[str, Path]:

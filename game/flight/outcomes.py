@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
 
 from ai.lander.environment import Cause, LanderEnv, Outcome
 from ai.lander.rules import tenths
 from game.core import texts
+
+_LEVEL: Final = math.cos(math.radians(30))  # upward part of the unit normal of ground that still counts as level
 
 
 @dataclass(frozen=True)
@@ -92,7 +97,7 @@ def flight_figures(env: LanderEnv, slot: int = 0) -> tuple[tuple[str, str, str],
         (texts.FUEL, f"{tenths(float(env.fuel[slot])):.1f}", "s"),
     ]
     if env.outcome[slot] in (Outcome.LANDED, Outcome.CRASHED):
-        figures.append((texts.TOUCHDOWN, f"{float(env.impact[slot, 0]):.1f}", "m/s"))
+        figures.append((texts.TOUCHDOWN, f"{touch_speed(env, slot):.1f}", "m/s"))
     away = abs(float(env.position[slot, 0] - env.pad[slot, 0]))
     return (*figures, (texts.FROM_MIDDLE, f"{away:.1f}", "m"))
 
@@ -120,11 +125,33 @@ def _exceeded(env: LanderEnv, slot: int) -> dict[Cause, tuple[float, float]]:
     }
 
 
+def touch_speed(env: LanderEnv, slot: int = 0) -> float:
+    """Return how fast the craft came down, in m/s: into the ground or, against a steep side, in all."""
+    into, along = env.impact[slot, :2].tolist()
+    return math.hypot(into, along) if struck_side(env, slot) else into
+
+
+def struck_side(env: LanderEnv, slot: int = 0) -> bool:
+    """Return whether a craft has just broken on a steep side: down and across are not into and along it."""
+    touches, cause = env.world.contacts, cause_of(env, slot)
+    if touches is None or cause not in (Cause.HARD, Cause.SLIDING):
+        return False
+    here = np.flatnonzero(touches.world == slot)
+    if not len(here):
+        return False
+    hardest = here[np.abs(touches.approach[:, here]).max(axis=0).argmax()]
+    return bool(abs(touches.manifold.normal[hardest, 1]) < _LEVEL)
+
+
 def crash_reason(env: LanderEnv, slot: int = 0) -> str:
     """Return which limit the lander exceeded, and by how much."""
     cause, limits = cause_of(env, slot), _exceeded(env, slot)
-    value, limit = _beyond(*limits[cause], 0 if cause is Cause.TILTED else 1) if cause in limits else ("", "")
-    return texts.CAUSES[cause.name].format(value=value, limit=limit)
+    value, limit = limits.get(cause, (0.0, 0.0))
+    steep = struck_side(env, slot)
+    value = touch_speed(env, slot) if steep else value
+    words = texts.CRASHED_SIDEWAYS if steep else texts.CAUSES[cause.name]
+    shown = _beyond(value, limit, 0 if cause is Cause.TILTED else 1) if cause in limits else ("", "")
+    return words.format(value=shown[0], limit=shown[1])
 
 
 def _beyond(value: float, limit: float, places: int = 1) -> tuple[str, str]:

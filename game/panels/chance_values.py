@@ -39,6 +39,11 @@ class ChanceValues:
         """Whether all chances are finite."""
         return all(map(math.isfinite, self.chances))
 
+    @property
+    def told(self) -> tuple[str, ...]:
+        """The chance after the action asked for, the one required, and that of the action flown; alike wherever shown."""
+        return told_apart(self.chances[self.asked], self.required, self.chances[self.flown])
+
 
 def of_hundred(chance: float, digits: int = 0) -> str:
     """Format a chance as so many of 100; what is not certain never reads as 0 or 100."""
@@ -67,12 +72,13 @@ def told_apart(*chances: float) -> tuple[str, ...]:
 def draw_chances(canvas: Canvas, values: ChanceValues, left: float, top: float, width: float) -> None:
     """Draw a bar for each action from 0 to 100, with a line for the chance asked for; `top` is the first baseline."""
     rows = ActionRows(canvas, left, top, width)
-    rows.draw_heading(texts.CHANCE_ASKED, of_hundred(values.required), texts.CHANCE_UNIT)
+    rows.draw_heading(texts.CHANCE_ASKED, values.told[1], texts.CHANCE_UNIT)
     canvas.explain((left, top - 14, width, 20), texts.EXPLAIN_CHANCE_ASKED)
     for action, chance in enumerate(values.chances):
         fraction = chance if math.isfinite(chance) else 0.0
         flown, asked, enough = action == values.flown, action == values.asked, chance >= values.required
-        rows.draw_row(action, ActionRow(fraction, of_hundred(chance), flown, asked, enough), _DIMMED)
+        figure = values.told[0] if asked else values.told[2] if flown else of_hundred(chance)
+        rows.draw_row(action, ActionRow(fraction, figure, flown, asked, enough), _DIMMED)
         canvas.explain(rows.box(action), texts.EXPLAIN_CHANCE, partial(chance_words, values, action))
     rows.draw_scale("0", "100")
     rows.draw_limit(values.required)

@@ -15,7 +15,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, MARGIN, NET, SMALL
 from game.flight.flight import Flight, StickHolder
 from game.flight.handicap import OWN
-from game.flight.networks import Network
+from game.flight.networks import Network, titled
 from game.input.controls import Command, Controls
 from game.play.challenge import Challenge
 from game.play.ladder import COUNT, rung_of
@@ -34,7 +34,9 @@ def draw_title(
 ) -> None:
     """Draw the title of a challenge or of a free flight, and the reason if the flight will not count."""
     if challenge:
-        flown = texts.WITH_NETWORK.format(name=network.name) if flight.network and challenge.elsewhere else ""
+        flown = (
+            texts.WITH_NETWORK.format(network=titled(network.name)) if flight.network and challenge.elsewhere else ""
+        )
         small = texts.MISSION_FLOWN.format(mission=challenge.title, flown=flown) if flown else challenge.title
         hud.draw_corner(canvas, small, challenge.line, notice or challenge.goal)
     else:
@@ -43,7 +45,7 @@ def draw_title(
 
 
 def _draw_free_title(canvas: Canvas, flight: Flight, network: Network, hands: str, notice: str) -> None:
-    flown = texts.WITH_NETWORK.format(name=network.name) if flight.network else texts.ALONE
+    flown = texts.WITH_NETWORK.format(network=titled(network.name)) if flight.network else texts.ALONE
     if hands != OWN:
         flown = texts.HANDICAPS.format(hands=texts.CHOICES_HANDS_WORDS[hands])
     title = texts.THREE_PADS if flight.recording.pads > 1 else texts.FREE_FLIGHT

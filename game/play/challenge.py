@@ -282,7 +282,7 @@ class FlownMission(Challenge):
     def ghost(self, seed: int, network: Policy | None) -> Ghost | None:
         """Begin the rival on the same mission."""
         if self._own:
-            return Ghost(ReplayedFlight(self._own), texts.MISSION_GHOSTS["own"])
+            return Ghost(ReplayedFlight(self._own), texts.GHOST_BEFORE)
         if self._rival:
             return Ghost(ReplayedFlight(self._rival.recording), self._rival_name)
         return Ghost(Flight(seed, network, mission=self.name), self._rival_name) if network else None

@@ -16,13 +16,14 @@ import pygame
 
 from ai.flights.score import landing_score
 from ai.lander.descent import TANK, LegStart, leg_of
-from ai.lander.environment import Cause, LanderEnv, Outcome
+from ai.lander.environment import LanderEnv, Outcome
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NET, NIGHT0, SMALL, TEXT
 from game.flight.credit import Credit
 from game.flight.flight import Flight, Recording
 from game.flight.flight_file import Entry
+from game.flight.logbook import DESCENT
 from game.flight.networks import Policy
 from game.flight.outcomes import OutcomeCard
 from game.flight.replay import ReplayedFlight
@@ -30,19 +31,19 @@ from game.play.challenge import Challenge, DrawnFlight
 from game.play.ghost import Ghost
 from game.world.camera import ClearArea, View
 
-COURSE: Final = "descent"
 _MOST: Final = 5  # the highest factor of a row of landings
 _FILLS: Final = 40  # steps in which the tank is seen to fill
 _FADES: Final = 24  # steps in which a new leg appears
 _GAUGE: Final = (120.0, 4.0)
 _OVER_PAD: Final = (0.75, 42.0)  # metres and points above the goal at which its mark points down, over its factor
 _EDGE: Final = (90.0, 140.0)  # points that marks keep from the sides, and from the lower edge
-_ANTENNA: Final = 1.5  # metres from the middle of a craft to above its antenna, where the words stand
+_ANTENNA: Final = 2.0  # metres from the middle of a craft to the word of its contact light
+_CLEAR: Final = 44.0  # points from there up to what the landing has brought
 
 
 def best_of(entries: Iterable[Entry]) -> tuple[int, int]:
     """Return the most legs landed in one descent by the player alone, and its points; (0, 0) without any."""
-    own = ((e.leg, e.total) for e in entries if e.course == COURSE and e.landed and not e.bar)
+    own = ((e.leg, e.total) for e in entries if e.course == DESCENT and e.landed and not e.bar)
     return max(own, default=(0, 0))
 
 
@@ -58,7 +59,7 @@ class Descent(Challenge):
 
     """
 
-    name = COURSE
+    name = DESCENT
     title = texts.DESCENT_TITLE
     fixed = compares = False
     again_hint = texts.DESCENT_AGAIN
@@ -103,7 +104,7 @@ class Descent(Challenge):
         """Begin the ghost: the player's earlier flight of this leg or, without one, the network."""
         number = self.start.number
         if number <= len(self._before):
-            return Ghost(ReplayedFlight(self._before[number - 1]), texts.MISSION_GHOSTS["own"])
+            return Ghost(ReplayedFlight(self._before[number - 1]), texts.GHOST_BEFORE)
         return Ghost(Flight(seed, network, leg=self.start), texts.MISSION_RIVAL) if network else None
 
     def settle(self, flight: Flight, credit: Credit) -> None:
@@ -184,11 +185,9 @@ class Descent(Challenge):
             (texts.DESCENT_FIGURES[1], f"{self.total}", ""),
             (texts.DESCENT_FIGURES[2], f"{max(self.best[0], self.legs if best else 0)}", ""),
         )
-        cause = Cause(int(flight.env.cause[0]))
-        reason = texts.DESCENT_ROCK if cause in (Cause.TERRAIN, Cause.HULL) else card.reason
         empty = float(flight.env.fuel[0]) >= flight.env.conditions.tank
         told = texts.DESCENT_NEW_BEST if best else texts.NOT_COUNTED[self.bar] if self._relieved else card.advice
-        return replace(card, reason=reason, figures=figures, score=texts.DESCENT_LEGS.format(count=self.legs),
+        return replace(card, figures=figures, score=texts.DESCENT_LEGS.format(count=self.legs),
                        advice=texts.DESCENT_EMPTY if empty else told)  # fmt: skip
 
     # The picture
@@ -219,7 +218,7 @@ class Descent(Challenge):
     def _draw_landing(self, canvas: Canvas, craft: tuple[float, float], filled: float) -> None:
         """Write above the craft what the landing has earned, over the tank that fills."""
         (x, y), (width, height) = craft, _GAUGE
-        x, y = min(max(x, canvas.view.left + 2 * _EDGE[0]), canvas.view.right - 2 * _EDGE[0]), y - 14
+        x, y = min(max(x, canvas.view.left + 2 * _EDGE[0]), canvas.view.right - 2 * _EDGE[0]), y - _CLEAR
         words = texts.DESCENT_LANDED.format(count=self._points) if self._points else texts.DESCENT_RELIEVED
         colour = HUMAN if self._points else NET
         canvas.text(words, (x, y - 22), size=TEXT, colour=colour, align="centre")

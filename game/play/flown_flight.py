@@ -182,6 +182,8 @@ class FlownFlight:
         self.path_preview.follow(waiting=False)
         if not self._was_over:
             self.cockpit.follow()
+            if flight.over:
+                self._readouts = hud.at_touch(self._readouts, flight.env)
             if flight.over and self.challenge:
                 self.challenge.settle(flight, self.credit)
         self.scenery.clear = self.cockpit.clear

@@ -47,7 +47,9 @@ class Ladder:
             self._settings.rung = rung + 1
         elif mine and not flight.intact:
             self._settings.rung = max(0, rung - 1)
-        return replace(card, rung=self._settings.rung, climb=_words(rung, self._settings.rung))
+        # What a landing counts for, helped or not, is said once, by the line of the ladder.
+        reason = texts.OUTCOMES[Outcome.LANDED.name][1] if landed else card.reason
+        return replace(card, reason=reason, rung=self._settings.rung, climb=_words(rung, self._settings.rung))
 
 
 def rung_of(flight: Flight) -> int | None:

@@ -46,12 +46,15 @@ _SKILL_TOGGLES: Final = 512  # below the figures
 class ChoicesScene(FormScene):
     """Choices scene over a flight. Each choice is saved the moment it is made; Escape or Fly goes back.
 
-    A challenge fixes most options, so it offers fewer choices.
+    A challenge fixes most options, so it offers fewer choices; `curve` is whether the player's skill has a curve for
+    flights like the one below.
     """
 
-    def __init__(self, context: Context, below: Scene, skill: Skill, *, begun: bool, challenge: bool = False) -> None:
+    def __init__(
+        self, context: Context, below: Scene, skill: Skill, *, begun: bool, challenge: bool = False, curve: bool = True
+    ) -> None:
         super().__init__(context)
-        self._skill, self._begun, self._challenge = skill, begun, challenge
+        self._skill, self._begun, self._challenge, self._curve = skill, begun, challenge, curve
         self._behind = BlurredPicture(below, dimmed=0.7)
         self._taught = count_demonstrations(context.user_dir)
         form = self.form
@@ -152,7 +155,8 @@ class ChoicesScene(FormScene):
             draw_wrapped(canvas, self._rows[self.form.focused](), (MARGIN, y), _HELP_ROOM, colour=MUTE, leading=17)
         if self._begun and not self._challenge:
             canvas.text(texts.CHOICES_LATER, (MARGIN + 112, 645), size=SMALL, colour=MUTE)
-        self._draw_skill(canvas)
+        if self._curve:
+            self._draw_skill(canvas)
         self.draw_hints(canvas)
 
     @property

@@ -18,7 +18,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import HUMAN, LABEL, MARGIN, MUTE, SMALL, TITLE, VIEW_SIZE
 from game.flight import sharing
-from game.flight.becoming import KINDS, Becoming
+from game.flight.becoming import KINDS, Becoming, kind_of, tells
 from game.flight.flight_file import Entry, Record
 from game.flight.logbook import Records, Totals, best, totals
 from game.flight.outcomes import ending_word
@@ -72,7 +72,7 @@ class LogbookScene(ListScene[Entry]):
                 (_LEFT, _KINDS, _WIDTH, 20),
                 "",
                 [texts.BECOMING_KINDS[kind] for kind in KINDS],
-                0,
+                KINDS.index(self._last_kind()),
                 lambda _: self._plot(),
                 size=SMALL,
             )
@@ -87,6 +87,12 @@ class LogbookScene(ListScene[Entry]):
         paste_box = (MARGIN + 130, _LAYOUT.foot, 220, VERB_LINE)
         self._paste = TextButton(manager, paste_box, texts.CODE_PASTE, lambda: paste(context), size=VERB_SIZE)
         self._reload()
+
+    def _last_kind(self) -> str:
+        """Return the kind of start of the last flight that tells something, or else of the last one."""
+        entries = self._records.entries()
+        told = [entry for entry in entries if tells(entry)] or entries
+        return kind_of(told[-1]) if told else KINDS[0]
 
     def _below_list(self) -> list[Widget]:
         """Return the way back, and beside it the way in for a friend's flight."""

@@ -9,6 +9,7 @@ from typing import Final
 
 import pygame
 
+from ai.lander.missions import MISSIONS
 from game.core import texts
 from game.core.scene import Pop, Push, Scene, Transition, push
 from game.drawing.canvas import Canvas
@@ -94,8 +95,12 @@ class PlayScene(Scene):
         other = not challenge and self._chosen() != self._begun_with
         if not (self.flown.begun or self.flight.over) and (eases or other):
             self._begin(self.flight.recording.seed)
+        self._tell_lack()
+
+    def _tell_lack(self) -> None:
+        """Tell why the guardian goes by points, once: it holds for every flight with this network."""
         problem = self.flown.cockpit.lacks
-        if problem and problem != self._told:  # once: it holds for every flight with this network
+        if problem and problem != self._told:
             self.context.note(problem)
         self._told = problem
 
@@ -206,6 +211,7 @@ class PlayScene(Scene):
         action, shares = self._stick.read(self.flown.scenery.across)
         due = self.flown.due(action)
         if self.waiting:
+            self._tell_lack()
             return None
         if due:
             self.flown.prepare()
@@ -420,7 +426,9 @@ class PlayScene(Scene):
         return push("pause", self, retry=self.retry, more=self._pause_words)
 
     def _pause_words(self) -> list[tuple[str, OnPress]]:
-        words: list[tuple[str, OnPress]] = [(texts.PAUSE_NETWORK.format(name=self.network.name), self._open_networks)]
+        words: list[tuple[str, OnPress]] = [
+            (texts.PAUSE_NETWORK.format(name=networks.word(self.network.name)), self._open_networks)
+        ]
         if self.challenge and self.challenge.next_hint:
             words.append((texts.TUTORIAL_LEAVE, self._leave_challenge))
         words.append((texts.PAUSE_CHOICES if self.challenge is None else texts.PACE, self._choose))
@@ -428,7 +436,9 @@ class PlayScene(Scene):
 
     def _choose(self) -> Transition | None:
         """Open the choices for the next flights; in a challenge, few can be changed."""
-        return push("choices", self, self._skill, begun=self.flown.begun, challenge=self.challenge is not None)
+        challenge = self.challenge
+        curve = challenge is None or challenge.name in MISSIONS
+        return push("choices", self, self._skill, begun=self.flown.begun, challenge=challenge is not None, curve=curve)
 
     def _open_networks(self) -> Transition:
         return push("runs", choose=self.choose_network)

@@ -97,6 +97,7 @@ class ReplayScene(FormScene):
         elsewhere = flown_elsewhere(record.recording)
         network = networks.chosen(context.models_dir, context.user_dir, context.settings.model, elsewhere)
         self.falls.judge(network.policy)
+        self._readouts: list[hud.Readout] = []
         self._look()
 
     def enter(self) -> None:
@@ -194,8 +195,8 @@ class ReplayScene(FormScene):
     def _look(self) -> None:
         """Update the read-outs; at the end they keep the values of the last moment before."""
         self._reward_bar.at = self.flight_replay.at
-        if not self.flight_replay.flight.over:
-            self._readouts = hud.flight_readouts(self.flight_replay.flight.env)
+        flight = self.flight_replay.flight
+        self._readouts = hud.at_touch(self._readouts, flight.env) if flight.over else hud.flight_readouts(flight.env)
 
     def _stop_or_go(self) -> None:
         if self.ended:

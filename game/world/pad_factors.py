@@ -25,7 +25,7 @@ _EASE: Final = 0.08  # share of the remaining difference, per step
 
 
 class PadFactors:
-    """Score factors of a flight's pads; call `follow` once after every step. A flight with one pad has none.
+    """Score factors of a flight's pads; call `follow` once after every step. A flight with one goal has none.
 
     Attributes:
         meant: how sure it is that each pad is the one that is meant, (pads,), 0 to 1; eased.
@@ -34,7 +34,8 @@ class PadFactors:
 
     def __init__(self, flight: Flight) -> None:
         self._flight = flight
-        self._pads = flight.env.ground.pads if len(flight.env.ground.pads) > 1 else ()
+        pads = flight.env.ground.pads
+        self._pads = pads if sum(pad.factor > 0 for pad in pads) > 1 else ()
         self.forget()
 
     def forget(self) -> None:

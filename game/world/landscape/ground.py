@@ -12,7 +12,7 @@ from ai.common.environment import Doubles
 from ai.lander.ground import Ground, Pad, half_plane
 from game.drawing.canvas import Canvas
 from game.drawing.paint import Picture, bell, clouds, layer
-from game.drawing.tokens import INK, SMALL
+from game.drawing.tokens import INK
 from game.world.camera import LAND_REACH, WORLD_WIDTH, View
 from game.world.landscape.pad import draw_pad
 from game.world.landscape.sheet import WorldPicture
@@ -45,14 +45,11 @@ def draw_ground(canvas: Canvas, view: View, ground: Ground, time: float, shift: 
 
 
 def _draw_flat_spot(canvas: Canvas, view: View, pad: Pad) -> None:
-    """Mark level rock that can be landed on without a pad: a fine line with a stake at both ends, and its factor."""
+    """Mark level rock that can be landed on without a pad: a fine line with a stake at both ends."""
     left, right = view.points(((pad.left, pad.top), (pad.right, pad.top))).tolist()
     canvas.line(left, right, INK, 1.0, 0.55)
     for x, y in (left, right):
         canvas.line((x, y), (x, y - _STAKE), INK, 1.0, 0.55)
-    if pad.factor:
-        middle = (left[0] + right[0]) / 2, left[1] + 16
-        canvas.text(f"×{pad.factor}", middle, size=SMALL, colour=INK, weight="medium", align="centre", alpha=0.8)
 
 
 @lru_cache(maxsize=2)

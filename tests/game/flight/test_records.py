@@ -17,9 +17,10 @@ from game.flight import flight_file
 from game.flight import logbook as records
 from game.flight.flight import Flight, Recording, StickHolder
 from game.flight.flight_file import Entry, Record, from_text, to_text
-from game.flight.logbook import Records, best, totals
+from game.flight.logbook import Records, best, longest_descent, totals
 from game.scenes.logbook import entry_row
 from game.scenes.missions import _best_by_course
+from tests.support.descent import stand_on
 from tests.support.flights import NOON, fly_out, scripted
 
 
@@ -193,6 +194,22 @@ def test_old_files_make_room_but_the_best_and_the_logbook_stay(kept: Records, mo
     assert bad[0] not in kept.kept()
     assert "mine.json" in kept.kept()
     assert len(kept.entries()) == 16
+
+
+def test_all_legs_of_the_longest_descent_stay(kept: Records, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(records, "RECENT", 6)
+    monkeypatch.setattr(records, "SLACK", 2)
+    legs, fall = [], fly(by_hand=True)
+    for number in (1, 2, 1, 2, 3, 4, 5, 6, 7):
+        flight = Flight(3, leg=LegStart(number))
+        stand_on(flight.env, 0)
+        while not flight.over:
+            flight.step(0)
+        legs.append(kept.keep(flight, NOON + len(legs), alone=True, course="descent", total=10 * number).file)
+    for second in range(12):
+        kept.keep(fall, NOON + 100 + second)
+    assert [entry.file for entry in longest_descent(kept.entries())] == legs[2:]
+    assert set(legs[2:]) <= kept.kept()
 
 
 def test_a_clock_that_is_set_back_costs_no_new_flight(kept: Records, monkeypatch: pytest.MonkeyPatch):

@@ -10,6 +10,7 @@ import pytest
 from ai.agent.agent import DeepQAgent
 from ai.lander.environment import Outcome
 from ai.lander.missions import FIRST, MISSIONS
+from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.flight import networks
 from game.flight.flight import Flight, StickHolder
@@ -76,7 +77,8 @@ def test_hands_off_the_copilot_lands_on_earth_too(anywhere: networks.Policy):
 def test_on_a_mission_elsewhere_it_is_named_and_flies_the_ghost(open_game: Open, written: list[str]):
     driver = open_game(PlayScene, 0, challenge=FlownMission(MISSIONS["earth"]))
     driver.frames(1)
-    assert any("the anywhere network" in string for string in written)
+    assert any(texts.NETWORK_EVERYWHERE in string for string in written)
+    assert not any("anywhere network" in string for string in written)
     ghost = play(driver).flown.ghost
     while not ghost.flight.over:
         ghost.step()

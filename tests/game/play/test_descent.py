@@ -11,7 +11,7 @@ from ai.lander.descent import LegStart, refill
 from ai.lander.environment import Outcome
 from game.core import texts
 from game.flight.flight import Flight, StickHolder
-from game.flight.logbook import Records
+from game.flight.logbook import Records, longest_descent
 from game.flight.replay import FlightReplay
 from game.play.descent import Descent, best_of
 from game.scenes.play import PlayScene
@@ -76,6 +76,7 @@ def test_points_grow_with_the_row_of_landings_and_are_in_the_logbook(game: Drive
     ]
     assert [entry.score * factor for factor, entry in enumerate(entries, 1)] == np.diff([0, *totals]).tolist()
     assert best_of(entries) == (3, totals[-1])
+    assert [entry.leg for entry in longest_descent(entries)] == [1, 2, 3]
 
 
 def test_every_leg_can_be_watched_again_to_the_bit(game: Driver, context: Context):
@@ -108,7 +109,7 @@ def test_a_crash_ends_the_run_with_how_far_it_came_and_a_key_flies_the_same_grou
     game.key(pygame.K_RETURN)
     assert (descent(game).start, descent(game).best[0]) == (LegStart(), 1)
     assert play(game).flight.recording.seed == ground
-    assert play(game).flown.ghost.name == texts.MISSION_GHOSTS["own"]
+    assert play(game).flown.ghost.name == texts.GHOST_BEFORE
     land(game)
     land(game)
     assert play(game).flown.ghost.name == texts.MISSION_RIVAL  # so far it has not come before

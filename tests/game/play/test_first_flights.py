@@ -82,6 +82,7 @@ def test_landings_lead_up_and_crashes_down_and_the_card_and_title_say_so(open_ga
     assert play(driver).flight.recording.spawn == "rung_1"
     end(driver, ON_PAD)
     assert settings.rung == 1
+    assert play(driver).ending.card.reason == texts.OUTCOMES["LANDED"][1]
     assert play(driver).ending.card.climb == texts.LADDER_UP.format(number=2)
     driver.key(pygame.K_RETURN)
     assert play(driver).flight.recording.spawn == "rung_2"
@@ -98,6 +99,15 @@ def test_landings_lead_up_and_crashes_down_and_the_card_and_title_say_so(open_ga
     assert play(driver).ending.card.climb == texts.LADDER_LOWEST
     driver.app.close()
     assert driver.saved()["rung"] == 0
+
+
+def test_a_helped_landing_on_the_ladder_says_one_thing_on_what_it_counts_for(open_game: Open):
+    driver = open_game(PlayScene, ladder=True)
+    driver.app.context.settings.assist = 0.4
+    driver.key(pygame.K_r)
+    end(driver, ON_PAD)
+    card = play(driver).ending.card
+    assert (card.reason, card.climb) == (texts.OUTCOMES["LANDED"][1], texts.LADDER_UP.format(number=2))
 
 
 def test_another_try_by_key_is_the_very_same_start(open_game: Open):

@@ -194,7 +194,7 @@ def test_a_ghost_that_still_flies_has_no_figures_and_flies_on(duel):
 
 
 @pytest.mark.parametrize(
-    ("later", "said"), [(2.0, "2.0 s after you"), (-1.5, "1.5 s before you"), (0.0, "together with you")]
+    ("later", "said"), [(2.0, "2.0 s after you"), (-1.5, "1.5 s before you"), (0.0, "at the same time")]
 )
 def test_of_two_who_land_the_card_says_who_was_first(later: float, said: str):
     ghost, yours = Ghost(Flight(1, Idle()), "rival"), LanderEnv(1, 1, frame_skip=1)

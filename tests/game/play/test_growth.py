@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Callable
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,15 +10,18 @@ import pygame
 import pytest
 
 from ai.copilot.alone import Estimate
+from ai.lander.missions import MISSIONS
 from game.core import texts
 from game.core.settings import Settings
 from game.flight import fading
-from game.flight.becoming import Change
+from game.flight.becoming import KINDS, Change
 from game.flight.chances import Rescues
 from game.flight.flight_file import Entry
 from game.flight.logbook import LOGBOOK, Records
 from game.input.controls import Command
 from game.play import growth
+from game.play.challenge import Challenge, FlownMission
+from game.play.tutorial import Tutorial
 from game.scenes.choices import ChoicesScene
 from game.scenes.logbook import LogbookScene
 from game.scenes.play import PlayScene
@@ -150,6 +153,44 @@ def test_the_logbook_says_the_estimate_by_kind_of_start(open_game: Open, context
     driver.frames(3)
     assert texts.BECOMING_ESTIMATE.format(share=10, low=9, high=10) in written
     assert texts.BECOMING_NONE not in written
+
+
+@pytest.mark.parametrize("last", KINDS)
+def test_the_logbook_opens_on_the_kind_flown_last(open_game: Open, context: Context, last: str):
+    kinds = {
+        "plain": OWN,
+        "ladder": replace(OWN, spawn="rung_3"),
+        "hills": replace(OWN, pads=3),
+        "missions": replace(OWN, course="brake"),
+    }
+    fly(open_game, context, [*kinds.values(), kinds[last]])
+    driver = open_game(LogbookScene)
+    driver.frames(2)
+    choice = driver.choice(texts.BECOMING_KINDS[last])
+    assert choice.options[choice.index] == texts.BECOMING_KINDS[last]
+
+
+@pytest.mark.parametrize(
+    ("challenge", "seen"), [(None, True), (FlownMission(MISSIONS["brake"]), True), (Tutorial(), False)]
+)
+def test_the_curve_is_shown_for_flights_of_its_kind_alone(
+    open_game: Open, written: list[str], challenge: Challenge | None, seen: bool
+):
+    driver = open_game(PlayScene, 4, challenge=challenge)
+    driver.frames(2)
+    driver.key(pygame.K_c)
+    written.clear()
+    driver.frames(3)
+    assert isinstance(driver.top, ChoicesScene)
+    assert any(texts.BECOMING_TITLE in each for each in written) is seen
+
+
+def test_a_rescue_is_counted_only_where_the_pilots_action_was_changed():
+    decision = SimpleNamespace(assist=0.4, chance=np.array([0.5]), required=np.array([0.97]))
+    rescues = Rescues()
+    for changed in [False] * 90 + [True] * 4 + [False] * 90 + [True] * 4 + [False] * 20 + [True] * 4:
+        rescues.follow(SimpleNamespace(decision=decision, shared=True, overridden=changed))  # type: ignore[arg-type]
+    assert rescues.times == 2  # within a second of each other they are the same one
 
 
 def test_words_for_few_flights_and_for_many():

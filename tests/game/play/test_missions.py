@@ -135,7 +135,7 @@ def test_the_campaign_is_walked_through_by_keys_and_a_landing_is_remembered(open
     land(driver)
     assert play(driver).ending.card.score == "gold"
     driver.key(pygame.K_r)
-    assert play(driver).flown.ghost.name == texts.MISSION_GHOSTS["own"]  # the landing just flown is there to be beaten
+    assert play(driver).flown.ghost.name == texts.GHOST_BEFORE  # the landing just flown is there to be beaten
     land(driver)
     driver.key(pygame.K_RETURN)
     assert play(driver).challenge.name == "aside"  # the next one

@@ -6,6 +6,7 @@ import numpy as np
 import pygame
 import pytest
 
+from ai.lander.descent import LegStart
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import TEXT_SIZES
@@ -59,6 +60,13 @@ def test_each_of_several_pads_has_its_factor_above_it_at_every_size_of_text(look
 def test_a_single_pad_has_none(look):
     flight = Flight(3)
     assert not look(flight, PadFactors(flight))
+
+
+def test_the_only_goal_of_a_descent_has_none_and_a_flat_spot_brings_both(look):
+    for number in range(1, 9):
+        flight = Flight(3, leg=LegStart(number))
+        factors = {f"×{pad.factor}" for pad in flight.env.ground.pads if pad.factor}
+        assert set(look(flight, PadFactors(flight))) == (factors if len(factors) > 1 else set())
 
 
 def test_the_pad_that_is_aimed_at_is_brightest_and_becomes_so_gently(look):
