@@ -17,6 +17,7 @@ import pygame
 from ai.flights.score import landing_score
 from ai.lander.descent import TANK, LegStart, leg_of
 from ai.lander.environment import Cause, LanderEnv, Outcome
+from ai.lander.ground import Ground
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NET, NIGHT0, SMALL, TEXT
@@ -142,6 +143,11 @@ class Descent(Challenge):
     def again(self) -> bool:
         """Whether the next leg follows: after every landing."""
         return self._landed
+
+    @property
+    def ahead(self) -> Ground:  # type: ignore[override]
+        """The ground of the next leg, as it will be unless this one ends on a flat spot."""
+        return leg_of(self._seed, self._next if self._landed else LegStart(self.start.number + 1)).ground
 
     def follow(self, flight: Flight) -> str:
         """Let the tank fill once the craft has landed."""
