@@ -23,7 +23,7 @@ Picture = npt.NDArray[np.floating[Any]]
 # not seen, and a window of 2,160 lines would take twice as long to paint, and to draw at every zoom.
 MOST_LINES: Final = 1440
 PIECE: Final = 65_536  # pixels that are painted between two yields of what paints in steps, at most
-_GRAIN_SIDE: Final = 256
+_GRAIN: Final = (64, 256)  # rows and columns of the noise that is repeated over a picture
 _DENSE: Final = 96  # knots up to which a product of matrices is faster than picking three of them
 
 
@@ -58,14 +58,12 @@ class Sheet:
         rows, columns = shape
         self.surface = pygame.Surface((columns, rows), pygame.SRCALPHA if clear else 0, 32)
         self._pixels = pygame.surfarray.pixels2d(self.surface).T.view(np.int32)
-        grain = rng.random((_GRAIN_SIDE, _GRAIN_SIDE), dtype=np.float32)
-        self._grain = np.tile(grain, (2, -(-columns // _GRAIN_SIDE)))  # twice, so that any rows lie within it
+        self._grain = np.tile(rng.random(_GRAIN, dtype=np.float32), -(-columns // _GRAIN[1]))
 
     def put(self, top: int, left: int, colour: Sequence[Picture], cover: Picture | None = None) -> None:
         """Paint colour, a picture for each channel, from a row and a column on; all of it, or as far as covered."""
         rows, columns = np.broadcast_shapes(*(channel.shape for channel in colour))
-        row = top % _GRAIN_SIDE
-        grain = self._grain[row : row + rows, left : left + columns]
+        grain = self._grain[np.arange(top, top + rows) % _GRAIN[0], left : left + columns]
         packed = np.zeros((rows, columns), np.int32)
         for channel, shift in zip(colour, self.surface.get_shifts(), strict=False):
             packed |= np.minimum(np.maximum(channel + grain, 0), 255).astype(np.int32) << shift
@@ -76,8 +74,9 @@ class Sheet:
     def put_larger(self, top: int, colour: Sequence[Picture], times: int) -> None:
         """Paint rows of colour, each pixel `times` as wide and as high, from row `times` × `top` on."""
         rows = self._pixels[top * times : (top + len(colour[0])) * times]
-        turn, width = top * times % _GRAIN_SIDE, self._pixels.shape[1]
-        grain = (255 * self._grain[turn : turn + len(rows), :width]).astype(np.uint16)
+        width = self._pixels.shape[1]
+        grain = (255 * self._grain[:, :width]).astype(np.uint16)
+        grain = grain[np.arange(top * times, top * times + len(rows)) % len(grain)]
         packed = np.zeros(rows.shape, np.int32)
         for channel, shift in zip(colour, self.surface.get_shifts(), strict=False):
             levels = np.clip(256 * channel, 0, 65_280).astype(np.uint16)  # in whole numbers, as there are many
@@ -94,7 +93,7 @@ class Sheet:
 def blocks(shape: tuple[int, int], piece: int = PIECE) -> Iterator[slice]:
     """Return the rows of a picture in blocks, of at most so many pixels each, to be painted one after the other."""
     rows, columns = shape
-    stride = min(max(1, piece // columns), _GRAIN_SIDE)
+    stride = max(1, piece // columns)
     for top in range(0, rows, stride):
         yield slice(top, min(top + stride, rows))
 

@@ -169,7 +169,7 @@ def _paint_far(
         ridges.append((_scaled(sheet, 1 / fine), round(top / fine), ridge.depth))
         yield PIECE // 2
     night = yield from paint_sky(small, sky, look, stars=share == 1)
-    night = night if share == 1 else pygame.transform.smoothscale(night, size)
+    night = night if share == 1 else pygame.transform.scale(night, size)  # soft enough
     return _Far(night, near_stars, _scaled(disc, 1 / fine), _scaled(air, 1 / fine), ridges)
 
 
@@ -206,3 +206,8 @@ def landscape(size: tuple[int, int], reduced_motion: bool, look: str = "moon") -
 @lru_cache(maxsize=3)
 def _paint_landscape(size: tuple[int, int], reduced_motion: bool, look: str) -> Backdrop:
     return Backdrop(size, np.random.default_rng(_MOON), reduced_motion, LOOKS[look])
+
+
+def forget_land() -> None:
+    """Forget what was painted, to measure how long it takes anew."""
+    _paint_landscape.cache_clear()
