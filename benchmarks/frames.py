@@ -74,7 +74,7 @@ from tests.support.tour import makers, scene_types, stock
 
 FRAMES = 1000
 RUNS = 3
-# Milliseconds: of the 99th percentile of frames, half of what 60 frames a second allow up to 1080 lines; and of entering.
+# Milliseconds: of the 99th percentile of frames, and of entering a scene.
 LIMITS = {"1280x720": (8.0, 50.0), "1920x1080": (8.0, 50.0), "2560x1440": (12.0, 80.0), "3840x2160": (16.0, 120.0)}
 FLOWN = (pygame.K_r, pygame.K_UP, pygame.K_LEFT, pygame.K_RIGHT)
 SHARED: dict[str, Any] = {"assist": 0.6}

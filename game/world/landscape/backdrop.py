@@ -12,10 +12,10 @@ import numpy as np
 import pygame
 
 from game.drawing.canvas import Canvas
-from game.drawing.paint import MOST_LINES, PIECE
+from game.drawing.paint import PIECE
 from game.drawing.paint_cache import InPieces, Steps
 from game.drawing.tokens import VIEW_SIZE
-from game.world.camera import POINTS_PER_METRE, Camera, View
+from game.world.camera import MOST_LINES, POINTS_PER_METRE, Camera, View
 from game.world.landscape.earth import paint_earth
 from game.world.landscape.sheet import WorldPicture
 from game.world.landscape.sky import NearStars, page_of, paint_sky

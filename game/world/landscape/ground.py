@@ -12,10 +12,10 @@ import numpy as np
 from ai.common.environment import Doubles
 from ai.lander.ground import Ground, Pad, half_plane
 from game.drawing.canvas import Canvas
-from game.drawing.paint import MOST_LINES, PIECE, Picture, Sheet, bell, slopes
+from game.drawing.paint import PIECE, Picture, Sheet, bell, slopes
 from game.drawing.paint_cache import InPieces, Steps, idle
-from game.drawing.tokens import INK, SMALL, VIEW_SIZE
-from game.world.camera import CLOSEST, LAND_REACH, POINTS_PER_METRE, WORLD_WIDTH, View
+from game.drawing.tokens import INK, SMALL
+from game.world.camera import LAND_REACH, WORLD_WIDTH, View
 from game.world.landscape.pad import draw_pad
 from game.world.landscape.sheet import WorldPicture
 from game.world.landscape.sky import SUN
@@ -67,8 +67,7 @@ def _hills(ground: Ground, pixels_per_metre: float) -> InPieces[tuple[WorldPictu
 
 def _detail(view: View) -> float:
     """Return the pixels per metre at which to paint hills that are seen in a view."""
-    most = POINTS_PER_METRE * MOST_LINES / VIEW_SIZE[1] * (_DETAIL * CLOSEST)
-    return round(min((_DETAIL if view.closest else 1.0) * view.painted_per_metre, most), 3)
+    return round((_DETAIL if view.closest else 1.0) * view.painted_per_metre, 3)
 
 
 def begin_hills(ground: Ground, view: View) -> None:
