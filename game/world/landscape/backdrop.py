@@ -14,7 +14,7 @@ import pygame
 from game.drawing.canvas import Canvas
 from game.drawing.paint import PIECE
 from game.drawing.paint_cache import InPieces, Steps
-from game.drawing.tokens import VIEW_SIZE
+from game.drawing.tokens import NIGHT0, VIEW_SIZE
 from game.world.camera import MOST_LINES, POINTS_PER_METRE, Camera, View
 from game.world.landscape.earth import paint_earth
 from game.world.landscape.sheet import WorldPicture
@@ -96,7 +96,9 @@ class Backdrop:
         far, (plain, corner, solid) = self._far.picture, self._plain(view)
         seen = surface.get_clip()
         behind = pygame.Rect(0, 0, self.size[0], math.ceil(float(view.pixels((0.0, solid))[1])) + 1)
-        surface.set_clip(behind.clip(seen))  # the plain hides the rest
+        # The plain hides the rest, but for the least bit where it is scaled.
+        surface.fill(NIGHT0, (0, behind.bottom, self.size[0], max(0, self.size[1] - behind.bottom)))
+        surface.set_clip(behind.clip(seen))
         surface.blit(far.sky, (0, down))
         if down > 0:  # no sky was painted there, but it is as dark as its top rows
             surface.blit(far.sky, (0, 0), (0, 0, self.size[0], down))
