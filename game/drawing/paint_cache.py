@@ -78,29 +78,30 @@ class InPieces(Generic[T]):
 
     def paint_on(self, pixels: float = float("inf")) -> int:
         """Paint at least so many pixels, as far as there are any, and return how many it was."""
-        painted = 0
-        while self._steps is not None and painted < pixels:
+        done = 0
+        while self._steps is not None and done < pixels:
             try:
-                painted += next(self._steps)
+                done += next(self._steps)
             except StopIteration as end:
                 self._picture, self._steps = end.value, None
-        return painted
+        _Spread.painted += done
+        return done
 
 
 def at_once(steps: Steps[T]) -> T:
     """Paint all steps, and return the picture."""
     while True:
         try:
-            next(steps)
+            _Spread.painted += next(steps)
         except StopIteration as end:
             picture: T = end.value
             return picture
 
 
 class _Spread:
-    """How many pixels of large pictures a frame paints; 0 where each is painted at once."""
+    """How many pixels of large pictures a frame paints, 0 where each is painted at once; and how many there were."""
 
-    pixels = 0
+    pixels = painted = 0
 
 
 _unfinished: deque[ref[InPieces[Any]]] = deque()
@@ -109,6 +110,11 @@ _unfinished: deque[ref[InPieces[Any]]] = deque()
 def spread(pixels: int) -> None:
     """Paint large pictures in pieces from now on, some `pixels` in each call of `paint_on`; 0 paints each at once."""
     _Spread.pixels = pixels
+
+
+def painted() -> int:
+    """Return how many pixels of large pictures were painted since the start, rough ones too."""
+    return _Spread.painted
 
 
 def idle() -> bool:
@@ -121,7 +127,7 @@ def idle() -> bool:
 
 def paint_on() -> int:
     """Paint a frame's share of what was begun, the latest first, and return how many pixels it was."""
-    painted = 0
-    while painted < _Spread.pixels and not idle() and (latest := _unfinished[-1]()):
-        painted += latest.paint_on(_Spread.pixels - painted)
-    return painted
+    done = 0
+    while done < _Spread.pixels and not idle() and (latest := _unfinished[-1]()):
+        done += latest.paint_on(_Spread.pixels - done)
+    return done
