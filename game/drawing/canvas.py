@@ -373,7 +373,12 @@ class Canvas:
 
     def panel(self, rect: pygame.typing.RectLike, alpha: float = PANEL_ALPHA) -> None:
         """Draw a translucent panel; all panels of the game look like this."""
-        self.rounded(rect, 8, PANEL, alpha)
+        if alpha == PANEL_ALPHA:
+            area = self.rect(*pygame.FRect(rect))
+            area.size = (max(1, area.width), max(1, area.height))
+            self._blit(shapes.rounded(area.size, 8 * self.scale, PANEL, cover=alpha), area.topleft)
+        else:
+            self.rounded(rect, 8, PANEL, alpha)
         if alpha > _FAINT_WORDS:
             self.cover(self.rect(*pygame.FRect(rect)))
 
