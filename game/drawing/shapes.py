@@ -16,7 +16,7 @@ from game.drawing.tokens import Colour
 Shape = Literal["circle", "ring", "triangle", "triangle_down", "diamond", "tick", "cross", "check"]
 
 _FACTOR: Final = 8
-_LARGE_GLOW: Final = 64  # pixels
+_LARGE_GLOW, _HUGE_GLOW = 64, 256  # pixels
 # Corners on a circle of radius 1, y down.
 _POLYGONS: Final[dict[str, list[tuple[float, float]]]] = {
     "triangle": [(0.0, -0.9), (0.95, 0.75), (-0.95, 0.75)],
@@ -102,9 +102,18 @@ def plain(size: tuple[int, int], colour: Colour) -> pygame.Surface:
     return surface
 
 
-@lru_cache(maxsize=256)
 def glow(radius: int, colour: Colour, level: int) -> pygame.Surface:
     """Return a radial glow for additive blending, in pixels; `level` is its strength in 1/32."""
+    return (_glow if radius < _HUGE_GLOW else _huge_glow)(radius, colour, level)
+
+
+@lru_cache(maxsize=8)  # ten megabytes each in a large window, and seldom the same again
+def _huge_glow(radius: int, colour: Colour, level: int) -> pygame.Surface:
+    return _glow.__wrapped__(radius, colour, level)
+
+
+@lru_cache(maxsize=256)
+def _glow(radius: int, colour: Colour, level: int) -> pygame.Surface:
     # A large glow is smooth enough to scale up from a small one; an explosion needs a new one every few frames.
     half = radius if radius < _LARGE_GLOW else max(_LARGE_GLOW // 2, radius // 8)
     axis = np.arange(-half, half + 1, dtype=np.float32) / max(half, 1)
@@ -118,7 +127,7 @@ def glow(radius: int, colour: Colour, level: int) -> pygame.Surface:
 
 def forget() -> None:
     """Clear the cache of shapes, after a change of the window's size."""
-    for cache in (shape, rounded, _rounded, plain, glow):
+    for cache in (shape, rounded, _rounded, plain, _glow, _huge_glow):
         cache.cache_clear()
 
 
