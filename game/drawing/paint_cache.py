@@ -17,7 +17,7 @@ T = TypeVar("T")
 Steps = Generator[int, None, T]
 
 A_FRAME: Final = 80_000  # pixels of a large picture to paint in one frame: some 3 ms
-_ROUGH: Final = 0.2  # resolution of a picture that is shown until the whole one is painted
+_ROUGH: Final = 0.16  # resolution of a picture that is shown until the whole one is painted
 
 
 class PaintCache:
@@ -99,9 +99,12 @@ def at_once(steps: Steps[T]) -> T:
 
 
 class _Spread:
-    """How many pixels of large pictures a frame paints, 0 where each is painted at once; and how many there were."""
+    """How many pixels of large pictures a frame paints, 0 where each is painted at once; and how many there were.
 
-    pixels = painted = 0
+    And how many there were `before` this frame.
+    """
+
+    pixels = painted = before = 0
 
 
 _unfinished: deque[ref[InPieces[Any]]] = deque()
@@ -126,8 +129,10 @@ def idle() -> bool:
 
 
 def paint_on() -> int:
-    """Paint a frame's share of what was begun, the latest first, and return how many pixels it was."""
+    """Paint what is left of a frame's share, of what was begun the latest first; return how many pixels it was."""
+    already = _Spread.painted - _Spread.before  # in this frame, rough
     done = 0
-    while done < _Spread.pixels and not idle() and (latest := _unfinished[-1]()):
-        done += latest.paint_on(_Spread.pixels - done)
+    while already + done < _Spread.pixels and not idle() and (latest := _unfinished[-1]()):
+        done += latest.paint_on(_Spread.pixels - already - done)
+    _Spread.before = _Spread.painted
     return done

@@ -167,7 +167,9 @@ def _paint_far(
     disc, air = yield from paint_earth(EARTH_RADIUS * fine * height / 720, earth)
     ridges = []
     for ridge, own in zip(RIDGES, ranges, strict=True):
-        sheet, top = yield from paint_ridge((round(fine * size[0]), round(fine * height)), ridge, own, look)
+        sheet, top = yield from paint_ridge(
+            (round(fine * size[0]), round(fine * height)), ridge, own, look, 5 if share == 1 else 2
+        )
         ridges.append((_scaled(sheet, 1 / fine), round(top / fine), ridge.depth))
         yield PIECE // 2
     night = yield from paint_sky(small, sky, look, stars=share == 1)

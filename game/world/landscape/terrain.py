@@ -52,9 +52,12 @@ RIDGES: Final = (
 
 
 def paint_ridge(
-    size: tuple[int, int], ridge: Ridge, rng: np.random.Generator, look: Theme
+    size: tuple[int, int], ridge: Ridge, rng: np.random.Generator, look: Theme, octaves: int = 5
 ) -> Steps[tuple[pygame.Surface, int]]:
-    """Paint a ridge as a layer wider than the view by its margins; return it, and the row of its top edge."""
+    """Paint a ridge as a layer wider than the view by its margins; return it, and the row of its top edge.
+
+    Of the noise of its folds, a rough picture has the first `octaves`.
+    """
     view_width, height = size
     width = round(view_width * (1 + 2 * MARGIN))
     wave = profile(width, rng, ridge.humps * view_width / page_of(size)[0], octaves=7, gain=ridge.rough)
@@ -67,7 +70,7 @@ def paint_ridge(
     shape, unit = (bottom - top, width), height / 720
     # The same noise at any resolution: what is rough for a moment must not change its shape when it is whole.
     cells = (bottom - float(crest.min())) / unit / 64, (1 + 2 * MARGIN) * view_width / unit / 78
-    _, lean = yield from slopes(shape, rng, cells, 5, 0.46, max(1, round(unit)))
+    _, lean = yield from slopes(shape, rng, cells, octaves, 0.46, max(1, round(unit)))
     folds, smooth = np.empty(shape, np.float32), _smooth(crest)
     for rows in blocks(shape):
         folds[rows] = np.clip(lean.part(rows, slice(0, width)) * np.float32(20 * unit), -1, 1)

@@ -160,3 +160,13 @@ def test_land_that_nobody_wants_any_more_is_not_painted_on(in_pieces: None):
     assert not idle()
     del picture
     assert idle()
+
+
+def test_a_frame_that_has_painted_a_rough_picture_paints_no_more(in_pieces: None):
+    paint_on()
+    rough = painted()
+    picture = land((1920, 1080))
+    picture()
+    assert painted() - rough > A_FRAME
+    assert paint_on() == 0  # later, in frames of their own
+    assert paint_on() > 0
