@@ -173,7 +173,9 @@ def _paint_far(
         ridges.append((_scaled(sheet, 1 / fine), round(top / fine), ridge.depth))
         yield PIECE // 2
     night = yield from paint_sky(small, sky, look, stars=share == 1)
-    night = night if share == 1 else pygame.transform.scale(night, size)  # soft enough
+    if share != 1:  # smoothly as far as eyes see it, and on from there without
+        night = pygame.transform.smoothscale(night, (-(-size[0] // 2), -(-size[1] // 2)))
+        night = pygame.transform.scale(night, size)
     return _Far(night, near_stars, _scaled(disc, 1 / fine), _scaled(air, 1 / fine), ridges)
 
 

@@ -40,7 +40,7 @@ def paint_sky(
     size: tuple[int, int], rng: np.random.Generator, look: Theme, *, stars: bool = True
 ) -> Steps[pygame.Surface]:
     """Paint the part of the sky that never moves: night, glow and, unless it is rough, faint `stars`."""
-    times = max(2, round(size[1] / _FINE))  # too smooth to need every pixel
+    times = max(2 if stars else 1, round(size[1] / _FINE))  # too smooth to need every pixel
     width, height = -(-size[0] // times), -(-size[1] // times)
     warm = mix(DUSK, EMBER, 0.14)
     top = _top(size)
