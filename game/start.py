@@ -38,11 +38,13 @@ def play(folder: Path | None = None, full_screen: bool | None = None, begin: Rou
     from game.core import texts
     from game.core.assets import user_dir
     from game.core.settings import SettingsFile
+    from game.drawing.paint_cache import A_FRAME, spread
     from game.scenes import scene_of
     from game.shell.app import App, log_to
     from game.shell.window import NoDisplayError
     from game.ui.context import Context
 
+    spread(A_FRAME)
     folder = folder or user_dir()
     log_to(folder)
     file = SettingsFile(folder)

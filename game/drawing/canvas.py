@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -25,13 +24,12 @@ _AROUND: Final = 4.0  # points of margin around noted text
 # languages take a third more letters.
 LEAST: Final = 1.0 if texts.LANGUAGE == ENGLISH else 0.7
 
-_PARTS: Final = re.compile(r"\d|\D+")  # single digits, and the text between them
-
+Align = Literal["left", "centre", "right"]
+_SHIFT: Final[dict[Align, float]] = {"left": 0.0, "centre": 0.5, "right": 1.0}
 PAGE: Final = pygame.FRect((0, 0), VIEW_SIZE)  # in points
 
 Point = tuple[float, float]
 Now = Callable[[], str]
-Align = Literal["left", "centre", "right"]
 
 
 class Explanation(NamedTuple):
@@ -154,16 +152,21 @@ class Canvas:
         """Return the point at a place on the surface, in pixels."""
         return (place[0] - self.origin[0]) / self.scale, (place[1] - self.origin[1]) / self.scale
 
-    def sheet(self, width: float, height: float) -> Canvas:
+    def sheet(self, width: float, height: float, spare: pygame.Surface | None = None) -> Canvas:
         """Return a canvas of that size on its own transparent surface, to be drawn once and copied often.
 
-        Glows and translucent lines need a background, and do not show on it.
+        Glows and translucent lines need a background, and do not show on it. A `spare` surface of the same size is
+        used again: to clear it takes a tenth of the time of getting as much memory.
         """
         sheet = copy(self)
         sheet.size = (max(1, math.ceil(width * self.scale)), max(1, math.ceil(height * self.scale)))
         sheet._own()
         sheet._covered, sheet.explained = deque(maxlen=0), deque(maxlen=0)
-        sheet.surface = pygame.Surface(sheet.size, pygame.SRCALPHA)
+        if spare is not None and spare.get_size() == sheet.size:
+            spare.fill((0, 0, 0, 0))
+            sheet.surface = spare
+        else:
+            sheet.surface = pygame.Surface(sheet.size, pygame.SRCALPHA)
         return sheet
 
     def picture(self, width: float, height: float) -> Canvas:
@@ -242,64 +245,35 @@ class Canvas:
         made larger for those who want it grows no further than `room`, in points; a translation that is longer than
         the English shrinks to it, to seven tenths of its size at least.
         """
-        pixels = self._pixels(string, size, weight, tabular, room)
-        width = self._width(string, pixels, weight, tabular)
-        shift = {"left": 0.0, "centre": 0.5, "right": 1.0}[align]
-        left, top = self.origin
-        x, y = left + position[0] * self.scale - shift * width, top + self.px(position[1])
+        scale, (left, top) = self.scale, self.origin
+        pixels = typeface.fitting(string, size, weight, tabular, scale, room, LEAST)
+        width = typeface.span(string, pixels, weight, tabular)
+        x, y = left + position[0] * scale - _SHIFT[align] * width, top + round(position[1] * scale)
         if tabular:
-            self._write_digits(string, (x, y), pixels, weight, colour, alpha)
+            for surface, across, baseline in typeface.digits(string, pixels, weight, colour):
+                self._blit(surface, (round(x + across), y - baseline), alpha)
         elif string:
-            self._stamp(string, (round(x), y), pixels, weight, colour, alpha)
+            surface, baseline = typeface.render(string, pixels, weight, colour)
+            self._blit(surface, (round(x), y - baseline), alpha)
         above, below = typeface.extent(pixels, weight)
         if alpha > _FAINT_WORDS:
             self.cover(pygame.Rect(x, y - above, width, above + below))
-        scale = self.scale
         return pygame.FRect((x - left) / scale, (y - above - top) / scale, width / scale, (above + below) / scale)
 
     def text_width(
         self, string: str, *, size: float = TEXT, weight: Weight = "regular", tabular: bool = False
     ) -> float:
         """Return the width in points of `text` with the same arguments."""
-        return self._width(string, self._pixels(string, size, weight, tabular), weight, tabular) / self.scale
-
-    def _pixels(self, string: str, size: float, weight: Weight, tabular: bool, room: float = math.inf) -> float:
-        """Return the size in pixels at which a text is rendered."""
-        pixels = round(typeface.grown(size) * self.scale, 2)
-        least = LEAST * size * self.scale
-        if room < math.inf and pixels > least:
-            too_wide = self._width(string, pixels, weight, tabular) / max(room * self.scale, 1.0)
-            if too_wide > 1:
-                pixels = round(max(pixels / too_wide, least), 2)
-        return pixels
-
-    def _width(self, string: str, pixels: float, weight: Weight, tabular: bool) -> float:
-        if not tabular:
-            return typeface.reach(string, pixels, weight)
-        digit = typeface.digit_width(pixels, weight)
-        parts = _PARTS.findall(string)
-        return sum(digit if part.isdecimal() else typeface.reach(part, pixels, weight) for part in parts)
-
-    def _write_digits(
-        self, string: str, start: Point, pixels: float, weight: Weight, colour: Colour, alpha: float
-    ) -> None:
-        x, y = start
-        digit = typeface.digit_width(pixels, weight)
-        for part in _PARTS.findall(string):
-            own = typeface.reach(part, pixels, weight)
-            cell = digit if part.isdecimal() else own
-            self._stamp(part, (round(x + (cell - own) / 2), round(y)), pixels, weight, colour, alpha)
-            x += cell
-
-    def _stamp(
-        self, string: str, start: tuple[int, int], pixels: float, weight: Weight, colour: Colour, alpha: float
-    ) -> None:
-        surface, baseline = typeface.render(string, pixels, weight, colour)
-        self._blit(surface, (start[0], start[1] - baseline), alpha)
+        pixels = typeface.fitting(string, size, weight, tabular, self.scale, math.inf, LEAST)
+        return typeface.span(string, pixels, weight, tabular) / self.scale
 
     def _blit(self, surface: pygame.Surface, position: tuple[int, int], alpha: float = 1.0) -> None:
-        surface.set_alpha(round(255 * min(max(alpha, 0.0), 1.0)))
-        self.surface.blit(surface, position)
+        if alpha >= 1:  # as it is kept
+            self.surface.blit(surface, position)
+        elif alpha > 0:
+            surface.set_alpha(round(255 * alpha))
+            self.surface.blit(surface, position)
+            surface.set_alpha(255)
 
     # Shapes
 
@@ -399,7 +373,12 @@ class Canvas:
 
     def panel(self, rect: pygame.typing.RectLike, alpha: float = PANEL_ALPHA) -> None:
         """Draw a translucent panel; all panels of the game look like this."""
-        self.rounded(rect, 8, PANEL, alpha)
+        if alpha == PANEL_ALPHA:
+            area = self.rect(*pygame.FRect(rect))
+            area.size = (max(1, area.width), max(1, area.height))
+            self._blit(shapes.rounded(area.size, 8 * self.scale, PANEL, cover=alpha), area.topleft)
+        else:
+            self.rounded(rect, 8, PANEL, alpha)
         if alpha > _FAINT_WORDS:
             self.cover(self.rect(*pygame.FRect(rect)))
 

@@ -16,7 +16,7 @@ from game.drawing.tokens import Colour
 Shape = Literal["circle", "ring", "triangle", "triangle_down", "diamond", "tick", "cross", "check"]
 
 _FACTOR: Final = 8
-_LARGE_GLOW: Final = 64  # pixels
+_LARGE_GLOW, _HUGE_GLOW = 64, 256  # pixels
 # Corners on a circle of radius 1, y down.
 _POLYGONS: Final[dict[str, list[tuple[float, float]]]] = {
     "triangle": [(0.0, -0.9), (0.95, 0.75), (-0.95, 0.75)],
@@ -60,8 +60,15 @@ def _stroke(sheet: pygame.Surface, colour: Colour, strokes: list[list[tuple[floa
 
 
 @lru_cache(maxsize=512)
-def rounded(size: tuple[int, int], radius: float, colour: Colour, width: int = 0) -> pygame.Surface:
-    """Return a rectangle with round corners: filled, or as an outline `width` pixels wide."""
+def rounded(size: tuple[int, int], radius: float, colour: Colour, width: int = 0, cover: float = 1.0) -> pygame.Surface:
+    """Return a rectangle with round corners: filled, or as an outline `width` pixels wide; `cover` is its opacity.
+
+    A large one that is always as translucent is blended twice as fast with that in its pixels as with an alpha set.
+    """
+    if cover < 1:
+        pale = rounded(size, radius, colour, width).copy()
+        pale.fill((255, 255, 255, round(255 * cover)), special_flags=pygame.BLEND_RGBA_MULT)
+        return pale
     reach = math.ceil(max(radius, width)) + 1  # pixels from an end, beyond which nothing changes
     small = _rounded((min(size[0], 2 * reach), min(size[1], 2 * reach)), radius, colour, width)
     if small.get_size() == size:
@@ -95,21 +102,32 @@ def plain(size: tuple[int, int], colour: Colour) -> pygame.Surface:
     return surface
 
 
-@lru_cache(maxsize=256)
 def glow(radius: int, colour: Colour, level: int) -> pygame.Surface:
     """Return a radial glow for additive blending, in pixels; `level` is its strength in 1/32."""
+    return (_glow if radius < _HUGE_GLOW else _huge_glow)(radius, colour, level)
+
+
+@lru_cache(maxsize=8)  # ten megabytes each in a large window, and seldom the same again
+def _huge_glow(radius: int, colour: Colour, level: int) -> pygame.Surface:
+    return _glow.__wrapped__(radius, colour, level)
+
+
+@lru_cache(maxsize=256)
+def _glow(radius: int, colour: Colour, level: int) -> pygame.Surface:
     # A large glow is smooth enough to scale up from a small one; an explosion needs a new one every few frames.
-    half = radius if radius < _LARGE_GLOW else radius // 4
-    axis = np.arange(-half, half + 1) / max(half, 1)
-    distance = np.minimum(np.hypot(axis[:, None], axis[None, :]), 1.0)
-    light = (1 - distance) ** 2.4 * level / 32
-    surface = pygame.surfarray.make_surface(np.minimum(light[..., None] * np.array(colour), 255).astype(np.uint8))
+    half = radius if radius < _LARGE_GLOW else max(_LARGE_GLOW // 2, radius // 8)
+    axis = np.arange(-half, half + 1, dtype=np.float32) / max(half, 1)
+    distance = np.minimum(np.sqrt(axis[:, None] ** 2 + axis[None, :] ** 2), 1.0)
+    light = (1 - distance) ** 2.4 * (level / 32)
+    surface = pygame.surfarray.make_surface(
+        np.minimum(light[..., None] * np.array(colour, np.float32), 255).astype(np.uint8)
+    )
     return surface if half == radius else pygame.transform.smoothscale(surface, (2 * radius + 1, 2 * radius + 1))
 
 
 def forget() -> None:
     """Clear the cache of shapes, after a change of the window's size."""
-    for cache in (shape, rounded, _rounded, plain, glow):
+    for cache in (shape, rounded, _rounded, plain, _glow, _huge_glow):
         cache.cache_clear()
 
 

@@ -6,6 +6,8 @@ hinted small sizes do neither. Signs of buttons are characters as well: see `gam
 
 from __future__ import annotations
 
+import math
+import re
 from bisect import bisect_right
 from functools import lru_cache
 from importlib.resources import files
@@ -28,6 +30,7 @@ _FILES: Final[dict[Weight, str]] = {
     "semibold": "ManropeSemiBold",
 }
 _CODE: Final = "data/FiraCode-Regular.ttf"  # in pygame_gui: all letters of it are equally wide
+_PARTS: Final = re.compile(r"\d|\D+")  # single digits, and the text between them
 _LONGEST: Final = 1000  # characters of a text; no line on any screen has more
 # Width in pixels of a text before it is scaled down; a full line of the largest screen takes half. From some 100,000
 # on, SDL's scaling writes past the end of its memory.
@@ -121,6 +124,45 @@ def render(string: str, pixels: float, weight: Weight, colour: Colour) -> tuple[
     return surface, baseline
 
 
+@lru_cache(maxsize=4096)
+def fitting(string: str, size: float, weight: Weight, tabular: bool, scale: float, room: float, least: float) -> float:
+    """Return the size in pixels at which a text is rendered: no wider than `room`, nor smaller than a share `least`.
+
+    `size` and `room` are in points, of `scale` pixels.
+    """
+    pixels = round(grown(size) * scale, 2)
+    if room < math.inf and pixels > least * size * scale:
+        too_wide = span(string, pixels, weight, tabular) / max(room * scale, 1.0)
+        if too_wide > 1:
+            pixels = round(max(pixels / too_wide, least * size * scale), 2)
+    return pixels
+
+
+@lru_cache(maxsize=4096)
+def span(string: str, pixels: float, weight: Weight, tabular: bool) -> float:
+    """Return the width of a string in pixels; `tabular` gives every digit the same."""
+    if not tabular:
+        return reach(string, pixels, weight)
+    digit = digit_width(pixels, weight)
+    return sum(digit if part.isdecimal() else reach(part, pixels, weight) for part in _PARTS.findall(string))
+
+
+@lru_cache(maxsize=4096)
+def digits(string: str, pixels: float, weight: Weight, colour: Colour) -> list[tuple[pygame.Surface, float, int]]:
+    """Return a figure that changes as the digits it is made of, and what stands between, each rendered once.
+
+    Each comes with its place across, and the row of its baseline.
+    """
+    found, x, digit = [], 0.0, digit_width(pixels, weight)
+    for part in _PARTS.findall(string):
+        own = reach(part, pixels, weight)
+        cell = digit if part.isdecimal() else own
+        surface, baseline = render(part, pixels, weight, colour)
+        found.append((surface, x + (cell - own) / 2, baseline))
+        x += cell
+    return found
+
+
 def _write(string: str, pixels: float, weight: Weight, colour: Colour) -> pygame.Surface:
     """Return the surface of a string with signs, before it is scaled down."""
     font, factor = _font(pixels, weight), _oversampling(pixels)
@@ -159,5 +201,5 @@ def _cut(string: str, pixels: float, weight: Weight) -> str:
 
 def forget() -> None:
     """Clear the cache of rendered strings, after a change of the window's size."""
-    for cache in (_font, grown, reach, extent, digit_width, render):
+    for cache in (_font, grown, reach, extent, digit_width, render, fitting, span, digits):
         cache.cache_clear()

@@ -41,7 +41,7 @@ class ChanceValues:
 
     @property
     def told(self) -> tuple[str, ...]:
-        """The chance after the action asked for, the one required, and that of the action flown; alike wherever shown."""
+        """The chance after the action asked for, the one required, and after the one that is flown."""
         return told_apart(self.chances[self.asked], self.required, self.chances[self.flown])
 
 

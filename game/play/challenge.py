@@ -8,6 +8,7 @@ from typing import Final
 
 from ai.flights.easing import AS_IT_IS
 from ai.lander.environment import Cause, LanderEnv, Outcome
+from ai.lander.ground import Ground
 from ai.lander.missions import STARTS, Mission
 from game.core import texts
 from game.core.settings import Settings
@@ -70,6 +71,7 @@ class Challenge:
         elsewhere: whether it is flown where it is not as on the moon.
         total: points of the chain of flights that it is, for the logbook.
         compares: whether the card compares the flight with the ghost's.
+        ahead: the ground of the flight that comes next, to be painted while this one is flown; None if unknown.
         again_hint, new_hint: what the card calls another try, and another start; empty for the usual words.
 
     """
@@ -88,6 +90,7 @@ class Challenge:
     title = line = goal = opening = ""
     total = 0
     compares = True
+    ahead: Ground | None = None
 
     @property
     def under_way(self) -> bool:

@@ -26,6 +26,7 @@ from game.play.challenge import Challenge, DrawnFlight
 from game.play.ending import FlightEnding
 from game.play.ghost import Ghost
 from game.world.chance_map import LINES_GRID, ChanceMap
+from game.world.landscape.ground import begin_hills
 from game.world.path_preview import PathPreview
 from game.world.scenery import Scenery
 
@@ -240,6 +241,8 @@ class FlownFlight:
         alpha = self.pace.between(alpha)
         view, flight = self.scenery.view(canvas.scale, alpha).filling(canvas), self.flight
         self.scenery.draw_land(canvas, alpha)
+        if self.challenge and self.challenge.ahead:
+            begin_hills(self.challenge.ahead, view)
         if self.ghost:
             self.ghost.draw_way(canvas, view)
         if flight.over:

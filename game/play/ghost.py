@@ -26,6 +26,7 @@ from game.world.paths import Trails
 _FIRE: Final = 0.5  # share of full thrust drawn, so that a ghost's flame is not mistaken for the player's
 _BODY: Final = 0.30  # opacity of a ghost's body, and of its rim
 _RIM: Final = 0.9
+_FINEST: Final = 64.0  # pixels per metre of its picture, which is translucent and costs a new one at every angle
 _FADED: Final = 0.55  # factor on both, once it has crashed
 _EDGE: Final = 18.0  # points from the edge of the view to the mark of a ghost that is beyond it
 _HIDDEN: Final = 24.0  # points beyond the edge from which a ghost counts as beyond it
@@ -65,7 +66,7 @@ class Ghost:
         if not flight.over and flight.env.fired[0] >= 3:
             _draw_fire(canvas, view, pose, int(flight.env.steps[0]))
         x, y = view.pixels(pose[:2]).tolist()
-        fine, degrees = view.painted_per_metre, round(math.degrees(pose[2])) % 360
+        fine, degrees = min(view.painted_per_metre, _FINEST), round(math.degrees(pose[2])) % 360
         crashed = flight.wrecked
         ratio = view.pixels_per_metre / fine
         canvas.surface.blit(*fitted(lambda halves: _phantom(fine, degrees, halves, crashed), ratio, (x, y)))

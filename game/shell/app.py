@@ -20,6 +20,7 @@ from game.core.scene import Push, Route
 from game.core.settings_writer import SettingsWriter
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
+from game.drawing.paint_cache import paint_on
 from game.drawing.tokens import COLOUR_SAFE, PALETTE, TEXT_SIZES
 from game.input.controls import Command, translate
 from game.play.friend import arrival
@@ -121,6 +122,7 @@ class App:
             self.context.sound.update()
         if self.scenes.running and not self.window.minimised and time_now >= self._settled:
             self.draw()
+            self._guarded(paint_on)
         if self._capped:
             self._clock.tick(self._frame_rate)
         return self.scenes.running
@@ -271,7 +273,7 @@ class App:
 
     # Faults
 
-    def _guarded(self, call: Callable[[], None]) -> None:
+    def _guarded(self, call: Callable[[], object]) -> None:
         """Call a scene's code; on an exception, log it and show the error screen, which leads to the menu."""
         try:
             call()

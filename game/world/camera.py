@@ -30,6 +30,9 @@ GROUND_LINE: Final = 1.0  # metres
 GROUND_ROW: Final = VIEW_SIZE[1] / 2 + (HOME[1] - GROUND_LINE) * POINTS_PER_METRE  # points
 WIDEST: Final = 0.6  # zoom at which all of the world in which a flight may be is seen
 CLOSEST: Final = 2.0
+# Lines of a page for which the world is painted at most. A larger window shows the same pictures, scaled: at arm's
+# length that is not seen, and 2,160 lines would take twice as long to paint, and to scale at every zoom.
+MOST_LINES: Final = 1440
 LAND_REACH: Final = 34.0  # metres of visible land to either side of the middle of the world
 
 _PACE: Final = 2.6  # rad/s, of the spring that moves the camera
@@ -73,7 +76,7 @@ class View:
     @property
     def painted_per_metre(self) -> float:
         """Scale, in pixels per metre, at which to paint pictures that are then scaled to this view and later ones."""
-        return POINTS_PER_METRE * self.scale * (self.closest or self.zoom)
+        return POINTS_PER_METRE * min(self.scale, MOST_LINES / VIEW_SIZE[1]) * (self.closest or self.zoom)
 
     def pixels(self, position: npt.ArrayLike) -> Pixels:
         """Turn world positions (..., 2) into pixels of the view."""

@@ -40,6 +40,7 @@ _FINER: Final = 2  # by how much a map of actions is drawn finer than it was com
 _GRIDS: Final = ((65, 29), (33, 15), (17, 8))  # places across and up: the coarser, the larger the network
 _PIECE: Final = 4_700_000  # multiplications in one update: about a third of a millisecond
 _LONGEST: Final = 120  # updates that one whole map should take at most; a coarser grid is used where it would not
+_ENDS: Final = (0.10, 0.98)  # of all scores, those at the ends of the scale
 _STEP: Final = 10.0  # the ends of the scale are multiples of it, in points
 
 V = TypeVar("V", Floats, Doubles)
@@ -146,7 +147,9 @@ class PolicyMap:
         self.cells, self._observations = PolicyCells(self._places, whole), None
         scores = self.cells.scores
         if scores is not None and np.isfinite(scores).any():
-            low, high = np.percentile(scores[np.isfinite(scores)], (10, 98))
+            known = np.sort(scores[np.isfinite(scores)])
+            # As `np.percentile` does, whose first call loads a module for ten milliseconds in the middle of a flight.
+            low, high = np.interp(np.array(_ENDS) * (len(known) - 1), np.arange(len(known)), known)
             before = self.scale or (low, high)
             low, high = min(low, before[0]), max(high, before[1])  # a scale that shrank would change all colours
             self.scale = float(_STEP * np.floor(low / _STEP)), float(_STEP * np.ceil(high / _STEP))

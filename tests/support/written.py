@@ -75,8 +75,8 @@ class Written:
             panel(canvas, rect, *more)
             self.page(canvas).panels.append(pygame.FRect(rect).move(canvas.moved))
 
-        def noted_sheet(canvas: Canvas, width: float, height: float) -> Canvas:
-            made = sheet(canvas, width, height)
+        def noted_sheet(canvas: Canvas, *given: Any) -> Canvas:
+            made = sheet(canvas, *given)
             self.turn(made)
             return made
 

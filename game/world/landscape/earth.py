@@ -8,37 +8,46 @@ import numpy as np
 import numpy.typing as npt
 import pygame
 
-from game.drawing.paint import Picture, clouds, light
+from game.drawing.paint import PIECE, Picture, blocks, clouds, light
+from game.drawing.paint_cache import Steps
 
 _SUN: Final = np.array((0.80, 0.42, 0.43), np.float32)  # right, down, towards us
-_FACTOR: Final = 2
+_WORK: Final = 4  # how much longer a pixel of it takes than one of the land
 
 
-def paint_earth(radius: float, rng: np.random.Generator) -> tuple[pygame.Surface, pygame.Surface]:
-    """Return the disc, with transparency, and the additive glow around it, to be drawn first."""
+def paint_earth(radius: float, rng: np.random.Generator) -> Steps[tuple[pygame.Surface, pygame.Surface]]:
+    """Paint the disc, with transparency, and the additive glow around it, to be drawn first."""
     half = int(radius * 1.06) + 2
-    axis = (np.arange(2 * half * _FACTOR, dtype=np.float32) + 0.5) / _FACTOR - half
+    axis = (np.arange(4 * half, dtype=np.float32) + 0.5) / 2 - half  # twice as fine as it is drawn
     x, y = axis[None, :] / radius, axis[:, None] / radius
     beyond = np.hypot(x, y)
     z = np.sqrt(np.clip(1 - beyond**2, 0, 1))
     sun = _SUN / np.linalg.norm(_SUN)
     day = sun[0] * x + sun[1] * y + sun[2] * z
-    picture = _surface(x, y, z, day, rng)
-    side = 2 * half
-    picture = picture.reshape(side, _FACTOR, side, _FACTOR, 3).mean((1, 3))
-    cover = np.clip((1 - beyond) * radius + 0.5, 0, 1).reshape(side, _FACTOR, side, _FACTOR).mean((1, 3))
+    # Noise is drawn flat and squeezed towards the limb, as a globe would.
+    flat = yield from clouds(day.shape, rng, (4.2, 3.4), octaves=5)
+    veil = yield from clouds(day.shape, rng, (9, 4.5), octaves=5, gain=0.62)
+    side, picture = 2 * half, np.empty((*day.shape, 3), np.float32)
+    for part in blocks(day.shape, PIECE // _WORK):
+        on_globe = _globe(y[part], z[part], len(day)), _globe(x, z[part], len(day))
+        picture[part] = _surface(y[part], z[part], day[part], flat[on_globe], veil[on_globe])
+        yield _WORK * day[part].size
+    picture, cover = _halved(picture), _halved(np.clip((1 - beyond) * radius + 0.5, 0, 1))
     disc = pygame.Surface((side, side), pygame.SRCALPHA)
     pygame.surfarray.pixels3d(disc)[:] = np.clip(picture, 0, 255).astype(np.uint8).swapaxes(0, 1)
     pygame.surfarray.pixels_alpha(disc)[:] = np.round(255 * cover).astype(np.uint8).T
+    yield PIECE
     return disc, _air(radius)
 
 
-def _surface(x: Picture, y: Picture, z: Picture, day: Picture, rng: np.random.Generator) -> Picture:
+def _halved(picture: Picture) -> Picture:
+    """Return a picture at half its resolution."""
+    half: Picture = 0.25 * (picture[::2, ::2] + picture[1::2, ::2] + picture[::2, 1::2] + picture[1::2, 1::2])
+    return half
+
+
+def _surface(y: Picture, z: Picture, day: Picture, land: Picture, veil: Picture) -> Picture:
     shape = day.shape
-    # Noise is drawn flat and squeezed towards the limb, as a globe would.
-    rows, columns = _globe(x, z, shape[0]), _globe(y, z, shape[0])
-    land = clouds(shape, rng, (4.2, 3.4), octaves=5)[columns, rows]
-    veil = clouds(shape, rng, (9, 4.5), octaves=5, gain=0.62)[columns, rows]
     sea = np.array((20, 66, 138), np.float32)
     picture = np.broadcast_to(sea, (*shape, 3)).copy()
     shore = _step(land, 0.10, 0.16)[..., None]

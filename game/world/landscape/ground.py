@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from itertools import pairwise
 from typing import Final
@@ -11,7 +12,8 @@ import numpy as np
 from ai.common.environment import Doubles
 from ai.lander.ground import Ground, Pad, half_plane
 from game.drawing.canvas import Canvas
-from game.drawing.paint import Picture, bell, clouds, layer
+from game.drawing.paint import PIECE, Picture, Sheet, bell, slopes
+from game.drawing.paint_cache import InPieces, Steps, idle
 from game.drawing.tokens import INK
 from game.world.camera import LAND_REACH, WORLD_WIDTH, View
 from game.world.landscape.pad import draw_pad
@@ -26,6 +28,9 @@ _FOOT_COLOUR: Final = np.array((20, 22, 38), np.float32)
 _WARM: Final = np.array((255, 150, 96), np.float32)
 _SOFT: Final = 1.1  # metres over which a hill's slope changes, below its edge
 _STEEPEST: Final = 3.0  # metres a metre: a wall is in no other light than a steep slope
+_FOLD: Final = 0.045  # metres: folds are so soft that they need not be computed at more places
+_BAND: Final = 64  # rows that are painted together
+_RIM: Final = 0.05  # metres beside rock that are painted in its colour, though clear
 _STAKE: Final = 5.0  # points
 _LIP: Final = 0.3  # metres that a knoll is lower than its pad
 
@@ -33,7 +38,7 @@ _LIP: Final = 0.3  # metres that a knoll is lower than its pad
 def draw_ground(canvas: Canvas, view: View, ground: Ground, time: float, shift: float = 0.0) -> None:
     """Draw hills, if any, and pads, `shift` metres to the right."""
     if ground.hills or ground.roofs:
-        sheet, corner = paint_hills(ground, round((_DETAIL if view.closest else 1.0) * view.painted_per_metre, 3))
+        sheet, corner = _hills(ground, _detail(view)).picture
         sheet.draw(canvas.surface, view, corner)
     several = len(ground.pads) > 1
     for pad in ground.pads:
@@ -52,35 +57,101 @@ def _draw_flat_spot(canvas: Canvas, view: View, pad: Pad) -> None:
         canvas.line((x, y), (x, y - _STAKE), INK, 1.0, 0.55)
 
 
-@lru_cache(maxsize=2)
-def paint_hills(ground: Ground, pixels_per_metre: float) -> tuple[WorldPicture, tuple[float, float]]:
-    """Return the picture of hills and roofs, and the place of its top left corner in metres."""
-    crest_x = np.arange(-_REACH, _REACH, 1 / pixels_per_metre)
-    crest = hills_height(ground, crest_x).astype(np.float32)
+@lru_cache(maxsize=2)  # of the present flight, and of the next where it is known
+def _hills(ground: Ground, pixels_per_metre: float) -> InPieces[tuple[WorldPicture, tuple[float, float]]]:
+    return InPieces(lambda share: paint_hills(ground, share * pixels_per_metre))
+
+
+def _detail(view: View) -> float:
+    """Return the pixels per metre at which to paint hills that are seen in a view."""
+    return round((_DETAIL if view.closest else 1.0) * view.painted_per_metre, 3)
+
+
+def begin_hills(ground: Ground, view: View) -> None:
+    """Begin to paint the hills of a ground that will be seen soon, once all that is seen now is whole."""
+    if (ground.hills or ground.roofs) and idle():
+        _hills(ground, _detail(view))
+
+
+def paint_hills(ground: Ground, pixels_per_metre: float) -> Steps[tuple[WorldPicture, tuple[float, float]]]:
+    """Paint hills and roofs; return their picture, and the place of its top left corner in metres."""
+    across = np.arange(-_REACH, _REACH, 1 / pixels_per_metre)
+    crest = hills_height(ground, across).astype(np.float32)
     top = float(max([crest.max(), *(y for roof in ground.roofs for _, y in roof)])) + 0.1
-    rows = top - np.arange(0.0, top - ground.base + _FOOT, 1 / pixels_per_metre, dtype=np.float32)[:, None]
-    below = crest - rows  # metres under the surface
-    hung, above = _hung(ground, crest_x, rows)
-    below = np.where(hung > 0, above, below)
-    rng = np.random.default_rng(round(1000 * top))
-    rise = np.clip((rows - ground.base) / (top - ground.base), 0, 1)[..., None]
-    colour = _FOOT_COLOUR + (0.35 + 0.65 * rise) * (_CREST_COLOUR - _FOOT_COLOUR)
-    sunward, near = _sunlight(crest_x.astype(np.float32))
-    slope = np.gradient(crest, crest_x).clip(-_STEEPEST, _STEEPEST).astype(np.float32) * sunward
-    across, down = _folds(below.shape, pixels_per_metre, rng)
-    # Where the sun is straight ahead, folds are lit from above instead of from a side.
-    lean = across * sunward + down * np.sqrt(1 - sunward**2)
-    shade = 1 + 0.30 * np.clip(lean + 0.9 * _softened(slope, _SOFT * pixels_per_metre), -1.2, 1.2)
-    inward = np.exp(np.minimum(below / -0.30, 0))
-    narrow = inward * inward * inward
-    rim = 0.6 * narrow * narrow + 0.22 * inward
-    facing = np.clip(0.45 + 1.1 * slope, 0.10, 1.4) * (0.18 + 0.72 * near)
-    picture = colour.astype(np.float32) * shade[..., None] + (rim * facing)[..., None] * (0.62 * _WARM)
+    heights = top - np.arange(0.0, top - ground.base + _FOOT, 1 / pixels_per_metre, dtype=np.float32)[:, None]
+    shape, rng = (len(heights), len(across)), np.random.default_rng(round(1000 * top))
+    yield len(across)
+    cells = max(2.0, (top - ground.base + _FOOT) / 1.1), 2 * _REACH / 1.6
+    folds = yield from slopes(shape, rng, cells, 4, 0.5, max(1, round(pixels_per_metre * _FOLD)))
+    sheet, light = Sheet(shape, rng), _Light(across, crest, pixels_per_metre)
     foot = _FOOT * np.clip((crest - ground.base) / 0.8, 0, 1) ** 0.6  # none where there is no hill
-    cover = np.clip(below * pixels_per_metre + 0.5, 0, 1) * (crest > ground.base + 0.01)
-    cover = cover * np.clip(1 + (rows - ground.base) / np.maximum(foot, 0.02), 0, 1) ** 1.5
-    cover = np.maximum(cover, np.clip(hung * pixels_per_metre + 0.5, 0, 1))
-    return WorldPicture(layer(picture, cover.astype(np.float32), rng), pixels_per_metre), (-_REACH, top)
+    for rows in (slice(start, min(start + _BAND, shape[0])) for start in range(0, shape[0], _BAND)):
+        height = heights[rows]
+        rise, faded = (height - ground.base) / (top - ground.base), height - ground.base
+        for columns in _filled(ground, across, crest, height, round(_RIM * pixels_per_metre)):
+            hung, above = _hung(ground, across[columns], height)
+            under = crest[columns]
+            below = np.where(hung > 0, above, under - height)  # metres under the surface
+            lean = [np.clip(0.6 * pixels_per_metre * fold.part(rows, columns), -1, 1) for fold in folds]
+            fade = np.clip(1 + faded / np.maximum(foot[columns], 0.02), 0, 1)
+            cover = np.clip(below * pixels_per_metre + 0.5, 0, 1) * (under > ground.base + 0.01) * fade * np.sqrt(fade)
+            cover = np.maximum(cover, np.clip(hung * pixels_per_metre + 0.5, 0, 1))
+            sheet.put(rows.start, columns.start, light.on(columns, rise, below, lean), cover)
+            yield below.size
+        yield 1
+    return WorldPicture(sheet.done(), pixels_per_metre), (-_REACH, top)
+
+
+def _filled(ground: Ground, x: Doubles, crest: Picture, height: Picture, rim: int) -> Iterator[slice]:
+    """Return the columns in which there is rock in rows at such heights, and a rim of pixels beside it.
+
+    Where a picture is scaled, the colour of clear pixels beside its edge shows.
+    """
+    low, high = float(height[-1, 0] - _RIM), float(height[0, 0] + _RIM)
+    rock = (crest > low) & (crest > ground.base)
+    for roof in ground.roofs:
+        if min(y for _, y in roof) < high and max(y for _, y in roof) > low:
+            rock |= (x > min(x for x, _ in roof)) & (x < max(x for x, _ in roof))
+    edges = np.flatnonzero(np.diff(rock, prepend=False, append=False))
+    done = 0
+    for start, stop in edges.reshape(-1, 2).tolist():
+        done, end = max(done, start - rim), min(stop + rim, len(x))
+        while done < end:
+            yield slice(done, min(done + PIECE // _BAND, end))
+            done = min(done + PIECE // _BAND, end)
+
+
+class _Light:
+    """Colour of rock in the low sun, column by column."""
+
+    def __init__(self, x: Doubles, crest: Picture, pixels_per_metre: float) -> None:
+        self._sunward, near = _sunlight(x.astype(np.float32))
+        slope = np.gradient(crest, x).clip(-_STEEPEST, _STEEPEST).astype(np.float32) * self._sunward
+        self._slope = 0.9 * _softened(slope, _SOFT * pixels_per_metre)
+        self._facing = np.clip(0.45 + 1.1 * slope, 0.10, 1.4) * (0.18 + 0.72 * near)
+        self._ahead = np.sqrt(1 - self._sunward**2)
+
+    def on(self, columns: slice, rise: Picture, below: Picture, lean: Sequence[Picture]) -> list[Picture]:
+        """Return the colour of some columns.
+
+        Args:
+            columns: which ones.
+            rise: height of each row, from 0 at the plain to 1 at the highest rock, (rows, 1).
+            below: metres under the surface, (rows, columns).
+            lean: how far small folds face up and lean to the right, each about -1 to 1.
+
+        """
+        # Where the sun is straight ahead, folds are lit from above instead of from a side.
+        lit = lean[1] * self._sunward[columns] + lean[0] * self._ahead[columns] + self._slope[columns]
+        shade = 1 + 0.30 * np.clip(lit, -1.2, 1.2)
+        inward = np.exp(np.minimum(below * np.float32(-1 / 0.30), 0))
+        narrow = inward * inward * inward
+        rim = (0.6 * narrow * narrow + 0.22 * inward) * self._facing[columns]
+        high = 0.35 + 0.65 * np.clip(rise, 0, 1)
+        return [
+            shade * (foot + high * (crest - foot)) + rim * (np.float32(0.62) * warm)
+            for foot, crest, warm in zip(_FOOT_COLOUR, _CREST_COLOUR, _WARM, strict=True)
+        ]
 
 
 def _hung(ground: Ground, x: Doubles, rows: Picture) -> tuple[Picture, Picture]:
@@ -112,15 +183,6 @@ def _sunlight(x: Picture) -> tuple[Picture, Picture]:
     middle = (SUN[0] - 0.5) * WORLD_WIDTH
     width = len(x)
     return -np.tanh((x - middle) / 3.0), bell(width, float(np.interp(middle, x, np.arange(width))), 0.30 * width)
-
-
-def _folds(shape: tuple[int, int], pixels_per_metre: float, rng: np.random.Generator) -> tuple[Picture, Picture]:
-    """Return how far small folds lean to the right, and how far they face up, each about -1 to 1."""
-    rows, columns = shape
-    cells = (max(2.0, rows / pixels_per_metre / 1.1), columns / pixels_per_metre / 1.6)
-    bumps = clouds(shape, rng, cells, octaves=4, gain=0.5)
-    across, down = (np.clip(0.6 * pixels_per_metre * np.gradient(bumps, axis=axis), -1, 1) for axis in (1, 0))
-    return across, down
 
 
 def _softened(row: Picture, width: float) -> Picture:

@@ -16,7 +16,7 @@ from game.drawing.tokens import INK, NIGHT0, NIGHT1, Colour
 from game.world.camera import View
 from game.world.landscape.sheet import WorldPicture
 
-_FACTOR: Final = 4
+_FINEST: Final = 256  # pixels per metre in which a pad is painted before it is scaled down, at most
 _BACK: Final = 0.20  # metres by which the deck's far edge appears above its near one
 _LAMP: Final = 0.20  # height of a lamp above the deck
 _MARGIN: Final = 0.6
@@ -48,14 +48,15 @@ def _paint(
     pixels_per_metre: float, width: float, height: float, colour: Colour
 ) -> tuple[WorldPicture, tuple[float, float]]:
     """Return the picture of a pad `height` metres high, and its corner relative to the middle of its top, in metres."""
-    scale = pixels_per_metre * _FACTOR
+    factor = max(2, min(4, int(_FINEST / pixels_per_metre)))
+    scale = pixels_per_metre * factor
     half = math.ceil((width / 2 + _MARGIN) * pixels_per_metre)
     above, below = math.ceil(_MARGIN * pixels_per_metre), math.ceil((height + 0.25) * pixels_per_metre)
-    sheet = pygame.Surface((2 * half * _FACTOR, (above + below) * _FACTOR), pygame.SRCALPHA)
+    sheet = pygame.Surface((2 * half * factor, (above + below) * factor), pygame.SRCALPHA)
     sheet.fill((*NIGHT1, 0))
 
     def place(x: float, y: float) -> tuple[float, float]:
-        return half * _FACTOR + x * scale, above * _FACTOR - y * scale
+        return half * factor + x * scale, above * factor - y * scale
 
     def quad(colour: Colour, *corners: tuple[float, float]) -> None:
         pygame.draw.polygon(sheet, colour, [place(x, y) for x, y in corners])

@@ -10,14 +10,16 @@ import numpy as np
 import pygame
 
 from ai.common.environment import Doubles, Ints
-from game.drawing.paint import Picture, bell, clouds, light, mix, opaque, ramp, shine
+from game.drawing.paint import PIECE, Picture, Sheet, bell, blocks, clouds, light, mix, ramp
+from game.drawing.paint_cache import Steps
 from game.drawing.sky import beside
 from game.drawing.tokens import DUSK, EMBER, NIGHT0, NIGHT1
+from game.world.landscape.themes import HORIZON, Theme
 
 # Where things stand, as shares of the page at the lower edge of the view, and across as shares of the view.
-HORIZON: Final = 0.80
 SUN: Final = (0.77, 0.835)
 _BAND: Final = (0.30, -0.42, 0.085)  # the Milky Way: height at the left edge, slope, half width
+_FINE: Final = 540  # lines in which gradients are computed; each of their pixels fills a square of the window's
 _GLOW: Final = (232, 142, 90)
 _CORE: Final = (255, 204, 138)
 
@@ -34,9 +36,12 @@ def _top(size: tuple[int, int]) -> float:
     return 1 - size[1] / page_of(size)[1]
 
 
-def paint_sky(size: tuple[int, int], rng: np.random.Generator) -> pygame.Surface:
-    """Return the part of the sky that never moves: night, glow and faint stars."""
-    width, height = -(-size[0] // 2), -(-size[1] // 2)  # too smooth to need every pixel
+def paint_sky(
+    size: tuple[int, int], rng: np.random.Generator, look: Theme, *, stars: bool = True
+) -> Steps[pygame.Surface]:
+    """Paint the part of the sky that never moves: night, glow and, unless it is rough, faint `stars`."""
+    times = max(2 if stars else 1, round(size[1] / _FINE))  # too smooth to need every pixel
+    width, height = -(-size[0] // times), -(-size[1] // times)
     warm = mix(DUSK, EMBER, 0.14)
     top = _top(size)
     night = [
@@ -46,31 +51,41 @@ def paint_sky(size: tuple[int, int], rng: np.random.Generator) -> pygame.Surface
         (0.73, mix(NIGHT1, DUSK, 0.8)),
     ]
     column = ramp(height, [((share - top) / (1 - top), c) for share, c in (*night, (HORIZON, warm), (1.0, warm))])
-    picture = np.repeat(column[:, None, :], width, axis=1)
-    shine(picture, _milky_way((width, height), top, rng), (150, 165, 215))
     x, y = SUN[0] * width, (SUN[1] - top) / (1 - top) * height
-    for colour, strength, across, up in (
-        (mix(DUSK, EMBER, 0.45), 0.34, 0.50, 0.28),
-        (_GLOW, 0.50, 0.25, 0.155),
-        (_CORE, 0.32, 0.12, 0.075),
-    ):
-        glow = np.outer(bell(height, y, up / (1 - top) * height), bell(width, x, across * width))
-        shine(picture, strength * glow, colour)
+    glows = [
+        (strength * bell(height, y, up / (1 - top) * height)[:, None], bell(width, x, across * width), colour)
+        for colour, strength, across, up in (
+            (mix(DUSK, EMBER, 0.45), 0.34, 0.50, 0.28),
+            (_GLOW, 0.50, 0.25, 0.155),
+            (_CORE, 0.32, 0.12, 0.075),
+        )
+    ]
+    dust = yield from clouds((height, width), rng, (5 * (1 - top), 9), octaves=4)
     places, light = _far_stars(size, rng)
-    sky = opaque(picture.repeat(2, 1).repeat(2, 0)[: size[1], : size[0]], rng)
-    pixels = pygame.surfarray.pixels3d(sky)
-    pixels[places] = np.clip(pixels[places] + light, 0, 255)
+    yield PIECE // 2
+    sheet = Sheet(size[::-1], rng, clear=False)
+    yield PIECE // 2
+    for rows in blocks((height, width), PIECE // times):
+        picture = [np.repeat(column[rows, k, None], width, axis=1) for k in range(3)]
+        milky = _milky_way(dust[rows], np.linspace(top, 1, height, dtype=np.float32)[rows, None])
+        lights = [(milky, (150, 165, 215)), *((up[rows] * across, colour) for up, across, colour in glows)]
+        for glow, colour in lights:
+            for number, hue in enumerate(colour):
+                picture[number] += np.float32(hue) * glow
+        sheet.put_larger(rows.start, look.on_sky(picture, np.linspace(0, 1 / HORIZON, height)[rows, None]), times)
+        yield picture[0].size * times
+    sky = sheet.done()
+    if stars:
+        pixels = pygame.surfarray.pixels3d(sky)
+        pixels[places] = np.clip(pixels[places] + light * look.sky, 0, 255)
     return sky
 
 
-def _milky_way(size: tuple[int, int], top: float, rng: np.random.Generator) -> Picture:
-    """Return a faint slanting band of unresolved light, (rows, columns) in 0 to about 0.1."""
-    width, height = size
-    rows = np.linspace(top, 1, height, dtype=np.float32)[:, None]
-    columns = np.linspace(0, 1, width, dtype=np.float32)[None, :]
+def _milky_way(dust: Picture, rows: Picture) -> Picture:
+    """Return a faint slanting band of unresolved light, 0 to about 0.1, in rows (k, 1) of the page."""
+    columns = np.linspace(0, 1, dust.shape[1], dtype=np.float32)[None, :]
     start, slope, half = _BAND
-    across = (rows - start - slope * (columns - 0.5)) / half
-    dust = clouds((height, width), rng, (5 * (1 - top), 9), octaves=4)
+    across = (rows - np.float32(start) - np.float32(slope) * (columns - np.float32(0.5))) / np.float32(half)
     band = np.exp(-((across + 0.7 * dust) ** 2)) * np.clip(0.55 + 0.8 * dust, 0, 1.2)
     lane = 1 - 0.6 * np.exp(-(((across + 0.1 + 1.1 * dust) / 0.28) ** 2))
     glow: Picture = 0.062 * band * lane * np.clip((HORIZON - rows) / 0.35, 0, 1)
@@ -117,7 +132,9 @@ class NearStars:
         self._rate = rng.uniform(0.5, 1.6, count)
         unit = height / 720
         kinds = np.round(size_of * 5).astype(int)
-        sprites = [[_star(kind, level / self.LEVELS, unit) for level in range(1, self.LEVELS + 1)] for kind in range(6)]
+        stars = [_star(kind, unit) for kind in range(6)]
+        sprites = [[light(star * np.float32(level / self.LEVELS)) for level in range(1, self.LEVELS + 1)]
+                   for star in stars]  # fmt: skip
         self._rows = [sprites[kind] for kind in kinds.tolist()]
         self._half = np.array([row[0].get_width() // 2 for row in self._rows])
 
@@ -138,13 +155,12 @@ class NearStars:
         surface.fblits([(sprites[star], corners[star]) for star in seen], pygame.BLEND_RGB_ADD)
 
 
-def _star(kind: int, brightness: float, unit: float) -> pygame.Surface:
+def _star(kind: int, unit: float) -> Picture:
     """Return a star of one of six sizes: a hot point, and round the larger ones a soft glow."""
     half = max(2, round((2 + 2.4 * kind) * unit))
     axis = np.arange(-half, half + 1, dtype=np.float32)
     distance = np.hypot(axis[:, None], axis[None, :])
     core = np.exp(-((distance / ((0.6 + 0.1 * kind) * max(unit, 1.0))) ** 2)) * (75 + 40 * kind)
     halo = np.clip(1 - distance / half, 0, 1) ** 2.4 * 10 * kind
-    picture = core[..., None] * np.array((1.0, 0.98, 0.95), np.float32)
-    picture = picture + halo[..., None] * np.array((0.66, 0.8, 1.1), np.float32)
-    return light(picture * brightness)
+    white: Picture = core[..., None] * np.array((1.0, 0.98, 0.95), np.float32)
+    return white + halo[..., None] * np.array((0.66, 0.8, 1.1), np.float32)

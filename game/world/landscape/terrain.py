@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Final
 
 import numpy as np
 import pygame
 
-from game.drawing.paint import Picture, bell, clouds, layer, mix, profile, shine
+from game.drawing.paint import PIECE, Picture, Sheet, bell, blocks, clouds, mix, profile, slopes
+from game.drawing.paint_cache import Steps
 from game.drawing.tokens import DUSK, NIGHT0, NIGHT1, VIEW_SIZE, Colour
 from game.world.camera import LAND_REACH, POINTS_PER_METRE, VIEW_BOTTOM, WORLD_WIDTH
 from game.world.landscape.sky import SUN, page_of
+from game.world.landscape.themes import Theme
 
 # The row at which the plain ends, as a share of the view's height.
 PLAIN_HORIZON: Final = 0.856
@@ -23,6 +25,7 @@ MARGIN: Final = 0.04
 WIDE_MARGIN: Final = (LAND_REACH + 5.0) / WORLD_WIDTH - 0.5  # and as far as a camera that eases outwards overshoots
 # Shares of the view's height that the plain goes on below it: where a camera rests, and where it goes far away.
 _FOOT, _WIDE_FOOT = 0.03, 0.085
+_FIELD: Final = 512  # side of the surface that the plain's texture is taken from
 _WARM: Final = np.array((255, 150, 96), np.float32)
 
 
@@ -48,31 +51,48 @@ RIDGES: Final = (
 )
 
 
-def paint_ridge(size: tuple[int, int], ridge: Ridge, rng: np.random.Generator) -> tuple[pygame.Surface, int]:
-    """Return a ridge as a layer wider than the view by its margins, and the row of its top edge."""
+def paint_ridge(
+    size: tuple[int, int], ridge: Ridge, rng: np.random.Generator, look: Theme, octaves: int = 5
+) -> Steps[tuple[pygame.Surface, int]]:
+    """Paint a ridge as a layer wider than the view by its margins; return it, and the row of its top edge.
+
+    Of the noise of its folds, a rough picture has the first `octaves`.
+    """
     view_width, height = size
     width = round(view_width * (1 + 2 * MARGIN))
     wave = profile(width, rng, ridge.humps * view_width / page_of(size)[0], octaves=7, gain=ridge.rough)
     valley = bell(width, (SUN[0] + MARGIN) * view_width, 0.24 * view_width)  # so that the dawn stays visible
     crest = height * (ridge.crest - ridge.relief * (wave * (1 - 0.6 * valley) + 0.25 - ridge.valley * valley))
     top, bottom = int(crest.min()) - 2, round(height * (PLAIN_HORIZON + 0.045))
-    below = np.arange(top, bottom, dtype=np.float32)[:, None] + 0.5 - crest
-    cover = np.clip(below + 0.5, 0, 1)
-    depth = np.clip(below, 0, None)
+    below = np.arange(top, bottom, dtype=np.float32)[:, None] + np.float32(0.5)
     sunward, near = _sunlight(width, view_width)
-    haze = np.clip((np.arange(top, bottom) - crest.mean()) / (bottom - crest.mean()), 0, 1).astype(np.float32)
-    shade = _relief(below + crest - _smooth(crest), height, rng) * sunward
-    slope = np.gradient(crest) * sunward
-    facing = np.clip(0.55 + 1.6 * slope, 0.08, 1.6)
-    unit = height / 720
-    rim = np.exp(-depth / (1.5 * unit)) * 0.75 + np.exp(-depth / (9 * unit)) * 0.25
-    tone = 1 + (0.26 - 0.17 * haze[:, None]) * shade
-    picture = np.zeros((*tone.shape, 3), np.float32)
-    shine(picture, tone, ridge.top)
-    shine(picture, tone * haze[:, None] ** 1.3, np.subtract(ridge.foot, ridge.top))
-    warmth = ridge.rim * rim * facing * (0.16 + 0.84 * near) + 0.10 * near * haze[:, None]
-    shine(picture, warmth + 0.07 * near * np.clip(shade, 0, 1), _WARM)
-    return layer(picture, cover, rng), top
+    haze = np.clip((np.arange(top, bottom) - crest.mean()) / (bottom - crest.mean()), 0, 1).astype(np.float32)[:, None]
+    shape, unit = (bottom - top, width), height / 720
+    # The same noise at any resolution: what is rough for a moment must not change its shape when it is whole.
+    cells = (bottom - float(crest.min())) / unit / 64, (1 + 2 * MARGIN) * view_width / unit / 78
+    _, lean = yield from slopes(shape, rng, cells, octaves, 0.46, max(1, round(unit)))
+    folds, smooth = np.empty(shape, np.float32), _smooth(crest)
+    for rows in blocks(shape):
+        folds[rows] = np.clip(lean.part(rows, slice(0, width)) * np.float32(20 * unit), -1, 1)
+        yield folds[rows].size // 4
+    facing = np.clip(0.55 + 1.6 * np.gradient(crest) * sunward, 0.08, 1.6)
+    rise = haze**1.3
+    sheet = Sheet(shape, rng)
+    yield PIECE // 2
+    for rows in blocks(shape):
+        depth = np.maximum(below[rows] - crest, 0)
+        shade = _folded(folds, below[rows] - smooth) * sunward
+        rim = np.exp(depth / np.float32(-1.5 * unit)) * 0.75 + np.exp(depth / np.float32(-9 * unit)) * 0.25
+        tone = 1 + (0.26 - 0.17 * haze[rows]) * shade
+        warmth = ridge.rim * rim * (facing * (0.16 + 0.84 * near)) + 0.10 * near * haze[rows]
+        warmth += 0.07 * near * np.maximum(shade, 0)
+        picture = [
+            tone * (np.float32(high) + np.float32(low - high) * rise[rows]) + warm * warmth
+            for high, low, warm in zip(ridge.top, ridge.foot, _WARM, strict=True)
+        ]
+        sheet.put(rows.start, 0, look.on_land(picture), np.clip(below[rows] + np.float32(0.5) - crest, 0, 1))
+        yield depth.size
+    return sheet.done(), top
 
 
 def _sunlight(width: int, view_width: int, margin: float = MARGIN) -> tuple[Picture, Picture]:
@@ -90,64 +110,79 @@ def _smooth(line: Picture) -> Picture:
     return np.convolve(padded, window / window.sum(), mode="same")[span // 2 : span // 2 + len(line)]
 
 
-def _relief(depth: Picture, height: int, rng: np.random.Generator) -> Picture:
-    """Return how far slopes lean to the right, about -1 to 1; their folds follow the crest."""
-    rows, columns = depth.shape
-    unit = height / 720
-    bumps = clouds((rows, columns), rng, (rows / unit / 64, columns / unit / 78), octaves=5, gain=0.46)
-    sheared = (np.arange(columns)[None, :] + np.clip(0.7 * depth, 0, None)) % (columns - 1)
-    lean = np.clip(np.gradient(bumps, axis=1) * (20 * unit), -1, 1)
-    folds: Picture = lean[np.clip(depth, 0, rows - 1).astype(np.intp), sheared.astype(np.intp)]
+def _folded(lean: Picture, depth: Picture) -> Picture:
+    """Return how far slopes lean to the right, about -1 to 1, at rows of a ridge; their folds follow the crest."""
+    rows, columns = lean.shape
+    across = np.arange(columns, dtype=np.int32) + np.maximum(np.float32(0.7) * depth, 0).astype(np.int32)
+    across -= np.where(across >= columns - 1, np.int32(columns - 1), np.int32(0))
+    folds: Picture = lean[np.clip(depth, 0, rows - 1).astype(np.intp), across]
     return folds
 
 
-def paint_plain(size: tuple[int, int], rng: np.random.Generator, margin: float = MARGIN) -> tuple[pygame.Surface, int]:
-    """Return the plain with its craters and stones, wider than the view by its margins, and the row of its top."""
+def paint_plain(
+    size: tuple[int, int], rng: np.random.Generator, look: Theme, margin: float = MARGIN, *, stones: bool = True
+) -> Steps[tuple[pygame.Surface, int, int]]:
+    """Paint the plain with its craters and, unless it is rough, `stones`, wider than the view by its margins.
+
+    Return it, the row of its top edge, and the row below which nothing behind it is seen.
+    """
     view_width, height = size
     width, page_width = round(view_width * (1 + 2 * margin)), page_of(size)[0]
-    edge = height * (PLAIN_HORIZON + 0.006 * profile(width, rng, 6.5 * width / page_width, octaves=6))
+    wide = (1 + 2 * margin) * view_width / page_width  # pages
+    edge = height * (PLAIN_HORIZON + 0.006 * profile(width, rng, 6.5 * wide, octaves=6))
     top = int(edge.min()) - 2
     bottom = height + round((_FOOT if margin == MARGIN else _WIDE_FOOT) * height)
-    rows = np.arange(top, bottom, dtype=np.float32)[:, None] + 0.5
-    near = np.clip((rows - height * PLAIN_HORIZON) / (height * (1 - PLAIN_HORIZON)), 0, 1.6)
+    down = np.arange(top, bottom, dtype=np.float32)[:, None] + np.float32(0.5)
+    near = np.clip((down - height * PLAIN_HORIZON) / (height * (1 - PLAIN_HORIZON)), 0, 1.6).astype(np.float32)
     sunward, glow = _sunlight(width, view_width, margin)
-    bumps = _plain_noise(near[:, 0], width, page_width, rng) * 0.5
-    for _ in range(round(48 * width / page_width)):
-        _sink_crater(bumps, near[:, 0], page_width, rng)
-    lean = np.diff(bumps, axis=1, append=bumps[:, -1:]) * (height / 720) * -1.0 * -sunward
+    # A rough picture goes without the finest noise, which comes last, and takes longest.
+    bumps = yield from _plain_noise(near[:, 0], width, page_width, rng, 5 if stones else 3)
+    for _ in range(round(48 * wide)):
+        yield _sink_crater(bumps, near[:, 0], page_width, rng)
     far, close = mix(NIGHT1, DUSK, 0.55), mix(NIGHT0, NIGHT1, 0.25)
-    lit = np.clip(lean, -1, 1)
-    tone = 1 + 0.62 * lit
-    picture = np.zeros((*tone.shape, 3), np.float32)
-    shine(picture, tone, far)
-    shine(picture, tone * np.clip(near * 1.15, 0, 1) ** 0.55, np.subtract(close, far))
-    sheen = glow * np.exp(-near / 0.30)
-    shine(picture, 0.20 * sheen * (1 + 0.9 * lit) + 0.055 * np.clip(lit, 0, 1) * (0.3 + glow), _WARM)
-    depth = rows - edge
-    rim = np.exp(-np.clip(depth, 0, None) / (1.3 * height / 720)) * (0.10 + 0.42 * glow)
-    shine(picture, rim, _WARM)
-    _scatter_stones(picture, near[:, 0], sunward, glow, page_width, rng)
-    return layer(picture, np.clip(depth + 0.5, 0, 1), rng), top
+    deep = np.clip(near * 1.15, 0, 1) ** 0.55
+    flare = 0.10 + 0.42 * glow
+    sheet = Sheet(bumps.shape, rng)
+    yield PIECE // 2
+    for rows in blocks(bumps.shape):
+        lit = np.diff(bumps[rows], axis=1, append=bumps[rows, -1:])
+        lit = np.clip(lit * (np.float32(height / 720) * sunward), -1, 1)
+        tone, sheen = 1 + np.float32(0.62) * lit, np.exp(-near[rows] / 0.30) * (0.20 * glow)
+        depth = np.maximum(down[rows] - edge, 0)
+        warmth = sheen * (1 + 0.9 * lit) + np.maximum(lit, 0) * (0.055 * (0.3 + glow))
+        warmth += np.exp(depth * np.float32(-720 / (1.3 * height))) * flare
+        picture = [
+            tone * (np.float32(first) + np.float32(last - first) * deep[rows]) + warm * warmth
+            for first, last, warm in zip(far, close, _WARM, strict=True)
+        ]
+        sheet.put(rows.start, 0, look.on_land(picture), np.clip(down[rows] - edge + np.float32(0.5), 0, 1))
+        yield depth.size
+    surface = sheet.done()
+    if stones:
+        yield from _scatter_stones(surface, near[:, 0], sunward, glow, page_width, rng, look)
+    return surface, top, math.ceil(edge.max()) + 1
 
 
-def _plain_noise(near: Picture, width: int, page_width: int, rng: np.random.Generator) -> Picture:
-    """Return the texture of a rolling surface seen at a low angle: fine far away, coarse in front."""
-    field = _hummocks(int(rng.integers(2**31)))
-    side = len(field)
-    scale = 0.16 + near
-    across = ((np.arange(width) - width / 2)[None, :] * (0.574 * 1280 / page_width / scale[:, None]) + side / 2) % side
-    down = (210 * np.log(scale) + 500) % side
-    seen: Picture = field[down.astype(np.intp)[:, None], across.astype(np.intp)]
-    return seen * (0.35 + 0.65 * near)[:, None]
+def _plain_noise(near: Picture, width: int, page_width: int, rng: np.random.Generator, octaves: int) -> Steps[Picture]:
+    """Paint the texture of a rolling surface seen at a low angle: fine far away, coarse in front."""
+    field = yield from clouds(
+        (_FIELD, _FIELD), np.random.default_rng(int(rng.integers(2**31))), (30, 30), octaves, 0.62
+    )
+    side = _FIELD
+    scale = np.float32(0.16) + near
+    columns = (np.arange(width, dtype=np.float32) - width / 2) * np.float32(0.574 * 1280 / page_width)
+    down = np.floor(210 * np.log(scale) + 500).astype(np.intp) % side
+    bumps = np.empty((len(near), width), np.float32)
+    for rows in blocks(bumps.shape):
+        across = np.floor(columns / scale[rows, None]).astype(np.int32)
+        across = (across + side // 2) & (side - 1)  # the field repeats; its side is a power of two
+        bumps[rows] = field[down[rows, None], across] * (1.1 * (0.35 + 0.65 * near[rows, None]))
+        yield across.size // 2
+    return bumps
 
 
-@lru_cache(maxsize=2)
-def _hummocks(seed: int) -> Picture:
-    """Return a rolling surface seen from above; cached, as the same plain is painted for near and far cameras."""
-    return clouds((512, 512), np.random.default_rng(seed), (30, 30), octaves=5, gain=0.62) * 2.2
-
-
-def _sink_crater(bumps: Picture, near: Picture, page_width: int, rng: np.random.Generator) -> None:
+def _sink_crater(bumps: Picture, near: Picture, page_width: int, rng: np.random.Generator) -> int:
+    """Sink a crater into the plain somewhere; return how many pixels that changes."""
     rows, columns = bumps.shape
     row = int(rng.random() ** 0.8 * rows)
     scale = 0.16 + near[row]
@@ -157,19 +192,28 @@ def _sink_crater(bumps: Picture, near: Picture, page_width: int, rng: np.random.
     left, right = max(0, int(x - 2 * radius)), min(columns, int(x + 2 * radius) + 1)
     above, below = max(0, int(row - 2 * radius * aspect)), min(rows, int(row + 2 * radius * aspect) + 1)
     if right - left < 3 or below - above < 2:
-        return
-    across = (np.arange(left, right) - x)[None, :] / radius
-    down = (np.arange(above, below) - row)[:, None] / (radius * aspect)
-    distance = np.hypot(across, down)
+        return 0
+    across = ((np.arange(left, right) - x)[None, :] / radius).astype(np.float32)
+    down = ((np.arange(above, below) - row)[:, None] / (radius * aspect)).astype(np.float32)
+    distance = np.sqrt(across * across + down * down)
     bowl = np.where(distance < 1, distance**2 - 1, 0) * 0.55 + 0.24 * np.exp(-(((distance - 1.02) / 0.24) ** 2))
     bumps[above:below, left:right] += (bowl * radius * 0.85).astype(np.float32)
+    return int(distance.size)
 
 
 def _scatter_stones(
-    picture: Picture, near: Picture, sunward: Picture, glow: Picture, page_width: int, rng: np.random.Generator
-) -> None:
-    rows, columns = picture.shape[:2]
+    surface: pygame.Surface,
+    near: Picture,
+    sunward: Picture,
+    glow: Picture,
+    page_width: int,
+    rng: np.random.Generator,
+    look: Theme,
+) -> Steps[None]:
+    """Paint stones and their shadows onto the plain."""
+    columns, rows = surface.get_size()
     unit = page_width / 1280
+    pixels = pygame.surfarray.pixels3d(surface).swapaxes(0, 1)
     for _ in range(round(139 * columns / page_width)):
         row, column = int(rng.uniform(0.10, 1) ** 0.9 * rows), int(rng.uniform(0, columns))
         radius = unit * (0.16 + near[min(row, rows - 1)]) * (1.0 + 3.6 * rng.random() ** 5)
@@ -179,10 +223,13 @@ def _scatter_stones(
         axis = np.arange(-half, half + 1, dtype=np.float32)
         x, y = axis[None, :] / radius, axis[:, None] / (radius * 0.72)
         side = float(np.sign(sunward[column]))
-        patch = picture[row - half : row + half + 1, column - half : column + half + 1]
-        shadow = np.exp(-(((x + side * 1.3) / 1.5) ** 2) - ((y - 0.75) / 0.42) ** 2)
-        patch *= (1 - 0.55 * shadow)[..., None]
-        inside = np.clip((1 - np.hypot(x, y)) * radius + 0.5, 0, 1)
+        patch = pixels[row - half : row + half + 1, column - half : column + half + 1]
+        shadow = np.exp(-(((x + side * 1.3) / 1.5) ** 2)) * np.exp(-(((y - 0.75) / 0.42) ** 2))
+        painted = patch * (1 - np.float32(0.55) * shadow)[..., None]
+        inside = np.clip((1 - np.sqrt(x * x + y * y)) * radius + 0.5, 0, 1)
         facing = np.clip(0.42 + 0.55 * x * side - 0.35 * y, 0.05, 1)
-        stone = facing[..., None] * (np.array((46, 46, 66), np.float32) + glow[column] * 0.42 * _WARM * 0.5)
-        patch += inside[..., None] * (stone - patch)
+        lit = np.array((46, 46, 66), np.float32) + glow[column] * 0.42 * _WARM * 0.5
+        stone = np.stack(look.on_land([facing * part for part in lit]), axis=-1)
+        painted += inside[..., None] * (stone - painted)
+        patch[:] = np.clip(painted + 0.5, 0, 255).astype(np.uint8)
+        yield 4 * shadow.size

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-import pygame
 
 from ai.lander.missions import MISSIONS
 from game.drawing.paint import Picture
 from game.drawing.tokens import NIGHT0, Colour
-from game.world.landscape.sky import HORIZON
 
 Light = tuple[float, float, float]  # red, green, blue
+HORIZON: Final = 0.80  # where the sky ends, as a share of the page's height
 
 
 @dataclass(frozen=True)
@@ -46,17 +46,20 @@ class Theme:
         )
         return red, green, blue
 
-    def on_sky(self, picture: pygame.Surface) -> pygame.Surface:
-        """Return a picture of the sky under this theme."""
-        rows = np.clip(np.arange(picture.get_height()) / (HORIZON * picture.get_height()), 0.0, 1.0)
-        depth = (self.thick + (1 - self.thick) * rows**1.5)[None, :, None]
-        return _in_light(picture, self.sky, depth.astype(np.float32) * np.array(self.air, np.float32))
+    def on_sky(self, colour: Sequence[Picture], down: Picture) -> list[Picture]:
+        """Return colours of the sky under this theme, `down` the way from its top, 0, to the horizon, 1."""
+        depth = self.thick + (1 - self.thick) * np.minimum(down, 1).astype(np.float32) ** np.float32(1.5)
+        return [
+            part * np.float32(gain) + np.float32(more) * depth
+            for part, gain, more in zip(colour, self.sky, self.air, strict=True)
+        ]
 
-    def on_land(self, picture: pygame.Surface) -> pygame.Surface:
-        """Return a layer of land under this theme, its transparency unchanged."""
-        lit = _in_light(picture, self.land, np.array(self.dust, np.float32))
-        lit.set_alpha(255, pygame.RLEACCEL)
-        return lit
+    def on_land(self, colour: Sequence[Picture]) -> list[Picture]:
+        """Return colours of land under this theme."""
+        return [
+            part * np.float32(gain) + np.float32(more)
+            for part, gain, more in zip(colour, self.land, self.dust, strict=True)
+        ]
 
 
 _DARK: Final = 0.1
@@ -82,10 +85,3 @@ def look_of(mission: str) -> str:
     """Return the theme's name for a mission; "moon" where it has none of its own."""
     found = MISSIONS.get(mission)
     return "moon" if found is None else "night" if found.night else found.world
-
-
-def _in_light(picture: pygame.Surface, gain: Light, more: Picture) -> pygame.Surface:
-    lit = picture.copy()
-    pixels = pygame.surfarray.pixels3d(lit)
-    pixels[:] = np.clip(pixels * np.array(gain, np.float32) + more, 0, 255).astype(np.uint8)
-    return lit
