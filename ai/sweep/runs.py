@@ -62,7 +62,8 @@ class AgentRun:
             score = training.advance().evaluation
         training.seconds += time.monotonic() - began
         if score is None:
-            score = training.task.evaluate(training.agent, training.task.validation_episodes, VALIDATION_SEED)
+            assert training.validation_episodes is not None
+            score = training.task.evaluate(training.agent, training.validation_episodes, VALIDATION_SEED)
         return Point(training.agent.decisions, score.success, score.mean_return)
 
     def save(self, folder: Path) -> dict[str, Any]:
@@ -138,7 +139,9 @@ def read_config(kind: str, settings: dict[str, Any]) -> Knobs:
     return (DigitConfig if kind == DIGITS else Config).from_json(settings)
 
 
-def begin(kind: str, settings: dict[str, Any], seed: int, parent: Path | None = None) -> SeedRun:
+def begin(
+    kind: str, settings: dict[str, Any], seed: int, parent: Path | None = None, validation: int | None = None
+) -> SeedRun:
     """Begin a run of a kind; or go on, with other live knobs, from what a finished run kept in `parent`.
 
     That is what `train` does, with `--resume` in the second case. Raises ValueError for settings that make no sense.
@@ -150,8 +153,10 @@ def begin(kind: str, settings: dict[str, Any], seed: int, parent: Path | None = 
         return DigitRun(training)
     assert isinstance(config, Config)
     if parent is None:
-        return AgentRun(Training(config, seed))
+        return AgentRun(Training(config, seed, validation_episodes=validation))
     resumed = resume_run(parent)
+    if validation is not None:
+        resumed.validation_episodes = validation
     resumed.apply_live(config)
     return AgentRun(resumed)
 
