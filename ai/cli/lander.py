@@ -81,7 +81,7 @@ def _train(arguments: argparse.Namespace) -> int:
         return training
 
     return train(arguments, RunCommand(
-        KIND, partial(_config, arguments), begin, resume, partial(_used_up, clock), partial(_advance, clock), save_run,
+        KIND, partial(config_of, arguments), begin, resume, partial(_used_up, clock), partial(_advance, clock), save_run,
         lambda training, _: str(training.best),
     ))  # fmt: skip
 
@@ -155,7 +155,7 @@ def _shown(name: str, value: float | None) -> str:
     return str(value) if isinstance(value, int) else f"{value:.2f}"
 
 
-def _config(arguments: argparse.Namespace, begun: Config | None = None) -> Config:
+def config_of(arguments: argparse.Namespace, begun: Config | None = None) -> Config:
     """Return the preset, or the settings a run was begun with, with the changes asked for.
 
     Raises ValueError for a change that makes no sense.

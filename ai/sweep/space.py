@@ -45,7 +45,7 @@ class Dimension:
         """Return where a value lies in the range, from 0 to 1; of a choice, its number over that of the last."""
         if self.choices:
             return self.choices.index(value) / max(1, len(self.choices) - 1)
-        low, high, at = (map(math.log, (self.low, self.high, value)) if self.log else (self.low, self.high, value))
+        low, high, at = map(math.log, (self.low, self.high, value)) if self.log else (self.low, self.high, value)
         return (at - low) / (high - low) if high > low else 0.0
 
     def at(self, place: float) -> Any:
@@ -78,7 +78,9 @@ def knob_dimension(config: Knobs, name: str, asked: Any = None) -> Dimension:
     asked = {"choices": asked} if isinstance(asked, list) else asked or {}
     if not isinstance(asked, Mapping) or set(asked) - {"low", "high", "log", "choices", "whole"}:
         raise ValueError(f"{name}: a range is low, high and log, or a list of choices, not {shown(asked)}")
-    choices = asked.get("choices", described["choices"] or described["offers"] or ((False, True) if kind == "bool" else ()))
+    choices = asked.get(
+        "choices", described["choices"] or described["offers"] or ((False, True) if kind == "bool" else ())
+    )
     if "low" in asked or "high" in asked:
         choices = asked.get("choices", ())
     if choices:

@@ -225,7 +225,11 @@ class Study:
         """Return the best trial; of a population, of its last generation that is whole. None before there is one."""
         ranked = self.ranked()
         if self.plan.population:
-            whole = [number for number in range(self.plan.generations) if len(self.generation(number)) == self.plan.population]
+            whole = [
+                number
+                for number in range(self.plan.generations)
+                if len(self.generation(number)) == self.plan.population
+            ]
             last = whole[-1] if whole else 0
             ranked = [trial for trial in ranked if self.plan.generation(trial.number) == last]
         return ranked[0] if ranked else None

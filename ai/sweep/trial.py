@@ -78,7 +78,9 @@ class Trial:
                 if parents:
                     unpack(parents, Path(folder))
                 self._runs: list[SeedRun] = [
-                    begin(plan.kind, settings, seed, Path(folder, seed_folder(seed)) if parents else None, plan.validation)
+                    begin(
+                        plan.kind, settings, seed, Path(folder, seed_folder(seed)) if parents else None, plan.validation
+                    )
                     for seed in plan.seeds
                 ]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Final
 
-import platformdirs
+from ai.common import places
 
 _ROOT: Final = Path(__file__).resolve().parents[2]
 ASSETS_DIR: Final = _ROOT / "assets"
@@ -14,4 +14,4 @@ MODELS_DIR: Final = _ROOT / "models"
 
 def user_dir() -> Path:
     """Return the player's own folder for settings, scores, networks and screenshots."""
-    return Path(platformdirs.user_data_dir("tranquility", appauthor=False))
+    return places.user_dir()

@@ -1,0 +1,359 @@
+"""Trials of a study on Ray Tune: Optuna's search, ASHA, populations, and workers that may die.
+
+Comes with the extra `sweep`. Tune decides what runs where and starts again what was lost. What a study is, lies in its
+folder alone: nothing is read back from Tune's own files, which are thrown away. docs/adr/0015 says why.
+"""
+
+from __future__ import annotations
+
+import json
+import logging
+import math
+import os
+import tempfile
+import warnings
+from collections.abc import Sequence
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, Final
+
+import optuna
+import ray
+from ray import tune
+from ray.tune.schedulers import ASHAScheduler, FIFOScheduler, TrialScheduler
+from ray.tune.search import Searcher
+from ray.tune.search.optuna import OptunaSearch
+
+from ai.nn.schema import read_as
+from ai.sweep.metric import Metric
+from ai.sweep.plan import POPULATION, RANDOM, Plan
+from ai.sweep.population import proposed
+from ai.sweep.results import FinishedTrial
+from ai.sweep.space import Dimension
+from ai.sweep.study import Study
+from ai.sweep.table import Table
+from ai.sweep.trial import Asked, Trial, fingerprint
+
+TRIES: Final = 4  # of a trial whose worker dies; after that it waits for --resume
+REDUCTION: Final = 3  # ASHA: one trial in three goes on at each rung
+_VALUE, _AT = "value", "at"
+
+
+class OtherCodeError(RuntimeError):
+    """A node of the cluster has other code than the process that runs the study."""
+
+
+class SweepTrial(tune.Trainable):
+    """Trial as Tune runs it: a step trains all seeds up to the next mark. A worker takes one trial after another."""
+
+    def setup(self, config: dict[str, Any]) -> None:
+        """Begin the trial that `config` asks for, or go on with what a killed worker has left of it."""
+        if config["code"] != fingerprint():
+            raise OtherCodeError("this node has another version of Tranquility than the one that runs the study")
+        asked = json.loads(config["asked"])
+        parent = FinishedTrial.from_json(asked["parent"]) if asked["parent"] else None
+        self._asked = Asked(asked["number"], asked["params"], parent)
+        self._trial: Trial | None = None
+        self._problem = ""
+        try:
+            plan = read_as(Plan, json.loads(config["plan"]))
+            parents = ray.get(config["runs"]) if config["runs"] else b""
+            scratch = Path(config["scratch"]) / f"{asked['number']}.pickle" if config["scratch"] else None
+            self._trial = Trial(plan, self._asked, parents, scratch)
+        except ValueError as error:  # settings that make no sense together
+            self._problem = str(error)
+
+    def reset_config(self, new_config: dict[str, Any]) -> bool:
+        """Begin another trial in the same process."""
+        self.setup(new_config)
+        return True
+
+    def step(self) -> dict[str, Any]:
+        """Train up to the next mark; at the end, save the runs and give them over."""
+        if self._trial is None:
+            nothing = FinishedTrial(
+                self._asked.number, self._asked.params, None, 0, False, 0.0, (), None, self._problem
+            )
+            return _report(nothing, finished=True)
+        if not self._trial.done:
+            self._trial.step()
+        if not self._trial.done:
+            return _report(self._trial.result())
+        result, runs = self._trial.finish()
+        return _report(result, finished=True, runs=runs)
+
+    def save_checkpoint(self, checkpoint_dir: str) -> None:
+        """Save nothing: trials are never paused, and keep their own scratch files."""
+
+    def load_checkpoint(self, checkpoint: Any) -> None:
+        """Load nothing."""
+
+
+def _report(result: FinishedTrial, finished: bool = False, runs: bytes = b"") -> dict[str, Any]:
+    value = math.nan if result.value is None else result.value
+    told = json.dumps(result.to_json())
+    return {_VALUE: value, _AT: result.at, "told": told, "runs": runs, "finished": finished, "done": finished}
+
+
+class StudySearch(OptunaSearch):
+    """Optuna's search that knows the trials a study has: finished ones as evidence, interrupted ones to do first."""
+
+    def __init__(self, study: Study, shared: dict[str, Any]) -> None:
+        self._study, self._shared, self._space_of = study, shared, study.plan.dimensions()
+        self._left = sorted(study.begun)
+        self._next = study.next_number
+        # Another seed each time, or a study that goes on would propose once more what it began with.
+        seed = study.plan.seed * 1_000_003 + self._next & 0x7FFFFFFF
+        with warnings.catch_warnings(action="ignore", category=optuna.exceptions.ExperimentalWarning):
+            sampler = (
+                optuna.samplers.RandomSampler(seed=seed)
+                if study.plan.search == RANDOM
+                else optuna.samplers.TPESampler(seed=seed, constant_liar=True)
+            )
+        super().__init__(
+            space={name: _distribution(dimension) for name, dimension in self._space_of.items()},
+            metric=_VALUE,
+            mode=study.metric.mode,
+            points_to_evaluate=[self._encoded(study.begun[number].params) for number in self._left],
+            sampler=sampler,
+        )
+        for trial in study.trials.values():
+            self.add_evaluated_point(self._encoded(trial.params), trial.value or 0.0, error=trial.value is None)
+
+    def suggest(self, trial_id: str) -> dict[str, Any] | None:
+        """Return what a new trial is asked to do."""
+        given = super().suggest(trial_id)
+        if not isinstance(given, dict):
+            return given
+        params = {name: _decoded(self._space_of[name], value) for name, value in given.items()}
+        if self._left:
+            number = self._left.pop(0)
+        else:
+            number, self._next = self._next, self._next + 1
+        self._study.begin(number, params)
+        return _config(Asked(number, params), self._shared)
+
+    def on_trial_result(self, trial_id: str, result: dict[str, Any]) -> None:
+        """Pass over what is measured on the way; only the end counts as evidence."""
+
+    def on_trial_complete(self, trial_id: str, result: dict[str, Any] | None = None, error: bool = False) -> None:
+        """Learn from a trial that is over."""
+        known = result is not None and not math.isnan(result.get(_VALUE, math.nan))
+        super().on_trial_complete(trial_id, result if known else None, error=error or not known)
+
+    def save(self, checkpoint_path: str) -> None:
+        """Save nothing: the study's folder has it all."""
+        Path(checkpoint_path).touch()
+
+    def _encoded(self, params: dict[str, Any]) -> dict[str, Any]:
+        return {name: _plain(self._space_of[name], value) for name, value in params.items()}
+
+
+class PopulationSearch(Searcher):
+    """Members of a population, generation by generation."""
+
+    def __init__(self, study: Study, shared: dict[str, Any]) -> None:
+        super().__init__(metric=_VALUE, mode=study.metric.mode)
+        self._study, self._shared = study, shared
+        self._left = [number for number in range(study.plan.trials) if number not in study.trials]
+        self._lost = False
+        self._parents: dict[int, Any] = {}
+
+    def suggest(self, trial_id: str) -> dict[str, Any] | str | None:
+        """Return what the next member is asked to do; None while the generation before it is not whole."""
+        if not self._left or self._lost:
+            return Searcher.FINISHED
+        asked = proposed(self._study, self._left[0])
+        if asked is None:
+            return None
+        self._left.pop(0)
+        self._study.begin(asked.number, asked.params, asked.parent.number if asked.parent else None)
+        runs = self._runs(asked.parent.number) if asked.parent else None
+        return _config(asked, self._shared, runs)
+
+    def _runs(self, number: int) -> Any:
+        """Return a reference to the runs of a finished trial, which is put into Ray's store once."""
+        if number not in self._parents:
+            self._parents[number] = ray.put(self._study.runs_of(number))
+        return self._parents[number]
+
+    def on_trial_complete(self, trial_id: str, result: dict[str, Any] | None = None, error: bool = False) -> None:
+        """Note a member that is lost: the next generation cannot begin without it."""
+        self._lost = self._lost or error
+
+    def save(self, checkpoint_path: str) -> None:
+        """Save nothing: the study's folder has it all."""
+        Path(checkpoint_path).touch()
+
+    def restore(self, checkpoint_path: str) -> None:
+        """Restore nothing."""
+
+
+class Recorder(tune.Callback):
+    """Keeps every trial in the study as soon as it is over, and tells the table.
+
+    What cannot be written now, as the disk is full, waits in memory and is tried again.
+    """
+
+    def __init__(self, study: Study, table: Table, stop: Sequence[int]) -> None:
+        self._study, self._table, self._stop = study, table, stop
+        self._waiting: list[tuple[FinishedTrial, bytes]] = []
+        self.lost: list[int] = []  # trials whose workers died too often
+        self.trouble = ""
+
+    def on_trial_start(self, iteration: int, trials: list[Any], trial: Any, **info: Any) -> None:
+        """Show a trial that runs."""
+        asked = json.loads(trial.config["asked"])
+        self._table.begin(asked["number"], asked["params"])
+
+    def on_trial_result(
+        self, iteration: int, trials: list[Any], trial: Any, result: dict[str, Any], **info: Any
+    ) -> None:
+        """Keep a trial that is over: at its end, or because the scheduler has stopped it."""
+        told = FinishedTrial.from_json(json.loads(result.pop("told")))
+        runs = result.pop("runs")  # not to be kept in memory by Tune
+        if result["finished"] or (result.get("done") and not self._stop):
+            self._waiting.append((told, runs))
+            self.write()
+            self._table.finish(told)
+        else:
+            self._table.progress(told)
+
+    def on_trial_error(self, iteration: int, trials: list[Any], trial: Any, **info: Any) -> None:
+        """Note a trial that was tried too often."""
+        self.lost.append(json.loads(trial.config["asked"])["number"])
+        self._table.drop(self.lost[-1])
+
+    def on_step_end(self, iteration: int, trials: list[Any], **info: Any) -> None:
+        """Try again what could not be written, and draw."""
+        if self.trouble:
+            self.write()
+        self._table.draw()
+
+    def write(self) -> None:
+        """Write what waits to be kept."""
+        while self._waiting:
+            try:
+                self._study.record(*self._waiting[0])
+            except OSError as error:
+                self.trouble = f"could not write to {self._study.folder}: {error.strerror or error}"
+                self._table.say(f"{self.trouble}; the trial is kept in memory and tried again")
+                return
+            self._waiting.pop(0)
+        self.trouble = ""
+
+    def get_state(self) -> None:
+        """Give Tune nothing to keep."""
+
+
+class _Stopper(tune.Stopper):
+    """Ends all trials when the user says stop."""
+
+    def __init__(self, stop: Sequence[int]) -> None:
+        self._stop = stop
+
+    def __call__(self, trial_id: str, result: dict[str, Any]) -> bool:
+        return False
+
+    def stop_all(self) -> bool:
+        return bool(self._stop)
+
+    def __deepcopy__(self, memo: Any) -> _Stopper:
+        return self  # a copy would never hear of it
+
+
+def run_trials(study: Study, table: Table, stop: Sequence[int], scratch: Path | None) -> Recorder:
+    """Run the trials that a study has left, on the Ray that was joined; return what became of them.
+
+    `scratch` is a folder of this user's alone, in which workers keep unfinished work; it may be missing on a node.
+    """
+    optuna.logging.set_verbosity(optuna.logging.ERROR)
+    logging.getLogger("ray").setLevel(logging.CRITICAL)
+    warnings.filterwarnings("ignore", module=r"ray\..*")
+    plan = study.plan
+    recorder = Recorder(study, table, stop)
+    shared = {
+        "plan": json.dumps(plan.to_json()),
+        "code": fingerprint(),
+        "scratch": str(scratch / study.id) if scratch else "",
+    }
+    search: Searcher = PopulationSearch(study, shared) if plan.search == POPULATION else StudySearch(study, shared)
+    with tempfile.TemporaryDirectory(prefix="tranquility-sweep-") as temporary:
+        tuner = tune.Tuner(
+            SweepTrial,
+            tune_config=tune.TuneConfig(
+                search_alg=search,
+                scheduler=_scheduler(study),
+                num_samples=plan.trials - len(study.trials),
+                reuse_actors=True,
+            ),
+            run_config=tune.RunConfig(
+                storage_path=temporary,
+                name="study",
+                verbose=0,
+                stop=_Stopper(stop),
+                callbacks=[recorder],
+                failure_config=tune.FailureConfig(max_failures=TRIES - 1),
+            ),
+        )
+        tuner.fit()
+    recorder.write()
+    return recorder
+
+
+def _scheduler(study: Study) -> TrialScheduler:
+    """Return what may end trials early. ASHA is told the curves that the study has already."""
+    plan = study.plan
+    if not plan.stop_early:
+        return FIFOScheduler()
+    scheduler = ASHAScheduler(
+        time_attr=_AT,
+        metric=_VALUE,
+        mode=study.metric.mode,
+        max_t=plan.budget,
+        grace_period=min(plan.every, plan.budget),
+        reduction_factor=REDUCTION,
+        stop_last_trials=False,
+    )
+    for trial in study.trials.values():
+        earlier: Any = SimpleNamespace(trial_id=f"earlier-{trial.number}")
+        scheduler.on_trial_add(None, earlier)
+        for at, value in progress_of(trial, plan):
+            scheduler.on_trial_result(None, earlier, {_AT: at, _VALUE: value})
+    return scheduler
+
+
+def progress_of(trial: FinishedTrial, plan: Plan) -> list[tuple[int, float]]:
+    """Return the marks at which a trial was measured, and its value at each."""
+    metric, told = Metric.named(plan.metric), []
+    for index in range(max((len(seed.curve) for seed in trial.seeds), default=0)):
+        values = [metric.of(seed.curve[: index + 1], plan.budget) for seed in trial.seeds]
+        if (value := metric.judged(values, plan.judge)) is not None:
+            told.append((min(plan.budget, (index + 1) * plan.every), value))
+    return told
+
+
+def _config(asked: Asked, shared: dict[str, Any], runs: Any = None) -> dict[str, Any]:
+    """Return what Tune hands to a worker; as text, which Tune does not look into."""
+    parent = asked.parent.to_json() if asked.parent else None
+    told = {"number": asked.number, "params": asked.params, "parent": parent}
+    return {**shared, "asked": json.dumps(told), "runs": runs}
+
+
+def _distribution(dimension: Dimension) -> optuna.distributions.BaseDistribution:
+    if dimension.choices:
+        return optuna.distributions.CategoricalDistribution([json.dumps(value) for value in dimension.choices])
+    if dimension.whole:
+        return optuna.distributions.IntDistribution(int(dimension.low), int(dimension.high), log=dimension.log)
+    return optuna.distributions.FloatDistribution(dimension.low, dimension.high, log=dimension.log)
+
+
+def _plain(dimension: Dimension, value: Any) -> Any:
+    return json.dumps(value) if dimension.choices else value
+
+
+def _decoded(dimension: Dimension, value: Any) -> Any:
+    return json.loads(value) if dimension.choices else value
+
+
+assert os.environ.get("RAY_USAGE_STATS_ENABLED") == "0", "ai.sweep.cluster comes first: it keeps Ray from reporting"
