@@ -81,8 +81,8 @@ def _train(arguments: argparse.Namespace) -> int:
         return training
 
     return train(arguments, RunCommand(
-        KIND, partial(config_of, arguments), begin, resume, partial(_used_up, clock), partial(_advance, clock), save_run,
-        lambda training, _: str(training.best),
+        KIND, partial(config_of, arguments), begin, resume, partial(_used_up, clock), partial(_advance, clock),
+        save_run, lambda training, _: str(training.best),
     ))  # fmt: skip
 
 

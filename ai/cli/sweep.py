@@ -34,8 +34,8 @@ def add_commands(commands: Any) -> None:
     sweep.add_argument("--resume", action="store_true", help="go on with a study; --trials may ask for more")
     sweep.add_argument("--trials", type=int, metavar="N", help=f"trials in all (default: {_TRIALS})")
     sweep.add_argument("--seeds", type=int, metavar="N", help=f"runs of each trial, seeds 0 to N-1 (default: {_RUNS})")
-    sweep.add_argument("--metric", metavar="NAME", help="what trials are compared by: time_to_99 or any percentage, in"
-                       " decisions; success, return, mean; accuracy (default: time_to_99, return, accuracy)")  # fmt: skip
+    sweep.add_argument("--metric", metavar="NAME", help="what trials are compared by: time_to_99 or any percentage,"
+                       " in decisions; success, return, mean, accuracy (default: time_to_99, return, accuracy)")  # fmt: skip
     sweep.add_argument("--judge", choices=("median", "worst"), help="how a trial's seeds are judged (default: median)")
     sweep.add_argument("--knobs", metavar="NAMES", help="knobs or groups to search by their own ranges, with commas"
                        " between (default: learning, the whole group)")  # fmt: skip
@@ -70,7 +70,6 @@ def add_where(command: argparse.ArgumentParser) -> None:
 
 
 def _sweep(arguments: argparse.Namespace) -> int:
-    from ai.common.places import scratch_dir
     from ai.sweep.cluster import MISSING, installed, joined
     from ai.sweep.study import Study
 
@@ -90,7 +89,7 @@ def _sweep(arguments: argparse.Namespace) -> int:
                     from ai.sweep.tuning import run_trials
 
                     table = Table(study, workers)
-                    recorder = run_trials(study, table, stop, scratch_dir() / "sweeps")
+                    recorder = run_trials(study, table, stop)
                     table.clear()
                 if recorder.trouble:
                     return fail(f"{recorder.trouble}; {_again(arguments, study)}")

@@ -1,4 +1,4 @@
-"""Places on disk that commands and the game share."""
+"""Place on disk that commands and the game share."""
 
 from __future__ import annotations
 
@@ -10,10 +10,3 @@ def user_dir() -> Path:
     import platformdirs
 
     return Path(platformdirs.user_data_dir("tranquility", appauthor=False))
-
-
-def scratch_dir() -> Path:
-    """Return a folder of this user's alone for work that may be thrown away."""
-    import platformdirs
-
-    return Path(platformdirs.user_cache_dir("tranquility", appauthor=False))

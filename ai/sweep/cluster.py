@@ -25,10 +25,9 @@ _QUIET: Final = {
     "TUNE_DISABLE_SIGINT_HANDLER": "1",  # Ctrl-C is ours too
     "TUNE_GLOBAL_CHECKPOINT_S": "1000000",  # and so is what a killed driver goes on from
     "TUNE_WARN_THRESHOLD_S": "60",
-    "TUNE_MAX_PENDING_TRIALS_PG": "1",
 }
-# Ray binds its ports to the loopback interface alone only if it takes itself to be on a system without clusters;
-# `_node_ip_address="127.0.0.1"` by itself is replaced by the machine's address on the network.
+# Ray binds its ports to the loopback interface alone only if it takes itself to be on a system without clusters; by
+# itself, "127.0.0.1" is replaced by the machine's address on the network, and the ports are open to all.
 _LOCAL: Final = {"RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER": "0"}
 
 Item = TypeVar("Item")
@@ -60,7 +59,7 @@ def joined(address: str | None = None, workers: int | None = None) -> Iterator[i
     """
     if not installed():
         raise ImportError(MISSING)
-    if address is None and "ray" not in sys.modules:
+    if "ray" not in sys.modules and (address is None or _is_local(address)):
         os.environ.update(_LOCAL)  # read when Ray is imported
     os.environ.update(_QUIET)
     import ray
@@ -70,14 +69,22 @@ def joined(address: str | None = None, workers: int | None = None) -> Iterator[i
         ray.init(address=address, runtime_env={"env_vars": worker_environment()}, **quiet)
     else:
         with _environment(worker_environment()):
-            ray.init(num_cpus=workers or cores(), include_dashboard=False, _node_ip_address=LOOPBACK,
+            ray.init(address="local", num_cpus=workers or cores(), include_dashboard=False, _node_ip_address=LOOPBACK,
                      object_store_memory=_STORE, **quiet)  # fmt: skip
     try:
         if address is None and (opened := _opened()):
             raise ConnectionError(f"Ray would listen on {opened}, and not on this machine alone; nothing was started")
-        yield int(ray.cluster_resources().get("CPU", 1))
+        count = int(ray.cluster_resources().get("CPU", 1))
+        # Trials that wait for a worker: one is enough for a search that learns, but fills a large cluster slowly.
+        os.environ["TUNE_MAX_PENDING_TRIALS_PG"] = str(max(1, count // 8))
+        yield count
     finally:
         ray.shutdown()
+
+
+def _is_local(address: str) -> bool:
+    """Whether an address leads to this machine by its loopback interface."""
+    return address.removeprefix("ray://").startswith(("127.", "localhost", "[::1]"))
 
 
 def _opened() -> str:

@@ -43,10 +43,9 @@ def report(study: Study) -> dict[str, Any]:
 def told(study: Study) -> str:
     """Return what a study tells as a table of text."""
     plan, best = study.plan, study.best()
-    lines = [
-        f"{study.folder.name}: {len(study.trials)} of {plan.trials} trials, {len(plan.seeds)} seeds each, compared by"
-        f" {plan.metric}, {plan.judge} of the seeds ({'less' if study.metric.mode == 'min' else 'more'} is better)"
-    ]
+    better = "less" if study.metric.mode == "min" else "more"
+    trials = f"{study.folder.name}: {len(study.trials)} of {plan.trials} trials, {len(plan.seeds)} seeds each"
+    lines = [f"{trials}, compared by {plan.metric}, {plan.judge} of the seeds ({better} is better)"]
     if study.damaged:
         lines.append(f"of {len(study.damaged)} more, the files cannot be read: {', '.join(map(str, study.damaged))}")
     ranked = study.ranked()

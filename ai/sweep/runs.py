@@ -6,8 +6,6 @@ network in a sweep as alone, bit for bit.
 
 from __future__ import annotations
 
-import copy
-import pickle
 import time
 from pathlib import Path
 from typing import Any, Final, Protocol
@@ -23,7 +21,6 @@ from ai.training.loop import VALIDATION_SEED, Training
 
 AGENT: Final = "agent"  # kinds of run
 DIGITS: Final = "digits"
-_IMAGES: Final = ("data", "images", "labels", "held_images", "held_labels")  # of a digit run; the same in every one
 
 
 class SeedRun(Protocol):
@@ -39,9 +36,6 @@ class SeedRun(Protocol):
 
     def salvage(self, folder: Path) -> None:
         """Save what was best of a run that has diverged."""
-
-    def freeze(self) -> bytes:
-        """Return all that it takes to go on with the run as if it had never been interrupted."""
 
 
 class AgentRun:
@@ -77,15 +71,6 @@ class AgentRun:
         self.training.restore_best()
         save_run(self.training, folder)
 
-    def freeze(self) -> bytes:
-        """Return the run, with its memories and its random generators."""
-        return pickle.dumps(self.training)
-
-    @classmethod
-    def thaw(cls, frozen: bytes) -> AgentRun:
-        """Return a run that was frozen by the same code."""
-        return cls(pickle.loads(frozen))
-
 
 class DigitRun:
     """Run of a digit network; its moments are epochs."""
@@ -118,21 +103,6 @@ class DigitRun:
         self.training.restore_best()
         save_digit_run(self.training, folder)
 
-    def freeze(self) -> bytes:
-        """Return the run without the images, which every run has."""
-        bare = copy.copy(self.training)
-        for name in _IMAGES:
-            delattr(bare, name)
-        return pickle.dumps(bare)
-
-    @classmethod
-    def thaw(cls, frozen: bytes) -> DigitRun:
-        """Return a run that was frozen by the same code."""
-        bare = pickle.loads(frozen)
-        training = DigitTraining(bare.config, bare.seed)
-        training.__dict__.update(bare.__dict__)
-        return cls(training)
-
 
 def read_config(kind: str, settings: dict[str, Any]) -> Knobs:
     """Return the settings of a run from JSON; raises ValueError for what makes no sense."""
@@ -159,8 +129,3 @@ def begin(
         resumed.validation_episodes = validation
     resumed.apply_live(config)
     return AgentRun(resumed)
-
-
-def thaw(kind: str, frozen: bytes) -> SeedRun:
-    """Return a run that `freeze` gave. Only for bytes of this user's own: unpickling runs code."""
-    return DigitRun.thaw(frozen) if kind == DIGITS else AgentRun.thaw(frozen)

@@ -53,10 +53,8 @@ class Dimension:
         place = min(1.0, max(0.0, place))
         if self.choices:
             return self.choices[round(place * (len(self.choices) - 1))]
-        if self.log:
-            value = self.low * (self.high / self.low) ** place
-        else:
-            value = self.low + (self.high - self.low) * place
+        reach = self.high - self.low
+        value = self.low * (self.high / self.low) ** place if self.log else self.low + reach * place
         value = min(self.high, max(self.low, value))
         return round(value) if self.whole else value
 

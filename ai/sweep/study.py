@@ -115,7 +115,7 @@ class Study:
             try:
                 trial = FinishedTrial.from_json(read_json(path / TRIAL_FILE, _MOST))
                 if trial.number != number or set(trial.params) != set(self.plan.space):
-                    raise ValueError("of another trial or another study")  # noqa: TRY301
+                    raise ValueError("of another trial or another study")
                 for name, dimension in self.plan.dimensions().items():
                     dimension.place(trial.params[name])
             except (OSError, ValueError, TypeError, RecursionError):

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import io
-import pickle
-import secrets
 import tempfile
 import time
 import zipfile
@@ -21,9 +19,8 @@ import numpy as np
 from ai.sweep.metric import Metric, Point
 from ai.sweep.plan import Plan
 from ai.sweep.results import FinishedTrial, SeedResult
-from ai.sweep.runs import SeedRun, begin, thaw
+from ai.sweep.runs import SeedRun, begin
 
-SCRATCH_SECONDS: Final = 60.0  # how much work a killed worker may lose
 _ROOT: Final = Path(__file__).parents[2]
 
 
@@ -59,30 +56,26 @@ class Trial:
         plan: of the study.
         asked: of this trial.
         parents: archive of the parent's runs, as `archive` gave it; empty without a parent.
-        scratch: file to keep the work in now and then, so that another process can go on with it exactly.
 
     Raises ValueError for settings that make no sense.
 
     """
 
-    def __init__(self, plan: Plan, asked: Asked, parents: bytes = b"", scratch: Path | None = None) -> None:
-        self.plan, self.asked, self._scratch = plan, asked, scratch
+    def __init__(self, plan: Plan, asked: Asked, parents: bytes = b"") -> None:
+        self.plan, self.asked = plan, asked
         self.metric = Metric.named(plan.metric)
         self.begun, self.end = plan.span(asked.number)
-        self._began = self._kept = time.monotonic()
-        if not self._thaw():
-            earlier = [list(seed.curve) for seed in asked.parent.seeds] if asked.parent else [[] for _ in plan.seeds]
-            self._state = _State(self.begun, earlier, [""] * len(plan.seeds))
-            settings = plan.settings | asked.params
-            with tempfile.TemporaryDirectory() as folder:
-                if parents:
-                    unpack(parents, Path(folder))
-                self._runs: list[SeedRun] = [
-                    begin(
-                        plan.kind, settings, seed, Path(folder, seed_folder(seed)) if parents else None, plan.validation
-                    )
-                    for seed in plan.seeds
-                ]
+        self._began = time.monotonic()
+        earlier = [list(seed.curve) for seed in asked.parent.seeds] if asked.parent else [[] for _ in plan.seeds]
+        self._state = _State(self.begun, earlier, [""] * len(plan.seeds))
+        settings = plan.settings | asked.params
+        with tempfile.TemporaryDirectory() as folder:
+            if parents:
+                unpack(parents, Path(folder))
+            self._runs: list[SeedRun] = [
+                begin(plan.kind, settings, seed, Path(folder, seed_folder(seed)) if parents else None, plan.validation)
+                for seed in plan.seeds
+            ]
 
     @property
     def at(self) -> int:
@@ -114,8 +107,6 @@ class Trial:
                 except FloatingPointError as error:
                     self._state.problems[index] = str(error)
         self._state.at = mark
-        if self._scratch and not self.done and time.monotonic() - self._kept > SCRATCH_SECONDS:
-            self._freeze()
 
     def result(self, figures: Mapping[int, Mapping[str, Any]] | None = None) -> FinishedTrial:
         """Return what there is to tell of the trial; `figures` are those of the networks kept, by seed."""
@@ -144,35 +135,7 @@ class Trial:
                     with suppress(ValueError):  # its numbers were never finite after a step
                         run.salvage(folder)
             packed = archive(Path(temporary))
-        if self._scratch:
-            self._scratch.unlink(missing_ok=True)
         return self.result(figures), packed
-
-    def _freeze(self) -> None:
-        """Keep the work so far; a disk that is full or a run that cannot be kept costs nothing but the safety."""
-        assert self._scratch is not None
-        self._kept = time.monotonic()
-        new = self._scratch.with_name(f"{self._scratch.name}.{secrets.token_hex(4)}")
-        with suppress(OSError, pickle.PicklingError, TypeError, AttributeError):
-            kept = (fingerprint(), self.asked, self._state, [run.freeze() for run in self._runs])
-            new.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-            new.write_bytes(pickle.dumps(kept))
-            new.replace(self._scratch)
-        new.unlink(missing_ok=True)
-
-    def _thaw(self) -> bool:
-        """Go on with what another process has kept of this very trial, with this very code; say whether that is so."""
-        if self._scratch is None or not self._scratch.is_file():
-            return False
-        try:
-            made, asked, state, frozen = pickle.loads(self._scratch.read_bytes())
-            if (made, asked) != (fingerprint(), self.asked):
-                return False
-            self._runs = [thaw(self.plan.kind, each) for each in frozen]
-        except Exception:  # noqa: BLE001 - a damaged file may raise anything; the trial then begins anew
-            return False
-        self._state = state
-        return True
 
 
 def seed_folder(seed: int) -> str:

@@ -24,6 +24,7 @@ from ray.tune.schedulers import ASHAScheduler, FIFOScheduler, TrialScheduler
 from ray.tune.search import Searcher
 from ray.tune.search.optuna import OptunaSearch
 
+from ai.nn.files import brief
 from ai.nn.schema import read_as
 from ai.sweep.metric import Metric
 from ai.sweep.plan import POPULATION, RANDOM, Plan
@@ -47,7 +48,7 @@ class SweepTrial(tune.Trainable):
     """Trial as Tune runs it: a step trains all seeds up to the next mark. A worker takes one trial after another."""
 
     def setup(self, config: dict[str, Any]) -> None:
-        """Begin the trial that `config` asks for, or go on with what a killed worker has left of it."""
+        """Begin the trial that `config` asks for."""
         if config["code"] != fingerprint():
             raise OtherCodeError("this node has another version of Tranquility than the one that runs the study")
         asked = json.loads(config["asked"])
@@ -58,8 +59,7 @@ class SweepTrial(tune.Trainable):
         try:
             plan = read_as(Plan, json.loads(config["plan"]))
             parents = ray.get(config["runs"]) if config["runs"] else b""
-            scratch = Path(config["scratch"]) / f"{asked['number']}.pickle" if config["scratch"] else None
-            self._trial = Trial(plan, self._asked, parents, scratch)
+            self._trial = Trial(plan, self._asked, parents)
         except ValueError as error:  # settings that make no sense together
             self._problem = str(error)
 
@@ -83,7 +83,7 @@ class SweepTrial(tune.Trainable):
         return _report(result, finished=True, runs=runs)
 
     def save_checkpoint(self, checkpoint_dir: str) -> None:
-        """Save nothing: trials are never paused, and keep their own scratch files."""
+        """Save nothing: a trial that is lost begins anew, and gives the same."""
 
     def load_checkpoint(self, checkpoint: Any) -> None:
         """Load nothing."""
@@ -220,8 +220,10 @@ class Recorder(tune.Callback):
             self._table.progress(told)
 
     def on_trial_error(self, iteration: int, trials: list[Any], trial: Any, **info: Any) -> None:
-        """Note a trial that was tried too often."""
+        """Note a trial that was tried too often, and say why."""
         self.lost.append(json.loads(trial.config["asked"])["number"])
+        if error := trial.get_error():
+            self._table.say(f"trial {self.lost[-1]}: {brief(str(error).strip().splitlines()[-1])}")
         self._table.drop(self.lost[-1])
 
     def on_step_end(self, iteration: int, trials: list[Any], **info: Any) -> None:
@@ -262,21 +264,14 @@ class _Stopper(tune.Stopper):
         return self  # a copy would never hear of it
 
 
-def run_trials(study: Study, table: Table, stop: Sequence[int], scratch: Path | None) -> Recorder:
-    """Run the trials that a study has left, on the Ray that was joined; return what became of them.
-
-    `scratch` is a folder of this user's alone, in which workers keep unfinished work; it may be missing on a node.
-    """
+def run_trials(study: Study, table: Table, stop: Sequence[int]) -> Recorder:
+    """Run the trials that a study has left, on the Ray that was joined; return what became of them."""
     optuna.logging.set_verbosity(optuna.logging.ERROR)
     logging.getLogger("ray").setLevel(logging.CRITICAL)
     warnings.filterwarnings("ignore", module=r"ray\..*")
     plan = study.plan
     recorder = Recorder(study, table, stop)
-    shared = {
-        "plan": json.dumps(plan.to_json()),
-        "code": fingerprint(),
-        "scratch": str(scratch / study.id) if scratch else "",
-    }
+    shared = {"plan": json.dumps(plan.to_json()), "code": fingerprint()}
     search: Searcher = PopulationSearch(study, shared) if plan.search == POPULATION else StudySearch(study, shared)
     with tempfile.TemporaryDirectory(prefix="tranquility-sweep-") as temporary:
         tuner = tune.Tuner(
