@@ -16,6 +16,7 @@ PYGAME = {"pygame", "pygame_gui"}
 LATE = {
     "ai.cli.training_run": {"tqdm"},
     "ai.cli.copilot": {"tqdm"},
+    "ai.cli.lander": {"tqdm"},
     "ai.training.gym_task": {"gymnasium"},
     "ai.common.places": {"platformdirs"},
     "ai.sweep.cluster": {"ray"},

@@ -8,7 +8,19 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from ai.cli.command_line import EPISODES, REFUSED, SEEDS, exit_code, fail, folder, out_of_range, reason, stoppable
+from ai.cli.command_line import (
+    EPISODES,
+    REFUSED,
+    SEEDS,
+    WORKERS,
+    add_where,
+    exit_code,
+    fail,
+    folder,
+    out_of_range,
+    reason,
+    stoppable,
+)
 
 if TYPE_CHECKING:
     from ai.common.knobs import Knobs
@@ -16,7 +28,7 @@ if TYPE_CHECKING:
     from ai.sweep.study import Study
 
 TRIALS: Final = (1, 100_000)
-RUNS: Final = (1, 1000)  # seeds of a trial, members of a population, workers
+RUNS: Final = (1, 1000)  # seeds of a trial, members of a population
 BUDGET: Final = (1, 10**12)
 _TRIALS, _RUNS, _DECISIONS, _MEASURED = 64, 3, 250_000, 5  # defaults; a run is measured five times
 _OF_A_NEW_ONE: Final = (
@@ -53,7 +65,7 @@ def add_commands(commands: Any) -> None:
     sweep.add_argument("--preset", help="settings of all that is not searched, as for train or train-digits")
     sweep.add_argument("--set", action="append", metavar="NAME=VALUE", dest="changes", help="change such a setting")
     sweep.add_argument("--seed", type=int, help="of the search itself (default: 0)")
-    add_where(sweep)
+    add_where(sweep, "processes at once (default: all cores)")
     sweep.set_defaults(run=_sweep)
 
     study = commands.add_parser("study", help="tell what a study found: the best settings, and which knobs matter")
@@ -63,12 +75,6 @@ def add_commands(commands: Any) -> None:
     study.set_defaults(run=_study)
 
 
-def add_where(command: argparse.ArgumentParser) -> None:
-    """Add the options that say where the work is done."""
-    command.add_argument("--address", metavar="HOST:PORT", help="join the Ray cluster there; auto for the one around")
-    command.add_argument("--workers", type=int, metavar="N", help="processes at once (default: all cores)")
-
-
 def _sweep(arguments: argparse.Namespace) -> int:
     from ai.sweep.cluster import MISSING, installed, joined
     from ai.sweep.study import Study
@@ -76,7 +82,7 @@ def _sweep(arguments: argparse.Namespace) -> int:
     if not installed():
         return fail(MISSING)
     ranges = {"trials": TRIALS, "seeds": RUNS, "population": RUNS, "decisions": BUDGET, "epochs": BUDGET,
-              "every": BUDGET, "validation": EPISODES, "seed": SEEDS, "workers": RUNS}  # fmt: skip
+              "every": BUDGET, "validation": EPISODES, "seed": SEEDS, "workers": WORKERS}  # fmt: skip
     if problem := out_of_range(arguments, **ranges):
         return fail(problem)
     try:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, fields, replace
-from math import sqrt
 from typing import Any, Final
 
 import numpy as np
 
 from ai.agent.agent import DeepQAgent
 from ai.common.environment import Doubles
+from ai.common.intervals import wilson
 from ai.copilot.copilot import CoPilot, Mode
 from ai.copilot.hands import FAMILIES, UNSEEN, MakePilot
 from ai.copilot.oracle import Oracle
@@ -69,13 +69,6 @@ class AssistedFlights:
     def to_json(self) -> dict[str, Any]:
         """Return the values as JSON can hold them."""
         return asdict(self) | {"success_interval": self.success_interval}
-
-
-def wilson(share: float, count: int, z: float = 1.96) -> tuple[float, float]:
-    """Return the interval of a share that was found in `count` trials; `z` standard deviations to each side."""
-    middle = (share + z * z / (2 * count)) / (1 + z * z / count)
-    half = z * sqrt(share * (1 - share) / count + z * z / (4 * count * count)) / (1 + z * z / count)
-    return max(0.0, middle - half), min(1.0, middle + half)
 
 
 @dataclass(frozen=True)

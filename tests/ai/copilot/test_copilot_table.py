@@ -8,7 +8,8 @@ from ai.agent.agent import DeepQAgent
 from ai.cli.copilot import MODEL
 from ai.copilot import measurement as copilot_table
 from ai.copilot.copilot import Mode
-from ai.copilot.measurement import ALONE, OPEN, ORACLE, VALUES, one_pad, three_pads, wilson
+from ai.common.intervals import wilson
+from ai.copilot.measurement import ALONE, OPEN, ORACLE, VALUES, one_pad, three_pads
 
 
 @pytest.fixture(scope="module")

@@ -84,13 +84,13 @@ def descendants(of):
             pid = int(stat.parent.name)
             parents[pid] = int(stat.read_text().rpartition(")")[2].split()[1])
             names[pid] = (stat.parent / "cmdline").read_text()
-        except OSError:
+        except OSError:  # it has ended meanwhile
             continue
     found, newest = set(), {of}
     while newest:
         newest = {pid for pid, parent in parents.items() if parent in newest} - found
         found |= newest
-    return {pid: names[pid] for pid in found}
+    return {pid: names[pid] for pid in found if pid in names}
 
 
 def training_workers(of):
