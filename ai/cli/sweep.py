@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -77,6 +78,7 @@ def add_commands(commands: Any) -> None:
 
 def _sweep(arguments: argparse.Namespace) -> int:
     from ai.sweep.cluster import MISSING, installed, joined
+    from ai.sweep.report import importance_of
     from ai.sweep.study import Study
 
     if not installed():
@@ -97,6 +99,8 @@ def _sweep(arguments: argparse.Namespace) -> int:
                     table = Table(study, workers)
                     recorder = run_trials(study, table, stop)
                     table.clear()
+                with suppress(OSError):  # it is made from the rest, and only lists need it
+                    study.write_summary({name: each.share for name, each in importance_of(study).items()})
                 if recorder.trouble:
                     return fail(f"{recorder.trouble}; {_again(arguments, study)}")
                 if recorder.lost:

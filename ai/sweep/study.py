@@ -14,7 +14,7 @@ import json
 import re
 import secrets
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -181,8 +181,8 @@ class Study:
             (self.folder / "started" / f"{trial.number:04}.json").unlink(missing_ok=True)
             self.write_summary()
 
-    def write_summary(self) -> None:
-        """Write what a list of studies shows; raises OSError."""
+    def write_summary(self, importance: Mapping[str, float] | None = None) -> None:
+        """Write what a list of studies shows, at the end with how much each knob matters; raises OSError."""
         best = self.best()
         seed = best.best_seed if best else None
         told = {
@@ -193,6 +193,7 @@ class Study:
             "metric": self.plan.metric,
             "best": self.shown(best.value) if best else None,
             "run": f"trials/{best.number:04}/{seed_folder(seed.seed)}" if best and seed else None,
+            "importance": importance,
         }
         write_text(self.folder / SUMMARY_FILE, json.dumps(told, indent=2) + "\n", flush=False)
 

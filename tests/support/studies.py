@@ -1,8 +1,10 @@
 """Studies of tiny runs for tests."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
+from ai.agent.config import PRESETS
 from ai.sweep.plan import Plan
 from ai.sweep.space import knob_space
 from ai.sweep.study import Study
@@ -56,3 +58,29 @@ def networks_in(folder: Path):
             if path.suffix != ".npz":  # an archive tells when it was made; its numbers are compared as files
                 found[path.relative_to(folder).as_posix()] = content
     return found
+
+
+def shown_study(folder, trials=9):
+    """Make a study of the lander for a screen: one trial that was really run, and others made from it."""
+    config = PRESETS["modern"].changed(num_envs=8, learning_starts=64, gradient_steps=1, hidden=(8,), replay_size=2000)
+    space = {name: each.to_json() for name, each in knob_space(config, ["learning_rate", "tau", "optimizer"]).items()}
+    plan = Plan(
+        "agent", json.loads(json.dumps(config.to_json())), space, (0, 1), 160, 40, "time_to_99", "median", "tpe", True,
+        trials + 3, validation=4,
+    )  # fmt: skip
+    study = Study.create(folder, plan)
+    first, runs = run_alone(plan, Asked(0, {"learning_rate": 1e-3, "tau": 0.005, "optimizer": "adam"}))
+    for number in range(trials):
+        rate, share = 10 ** (-4 + number / 4), 1 - abs(number - 3) / 10
+        seeds = tuple(
+            replace(seed, curve=tuple(replace(point, success=max(0.0, share * (step + 1) / 4 - 0.02 * place))
+                                      for step, point in enumerate(seed.curve)), value=40.0 * (number + 1 + place))
+            for place, seed in enumerate(first.seeds)
+        )  # fmt: skip
+        params = {"learning_rate": rate, "tau": 0.001 * (number + 1), "optimizer": ("adam", "sgd")[number % 2]}
+        stopped = number == trials - 1
+        kept = tuple(replace(seed, figures={}) for seed in seeds) if stopped else seeds
+        trial = replace(first, number=number, params=params, value=40.0 * (number + 1), seeds=kept, stopped=stopped)
+        study.record(trial, b"" if stopped else runs)
+    study.write_summary({"learning_rate": 0.71, "optimizer": 0.12, "tau": 0.03})
+    return study
