@@ -48,7 +48,7 @@ def add_commands(commands: Any) -> None:
     sweep.add_argument("--trials", type=int, metavar="N", help=f"trials in all (default: {_TRIALS})")
     sweep.add_argument("--seeds", type=int, metavar="N", help=f"runs of each trial, seeds 0 to N-1 (default: {_RUNS})")
     sweep.add_argument("--metric", metavar="NAME", help="what trials are compared by: time_to_99 or any percentage,"
-                       " in decisions; success, return, mean, accuracy (default: time_to_99, return, accuracy)")  # fmt: skip
+                       " in decisions; success, return, mean, accuracy (default: by what is trained)")  # fmt: skip
     sweep.add_argument("--judge", choices=("median", "worst"), help="how a trial's seeds are judged (default: median)")
     sweep.add_argument("--knobs", metavar="NAMES", help="knobs or groups to search by their own ranges, with commas"
                        " between (default: learning, the whole group)")  # fmt: skip

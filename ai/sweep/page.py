@@ -37,8 +37,8 @@ def page(study: Study) -> str:
     name = escape(study.folder.name)
     less = "less" if study.metric.mode == "min" else "more"
     intro = (
-        f"{count:,} of {plan.trials:,} trials, {len(plan.seeds)} seeds each, of {plan.budget:,} {plan.unit}. Compared by"
-        f" {escape(plan.metric)}, the {plan.judge} of the seeds; {less} is better. {duration(spent)} of work in all."
+        f"{count:,} of {plan.trials:,} trials, {len(plan.seeds)} seeds each, of {plan.budget:,} {plan.unit}. Compared"
+        f" by {escape(plan.metric)}, the {plan.judge} of the seeds; {less} is better. {duration(spent)} of work in all."
     )
     parts = [f"<h1>{name}</h1><p>{intro}</p>"]
     if best:

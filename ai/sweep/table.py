@@ -112,17 +112,16 @@ class Table:
         study, plan = self._study, self._study.plan
         left = self.seconds_left()
         head = f"{study.folder.name}: {len(study.trials)} of {plan.trials} trials, {len(self._running)} running"
-        lines = [
-            f"{head}, {'' if left is None else f'about {duration(left)} left, '}{plan.metric}, {plan.judge} of {len(plan.seeds)}"
-        ]
+        time_left = "" if left is None else f"about {duration(left)} left, "
+        lines = [f"{head}, {time_left}{plan.metric}, {plan.judge} of {len(plan.seeds)}"]
         for number, running in sorted(self._running.items())[:_ROWS]:
             begun, end = plan.span(number)
             share = (running.at - begun) / (end - begun)
             lines.append(f"  {number:>5} {bar(share)} {running.value:>12}  {settings(running.params)}")
         if len(self._running) > _ROWS:
             lines.append(f"        and {len(self._running) - _ROWS} more")
-        for trial in study.ranked()[:_BEST]:
-            lines.append(f"  best {trial.number:>4} {study.shown(trial.value):>12}  {settings(trial.params)}")
+        for each in study.ranked()[:_BEST]:
+            lines += [f"  best {each.number:>4} {study.shown(each.value):>12}  {settings(each.params)}"]
         return lines
 
     def _print(self, text: str) -> None:

@@ -143,10 +143,10 @@ class NetworksScene(ListScene[SavedRun]):
         """Return the button that goes back, and the one that brings back the run deleted last."""
         foot = super()._below_list()
         if self._has_studies and not self._choose:
-            box = (MARGIN + 120, _LAYOUT.foot + VERB_LINE, 260, VERB_LINE)
+            box = (_LAYOUT.box.right - 240, _LAYOUT.foot, 240, VERB_LINE)
             foot.append(TextButton(self.form.manager, box, texts.STUDY_OPEN, lambda: push("study"), size=VERB_SIZE))
         if deleted := self._library.last_deleted:
-            box = (MARGIN + 120, _LAYOUT.foot, 520, VERB_LINE)
+            box = (MARGIN + 120, _LAYOUT.foot, 300 if self._has_studies else 520, VERB_LINE)
             label = texts.RUN_RESTORE.format(name=deleted)
             foot.append(TextButton(self.form.manager, box, label, self._restore, size=18))
         return foot

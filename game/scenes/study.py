@@ -24,8 +24,8 @@ from game.panels.study_dots import StudyDots
 from game.ui.context import Context
 from game.ui.list_scene import ListLayout, ListScene
 from game.ui.listing import Row
-from game.ui.widgets import Choice
 from game.ui.widget import OnPress, Widget
+from game.ui.widgets import Choice
 
 _LEFT: Final = 688
 _WIDTH: Final = VIEW_SIZE[0] - MARGIN - _LEFT
@@ -200,7 +200,7 @@ class StudyScene(ListScene[FinishedTrial]):
             return
         title = f"{texts.STUDY_TRIAL.format(number=trial.number)}   {study.shown(trial.value)}"
         canvas.text(title, (_LEFT, 146), size=TITLE + 6, weight="light", room=_WIDTH)
-        settings = "   ".join(f"{name} {shown_value(value)}" for name, value in trial.params.items())
+        settings = " · ".join(f"{name} {shown_value(value)}" for name, value in trial.params.items())
         draw_wrapped(canvas, brief(settings, 190), (_LEFT, 174), _WIDTH, size=SMALL, colour=MUTE, leading=19)
         self._chart.draw(canvas)
         if self._knobs:

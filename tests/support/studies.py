@@ -1,15 +1,18 @@
 """Studies of tiny runs for tests."""
 
 import json
-from dataclasses import replace
+import shutil
 from pathlib import Path
 
 from ai.agent.config import PRESETS
+from ai.sweep.metric import Point
 from ai.sweep.plan import Plan
+from ai.sweep.results import FinishedTrial, SeedResult
 from ai.sweep.space import knob_space
 from ai.sweep.study import Study
-from ai.sweep.trial import Asked, Trial
+from ai.sweep.trial import Asked, Trial, archive
 from ai.training.gym_task import gym_config
+from game.core.assets import MODELS_DIR
 
 TINY = {"num_envs": 4, "learning_starts": 64, "gradient_steps": 1, "hidden": (16,), "replay_size": 2000}
 
@@ -61,26 +64,32 @@ def networks_in(folder: Path):
 
 
 def shown_study(folder, trials=9):
-    """Make a study of the lander for a screen: one trial that was really run, and others made from it."""
-    config = PRESETS["modern"].changed(num_envs=8, learning_starts=64, gradient_steps=1, hidden=(8,), replay_size=2000)
-    space = {name: each.to_json() for name, each in knob_space(config, ["learning_rate", "tau", "optimizer"]).items()}
+    """Make a study of the lander for a screen, without training: its networks are the one that comes with the game."""
+    space = knob_space(PRESETS["modern"], ["learning_rate", "tau", "optimizer"])
     plan = Plan(
-        "agent", json.loads(json.dumps(config.to_json())), space, (0, 1), 160, 40, "time_to_99", "median", "tpe", True,
-        trials + 3, validation=4,
+        "agent", json.loads(json.dumps(PRESETS["modern"].to_json())),
+        {name: each.to_json() for name, each in space.items()}, (0, 1), 160, 40, "time_to_99", "median", "tpe", True,
+        trials + 3,
     )  # fmt: skip
     study = Study.create(folder, plan)
-    first, runs = run_alone(plan, Asked(0, {"learning_rate": 1e-3, "tau": 0.005, "optimizer": "adam"}))
+    shutil.copytree(MODELS_DIR / "lander" / "modern", folder / "seed-0", ignore=shutil.ignore_patterns("guardian"))
+    shutil.move(folder / "seed-0", folder / "run" / "seed-0")
+    runs = archive(folder / "run")
+    shutil.rmtree(folder / "run")
     for number in range(trials):
-        rate, share = 10 ** (-4 + number / 4), 1 - abs(number - 3) / 10
+        share, stopped = 1 - abs(number - 3) / 10, number == trials - 1
         seeds = tuple(
-            replace(seed, curve=tuple(replace(point, success=max(0.0, share * (step + 1) / 4 - 0.02 * place))
-                                      for step, point in enumerate(seed.curve)), value=40.0 * (number + 1 + place))
-            for place, seed in enumerate(first.seeds)
+            SeedResult(seed, tuple(Point(40 * step, max(0.0, share * step / 4 - 0.02 * seed), 1.0)
+                                   for step in range(1, 5)), 40.0 * (number + 1 + seed), "", 1.0,
+                       {} if stopped or seed else {"success": share})
+            for seed in (0, 1)
         )  # fmt: skip
-        params = {"learning_rate": rate, "tau": 0.001 * (number + 1), "optimizer": ("adam", "sgd")[number % 2]}
-        stopped = number == trials - 1
-        kept = tuple(replace(seed, figures={}) for seed in seeds) if stopped else seeds
-        trial = replace(first, number=number, params=params, value=40.0 * (number + 1), seeds=kept, stopped=stopped)
+        params = {
+            "learning_rate": 10 ** (-4 + number / 4),
+            "tau": 0.001 * (number + 1),
+            "optimizer": ("adam", "sgd")[number % 2],
+        }
+        trial = FinishedTrial(number, params, 40.0 * (number + 1), 160, stopped, 2.0, seeds)
         study.record(trial, b"" if stopped else runs)
     study.write_summary({"learning_rate": 0.71, "optimizer": 0.12, "tau": 0.03})
     return study

@@ -18,7 +18,7 @@ def sampled(function, count=400):
 def test_shares_of_a_sum_are_those_of_its_parts():
     """3a + 1u, where u is the place of b: variances 9/12 and 1/12, so 90% and 10%, and none for c."""
     found = importances(SPACE, *sampled(lambda p: 3 * p["a"] + SPACE["b"].place(p["b"])))
-    assert list(found)[0] == "a"
+    assert next(iter(found)) == "a"
     assert found["a"].share == pytest.approx(0.9, abs=0.06)
     assert found["b"].share == pytest.approx(0.1, abs=0.06)
     assert found["c"].share < 0.03

@@ -16,7 +16,7 @@ MODERN = MODELS_DIR / "lander" / "modern"
 
 
 def total(parts):
-    return [sums for sums in flown_shards(parts, None, 1) if sums is not None][0]
+    return next(sums for sums in flown_shards(parts, None, 1) if sums is not None)
 
 
 @pytest.mark.parametrize("size", [7, 40])

@@ -55,7 +55,6 @@ def test_a_file_narrows_ranges_and_lists_choices(tmp_path):
         {"optimizer": ["no such"]},
         {"hidden": [16]},
         {"n_step": [1.5]},
-        {"n_step": []},
         {"n_step": 3},
         {"unknown": {}},
         [],
@@ -65,10 +64,7 @@ def test_a_file_narrows_ranges_and_lists_choices(tmp_path):
 def test_a_file_that_makes_no_sense_is_refused(tmp_path, asked):
     file = tmp_path / "space.json"
     file.write_text(json.dumps(asked))
-    if asked in ({"n_step": []},):
-        assert read_space(MODERN, file)["n_step"].whole, "an empty list asks for nothing else than the knob's own"
-        return
-    with pytest.raises(ValueError, match="."):
+    with pytest.raises(ValueError, match=r"\w"):
         read_space(MODERN, file)
 
 
