@@ -171,7 +171,7 @@ def _plan(arguments: argparse.Namespace) -> Plan:
     search = arguments.search or TPE
     population = (arguments.population or 8) if search == POPULATION else 0
     trials = arguments.trials or _TRIALS
-    every = arguments.every or max(1, budget // (trials // population if population else _MEASURED))
+    every = arguments.every or max(1, budget // (max(1, trials // population) if population else _MEASURED))
     return Plan(
         DIGITS if arguments.digits else AGENT,
         settings,

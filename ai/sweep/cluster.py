@@ -128,7 +128,7 @@ def each(
         import ray
 
         remote = ray.remote(num_cpus=1, max_retries=4)(function)
-        waiting = {}
+        waiting: dict[Any, int] = {}
         left = list(enumerate(items))[::-1]
         while left or waiting:
             while left and len(waiting) < 2 * count:

@@ -113,8 +113,8 @@ def _knobs(study: Study, ranked: list[FinishedTrial], best: FinishedTrial) -> st
             x, y = _across(dimension.place(trial.params[name])), _up(trial.value or 0.0, low, high)
             size = 5 if trial is best else 3
             dots.append(f'<circle class="{"mark" if trial is best else "dot"}" cx="{x}" cy="{y}" r="{size}"/>')
-        ends = [shown_value(each) for each in _ends(dimension)]
-        axes = _axes(*ends, study.shown(low), study.shown(high))
+        left, right = map(shown_value, _ends(dimension))
+        axes = _axes(left, right, study.shown(low), study.shown(high))
         figures.append(
             f"<figure><svg width='{_WIDE}' height='{_HIGH + _FOOT}'>{axes}{''.join(dots)}</svg>"
             f"<figcaption>{escape(name)}{', by factors' if dimension.log else ''}</figcaption></figure>"

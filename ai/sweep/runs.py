@@ -26,7 +26,9 @@ DIGITS: Final = "digits"
 class SeedRun(Protocol):
     """Run of one seed, in a trial."""
 
-    seconds: float
+    @property
+    def seconds(self) -> float:
+        """Time spent in training."""
 
     def advance(self, mark: int) -> Point:
         """Train up to so many decisions or epochs, and measure; raises FloatingPointError if it diverges."""

@@ -122,9 +122,9 @@ class StudySearch(OptunaSearch):
 
     def suggest(self, trial_id: str) -> dict[str, Any] | None:
         """Return what a new trial is asked to do."""
-        given = super().suggest(trial_id)
-        if not isinstance(given, dict):
-            return given
+        given: dict[str, Any] | None = super().suggest(trial_id)
+        if given is None:
+            return None
         params = {name: _decoded(self._space_of[name], value) for name, value in given.items()}
         if self._left:
             number = self._left.pop(0)
@@ -162,7 +162,7 @@ class PopulationSearch(Searcher):
     def suggest(self, trial_id: str) -> dict[str, Any] | str | None:
         """Return what the next member is asked to do; None while the generation before it is not whole."""
         if not self._left or self._lost:
-            return Searcher.FINISHED
+            return str(Searcher.FINISHED)
         asked = proposed(self._study, self._left[0])
         if asked is None:
             return None

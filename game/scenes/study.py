@@ -146,7 +146,7 @@ class StudyScene(ListScene[FinishedTrial]):
         series = [
             Series(
                 [point.at for point in seed.curve],
-                [point.success if shares else point.mean_return for point in seed.curve],
+                [(point.success or 0.0) if shares else point.mean_return for point in seed.curve],
                 texts.STUDY_SEED.format(seed=seed.seed),
                 NET,
                 smooth=False,
