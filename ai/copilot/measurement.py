@@ -88,13 +88,20 @@ def one_pad(agent: DeepQAgent, good: Pilot, episodes: int, seed: int = 0) -> Ite
     `agent` is the co-pilot, `good` the pilot that some of the imperfect ones are made of. All fly from the same
     starts, and with the same mishaps, which follow from `seed`; the oracle's flights are fewer.
     """
-    for name in PILOTS:
-        fast = [help_ for help_ in ONE_PAD if help_[0] != ORACLE]
-        yield from _measure(_assisted_pilots(agent, good, [name], fast, episodes, seed), episodes, seed)
-        if len(fast) < len(ONE_PAD):
-            few = min(episodes, ORACLE_FLIGHTS)
-            yield from _measure(_assisted_pilots(agent, good, [name], [(ORACLE, 0.0)], few, seed), few, seed)
-    yield from _measure([AssistedPilot(COPILOT, agent)], episodes, seed)
+    for name in (*PILOTS, COPILOT):
+        yield from one_pad_rows(agent, good, name, episodes, seed)
+
+
+def one_pad_rows(agent: DeepQAgent, good: Pilot, name: str, episodes: int, seed: int) -> list[AssistedFlights]:
+    """Return the rows of one pilot of the table, or of COPILOT; they do not depend on the other pilots."""
+    if name == COPILOT:
+        return _measure([AssistedPilot(COPILOT, agent)], episodes, seed)
+    fast = [help_ for help_ in ONE_PAD if help_[0] != ORACLE]
+    rows = _measure(_assisted_pilots(agent, good, [name], fast, episodes, seed), episodes, seed)
+    if len(fast) < len(ONE_PAD):
+        few = min(episodes, ORACLE_FLIGHTS)
+        rows += _measure(_assisted_pilots(agent, good, [name], [(ORACLE, 0.0)], few, seed), few, seed)
+    return rows
 
 
 def three_pads(agent: DeepQAgent, good: Pilot, episodes: int, seed: int = 0) -> Iterator[AssistedFlights]:
@@ -102,13 +109,20 @@ def three_pads(agent: DeepQAgent, good: Pilot, episodes: int, seed: int = 0) -> 
 
     The flights are spread over several grounds, so `episodes` is rounded to a multiple of their number.
     """
-    parts = []
-    for ground in range(GROUNDS):
-        rng = np.random.default_rng([seed, ground])
-        start, each = int(rng.integers(2**31)), max(1, round(episodes / GROUNDS))
-        assisted = _assisted_pilots(agent, good, INTENT_PILOTS, THREE_PADS, each, start)
-        parts.append(_measure(assisted, each, start, hilly(rng)))
-    yield from (_mean(rows) for rows in zip(*parts, strict=True))
+    yield from mean_rows([three_pads_rows(agent, good, ground, episodes, seed) for ground in range(GROUNDS)])
+
+
+def three_pads_rows(agent: DeepQAgent, good: Pilot, ground: int, episodes: int, seed: int) -> list[AssistedFlights]:
+    """Return the rows of one of the grounds, with its part of the flights; they do not depend on the others."""
+    rng = np.random.default_rng([seed, ground])
+    start, each = int(rng.integers(2**31)), max(1, round(episodes / GROUNDS))
+    assisted = _assisted_pilots(agent, good, INTENT_PILOTS, THREE_PADS, each, start)
+    return _measure(assisted, each, start, hilly(rng))
+
+
+def mean_rows(parts: Sequence[Sequence[AssistedFlights]]) -> list[AssistedFlights]:
+    """Return the means of tables of the same rows and as many flights."""
+    return [_mean(rows) for rows in zip(*parts, strict=True)]
 
 
 def _assisted_pilots(

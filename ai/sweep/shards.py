@@ -7,6 +7,8 @@ there or not; and sums are taken in the order of the shards.
 
 from __future__ import annotations
 
+import atexit
+import shutil
 import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -52,7 +54,7 @@ def fly(shard: Shard) -> FlightSums:
     for slot, number in enumerate(range(shard.first, shard.last)):
         # The generator that number `number` of a batch gets, which NumPy spawns from the seed.
         env.draw_from(slot, np.random.default_rng(np.random.SeedSequence(shard.seed, spawn_key=(number,))))
-    going = counted(_agent(shard.agent), env)
+    going = counted(packed_agent(shard.agent), env)
     while True:
         try:
             next(going)
@@ -71,8 +73,12 @@ def flown_shards(parts: list[Shard], address: str | None, workers: int | None) -
 
 
 @lru_cache(maxsize=1)
-def _agent(packed: bytes) -> DeepQAgent:
-    """Return the agent of an archive; a worker flies one after another with the same."""
-    with tempfile.TemporaryDirectory() as folder:
-        unpack(packed, Path(folder))
-        return DeepQAgent.load(folder)
+def packed_agent(packed: bytes) -> DeepQAgent:
+    """Return the agent of an archive; a worker flies one part after another with the same.
+
+    Its folder stays until the process ends: a guardian is read from there when it is first needed.
+    """
+    folder = tempfile.mkdtemp(prefix="tranquility-agent-")
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    unpack(packed, Path(folder))
+    return DeepQAgent.load(folder)

@@ -5,8 +5,12 @@ import json
 import pytest
 
 from ai.agent.agent import DeepQAgent
+from ai.copilot import measurement
+from ai.copilot.measurement import INTENT_PILOTS, one_pad, three_pads
+from ai.sweep import copilot_table
 from ai.sweep import shards as module
 from ai.sweep.cluster import each
+from ai.sweep.copilot_table import parts, tables_of
 from ai.sweep.shards import flown_shards, fly, shards
 from ai.training.lander_task import FlightSums, evaluate
 from game.core.assets import MODELS_DIR
@@ -64,3 +68,14 @@ def test_evaluate_tells_an_interval_around_the_share(capsys):
 def test_a_worker_flies_one_shard_after_another_with_the_same_network(monkeypatch):
     parts = shards(MODERN, 3, 0, "random", 4)
     assert fly(parts[0]) == fly(parts[0])
+
+
+def test_the_copilots_table_is_the_same_in_parts(monkeypatch):
+    monkeypatch.setattr(measurement, "ONE_PAD", measurement.ONE_PAD[:3])  # the rest takes long
+    monkeypatch.setattr(measurement, "PILOTS", {name: measurement.PILOTS[name] for name in (*INTENT_PILOTS, "none")})
+    asked = parts(MODERN, False, 5, 2)
+    done = {index: copilot_table.fly(part) for index, part in reversed([*enumerate(asked)])}
+    tables = tables_of(asked, done)
+    agent = DeepQAgent.load(MODERN)
+    assert tables["one_pad"] == list(one_pad(agent, agent, 5, 2))
+    assert tables["three_pads"] == list(three_pads(agent, agent, 5, 2))
