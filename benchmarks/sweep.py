@@ -60,6 +60,11 @@ def swept(plan: Plan, folder: Path, workers: int) -> tuple[Study, float, float, 
         return study, started - began, time.monotonic() - started, time.process_time() - spent
 
 
+def inside(study: Study) -> float:
+    """Return the seconds that workers spent in trials; the rest went into their start, and into handing out."""
+    return sum(trial.seconds for trial in study.trials.values())
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--trials", type=int, default=6)
@@ -71,7 +76,7 @@ def main() -> None:
         f"Python {platform.python_version()}, Ray {version('ray')}, Optuna {version('optuna')};"
         f" load {os.getloadavg()[0]:.1f}"
     )
-    print("| | trials | start of Ray, s | all trials, s | a trial, s | trials an hour | driver's CPU a trial, ms |")
+    print("| | trials | start of Ray, s | all, s | of it in trials, s | trials an hour | driver's CPU a trial, ms |")
     print("|---|---|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as temporary:
         folder, last = Path(temporary), None
@@ -80,12 +85,12 @@ def main() -> None:
             for workers in given.workers if trials else []:
                 last, start, took, spent = swept(plan, folder / f"{knob}-{workers}", workers)
                 name = f"{'empty, ' if knob == 'replay_prune' else ''}{workers} at once"
-                pace = f"{took:.1f} | {took / trials:.3f} | {3600 * trials / took:,.0f}"
+                pace = f"{took:.1f} | {inside(last) / workers:.1f} | {3600 * trials / took:,.0f}"
                 print(f"| {name} | {trials} | {start:.1f} | {pace} | {1000 * spent / trials:.0f} |", flush=True)
             if last is not None and knob == "learning_rate":
                 took = looped(plan, Study.create(folder / "loop", plan), last)
                 print(
-                    f"| plain loop | {trials} | | {took:.1f} | {took / trials:.3f} | {3600 * trials / took:,.0f} | |",
+                    f"| plain loop | {trials} | | {took:.1f} | {took:.1f} | {3600 * trials / took:,.0f} | |",
                     flush=True,
                 )
 

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 import pygame
 
 from ai.sweep.results import FinishedTrial
-from ai.sweep.space import shown_value
 from ai.sweep.study import Study
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import LABEL, LINE, MUTE, NET
+from game.training.knob_descriptions import figure
 
 
 class StudyDots:
@@ -46,7 +46,16 @@ class StudyDots:
             if trial.number == chosen.number:
                 canvas.dot(spot, 3.5, NET)
                 canvas.outline((spot[0] - 8, spot[1] - 8, 16, 16), 8, NET)
-        ends = dimension.choices[:: max(1, len(dimension.choices) - 1)][:2] or (dimension.low, dimension.high)
+        choices = dimension.choices
+        ends = (choices[0], choices[-1]) if choices else (dimension.low, dimension.high)
         y = self.box.height - 6
-        canvas.text(shown_value(ends[0]), (0, y), size=LABEL, colour=MUTE)
-        canvas.text(shown_value(ends[-1]), (plot.right, y), size=LABEL, colour=MUTE, align="right")
+        left, right = map(knob_value, ends)
+        canvas.text(left, (0, y), size=LABEL, colour=MUTE)
+        canvas.text(right, (plot.right, y), size=LABEL, colour=MUTE, align="right")
+
+
+def knob_value(value: object) -> str:
+    """Return a knob's value, as a study holds it, for the player."""
+    if isinstance(value, list):
+        return figure(tuple(value))
+    return figure(float(f"{value:.3g}") if isinstance(value, float) else value)

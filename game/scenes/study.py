@@ -10,7 +10,6 @@ import pygame
 from ai.agent.config import LANDER
 from ai.nn.files import brief
 from ai.sweep.results import FinishedTrial
-from ai.sweep.space import shown_value
 from ai.sweep.study import Study, StudyError
 from game.charts.chart import Chart, Series
 from game.core import texts
@@ -20,7 +19,8 @@ from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import MARGIN, MUTE, NET, SMALL, TITLE, VIEW_SIZE
 from game.flight import networks
 from game.flight.study_runs import studies, summary_of
-from game.panels.study_dots import StudyDots
+from game.panels.study_dots import StudyDots, knob_value
+from game.training.knob_descriptions import label
 from game.ui.context import Context
 from game.ui.list_scene import ListLayout, ListScene
 from game.ui.listing import Row
@@ -77,8 +77,8 @@ class StudyScene(ListScene[FinishedTrial]):
         folder = self._folders[self._index]
         try:
             study = Study.load(folder)
-        except StudyError as error:
-            self._line = texts.STUDY_UNREADABLE.format(problem=brief(error, 120))
+        except StudyError:
+            self._line = texts.STUDY_UNREADABLE
             return
         summary = summary_of(folder)
         self._shares = (summary.importance if summary else None) or {}
@@ -86,7 +86,7 @@ class StudyScene(ListScene[FinishedTrial]):
         self._study = study
         better = texts.STUDY_LESS if study.metric.mode == "min" else texts.STUDY_MORE
         self._line = texts.STUDY_LINE.format(
-            finished=len(study.trials), trials=study.plan.trials, metric=study.plan.metric, better=better
+            finished=len(study.trials), trials=study.plan.trials, metric=_metric(study), better=better
         )
 
     def _reload(self) -> None:
@@ -101,14 +101,14 @@ class StudyScene(ListScene[FinishedTrial]):
         sign = 1 if self._study.metric.mode == "min" else -1
         worst = max(item.values, key=lambda value: sign * value, default=None)
         name = texts.STUDY_TRIAL.format(number=item.number)
-        return name, self._study.shown(item.value), self._study.shown(worst)
+        return name, _shown(self._study, item.value), _shown(self._study, worst)
 
     def _make_verbs(self) -> list[Widget]:
         """Return the knob whose dots are shown, and what can be done with the chosen trial."""
         self._show_curves()
         widgets: list[Widget] = []
         if self.chosen and self._knobs:
-            widgets.append(Choice(self.form.manager, _KNOB, texts.STUDY_KNOB, self._knobs, self._knob,
+            widgets.append(Choice(self.form.manager, _KNOB, texts.STUDY_KNOB, [*map(label, self._knobs)], self._knob,
                                         self._choose_knob, label_width=96, size=SMALL))  # fmt: skip
         rows: list[tuple[str, OnPress]] = []
         if self._run and self._flies:
@@ -198,9 +198,9 @@ class StudyScene(ListScene[FinishedTrial]):
         study, trial = self._study, self.chosen
         if study is None or trial is None:
             return
-        title = f"{texts.STUDY_TRIAL.format(number=trial.number)}   {study.shown(trial.value)}"
+        title = f"{texts.STUDY_TRIAL.format(number=trial.number)}   {_shown(study, trial.value)}"
         canvas.text(title, (_LEFT, 146), size=TITLE + 6, weight="light", room=_WIDTH)
-        settings = " · ".join(f"{name} {shown_value(value)}" for name, value in trial.params.items())
+        settings = " · ".join(f"{label(name)} {knob_value(value)}" for name, value in trial.params.items())
         draw_wrapped(canvas, brief(settings, 190), (_LEFT, 174), _WIDTH, size=SMALL, colour=MUTE, leading=19)
         self._chart.draw(canvas)
         if self._knobs:
@@ -214,3 +214,15 @@ class StudyScene(ListScene[FinishedTrial]):
             canvas.text(
                 texts.STUDY_STOPPED if trial.stopped else why, (_LEFT, 596), size=SMALL, colour=MUTE, room=_WIDTH
             )
+
+
+def _metric(study: Study) -> str:
+    """Return in words what trials are compared by."""
+    return texts.STUDY_METRICS[study.metric.kind].format(percent=round(100 * study.metric.share))
+
+
+def _shown(study: Study, value: float | None) -> str:
+    """Return a result as the player reads it."""
+    if value is not None and study.metric.kind == "time" and value > study.plan.budget:
+        return texts.STUDY_NOT_REACHED
+    return study.shown(value)

@@ -64,11 +64,11 @@ def friend(context: Context) -> ReplayScene:
 
 def study(context: Context) -> StudyScene:
     """A study of the lander, and a second one that cannot be read."""
-    folder = context.user_dir / "studies" / "which knobs"
+    folder = context.user_dir / "studies" / "mine"
     if not folder.exists():
         shown_study(folder)
-        (folder.parent / "damaged").mkdir()
-        (folder.parent / "damaged" / "study.json").write_text("{}")
+        (folder.parent / "b").mkdir()
+        (folder.parent / "b" / "study.json").write_text("{}")
     return StudyScene(context, folder)
 
 

@@ -38,7 +38,7 @@ def test_a_trial_is_watched_and_the_players_own_network_stays_theirs(open_game, 
     driver.keys(pygame.K_RETURN)
     driver.frames(5)
     assert driver.top_name == "WatchScene"
-    assert driver.top.network.name == "which knobs 0"
+    assert driver.top.network.name == "mine 0"
     assert driver.top.network.policy is not None
     assert context.settings.model == mine
     driver.keys(pygame.K_ESCAPE)
@@ -50,7 +50,7 @@ def test_a_trial_is_raced(open_game):
     driver.press_on(texts.STUDY_RACE)
     driver.frames(5)
     assert driver.top_name == "PlayScene"
-    assert "which knobs 0" in driver.top.challenge.line
+    assert "mine 0" in driver.top.challenge.line
 
 
 def test_a_trial_that_was_stopped_early_offers_nothing_to_fly(open_game, written):
@@ -68,9 +68,9 @@ def test_a_trial_that_was_stopped_early_offers_nothing_to_fly(open_game, written
 
 def test_a_study_that_cannot_be_read_says_so(open_game, context, written):
     made(context)
-    driver = open_game(StudyScene, context.user_dir / "studies" / "damaged")
+    driver = open_game(StudyScene, context.user_dir / "studies" / "b")
     driver.frames(3)
-    assert any(text.startswith(texts.STUDY_UNREADABLE[:20]) for text in written)
+    assert texts.STUDY_UNREADABLE in written
     assert driver.top.items == []
 
 
