@@ -77,8 +77,7 @@ def add_commands(commands: Any) -> None:
 
 
 def _sweep(arguments: argparse.Namespace) -> int:
-    from ai.sweep.cluster import MISSING, installed, joined
-    from ai.sweep.report import importance_of
+    from ai.sweep.cluster import MISSING, installed
     from ai.sweep.study import Study
 
     if not installed():
@@ -87,31 +86,40 @@ def _sweep(arguments: argparse.Namespace) -> int:
               "every": BUDGET, "validation": EPISODES, "seed": SEEDS, "workers": WORKERS}  # fmt: skip
     if problem := out_of_range(arguments, **ranges):
         return fail(problem)
+    code = 0
     try:
         place = _place(arguments)
         study = _resumed(arguments, place) if arguments.resume else Study.create(place, _plan(arguments))
         with study.claimed(), stoppable() as stop:
             if len(study.trials) < study.plan.trials:
-                with joined(arguments.address, arguments.workers) as workers:
-                    from ai.sweep.table import Table
-                    from ai.sweep.tuning import run_trials
-
-                    table = Table(study, workers)
-                    recorder = run_trials(study, table, stop)
-                    table.clear()
-                with suppress(OSError):  # it is made from the rest, and only lists need it
-                    study.write_summary({name: each.share for name, each in importance_of(study).items()})
-                if recorder.trouble:
-                    return fail(f"{recorder.trouble}; {_again(arguments, study)}")
-                if recorder.lost:
-                    numbers = ", ".join(map(str, sorted(recorder.lost)))
-                    fail(f"workers of trial {numbers} died again and again; {_again(arguments, study)}")
-    except (*REFUSED, ConnectionError) as error:
+                code = _run(arguments, study, stop)
+    except REFUSED as error:
         return fail(reason(error))
     _tell(study)
     if len(study.trials) < study.plan.trials:
         print(_again(arguments, study))
-    return exit_code(stop) or int(bool(recorder.lost) if "recorder" in locals() else 0)
+    return exit_code(stop) or code
+
+
+def _run(arguments: argparse.Namespace, study: Study, stop: list[int]) -> int:
+    """Run the trials that a study has left; return the exit code: that of a failure if some could not be made."""
+    from ai.sweep.cluster import joined
+    from ai.sweep.report import importance_of
+
+    with joined(arguments.address, arguments.workers) as workers:
+        from ai.sweep.table import Table
+        from ai.sweep.tuning import run_trials
+
+        table = Table(study, workers)
+        recorder = run_trials(study, table, stop)
+        table.clear()
+    with suppress(OSError):  # it is made from the rest, and only lists need it
+        study.write_summary({name: each.share for name, each in importance_of(study).items()})
+    if recorder.trouble:
+        return fail(recorder.trouble)
+    if recorder.lost:
+        return fail(f"workers of trials died again and again: {', '.join(map(str, sorted(recorder.lost)))}")
+    return 0
 
 
 def _again(arguments: argparse.Namespace, study: Study) -> str:

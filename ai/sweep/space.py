@@ -46,7 +46,7 @@ class Dimension:
         if self.choices:
             return self.choices.index(value) / max(1, len(self.choices) - 1)
         low, high, at = map(math.log, (self.low, self.high, value)) if self.log else (self.low, self.high, value)
-        return (at - low) / (high - low) if high > low else 0.0
+        return min(1.0, max(0.0, (at - low) / (high - low))) if high > low else 0.0
 
     def at(self, place: float) -> Any:
         """Return the value at a place from 0 to 1."""

@@ -8,10 +8,15 @@ import numpy as np
 import pytest
 
 from ai.agent.storage import LAST
+from ai.digits.checkpoints import save_digit_run
+from ai.digits.config import DIGIT_PRESETS
+from ai.digits.training import DigitTraining
 from ai.nn.files import read_arrays
 from ai.sweep import study as study_module
+from ai.sweep.plan import Plan
 from ai.sweep.report import report, told
 from ai.sweep.runs import AgentRun
+from ai.sweep.space import knob_space
 from ai.sweep.study import Study, StudyError, find
 from ai.sweep.trial import Asked, Trial, archive, unpack
 from main import main
@@ -156,3 +161,21 @@ def test_an_archive_holds_a_folder(tmp_path):
 def test_a_name_is_found_among_the_users_studies_and_a_path_where_it_leads(tmp_path):
     assert find("mine", tmp_path) == tmp_path / "studies" / "mine"
     assert str(find("./mine", tmp_path)) == "mine"
+
+
+def test_a_trial_of_digits_is_that_of_train_digits(tmp_path):
+    config = DIGIT_PRESETS["classic"].changed(hidden=(8,), batch_size=5000, epochs=1, augmentation=0.0)
+    plan = Plan(
+        "digits", json.loads(json.dumps(config.to_json())),
+        {name: each.to_json() for name, each in knob_space(config, ["learning_rate"]).items()}, (3,), 1, 1,
+        "accuracy", "worst", "random", False, 1,
+    )  # fmt: skip
+    result, runs = run_alone(plan, Asked(0, {"learning_rate": 0.01}))
+    training = DigitTraining(config.changed(learning_rate=0.01), 3)
+    while not training.done:
+        training.advance()
+    save_digit_run(training, tmp_path / "alone", final=True)
+    unpack(runs, tmp_path / "swept")
+    assert networks_in(tmp_path / "alone") == networks_in(tmp_path / "swept" / "seed-3")
+    assert result.value == training.best
+    assert result.best_seed.figures["test"] > 0.1

@@ -161,6 +161,16 @@ def test_a_population_on_two_nodes_is_what_it_is_alone(nodes, tmp_path):
     assert any(trial.parent is not None for trial in Study.load(folder).trials.values())
 
 
+def test_any_function_is_called_for_many_items_and_each_answer_finds_its_place(nodes):
+    program = f"""
+from ai.sweep.cluster import each
+from ai.sweep.table import duration
+print(sorted(each(duration, [1.0, 300.0, 8000.0], {nodes.address!r})))
+"""
+    done = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.stdout.strip() == "[(0, '1 s'), (1, '5 min'), (2, '2 h 13 min')]", done.stderr
+
+
 def test_without_an_address_nothing_listens_but_on_this_machine(tmp_path):
     folder = tmp_path / "study"
     with sweep(folder, *NEW, "--trials", "2", "--decisions", "400", "--workers", "1", "--stop-early") as driver:
