@@ -22,7 +22,11 @@ LATE = {
     "ai.sweep.cluster": {"ray"},
 }
 # What is there for the users of an extra alone.
-EXTRA = {"ai.gym.lander": {"gymnasium"}, "ai.sweep.tuning": {"ray", "optuna"}}
+EXTRA = {
+    "ai.gym.lander": {"gymnasium"},
+    "ai.sweep.searches": {"ray", "optuna"},
+    "ai.sweep.tuning": {"ray", "optuna"},
+}
 # The floors inside `ai` and `game`, from the bottom up: a package imports from itself and from those before it.
 AI_FLOORS = (
     "ai.nn", "ai.common", "ai.lander", "ai.flights", "ai.agent", "ai.training", "ai.copilot", "ai.digits", "ai.gym",

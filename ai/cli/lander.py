@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from ai.training.task import Score
 
 DECISIONS: Final = (1, 10**12)
-FLIGHTS: Final = (1, 10**9)
+FLIGHTS: Final = (1, 10**8)
 
 
 def add_commands(commands: Any) -> None:

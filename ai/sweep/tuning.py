@@ -13,7 +13,6 @@ import os
 import tempfile
 import warnings
 from collections.abc import Sequence
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, Final
 
@@ -22,22 +21,19 @@ import ray
 from ray import tune
 from ray.tune.schedulers import ASHAScheduler, FIFOScheduler, TrialScheduler
 from ray.tune.search import Searcher
-from ray.tune.search.optuna import OptunaSearch
 
 from ai.nn.files import brief
 from ai.nn.schema import read_as
 from ai.sweep.metric import Metric
-from ai.sweep.plan import POPULATION, RANDOM, Plan
-from ai.sweep.population import proposed
+from ai.sweep.plan import POPULATION, Plan
 from ai.sweep.results import FinishedTrial
-from ai.sweep.space import Dimension
+from ai.sweep.searches import AT, VALUE, PopulationSearch, StudySearch
 from ai.sweep.study import Study
 from ai.sweep.table import Table
 from ai.sweep.trial import Asked, Trial, fingerprint
 
 TRIES: Final = 4  # of a trial whose worker dies; after that it waits for --resume
 REDUCTION: Final = 3  # ASHA: one trial in three goes on at each rung
-_VALUE, _AT = "value", "at"
 
 
 class OtherCodeError(RuntimeError):
@@ -92,101 +88,7 @@ class SweepTrial(tune.Trainable):
 def _report(result: FinishedTrial, finished: bool = False, runs: bytes = b"") -> dict[str, Any]:
     value = math.nan if result.value is None else result.value
     told = json.dumps(result.to_json())
-    return {_VALUE: value, _AT: result.at, "told": told, "runs": runs, "finished": finished, "done": finished}
-
-
-class StudySearch(OptunaSearch):
-    """Optuna's search that knows the trials a study has: finished ones as evidence, interrupted ones to do first."""
-
-    def __init__(self, study: Study, shared: dict[str, Any]) -> None:
-        self._study, self._shared, self._space_of = study, shared, study.plan.dimensions()
-        self._left = sorted(study.begun)
-        self._next = study.next_number
-        # Another seed each time, or a study that goes on would propose once more what it began with.
-        seed = study.plan.seed * 1_000_003 + self._next & 0x7FFFFFFF
-        with warnings.catch_warnings(action="ignore", category=optuna.exceptions.ExperimentalWarning):
-            sampler = (
-                optuna.samplers.RandomSampler(seed=seed)
-                if study.plan.search == RANDOM
-                else optuna.samplers.TPESampler(seed=seed, constant_liar=True)
-            )
-        super().__init__(
-            space={name: _distribution(dimension) for name, dimension in self._space_of.items()},
-            metric=_VALUE,
-            mode=study.metric.mode,
-            points_to_evaluate=[self._encoded(study.begun[number].params) for number in self._left],
-            sampler=sampler,
-        )
-        for trial in study.trials.values():
-            self.add_evaluated_point(self._encoded(trial.params), trial.value or 0.0, error=trial.value is None)
-
-    def suggest(self, trial_id: str) -> dict[str, Any] | None:
-        """Return what a new trial is asked to do."""
-        given: dict[str, Any] | None = super().suggest(trial_id)
-        if given is None:
-            return None
-        params = {name: _decoded(self._space_of[name], value) for name, value in given.items()}
-        if self._left:
-            number = self._left.pop(0)
-        else:
-            number, self._next = self._next, self._next + 1
-        self._study.begin(number, params)
-        return _config(Asked(number, params), self._shared)
-
-    def on_trial_result(self, trial_id: str, result: dict[str, Any]) -> None:
-        """Pass over what is measured on the way; only the end counts as evidence."""
-
-    def on_trial_complete(self, trial_id: str, result: dict[str, Any] | None = None, error: bool = False) -> None:
-        """Learn from a trial that is over."""
-        known = result is not None and not math.isnan(result.get(_VALUE, math.nan))
-        super().on_trial_complete(trial_id, result if known else None, error=error or not known)
-
-    def save(self, checkpoint_path: str) -> None:
-        """Save nothing: the study's folder has it all."""
-        Path(checkpoint_path).touch()
-
-    def _encoded(self, params: dict[str, Any]) -> dict[str, Any]:
-        return {name: _plain(self._space_of[name], value) for name, value in params.items()}
-
-
-class PopulationSearch(Searcher):
-    """Members of a population, generation by generation."""
-
-    def __init__(self, study: Study, shared: dict[str, Any]) -> None:
-        super().__init__(metric=_VALUE, mode=study.metric.mode)
-        self._study, self._shared = study, shared
-        self._left = [number for number in range(study.plan.trials) if number not in study.trials]
-        self._lost = False
-        self._parents: dict[int, Any] = {}
-
-    def suggest(self, trial_id: str) -> dict[str, Any] | str | None:
-        """Return what the next member is asked to do; None while the generation before it is not whole."""
-        if not self._left or self._lost:
-            return str(Searcher.FINISHED)
-        asked = proposed(self._study, self._left[0])
-        if asked is None:
-            return None
-        self._left.pop(0)
-        self._study.begin(asked.number, asked.params, asked.parent.number if asked.parent else None)
-        runs = self._runs(asked.parent.number) if asked.parent else None
-        return _config(asked, self._shared, runs)
-
-    def _runs(self, number: int) -> Any:
-        """Return a reference to the runs of a finished trial, which is put into Ray's store once."""
-        if number not in self._parents:
-            self._parents[number] = ray.put(self._study.runs_of(number))
-        return self._parents[number]
-
-    def on_trial_complete(self, trial_id: str, result: dict[str, Any] | None = None, error: bool = False) -> None:
-        """Note a member that is lost: the next generation cannot begin without it."""
-        self._lost = self._lost or error
-
-    def save(self, checkpoint_path: str) -> None:
-        """Save nothing: the study's folder has it all."""
-        Path(checkpoint_path).touch()
-
-    def restore(self, checkpoint_path: str) -> None:
-        """Restore nothing."""
+    return {VALUE: value, AT: result.at, "told": told, "runs": runs, "finished": finished, "done": finished}
 
 
 class Recorder(tune.Callback):
@@ -302,8 +204,8 @@ def _scheduler(study: Study) -> TrialScheduler:
     if not plan.stop_early:
         return FIFOScheduler()
     scheduler = ASHAScheduler(
-        time_attr=_AT,
-        metric=_VALUE,
+        time_attr=AT,
+        metric=VALUE,
         mode=study.metric.mode,
         max_t=plan.budget,
         grace_period=min(plan.every, plan.budget),
@@ -314,7 +216,7 @@ def _scheduler(study: Study) -> TrialScheduler:
         earlier: Any = SimpleNamespace(trial_id=f"earlier-{trial.number}")
         scheduler.on_trial_add(None, earlier)
         for at, value in progress_of(trial, plan):
-            scheduler.on_trial_result(None, earlier, {_AT: at, _VALUE: value})
+            scheduler.on_trial_result(None, earlier, {AT: at, VALUE: value})
     return scheduler
 
 
@@ -326,29 +228,6 @@ def progress_of(trial: FinishedTrial, plan: Plan) -> list[tuple[int, float]]:
         if (value := metric.judged(values, plan.judge)) is not None:
             told.append((min(plan.budget, (index + 1) * plan.every), value))
     return told
-
-
-def _config(asked: Asked, shared: dict[str, Any], runs: Any = None) -> dict[str, Any]:
-    """Return what Tune hands to a worker; as text, which Tune does not look into."""
-    parent = asked.parent.to_json() if asked.parent else None
-    told = {"number": asked.number, "params": asked.params, "parent": parent}
-    return {**shared, "asked": json.dumps(told), "runs": runs}
-
-
-def _distribution(dimension: Dimension) -> optuna.distributions.BaseDistribution:
-    if dimension.choices:
-        return optuna.distributions.CategoricalDistribution([json.dumps(value) for value in dimension.choices])
-    if dimension.whole:
-        return optuna.distributions.IntDistribution(int(dimension.low), int(dimension.high), log=dimension.log)
-    return optuna.distributions.FloatDistribution(dimension.low, dimension.high, log=dimension.log)
-
-
-def _plain(dimension: Dimension, value: Any) -> Any:
-    return json.dumps(value) if dimension.choices else value
-
-
-def _decoded(dimension: Dimension, value: Any) -> Any:
-    return json.loads(value) if dimension.choices else value
 
 
 assert os.environ.get("RAY_USAGE_STATS_ENABLED") == "0", "ai.sweep.cluster comes first: it keeps Ray from reporting"
