@@ -1,6 +1,6 @@
 """What each part of the modern recipe is worth: the same training with one thing changed at a time.
 
-    python -m benchmarks.ablations [--seeds 3] [--decisions 250000] [--only NAME ...]
+    python -m benchmarks.ablations [--seeds 3] [--decisions 250000] [--only NAME ...] [--workers N] [--address A]
 
 Every variant trains on the same seeds for the same number of decisions, so that a busy machine changes
 nothing but the seconds. Each is flown greedily from 300 random spawns every 25,000 decisions; the table gives the
@@ -24,6 +24,7 @@ import numpy as np
 
 from ai.agent.config import PRESETS, Config
 from ai.lander.rewards import RewardWeights
+from ai.sweep.cluster import each
 from ai.training.loop import VALIDATION_SEED, Training, evaluate
 
 EVERY = 25_000
@@ -71,6 +72,12 @@ def curve(config: Config, seed: int, decisions: int) -> tuple[list[float], float
     return landed, spent
 
 
+def trained(asked: tuple[str, int, int]) -> tuple[list[float], float]:
+    """The curve of a variant, a seed and a number of decisions."""
+    name, seed, decisions = asked
+    return curve(replace(PRESETS["modern"], **VARIANTS[name]), seed, decisions)
+
+
 def first(landed: list[float], share: float) -> float:
     """Thousands of decisions until `share` first landed; infinite if never."""
     reached = [index for index, value in enumerate(landed) if value >= share]
@@ -87,6 +94,8 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--decisions", type=int, default=250_000)
     parser.add_argument("--only", nargs="+", choices=VARIANTS, default=list(VARIANTS))
+    parser.add_argument("--workers", type=int, default=1)
+    parser.add_argument("--address")
     arguments = parser.parse_args()
     print(
         f"Python {platform.python_version()}, NumPy {np.__version__}; {arguments.seeds} seeds,"
@@ -94,9 +103,10 @@ def main() -> None:
     )
     print("| | 95 % after | 99 % after | mean of the curve | at the end | worst seed | CPU s |")
     print("|---|---|---|---|---|---|---|")
+    asked = [(name, seed, arguments.decisions) for name in arguments.only for seed in range(arguments.seeds)]
+    done = {asked[index]: found for index, found in each(trained, asked, arguments.address, arguments.workers)}
     for name in arguments.only:
-        config = replace(PRESETS["modern"], **VARIANTS[name])
-        runs = [curve(config, seed, arguments.decisions) for seed in range(arguments.seeds)]
+        runs = [done[name, seed, arguments.decisions] for seed in range(arguments.seeds)]
         curves = [landed for landed, _ in runs]
         final = [landed[-1] for landed in curves]
         print(

@@ -13,13 +13,13 @@ import os
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is imported, or it has no effect
 
 import argparse
-import math
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
 from ai.agent.agent import DeepQAgent
+from ai.common.intervals import wilson
 from ai.lander.anywhere import AnywhereEnv
 from ai.lander.conditions import Conditions
 from ai.lander.environment import LanderEnv, Outcome
@@ -57,18 +57,10 @@ WORLDS: dict[str, Callable[[int, int], LanderEnv]] = {
 }
 
 
-def interval(share: float, count: int) -> tuple[float, float]:
-    """Return the 95% interval of a share of `count` (Wilson 1927)."""
-    z = 1.96
-    middle = (share + z * z / (2 * count)) / (1 + z * z / count)
-    reach = z / (1 + z * z / count) * math.sqrt(share * (1 - share) / count + z * z / (4 * count * count))
-    return max(0.0, middle - reach), min(1.0, middle + reach)
-
-
 def shown(landed: np.ndarray) -> str:
     """Return the share that landed and its interval."""
     share = float(landed.mean())
-    low, high = interval(share, len(landed))
+    low, high = wilson(share, len(landed))
     return f"{share:.1%} ({low:.1%} to {high:.1%})"
 
 

@@ -17,11 +17,11 @@ import numpy as np
 
 from ai.agent.agent import DeepQAgent
 from ai.common.environment import Bools, Doubles, Ints
+from ai.common.intervals import wilson
 from ai.copilot.alone import ASSISTS, CALM_SECONDS, LandingAlone
 from ai.copilot.copilot import CoPilot, Mode
 from ai.copilot.critic import SafetyCritic
 from ai.copilot.hands import ClumsyHands, Faults, OneOrOther, any_hands
-from ai.copilot.measurement import wilson
 from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.pilots import Gains, ScriptedPilot
 

@@ -33,6 +33,7 @@ from ai.agent.config import PRESETS, Config
 from ai.cli.lander import configured
 from ai.common.environment import Floats, Ints
 from ai.lander.pilots import Pilot
+from ai.sweep.cluster import each
 from ai.training.lander_task import Evaluation
 from ai.training.loop import TEST_SEED, VALIDATION_SEED, Training, evaluate
 
@@ -120,6 +121,12 @@ def ours(seed: int, config: Config = PRESETS["modern"]) -> Iterator[Checkpoint]:
         yield spent, training.agent.decisions, training.agent, training.best_agent
 
 
+def raced(asked: tuple[int, Config, float]) -> tuple[list[Kept | None], float]:
+    """Race one of ours, of a seed and settings, for so many seconds."""
+    seed, config, seconds = asked
+    return race(ours(seed, config), seconds)
+
+
 class Flyer:
     """Lets stable-baselines3's network fly where ours do."""
 
@@ -177,7 +184,9 @@ def compare(arguments: argparse.Namespace, config: Config) -> None:
     rival = find_spec("stable_baselines3") is not None and arguments.rival_seeds > 0
     heads = " | ".join(f"{share:.0%} landed after: median (fastest; slowest)" for share in SHARES)
     print(f"| | {heads} | last seen, each seed |\n|---|---|---|---|")
-    runs = [race(ours(seed, config), arguments.seconds) for seed in range(arguments.seeds)]
+    asked = [(seed, config, arguments.seconds) for seed in range(arguments.seeds)]
+    done = dict(each(raced, asked, arguments.address, arguments.workers))
+    runs = [done[seed] for seed in range(arguments.seeds)]
     mine = row(f"ours, {arguments.preset}", runs, arguments.seconds)
     if not rival:
         print('\nto compare with stable-baselines3: pip install "tranquility[bench]"')
@@ -216,6 +225,8 @@ def main() -> None:
     parser.add_argument("--runs", type=float, nargs="+", metavar="SECONDS")
     parser.add_argument("--preset", default="modern", choices=PRESETS)
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes")
+    parser.add_argument("--workers", type=int, default=1, help="seeds of ours at once")
+    parser.add_argument("--address")
     arguments = parser.parse_args()
     config = configured(PRESETS[arguments.preset], arguments.changes)
     versions = [f"Python {platform.python_version()}", f"NumPy {np.__version__}"]

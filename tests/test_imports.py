@@ -16,14 +16,21 @@ PYGAME = {"pygame", "pygame_gui"}
 LATE = {
     "ai.cli.training_run": {"tqdm"},
     "ai.cli.copilot": {"tqdm"},
+    "ai.cli.lander": {"tqdm"},
     "ai.training.gym_task": {"gymnasium"},
+    "ai.common.places": {"platformdirs"},
+    "ai.sweep.cluster": {"ray"},
 }
 # What is there for the users of an extra alone.
-EXTRA = {"ai.gym.lander": {"gymnasium"}}
+EXTRA = {
+    "ai.gym.lander": {"gymnasium"},
+    "ai.sweep.searches": {"ray", "optuna"},
+    "ai.sweep.tuning": {"ray", "optuna"},
+}
 # The floors inside `ai` and `game`, from the bottom up: a package imports from itself and from those before it.
 AI_FLOORS = (
     "ai.nn", "ai.common", "ai.lander", "ai.flights", "ai.agent", "ai.training", "ai.copilot", "ai.digits", "ai.gym",
-    "ai.cli",
+    "ai.sweep", "ai.cli",
 )  # fmt: skip
 GAME_FLOORS = (
     "game.core", "game.input", "game.audio", "game.drawing", "game.ui", "game.charts", "game.flight", "game.training",

@@ -24,6 +24,7 @@ LONGEST: Final = 400  # letters of a printed line: text from a file or an argume
 SEEDS: Final = (0, 2**63 - 1)
 SECONDS: Final = (0.001, 1e9)
 EPISODES: Final = (1, 50_000)  # all are flown at once, in 5 KB each
+WORKERS: Final = (1, 1000)
 
 # Errors of reading a path or settings that the user has named. A loop of links and JSON that is nested too deeply
 # are RuntimeErrors.
@@ -36,6 +37,12 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Say what is wrong with the arguments, and end the program with exit code 2."""
         self.exit(2, f"{self.prog}: {readable(' '.join(message.split()))} (see {self.prog} --help)\n")
+
+
+def add_where(command: argparse.ArgumentParser, workers: str) -> None:
+    """Add the options that say where the work is done; both need the extra `sweep`."""
+    command.add_argument("--address", metavar="HOST:PORT", help="join the Ray cluster there; auto for the one around")
+    command.add_argument("--workers", type=int, metavar="N", help=workers)
 
 
 def fail(message: str) -> int:

@@ -12,6 +12,8 @@ from ai.cli.command_line import (
     EPISODES,
     REFUSED,
     SEEDS,
+    WORKERS,
+    add_where,
     exit_code,
     fail,
     folder,
@@ -48,6 +50,7 @@ def add_commands(commands: Any) -> None:
         help="whom the imperfect pilots are made of (default: the same network)",
     )
     table.add_argument("--json", action="store_true", help="print one JSON object")
+    add_where(table, "processes at once (default: this one alone)")
     table.set_defaults(run=_table)
 
 
@@ -99,23 +102,22 @@ def _table(arguments: argparse.Namespace) -> int:
     from tqdm import tqdm
 
     from ai.agent.config import LANDER
-    from ai.copilot.measurement import INTENT_PILOTS, ONE_PAD, PILOTS, THREE_PADS, one_pad, three_pads
-    from ai.lander.pilots import Pilot, ScriptedPilot
+    from ai.sweep.cluster import each
+    from ai.sweep.copilot_table import fly, parts, tables_of
 
-    if problem := out_of_range(arguments, episodes=EPISODES, seed=SEEDS):
+    if problem := out_of_range(arguments, episodes=EPISODES, seed=SEEDS, workers=WORKERS):
         return fail(problem)
+    done: dict[int, list[AssistedFlights]] = {}
     try:
-        agent = _lander(arguments.model, (LANDER,))
+        _lander(arguments.model, (LANDER,))
+        asked = parts(arguments.model, arguments.good == "scripted", arguments.episodes, arguments.seed)
+        with tqdm(total=len(asked), desc="flying", unit="part", disable=None) as bar:
+            for index, rows in each(fly, asked, arguments.address, arguments.workers or 1):
+                done[index] = rows
+                bar.update()
     except REFUSED as error:
         return fail(reason(error))
-    good: Pilot = ScriptedPilot() if arguments.good == "scripted" else agent
-    tables: dict[str, list[AssistedFlights]] = {"one_pad": [], "three_pads": []}
-    rows = len(PILOTS) * len(ONE_PAD) + 1 + len(INTENT_PILOTS) * len(THREE_PADS)
-    with tqdm(total=rows, desc="flying", unit="row", disable=None) as bar:
-        for name, fly in (("one_pad", one_pad), ("three_pads", three_pads)):
-            for row in fly(agent, good, arguments.episodes, arguments.seed):
-                tables[name].append(row)
-                bar.update()
+    tables = tables_of(asked, done)
     if arguments.json:
         told = {name: [row.to_json() for row in table] for name, table in tables.items()}
         settings = {"good": arguments.good, "seed": arguments.seed, "episodes": arguments.episodes}

@@ -66,7 +66,7 @@ def _train(arguments: argparse.Namespace) -> int:
         return f"{described['test']:.2%} of MNIST's test images read right"
 
     return train(arguments, RunCommand(
-        KIND, partial(_config, arguments), DigitTraining, resume_digit_run, used_up, partial(_advance, seconds),
+        KIND, partial(config_of, arguments), DigitTraining, resume_digit_run, used_up, partial(_advance, seconds),
         save_digit_run, verdict,
     ))  # fmt: skip
 
@@ -121,7 +121,7 @@ def _evaluate(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _config(arguments: argparse.Namespace, begun: DigitConfig | None = None) -> DigitConfig:
+def config_of(arguments: argparse.Namespace, begun: DigitConfig | None = None) -> DigitConfig:
     """Return the preset, or the settings a run was begun with, with the changes asked for.
 
     Raises ValueError for a change that makes no sense.

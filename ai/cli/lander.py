@@ -12,7 +12,19 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from ai.cli.command_line import EPISODES, REFUSED, SECONDS, SEEDS, configured, fail, folder, out_of_range, reason
+from ai.cli.command_line import (
+    EPISODES,
+    REFUSED,
+    SECONDS,
+    SEEDS,
+    WORKERS,
+    add_where,
+    configured,
+    fail,
+    folder,
+    out_of_range,
+    reason,
+)
 from ai.cli.training_run import RunCommand, add_run_options, show_progress, train
 
 if TYPE_CHECKING:
@@ -22,6 +34,7 @@ if TYPE_CHECKING:
     from ai.training.task import Score
 
 DECISIONS: Final = (1, 10**12)
+FLIGHTS: Final = (1, 10**8)
 
 
 def add_commands(commands: Any) -> None:
@@ -54,6 +67,7 @@ def add_commands(commands: Any) -> None:
     evaluate.add_argument("--seed", type=int, default=0)
     evaluate.add_argument("--spawn", help="random or hard (default: random)")
     evaluate.add_argument("--json", action="store_true", help="print one JSON object")
+    add_where(evaluate, "processes at once (default: this one alone)")
     evaluate.set_defaults(run=_evaluate)
 
 
@@ -81,8 +95,8 @@ def _train(arguments: argparse.Namespace) -> int:
         return training
 
     return train(arguments, RunCommand(
-        KIND, partial(_config, arguments), begin, resume, partial(_used_up, clock), partial(_advance, clock), save_run,
-        lambda training, _: str(training.best),
+        KIND, partial(config_of, arguments), begin, resume, partial(_used_up, clock), partial(_advance, clock),
+        save_run, lambda training, _: str(training.best),
     ))  # fmt: skip
 
 
@@ -116,12 +130,12 @@ def _advance(clock: TrainingClock, training: Training, output: Path, stop: list[
 def _evaluate(arguments: argparse.Namespace) -> int:
     from ai.agent.agent import DeepQAgent
     from ai.agent.config import LANDER
+    from ai.common.intervals import wilson
     from ai.lander.spawns import SPAWNS
-    from ai.training.loop import evaluate
     from ai.training.tasks import task_of
 
     spawn, episodes = "random" if arguments.spawn is None else arguments.spawn, arguments.episodes
-    if problem := out_of_range(arguments, episodes=EPISODES, seed=SEEDS):
+    if problem := out_of_range(arguments, episodes=FLIGHTS, seed=SEEDS, workers=WORKERS):
         return fail(problem)
     if spawn not in SPAWNS:
         return fail(f"--spawn is one of {', '.join(SPAWNS)}, not {spawn}")
@@ -133,18 +147,44 @@ def _evaluate(arguments: argparse.Namespace) -> int:
     except REFUSED as error:
         return fail(reason(error))
     episodes = episodes or task.test_episodes
+    spread = arguments.address is not None or arguments.workers is not None
     if agent.config.env == LANDER:
-        score: Score = evaluate(agent, episodes, arguments.seed, spawn, agent.config.frame_skip)
+        try:
+            score: Score = _flown(arguments, episodes, spawn, agent.config.frame_skip)
+        except REFUSED as error:
+            return fail(reason(error))
+    elif spread or episodes > EPISODES[1]:
+        return fail(f"--address, --workers and more than {EPISODES[1]:,} episodes are for the lander on the moon")
     elif arguments.spawn is None:
         score = task.evaluate(agent, episodes, arguments.seed)
     else:
         return fail(f"--spawn is for the lander on the moon; this network is for {agent.config.env}")
+    told: dict[str, Any] = score.to_json()
+    if score.success is not None:
+        told["success_interval"] = wilson(score.success, score.episodes)
     if arguments.json:
-        print(json.dumps(score.to_json(), indent=2))
+        print(json.dumps(told, indent=2))
         return 0
-    for name, value in score.to_json().items():
-        print(f"{name.replace('_', ' '):14} {_shown(name, value)}")
+    low, high = told.pop("success_interval", (0.0, 0.0))
+    for name, value in told.items():
+        interval = f" (95%: {low:.2%} to {high:.2%})" if name == "success" and value is not None else ""
+        print(f"{name.replace('_', ' '):14} {_shown(name, value)}{interval}")
     return 0
+
+
+def _flown(arguments: argparse.Namespace, episodes: int, spawn: str, frame_skip: int) -> Score:
+    """Fly the flights, in shards; on several processes if that is asked for. Raises what `ai.sweep.cluster` raises."""
+    from tqdm import tqdm
+
+    from ai.sweep.shards import flown_shards, shards
+
+    parts = shards(arguments.model, episodes, arguments.seed, spawn, frame_skip)
+    with tqdm(total=episodes, desc="flying", unit="flight", disable=True if len(parts) == 1 else None) as bar:
+        for sums in flown_shards(parts, arguments.address, arguments.workers or 1):
+            if sums is not None:
+                return sums.evaluation()
+            bar.update(episodes / len(parts))
+    raise AssertionError("an evaluation has one part or more")
 
 
 def _shown(name: str, value: float | None) -> str:
@@ -155,7 +195,7 @@ def _shown(name: str, value: float | None) -> str:
     return str(value) if isinstance(value, int) else f"{value:.2f}"
 
 
-def _config(arguments: argparse.Namespace, begun: Config | None = None) -> Config:
+def config_of(arguments: argparse.Namespace, begun: Config | None = None) -> Config:
     """Return the preset, or the settings a run was begun with, with the changes asked for.
 
     Raises ValueError for a change that makes no sense.

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, fields, replace
-from math import sqrt
 from typing import Any, Final
 
 import numpy as np
 
 from ai.agent.agent import DeepQAgent
 from ai.common.environment import Doubles
+from ai.common.intervals import wilson
 from ai.copilot.copilot import CoPilot, Mode
 from ai.copilot.hands import FAMILIES, UNSEEN, MakePilot
 from ai.copilot.oracle import Oracle
@@ -71,13 +71,6 @@ class AssistedFlights:
         return asdict(self) | {"success_interval": self.success_interval}
 
 
-def wilson(share: float, count: int, z: float = 1.96) -> tuple[float, float]:
-    """Return the interval of a share that was found in `count` trials; `z` standard deviations to each side."""
-    middle = (share + z * z / (2 * count)) / (1 + z * z / count)
-    half = z * sqrt(share * (1 - share) / count + z * z / (4 * count * count)) / (1 + z * z / count)
-    return max(0.0, middle - half), min(1.0, middle + half)
-
-
 @dataclass(frozen=True)
 class AssistedPilot:
     """Pilot with the kind of help it gets."""
@@ -95,13 +88,20 @@ def one_pad(agent: DeepQAgent, good: Pilot, episodes: int, seed: int = 0) -> Ite
     `agent` is the co-pilot, `good` the pilot that some of the imperfect ones are made of. All fly from the same
     starts, and with the same mishaps, which follow from `seed`; the oracle's flights are fewer.
     """
-    for name in PILOTS:
-        fast = [help_ for help_ in ONE_PAD if help_[0] != ORACLE]
-        yield from _measure(_assisted_pilots(agent, good, [name], fast, episodes, seed), episodes, seed)
-        if len(fast) < len(ONE_PAD):
-            few = min(episodes, ORACLE_FLIGHTS)
-            yield from _measure(_assisted_pilots(agent, good, [name], [(ORACLE, 0.0)], few, seed), few, seed)
-    yield from _measure([AssistedPilot(COPILOT, agent)], episodes, seed)
+    for name in (*PILOTS, COPILOT):
+        yield from one_pad_rows(agent, good, name, episodes, seed)
+
+
+def one_pad_rows(agent: DeepQAgent, good: Pilot, name: str, episodes: int, seed: int) -> list[AssistedFlights]:
+    """Return the rows of one pilot of the table, or of COPILOT; they do not depend on the other pilots."""
+    if name == COPILOT:
+        return _measure([AssistedPilot(COPILOT, agent)], episodes, seed)
+    fast = [help_ for help_ in ONE_PAD if help_[0] != ORACLE]
+    rows = _measure(_assisted_pilots(agent, good, [name], fast, episodes, seed), episodes, seed)
+    if len(fast) < len(ONE_PAD):
+        few = min(episodes, ORACLE_FLIGHTS)
+        rows += _measure(_assisted_pilots(agent, good, [name], [(ORACLE, 0.0)], few, seed), few, seed)
+    return rows
 
 
 def three_pads(agent: DeepQAgent, good: Pilot, episodes: int, seed: int = 0) -> Iterator[AssistedFlights]:
@@ -109,13 +109,20 @@ def three_pads(agent: DeepQAgent, good: Pilot, episodes: int, seed: int = 0) -> 
 
     The flights are spread over several grounds, so `episodes` is rounded to a multiple of their number.
     """
-    parts = []
-    for ground in range(GROUNDS):
-        rng = np.random.default_rng([seed, ground])
-        start, each = int(rng.integers(2**31)), max(1, round(episodes / GROUNDS))
-        assisted = _assisted_pilots(agent, good, INTENT_PILOTS, THREE_PADS, each, start)
-        parts.append(_measure(assisted, each, start, hilly(rng)))
-    yield from (_mean(rows) for rows in zip(*parts, strict=True))
+    yield from mean_rows([three_pads_rows(agent, good, ground, episodes, seed) for ground in range(GROUNDS)])
+
+
+def three_pads_rows(agent: DeepQAgent, good: Pilot, ground: int, episodes: int, seed: int) -> list[AssistedFlights]:
+    """Return the rows of one of the grounds, with its part of the flights; they do not depend on the others."""
+    rng = np.random.default_rng([seed, ground])
+    start, each = int(rng.integers(2**31)), max(1, round(episodes / GROUNDS))
+    assisted = _assisted_pilots(agent, good, INTENT_PILOTS, THREE_PADS, each, start)
+    return _measure(assisted, each, start, hilly(rng))
+
+
+def mean_rows(parts: Sequence[Sequence[AssistedFlights]]) -> list[AssistedFlights]:
+    """Return the means of tables of the same rows and as many flights."""
+    return [_mean(rows) for rows in zip(*parts, strict=True)]
 
 
 def _assisted_pilots(

@@ -86,9 +86,49 @@ def trial(
 
 def flown(pilot: Pilot, env: LanderEnv) -> Generator[None, None, Evaluation]:
     """Evaluate a pilot on one new flight in each slot of `env`, one decision at a time."""
-    episodes = env.num_envs
+    return (yield from counted(pilot, env)).evaluation()
+
+
+@dataclass(frozen=True)
+class FlightSums:
+    """Counts and sums of a number of flights; those of two parts of all flights add up."""
+
+    outcomes: tuple[int, ...]  # flights by outcome
+    returns: float
+    landing_seconds: float
+    landing_fuel: float  # seconds of main engine, of the landings
+    switches: int  # engines that went on or off
+    seconds: float  # of all flights
+
+    def plus(self, other: FlightSums) -> FlightSums:
+        """Return the sums of both."""
+        outcomes = tuple(map(sum, zip(self.outcomes, other.outcomes, strict=True)))
+        return FlightSums(
+            outcomes, self.returns + other.returns, self.landing_seconds + other.landing_seconds,
+            self.landing_fuel + other.landing_fuel, self.switches + other.switches, self.seconds + other.seconds,
+        )  # fmt: skip
+
+    def evaluation(self) -> Evaluation:
+        """Return the means."""
+        episodes, landed = sum(self.outcomes), self.outcomes[Outcome.LANDED]
+        share = {outcome: self.outcomes[outcome] / episodes for outcome in Outcome}
+        return Evaluation(
+            episodes,
+            share[Outcome.LANDED],
+            share[Outcome.CRASHED],
+            share[Outcome.OUT_OF_BOUNDS],
+            share[Outcome.TIMED_OUT],
+            self.returns / episodes,
+            self.landing_seconds / landed if landed else None,
+            self.landing_fuel / landed if landed else None,
+            self.switches / self.seconds,
+        )
+
+
+def counted(pilot: Pilot, env: LanderEnv) -> Generator[None, None, FlightSums]:
+    """Fly one new flight in each slot of `env`, one decision at a time, and return what came of them."""
     observation = env.reset()
-    returns: Doubles = np.zeros(episodes)
+    returns: Doubles = np.zeros(env.num_envs)
     switches = 0
     while (flying := env.outcome == Outcome.FLYING).any():
         held = env.actions
@@ -99,18 +139,14 @@ def flown(pilot: Pilot, env: LanderEnv) -> Generator[None, None, Evaluation]:
         observation = result.observation
         returns += result.reward
         yield
-    share = {outcome: float((env.outcome == outcome).mean()) for outcome in Outcome}
     landed = env.outcome == Outcome.LANDED
-    return Evaluation(
-        episodes,
-        share[Outcome.LANDED],
-        share[Outcome.CRASHED],
-        share[Outcome.OUT_OF_BOUNDS],
-        share[Outcome.TIMED_OUT],
-        float(returns.mean()),
-        float(env.time[landed].mean()) if landed.any() else None,
-        float(env.fuel[landed].mean()) if landed.any() else None,
-        switches / float(env.time.sum()),
+    return FlightSums(
+        tuple(int((env.outcome == outcome).sum()) for outcome in Outcome),
+        float(returns.sum()),
+        float(env.time[landed].sum()),
+        float(env.fuel[landed].sum()),
+        switches,
+        float(env.time.sum()),
     )
 
 

@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 from typing import Final
 
-import platformdirs
+from ai.common import places
 
 _ROOT: Final = Path(__file__).resolve().parents[2]
 ASSETS_DIR: Final = _ROOT / "assets"
@@ -16,4 +16,4 @@ PACKED: Final = bool(getattr(sys, "frozen", False))  # whether this is the app, 
 
 def user_dir() -> Path:
     """Return the player's own folder for settings, scores, networks and screenshots."""
-    return Path(platformdirs.user_data_dir("tranquility", appauthor=False))
+    return places.user_dir()

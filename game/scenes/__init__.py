@@ -22,7 +22,7 @@ ROUTES: Final = {
     "bindings": "bindings.BindingsScene", "choices": "choices.ChoicesScene", "assists": "assists.AssistsScene",
     "pause": "pause.PauseScene",
     "learn": "learn.LearnScene", "chapter": "chapter.ChapterScene", "lesson": "lesson.LessonScene",
-    "error_screen": "error_screen.ErrorScene",
+    "error_screen": "error_screen.ErrorScene", "study": "study.StudyScene",
 }  # fmt: skip
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -14,13 +15,14 @@ from game.core.scene import Pop, Transition, push
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import MARGIN, TITLE, VIEW_SIZE
 from game.flight import networks
+from game.flight.study_runs import studies
 from game.input.controls import Command
 from game.panels.run_page import draw_run, row, suggestion
 from game.training.library import Library, SavedRun, read_run
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.entry import Entry
-from game.ui.list_scene import VERB_LINE, ListLayout, ListScene
+from game.ui.list_scene import VERB_LINE, VERB_SIZE, ListLayout, ListScene
 from game.ui.listing import Row
 from game.ui.widget import OnPress, Widget
 from game.ui.widgets import TextButton
@@ -88,22 +90,28 @@ class NetworksScene(ListScene[SavedRun]):
     def _owns(self, run: SavedRun) -> bool:
         return run.folder.parent == self._library.folder
 
+    def _is_shipped(self, run: SavedRun) -> bool:
+        return run.folder.is_relative_to(self.context.models_dir)
+
     def _identity(self, run: SavedRun) -> Path:
         return run.folder
 
     def _row(self, run: SavedRun) -> Row:
-        return row(run, own=self._owns(run))
+        return row(run, own=not self._is_shipped(run))
 
     def _reload(self, wanted: Path | None = None) -> None:
         """Reload from disk, and choose a run, by default the one chosen before or now in its place in the list."""
         context = self.context
         own = self._library.runs()
         known = networks.folders(context.models_dir, context.user_dir)
-        shipped = [read_run(folder, name) for name, folder in known.items() if folder.parent != self._library.folder]
+        others = [read_run(folder, name) for name, folder in known.items() if folder.parent != self._library.folder]
+        # What a study has found stays as it is: to train it further, there is the command.
+        shipped = [replace(run, resumable=run.resumable and self._is_shipped(run)) for run in others]
         self._names = {folder: name for name, folder in known.items()}
         self._line = self._library.problem or (
             texts.RUNS_PLACE.format(folder=self._library.folder) if own else texts.RUNS_NONE
         )
+        self._has_studies = bool(studies(context.user_dir))
         self._entry = None
         self._show([*own, *shipped], wanted or (self.chosen and self.chosen.folder), self._list.index)
 
@@ -134,8 +142,11 @@ class NetworksScene(ListScene[SavedRun]):
     def _below_list(self) -> list[Widget]:
         """Return the button that goes back, and the one that brings back the run deleted last."""
         foot = super()._below_list()
+        if self._has_studies and not self._choose:
+            box = (_LAYOUT.box.right - 240, _LAYOUT.foot, 240, VERB_LINE)
+            foot.append(TextButton(self.form.manager, box, texts.STUDY_OPEN, lambda: push("study"), size=VERB_SIZE))
         if deleted := self._library.last_deleted:
-            box = (MARGIN + 120, _LAYOUT.foot, 520, VERB_LINE)
+            box = (MARGIN + 120, _LAYOUT.foot, 300 if self._has_studies else 520, VERB_LINE)
             label = texts.RUN_RESTORE.format(name=deleted)
             foot.append(TextButton(self.form.manager, box, label, self._restore, size=18))
         return foot
@@ -254,7 +265,7 @@ class NetworksScene(ListScene[SavedRun]):
         """Draw the chosen run's name and figures."""
         if run := self.chosen:
             flies = self._names.get(run.folder) == (self.context.settings.model or networks.DEFAULT)
-            draw_run(canvas, run, _LEFT, _WIDTH, own=self._is_own, named=not self._entry, flies=flies)
+            draw_run(canvas, run, _LEFT, _WIDTH, own=not self._is_shipped(run), named=not self._entry, flies=flies)
 
 
 def _result(deed: Callable[[], str]) -> str:

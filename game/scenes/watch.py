@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Final
 
 import pygame
@@ -51,6 +52,8 @@ _TOUCHED: Final = pygame.Rect(40, 108, PANEL.left - 80, 600)  # where the hand c
 class WatchScene(FormScene):
     """Watch scene: a swarm in the sky, one lander's decision in a panel, choices on the ground line.
 
+    A `guest`, a name and a folder, is a network that is none of the player's: it flies at first, and is not remembered.
+
     Attributes:
         network: the network that flies, one of `policies`.
         world: what flies, and what is drawn of it.
@@ -60,7 +63,9 @@ class WatchScene(FormScene):
 
     fills = True
 
-    def __init__(self, context: Context, count: int = 1, seed: int | None = None) -> None:
+    def __init__(
+        self, context: Context, count: int = 1, seed: int | None = None, guest: tuple[str, Path] | None = None
+    ) -> None:
         super().__init__(context)
         self.form.anchor = (-1, 1)
         self._count = COUNTS.index(count)
@@ -69,9 +74,11 @@ class WatchScene(FormScene):
         self.explained = Explained()
         self.problem = self._wanted = ""
         self._settings = context.settings
-        self.policies = networks.Policies(context.models_dir, context.user_dir)
+        self._guests = dict([guest]) if guest else {}
+        self.policies = networks.Policies(context.models_dir, context.user_dir, self._guests)
         names = self.policies.names
-        wanted = names.index(context.settings.model) if context.settings.model in names else 0
+        first = guest[0] if guest else context.settings.model
+        wanted = names.index(first) if first in names else 0
         self._model_choice = self.form.add(self._network_row(wanted))
         self._count_choice = self._add_choice(
             1, texts.WATCH_COUNT, [str(count) for count in COUNTS], self._count, self._choose_count
@@ -241,8 +248,9 @@ class WatchScene(FormScene):
 
     def _look_again(self) -> None:
         """Apply the choice made in the list of networks, and reload networks added, removed or renamed meanwhile."""
-        policies = networks.Policies(self.context.models_dir, self.context.user_dir)
-        wanted, self._wanted = self._wanted or self._settings.model, ""
+        policies = networks.Policies(self.context.models_dir, self.context.user_dir, self._guests)
+        flown = self.network.name if self.network.name in self._guests else self._settings.model
+        wanted, self._wanted = self._wanted or flown, ""
         if policies.names == self.policies.names and wanted == self.network.name:
             return
         self.policies = policies
@@ -260,7 +268,8 @@ class WatchScene(FormScene):
         if network.policy is None:
             return
         self.network = network
-        self._settings.model = network.name
+        if network.name not in self._guests:
+            self._settings.model = network.name
         self._offer_maps()
         self._begin()
 

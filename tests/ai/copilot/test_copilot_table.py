@@ -6,9 +6,10 @@ import pytest
 import main
 from ai.agent.agent import DeepQAgent
 from ai.cli.copilot import MODEL
+from ai.common.intervals import wilson
 from ai.copilot import measurement as copilot_table
 from ai.copilot.copilot import Mode
-from ai.copilot.measurement import ALONE, OPEN, ORACLE, VALUES, one_pad, three_pads, wilson
+from ai.copilot.measurement import ALONE, OPEN, ORACLE, VALUES, one_pad, three_pads
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,133 @@
+"""Run of one seed of a trial: the run that `train` or `train-digits` makes, measured at fixed moments.
+
+Both kinds take the same steps as their command takes, and are saved by the same function. So a run gives the same
+network in a sweep as alone, bit for bit.
+"""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import Any, Final, Protocol
+
+from ai.agent.config import Config
+from ai.common.knobs import Knobs
+from ai.digits.checkpoints import resume_digit_run, save_digit_run
+from ai.digits.config import DigitConfig
+from ai.digits.training import DigitTraining
+from ai.sweep.metric import Point
+from ai.training.checkpoints import resume_run, save_run
+from ai.training.loop import VALIDATION_SEED, Training
+
+AGENT: Final = "agent"  # kinds of run
+DIGITS: Final = "digits"
+
+
+class SeedRun(Protocol):
+    """Run of one seed, in a trial."""
+
+    @property
+    def seconds(self) -> float:
+        """Time spent in training."""
+
+    def advance(self, mark: int) -> Point:
+        """Train up to so many decisions or epochs, and measure; raises FloatingPointError if it diverges."""
+
+    def save(self, folder: Path) -> dict[str, Any]:
+        """Save the run as its command does at its end; return the figures of the network that is kept."""
+
+    def salvage(self, folder: Path) -> None:
+        """Save what was best of a run that has diverged."""
+
+
+class AgentRun:
+    """Run of an agent: our lander, or an environment of Gymnasium."""
+
+    def __init__(self, training: Training) -> None:
+        self.training = training
+
+    @property
+    def seconds(self) -> float:
+        """Time spent in training."""
+        return self.training.seconds
+
+    def advance(self, mark: int) -> Point:
+        """Train up to so many decisions, and fly the validation episodes, as often as that is asked for."""
+        training, began, score = self.training, time.monotonic(), None
+        while training.agent.decisions < mark:
+            score = training.advance().evaluation
+        training.seconds += time.monotonic() - began
+        if score is None:
+            assert training.validation_episodes is not None
+            score = training.task.evaluate(training.agent, training.validation_episodes, VALIDATION_SEED)
+        return Point(training.agent.decisions, score.success, score.mean_return)
+
+    def save(self, folder: Path) -> dict[str, Any]:
+        """Save the run as `train` does at its end."""
+        save_run(self.training, folder, final=True)
+        best = self.training.best
+        return {} if best is None else best.to_json()
+
+    def salvage(self, folder: Path) -> None:
+        """Save what was best."""
+        self.training.restore_best()
+        save_run(self.training, folder)
+
+
+class DigitRun:
+    """Run of a digit network; its moments are epochs."""
+
+    def __init__(self, training: DigitTraining) -> None:
+        self.training = training
+
+    @property
+    def seconds(self) -> float:
+        """Time spent in training."""
+        return self.training.seconds
+
+    def advance(self, mark: int) -> Point:
+        """Train up to so many epochs; each measures the images held out."""
+        training, began, share = self.training, time.monotonic(), None
+        while training.step < mark * training.steps_per_epoch and not training.done:
+            share = training.advance().held_out
+        training.seconds += time.monotonic() - began
+        if share is None:
+            raise ValueError("a study of digits needs images held out: held_out was 0")
+        return Point(training.step // training.steps_per_epoch, share, share)
+
+    def save(self, folder: Path) -> dict[str, Any]:
+        """Save the run as `train-digits` does at its end."""
+        described = save_digit_run(self.training, folder, final=True)
+        return {"held_out": described["held_out"], "test": described["test"]}
+
+    def salvage(self, folder: Path) -> None:
+        """Save what was best."""
+        self.training.restore_best()
+        save_digit_run(self.training, folder)
+
+
+def read_config(kind: str, settings: dict[str, Any]) -> Knobs:
+    """Return the settings of a run from JSON; raises ValueError for what makes no sense."""
+    return (DigitConfig if kind == DIGITS else Config).from_json(settings)
+
+
+def begin(
+    kind: str, settings: dict[str, Any], seed: int, parent: Path | None = None, validation: int | None = None
+) -> SeedRun:
+    """Begin a run of a kind; or go on, with other live knobs, from what a finished run kept in `parent`.
+
+    That is what `train` does, with `--resume` in the second case. Raises ValueError for settings that make no sense.
+    """
+    config = read_config(kind, settings)
+    if isinstance(config, DigitConfig):
+        training = DigitTraining(config, seed) if parent is None else resume_digit_run(parent)
+        training.apply_live(config)
+        return DigitRun(training)
+    assert isinstance(config, Config)
+    if parent is None:
+        return AgentRun(Training(config, seed, validation_episodes=validation))
+    resumed = resume_run(parent)
+    if validation is not None:
+        resumed.validation_episodes = validation
+    resumed.apply_live(config)
+    return AgentRun(resumed)

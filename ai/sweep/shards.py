@@ -1,0 +1,84 @@
+"""Evaluation of very many flights in shards, on many cores or nodes.
+
+Flight i begins as the i-th of one large batch of the same seed would, whichever shard flies it. A shard is always the
+same number of flights. So the counts are the same bit for bit, however many workers there are, and whether Ray is
+there or not; and sums are taken in the order of the shards.
+"""
+
+from __future__ import annotations
+
+import atexit
+import shutil
+import tempfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache, reduce
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from ai.agent.agent import DeepQAgent
+from ai.lander.environment import LanderEnv
+from ai.sweep.cluster import each
+from ai.sweep.trial import archive, unpack
+from ai.training.lander_task import FlightSums, counted
+
+SHARD: Final = 10_000  # flights at once, in 5 KB each
+
+
+@dataclass(frozen=True)
+class Shard:
+    """Part of an evaluation: flights `first` to `last`, without `last`, of an agent that is packed."""
+
+    agent: bytes
+    first: int
+    last: int
+    seed: int
+    spawn: str
+    frame_skip: int
+
+
+def shards(model: Path, episodes: int, seed: int, spawn: str, frame_skip: int) -> list[Shard]:
+    """Return the shards of an evaluation of the network in a folder."""
+    agent = archive(model)
+    return [
+        Shard(agent, first, min(episodes, first + SHARD), seed, spawn, frame_skip)
+        for first in range(0, episodes, SHARD)
+    ]
+
+
+def fly(shard: Shard) -> FlightSums:
+    """Fly a shard."""
+    env = LanderEnv(shard.last - shard.first, shard.seed, shard.spawn, shard.frame_skip)
+    for slot, number in enumerate(range(shard.first, shard.last)):
+        # The generator that number `number` of a batch gets, which NumPy spawns from the seed.
+        env.draw_from(slot, np.random.default_rng(np.random.SeedSequence(shard.seed, spawn_key=(number,))))
+    going = counted(packed_agent(shard.agent), env)
+    while True:
+        try:
+            next(going)
+        except StopIteration as done:
+            sums: FlightSums = done.value
+            return sums
+
+
+def flown_shards(parts: list[Shard], address: str | None, workers: int | None) -> Iterator[FlightSums | None]:
+    """Fly all shards; yield None as each is done, and the sums of all at the end."""
+    done: dict[int, FlightSums] = {}
+    for index, sums in each(fly, parts, address, workers):
+        done[index] = sums
+        yield None
+    yield reduce(FlightSums.plus, (done[index] for index in range(len(parts))))
+
+
+@lru_cache(maxsize=1)
+def packed_agent(packed: bytes) -> DeepQAgent:
+    """Return the agent of an archive; a worker flies one part after another with the same.
+
+    Its folder stays until the process ends: a guardian is read from there when it is first needed.
+    """
+    folder = tempfile.mkdtemp(prefix="tranquility-agent-")
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    unpack(packed, Path(folder))
+    return DeepQAgent.load(folder)

@@ -1,0 +1,258 @@
+"""Study on disk: its plan, the trials that have begun, and those that are finished, each whole or not there.
+
+    study.json            the plan
+    summary.json          the best so far, for lists; made from the rest
+    started/0007.json     what was asked of a trial that is not finished
+    trials/0007/          a finished trial: trial.json, and seed-N/ with the run as `train` keeps it
+
+Only the process that runs a study writes it. It gets results through Ray, so workers need no common disk.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import secrets
+import shutil
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Annotated, Any, Final, Self
+
+from ai.nn.files import beside, brief, read_bytes, read_json, write_text
+from ai.nn.folder import NEW
+from ai.nn.lock import take_folder
+from ai.nn.schema import Count, OneOf, Sized, read_as
+from ai.sweep.metric import Metric
+from ai.sweep.plan import FORMAT, VERSION, Plan
+from ai.sweep.results import FinishedTrial
+from ai.sweep.trial import archive, seed_folder, unpack
+
+STUDIES: Final = "studies"  # folder of all studies, in the user's
+STUDY_FILE: Final = "study.json"
+SUMMARY_FILE: Final = "summary.json"
+TRIAL_FILE: Final = "trial.json"
+_NAME: Final = re.compile(r"\d{4,6}")
+_MOST: Final = 64_000_000  # bytes of a trial's file
+
+
+class StudyError(ValueError):
+    """A folder is no study, or not one that can be used as asked."""
+
+
+@dataclass(frozen=True)
+class _StudyFile:
+    format: Annotated[str, OneOf((FORMAT,))]
+    version: Annotated[int, OneOf((VERSION,))]
+    id: Annotated[str, Sized(32, 32)]
+    plan: Plan
+
+
+@dataclass(frozen=True)
+class Begun:
+    """Trial that has begun and is not finished."""
+
+    number: Count
+    params: dict[str, Any]
+    parent: Count | None = None
+
+
+class Study:
+    """Study in a folder. Reading it changes nothing on disk.
+
+    Attributes:
+        folder: where it lies.
+        id: hexadecimal digits that no other study has.
+        plan: what was asked for.
+        trials: finished ones by number.
+        begun: trials that have begun and are not finished, by number.
+        damaged: numbers of trials whose files cannot be read.
+
+    """
+
+    def __init__(self, folder: Path, study_id: str, plan: Plan) -> None:
+        self.folder, self.id, self.plan = folder, study_id, plan
+        self.metric = Metric.named(plan.metric)
+        self.trials: dict[int, FinishedTrial] = {}
+        self.begun: dict[int, Begun] = {}
+        self.damaged: list[int] = []
+
+    @classmethod
+    def create(cls, folder: Path, plan: Plan) -> Self:
+        """Make a new study; raises StudyError if the folder holds anything, OSError if it cannot be written."""
+        plan.check()
+        if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+            raise StudyError(f"{folder} exists already: --resume goes on with it, or choose another name")
+        folder.mkdir(parents=True, exist_ok=True)
+        study = cls(folder, secrets.token_hex(16), plan)
+        study._write_plan()
+        return study
+
+    @classmethod
+    def load(cls, folder: Path) -> Self:
+        """Read a study; raises StudyError for a folder that is none. Trials that cannot be read are `damaged`."""
+        try:
+            told = read_as(_StudyFile, read_json(folder / STUDY_FILE))
+            told.plan.check()
+            if not re.fullmatch(r"[0-9a-f]{32}", told.id):
+                raise ValueError("its id is not 32 hexadecimal digits")
+        except OSError as error:
+            raise StudyError(f"{folder} is no study: {STUDY_FILE}: {error.strerror or error}") from error
+        except (ValueError, RecursionError) as error:
+            raise StudyError(f"{folder} is no study that can be read: {brief(error)}") from error
+        study = cls(folder, told.id, told.plan)
+        study._read_trials()
+        return study
+
+    def _write_plan(self) -> None:
+        told = {"format": FORMAT, "version": VERSION, "id": self.id, "plan": self.plan.to_json()}
+        write_text(self.folder / STUDY_FILE, json.dumps(told, indent=2) + "\n")
+
+    def _read_trials(self) -> None:
+        for path in _numbered(self.folder / "trials"):
+            number = int(path.name)
+            try:
+                trial = FinishedTrial.from_json(read_json(path / TRIAL_FILE, _MOST))
+                if trial.number != number or set(trial.params) != set(self.plan.space):
+                    raise ValueError("of another trial or another study")
+                for name, dimension in self.plan.dimensions().items():
+                    dimension.place(trial.params[name])
+            except (OSError, ValueError, TypeError, RecursionError):
+                self.damaged.append(number)
+            else:
+                self.trials[number] = trial
+        for path in _numbered(self.folder / "started", ".json"):
+            if int(path.stem) not in self.trials:
+                with suppress(OSError, ValueError, RecursionError):
+                    begun = read_as(Begun, read_json(path))
+                    if begun.number == int(path.stem) and set(begun.params) == set(self.plan.space):
+                        self.begun[begun.number] = begun
+
+    # Writing
+
+    @contextmanager
+    def claimed(self) -> Iterator[None]:
+        """Keep other processes from running this study meanwhile; raises BlockingIOError if one does."""
+        with take_folder(self.folder):
+            for left in (self.folder / "trials").glob(f".*{NEW}"):
+                shutil.rmtree(left, ignore_errors=True)
+            yield
+
+    def extend(self, trials: int) -> None:
+        """Ask for so many trials in all; raises OSError, or ValueError for a number that makes no sense."""
+        plan = replace(self.plan, trials=trials)
+        if self.plan.population and trials != self.plan.trials:
+            raise StudyError("a population has as many trials as it began with: its generations divide the budget")
+        plan.check()
+        self.plan = plan
+        self._write_plan()
+
+    @property
+    def next_number(self) -> int:
+        """Number that no trial has had."""
+        return max([*self.trials, *self.begun, *self.damaged], default=-1) + 1
+
+    def begin(self, number: int, params: dict[str, Any], parent: int | None = None) -> None:
+        """Note that a trial begins. A disk that is full does not keep it from that."""
+        self.begun[number] = Begun(number, params, parent)
+        told = {"number": number, "params": params, "parent": parent}
+        with suppress(OSError):
+            (self.folder / "started").mkdir(exist_ok=True)
+            write_text(self.folder / "started" / f"{number:04}.json", json.dumps(told), flush=False)
+
+    def record(self, trial: FinishedTrial, packed: bytes = b"") -> None:
+        """Keep a finished trial and the archive of its runs, whole or not at all; raises OSError."""
+        target = self.trial_folder(trial.number)
+        target.parent.mkdir(exist_ok=True)
+        new = beside(target, NEW)
+        try:
+            new.mkdir()
+            if packed:
+                unpack(packed, new)
+            write_text(new / TRIAL_FILE, json.dumps(trial.to_json()) + "\n")
+            new.rename(target)
+        except BaseException:
+            shutil.rmtree(new, ignore_errors=True)
+            raise
+        self.trials[trial.number] = trial
+        self.begun.pop(trial.number, None)
+        with suppress(OSError):
+            (self.folder / "started" / f"{trial.number:04}.json").unlink(missing_ok=True)
+            self.write_summary()
+
+    def write_summary(self, importance: Mapping[str, float] | None = None) -> None:
+        """Write what a list of studies shows, at the end with how much each knob matters; raises OSError."""
+        best = self.best()
+        seed = best.best_seed if best else None
+        told = {
+            "finished": len(self.trials),
+            "trials": self.plan.trials,
+            "kind": self.plan.kind,
+            "env": self.plan.settings.get("env"),
+            "metric": self.plan.metric,
+            "best": self.shown(best.value) if best else None,
+            "run": f"trials/{best.number:04}/{seed_folder(seed.seed)}" if best and seed else None,
+            "importance": importance,
+        }
+        write_text(self.folder / SUMMARY_FILE, json.dumps(told, indent=2) + "\n", flush=False)
+
+    # Reading
+
+    def trial_folder(self, number: int) -> Path:
+        """Return the folder of a finished trial."""
+        return self.folder / "trials" / f"{number:04}"
+
+    def run_folder(self, trial: FinishedTrial, seed: int) -> Path | None:
+        """Return the folder of a run that was kept; None if it was not, as of trials that were stopped early."""
+        folder = self.trial_folder(trial.number) / seed_folder(seed)
+        return folder if folder.is_dir() else None
+
+    def runs_of(self, number: int) -> bytes:
+        """Return the runs of a finished trial as one archive; raises OSError."""
+        folder = self.trial_folder(number)
+        for path in folder.rglob("*"):
+            if path.is_file():
+                read_bytes(path, _MOST)  # raises for what is no ordinary file
+        return archive(folder)
+
+    def ranked(self) -> list[FinishedTrial]:
+        """Return the trials that have a value, the best first; those that ran to their end before those stopped."""
+        sign = 1 if self.metric.mode == "min" else -1
+        known = [trial for trial in self.trials.values() if trial.value is not None]
+        return sorted(known, key=lambda trial: (trial.stopped, sign * (trial.value or 0.0), trial.number))
+
+    def best(self) -> FinishedTrial | None:
+        """Return the best trial; of a population, of its last generation that is whole. None before there is one."""
+        ranked = self.ranked()
+        if self.plan.population:
+            whole = [
+                number
+                for number in range(self.plan.generations)
+                if len(self.generation(number)) == self.plan.population
+            ]
+            last = whole[-1] if whole else 0
+            ranked = [trial for trial in ranked if self.plan.generation(trial.number) == last]
+        return ranked[0] if ranked else None
+
+    def generation(self, number: int) -> list[FinishedTrial]:
+        """Return the finished members of a generation, by number."""
+        return [each for _, each in sorted(self.trials.items()) if self.plan.generation(each.number) == number]
+
+    def shown(self, value: float | None) -> str:
+        """Return a value of the metric as a table shows it."""
+        return self.metric.shown(value, self.plan.budget)
+
+
+def _numbered(folder: Path, suffix: str = "") -> list[Path]:
+    """Return the paths in a folder that are called by the number of a trial, sorted."""
+    try:
+        found = [path for path in folder.iterdir() if path.suffix == suffix and _NAME.fullmatch(path.stem)]
+    except OSError:
+        return []
+    return sorted(found, key=lambda path: int(path.stem))
+
+
+def find(name: str, user_dir: Path) -> Path:
+    """Return the folder of a study: among the user's by name, or where a path leads."""
+    return Path(name) if "/" in name or "\\" in name else user_dir / STUDIES / name

@@ -1,0 +1,52 @@
+"""Metrics of learning curves, and how seeds are judged."""
+
+import pytest
+
+from ai.sweep.metric import Metric, Point
+
+CURVE = [Point(100, 0.0, -5.0), Point(200, 0.96, 1.0), Point(300, 0.99, 2.0), Point(400, 0.97, 3.0)]
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("success", 0.97),
+        ("accuracy", 0.97),
+        ("return", 3.0),
+        ("mean", 0.73),
+        ("time_to_95", 200),
+        ("time_to_99", 300),
+        ("time_to_100", 400 * (1 + 1.0 - 0.99)),
+    ],
+)
+def test_a_metric_reads_a_curve(name, value):
+    assert Metric.named(name).of(CURVE, 400) == pytest.approx(value)
+
+
+def test_a_share_never_reached_counts_for_more_than_the_whole_run_and_the_nearer_the_better():
+    metric = Metric.named("time_to_99")
+    far, near = ([Point(400, share, 0.0)] for share in (0.1, 0.9))
+    assert 400 < metric.of(near, 400) < metric.of(far, 400) < metric.lost(far, 400)
+    assert metric.better(1.0, 2.0)
+    assert not Metric.named("return").better(1.0, 2.0)
+
+
+@pytest.mark.parametrize("name", ["", "time_to_0", "time_to_101", "time_to_", "loss", "TIME_TO_99"])
+def test_other_names_are_refused(name):
+    with pytest.raises(ValueError, match="--metric"):
+        Metric.named(name)
+
+
+def test_seeds_are_judged_by_the_median_or_the_worst():
+    time, success = Metric.named("time_to_99"), Metric.named("success")
+    assert time.judged([1.0, 9.0, 2.0], "median") == 2.0
+    assert time.judged([1.0, 9.0, 2.0], "worst") == 9.0
+    assert success.judged([0.5, 0.9], "worst") == 0.5
+    assert success.judged([0.5, 0.9], "median") == pytest.approx(0.7)
+    assert success.judged([0.5, None], "worst") is None
+
+
+def test_a_diverged_seed_has_the_worst_value_there_is():
+    assert Metric.named("success").lost(CURVE, 400) == 0.0
+    assert Metric.named("return").lost(CURVE, 400) == -5.0
+    assert Metric.named("return").lost([], 400) is None

@@ -1,0 +1,73 @@
+"""Populations: what a member is asked follows from the generation before it, and from nothing else."""
+
+import numpy as np
+import pytest
+
+from ai.sweep.population import explored, proposed
+from ai.sweep.study import Study
+from ai.sweep.trial import Asked
+from ai.training.checkpoints import resume_run
+from tests.support.studies import networks_in, run_alone, tiny_plan
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    """A population of four whose second generation has begun."""
+    plan = tiny_plan(search="population", population=4, trials=8, seeds=(0,), budget=400, every=200)
+    study = Study.create(tmp_path_factory.mktemp("studies") / "population", plan)
+    for number in range(4):
+        assert proposed(study, 4) is None, "the second generation waits for the last member of the first"
+        study.record(*run_alone(plan, proposed(study, number)))
+    return study
+
+
+def test_the_worst_goes_on_with_a_copy_of_the_best_and_the_others_with_their_own(study):
+    ranked = sorted(study.trials.values(), key=lambda trial: -trial.value)
+    asked = {number: proposed(study, number) for number in range(4, 8)}
+    worst = asked[4 + ranked[-1].number]
+    assert worst.parent.number == ranked[0].number
+    assert worst.params != ranked[0].params
+    for trial in ranked[:-1]:
+        assert (asked[4 + trial.number].parent.number, asked[4 + trial.number].params) == (trial.number, trial.params)
+
+
+def test_what_is_asked_does_not_depend_on_when_it_is_asked(study):
+    again = Study.load(study.folder)
+    assert [proposed(again, number) for number in (6, 4)] == [proposed(study, number) for number in (6, 4)]
+
+
+def test_a_copy_begins_with_the_networks_of_its_parent_and_goes_on_as_train_does(study, tmp_path):
+    asked = proposed(study, 4)
+    result, runs = run_alone(study.plan, asked, study.runs_of(asked.parent.number))
+    assert result.parent == asked.parent.number
+    assert [point.at for point in result.seeds[0].curve] == [200, 400]
+    training = resume_run(study.run_folder(asked.parent, 0))
+    training.validation_episodes = study.plan.validation
+    training.apply_live(training.config.changed(**asked.params))
+    while training.agent.decisions < 400:
+        training.advance()
+    from ai.sweep.trial import unpack
+    from ai.training.checkpoints import save_run
+
+    save_run(training, tmp_path / "alone", final=True)
+    unpack(runs, tmp_path / "swept")
+    assert networks_in(tmp_path / "alone") == networks_in(tmp_path / "swept" / "seed-0")
+
+
+def test_a_changed_knob_stays_in_its_range():
+    space = tiny_plan().dimensions()
+    rng = np.random.default_rng(0)
+    for _ in range(200):
+        params = {name: each.draw(rng) for name, each in space.items()}
+        for name, value in explored(params, space, rng).items():
+            assert space[name].low <= value <= space[name].high
+
+
+def test_a_population_changes_only_what_can_change_while_a_run_goes_on():
+    space = {"n_step": {"low": 1, "high": 5, "log": False, "whole": True}}
+    with pytest.raises(ValueError, match="n_step cannot change"):
+        tiny_plan(search="population", population=2, space=space).check()
+
+
+def test_an_asked_trial_knows_its_parent(study):
+    assert isinstance(proposed(study, 5), Asked)

@@ -1,0 +1,181 @@
+"""Studies on disk: whole trials only, whatever happens, and the same result alone as in a study."""
+
+import errno
+import json
+import shutil
+
+import numpy as np
+import pytest
+
+from ai.agent.storage import LAST
+from ai.digits.checkpoints import save_digit_run
+from ai.digits.config import DIGIT_PRESETS
+from ai.digits.training import DigitTraining
+from ai.nn.files import read_arrays
+from ai.sweep import study as study_module
+from ai.sweep.plan import Plan
+from ai.sweep.report import report, told
+from ai.sweep.runs import AgentRun
+from ai.sweep.space import knob_space
+from ai.sweep.study import Study, StudyError, find
+from ai.sweep.trial import Asked, Trial, archive, unpack
+from main import main
+from tests.support.studies import TINY, finished_study, networks_in, run_alone, tiny_plan
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    return finished_study(tmp_path_factory.mktemp("studies") / "made")
+
+
+@pytest.fixture
+def study(made, tmp_path):
+    """A copy that a test may damage."""
+    shutil.copytree(made.folder, tmp_path / "made")
+    return Study.load(tmp_path / "made")
+
+
+def optimizer_of(folder):
+    kept = {}
+    path = folder / LAST / "optimizer.npz"
+    kept |= read_arrays(path, 10_000_000, lambda *_: None)
+    return kept
+
+
+def test_a_trials_run_is_that_of_train_bit_for_bit(made, tmp_path):
+    changes = [f"{name}={list(value) if isinstance(value, tuple) else value}" for name, value in TINY.items()]
+    changes += ["learning_rate=0.002", "tau=0.02"]
+    sets = [part for change in changes for part in ("--set", change)]
+    command = ["train", "--env", "CartPole-v1", "--decisions", "400", "--validation", "5", "--seed", "1", *sets]
+    assert main([*command, "--output", str(tmp_path / "alone")]) == 0
+    swept = made.run_folder(made.trials[1], 1)
+    assert networks_in(tmp_path / "alone") == networks_in(swept)
+    assert "online/layer-0-weights.npy" in networks_in(swept)
+    ours, alone = optimizer_of(swept), optimizer_of(tmp_path / "alone")
+    assert all(np.array_equal(ours[name], alone[name]) for name in ours | alone)
+
+
+def test_a_study_reads_what_it_wrote(study, made):
+    assert study.trials == made.trials
+    assert study.plan == made.plan
+    assert (study.begun, study.damaged) == ({}, [])
+    summary = json.loads((study.folder / "summary.json").read_text())
+    best = study.best()
+    assert summary["run"] == f"trials/{best.number:04}/seed-{best.best_seed.seed}"
+    assert (study.folder / summary["run"] / "online").is_dir()
+
+
+def test_a_full_disk_keeps_no_half_of_a_trial(study, monkeypatch):
+    plan, asked = study.plan, Asked(2, {"learning_rate": 0.01, "tau": 0.1})
+    result, runs = run_alone(plan, asked)
+    study.begin(2, asked.params)
+
+    def full(packed, folder):
+        unpack(packed, folder)
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(study_module, "unpack", full)
+        with pytest.raises(OSError, match="No space"):
+            study.record(result, runs)
+    left = Study.load(study.folder)
+    assert sorted(left.trials) == [0, 1]
+    assert left.begun[2].params == asked.params, "it is asked for again, with the same settings"
+    assert not list((study.folder / "trials").glob(".*"))
+    study.record(result, runs)
+    assert Study.load(study.folder).trials[2] == result
+    assert not Study.load(study.folder).begun
+
+
+def test_what_a_kill_leaves_half_written_is_no_trial_and_is_cleared_away(study):
+    half = study.folder / "trials" / ".0002.0123abcd.new"
+    half.mkdir()
+    (half / "trial.json").write_text("{")
+    assert sorted(Study.load(study.folder).trials) == [0, 1]
+    with study.claimed():
+        assert not half.exists()
+        with pytest.raises(BlockingIOError), Study.load(study.folder).claimed():
+            pass
+
+
+@pytest.mark.parametrize("content", [b"", b"{}", b"[1]", b"\xff\xfe", b'{"number": 0}', b"[" * 5000])
+def test_a_damaged_trial_is_named_and_the_others_are_read(study, content):
+    (study.trial_folder(0) / "trial.json").write_bytes(content)
+    left = Study.load(study.folder)
+    assert left.damaged == [0]
+    assert sorted(left.trials) == [1]
+    assert left.next_number == 2, "its number is not given again"
+    assert "cannot be read: 0" in told(left)
+
+
+@pytest.mark.parametrize("content", [b"", b"{}", b"[1]", b"\xff\xfe", b"[" * 5000])
+def test_a_folder_that_is_no_study_is_refused(study, content):
+    (study.folder / "study.json").write_bytes(content)
+    with pytest.raises(StudyError, match="no study"):
+        Study.load(study.folder)
+
+
+def test_a_study_with_an_id_that_leads_elsewhere_is_refused(study):
+    told_ = json.loads((study.folder / "study.json").read_text())
+    told_["id"] = "../../../../../../../../etc/passwd..".ljust(32)[:32]
+    (study.folder / "study.json").write_text(json.dumps(told_))
+    with pytest.raises(StudyError):
+        Study.load(study.folder)
+
+
+def test_a_new_study_takes_no_folder_that_holds_anything(study):
+    with pytest.raises(StudyError, match="--resume"):
+        Study.create(study.folder, study.plan)
+
+
+def test_settings_that_diverge_are_a_result_and_not_an_error(tmp_path, monkeypatch):
+    def diverge(*_):
+        raise FloatingPointError("the loss is not finite")
+
+    monkeypatch.setattr(AgentRun, "advance", diverge)
+    plan = tiny_plan(metric="success", seeds=(0,))
+    trial = Trial(plan, Asked(0, {"learning_rate": 1.0, "tau": 1.0}))
+    trial.step()
+    assert trial.done
+    result, runs = trial.finish()
+    assert (result.value, result.seeds[0].problem) == (0.0, "the loss is not finite")
+    study = Study.create(tmp_path / "study", plan)
+    study.record(result, runs)
+    assert Study.load(study.folder).trials[0] == result
+
+
+def test_a_report_is_json_and_names_the_best(study):
+    said = json.loads(json.dumps(report(study)))
+    assert said["best"] == study.best().number == said["ranking"][0]
+    assert len(said["trials"]) == 2
+    assert str(study.run_folder(study.best(), study.best().best_seed.seed)) in told(study)
+
+
+def test_an_archive_holds_a_folder(tmp_path):
+    (tmp_path / "a" / "b").mkdir(parents=True)
+    (tmp_path / "a" / "b" / "c.txt").write_text("here")
+    unpack(archive(tmp_path / "a"), tmp_path / "there")
+    assert (tmp_path / "there" / "b" / "c.txt").read_text() == "here"
+
+
+def test_a_name_is_found_among_the_users_studies_and_a_path_where_it_leads(tmp_path):
+    assert find("mine", tmp_path) == tmp_path / "studies" / "mine"
+    assert str(find("./mine", tmp_path)) == "mine"
+
+
+def test_a_trial_of_digits_is_that_of_train_digits(tmp_path):
+    config = DIGIT_PRESETS["classic"].changed(hidden=(8,), batch_size=5000, epochs=1, augmentation=0.0)
+    plan = Plan(
+        "digits", json.loads(json.dumps(config.to_json())),
+        {name: each.to_json() for name, each in knob_space(config, ["learning_rate"]).items()}, (3,), 1, 1,
+        "accuracy", "worst", "random", False, 1,
+    )  # fmt: skip
+    result, runs = run_alone(plan, Asked(0, {"learning_rate": 0.01}))
+    training = DigitTraining(config.changed(learning_rate=0.01), 3)
+    while not training.done:
+        training.advance()
+    save_digit_run(training, tmp_path / "alone", final=True)
+    unpack(runs, tmp_path / "swept")
+    assert networks_in(tmp_path / "alone") == networks_in(tmp_path / "swept" / "seed-3")
+    assert result.value == training.best
+    assert result.best_seed.figures["test"] > 0.1

@@ -1,0 +1,196 @@
+"""Studies on Ray: two nodes on this machine, a killed worker, a killed node, a killed driver, and loopback only.
+
+Everything is run by its command in processes of its own, so that nothing of Ray stays in the tests' process.
+"""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from contextlib import contextmanager
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+from ai.sweep.study import Study
+from ai.sweep.trial import Asked, unpack
+from tests.support.studies import TINY, networks_in, run_alone
+
+pytestmark = [
+    pytest.mark.skipif(find_spec("ray") is None or find_spec("optuna") is None, reason="needs the extra: sweep"),
+    pytest.mark.skipif(not Path("/proc/net/tcp").exists(), reason="finds processes and sockets in /proc"),
+]
+ROOT = Path(__file__).parents[3]
+LONG = 240  # seconds; only a hang takes that
+SETTINGS = [
+    part
+    for name, value in TINY.items()
+    for part in ("--set", f"{name}={list(value) if isinstance(value, tuple) else value}")
+]
+NEW = ["--env", "CartPole-v1", "--knobs", "learning_rate,tau", "--seeds", "2", "--validation", "5", *SETTINGS]
+
+
+@pytest.fixture(scope="module")
+def nodes():
+    """A cluster of two nodes with a core each."""
+    program = [sys.executable, "-m", "tests.support.ray_nodes"]
+    with subprocess.Popen(program, cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
+        process.address = process.stdout.readline().strip()
+        assert process.address.startswith("127.0.0.1:")
+        yield process
+        process.stdin.close()
+        process.wait(LONG)
+
+
+@contextmanager
+def sweep(folder, *options):
+    """Run `sweep` on a study in a folder; end it if a test fails meanwhile."""
+    command = [sys.executable, "main.py", "sweep", "--study", f"{folder}/", *options]
+    with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        try:
+            yield process
+        finally:
+            process.kill()
+
+
+def ended(process):
+    """Wait for a sweep to end well; return what it printed."""
+    out, errors = process.communicate(timeout=LONG)
+    assert process.returncode == 0, errors
+    return out
+
+
+def finished(folder):
+    return sorted(path.parent.name for path in folder.glob("trials/[0-9]*/trial.json"))
+
+
+def wait_for(condition, driver):
+    end = time.monotonic() + LONG
+    while not (found := condition()):
+        assert driver.poll() is None, driver.communicate()
+        assert time.monotonic() < end, "it hangs"
+        time.sleep(0.02)
+    return found
+
+
+def descendants(of):
+    """Return the names of all processes below one, by id."""
+    parents, names = {}, {}
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            pid = int(stat.parent.name)
+            parents[pid] = int(stat.read_text().rpartition(")")[2].split()[1])
+            names[pid] = (stat.parent / "cmdline").read_text()
+        except OSError:  # it has ended meanwhile
+            continue
+    found, newest = set(), {of}
+    while newest:
+        newest = {pid for pid, parent in parents.items() if parent in newest} - found
+        found |= newest
+    return {pid: names[pid] for pid in found if pid in names}
+
+
+def training_workers(of):
+    return [pid for pid, name in descendants(of).items() if name.startswith("ray::SweepTrial")]
+
+
+def listening(pids):
+    """Return the addresses that processes listen on, as /proc writes them."""
+    sockets = set()
+    for pid in pids:
+        try:
+            links = [str(link.readlink()) for link in Path(f"/proc/{pid}/fd").iterdir()]
+        except OSError:
+            continue
+        sockets |= {link[8:-1] for link in links if link.startswith("socket:[")}
+    found = set()
+    for table in ("tcp", "tcp6"):
+        for line in Path(f"/proc/net/{table}").read_text().splitlines()[1:]:
+            parts = line.split()
+            if parts[3] == "0A" and parts[9] in sockets:  # listening
+                found.add(parts[1].partition(":")[0])
+    return found
+
+
+def assert_as_alone(folder):
+    """Every trial of a study is there once and is what the same settings give without Ray, bit for bit."""
+    study = Study.load(folder)
+    assert sorted(study.trials) == list(range(study.plan.trials))
+    assert (study.begun, study.damaged) == ({}, [])
+    for number, trial in study.trials.items():
+        parent = None if trial.parent is None else study.trials[trial.parent]
+        runs = study.runs_of(parent.number) if parent else b""
+        alone, runs = run_alone(study.plan, Asked(number, trial.params, parent), runs)
+        unpack(runs, folder.parent / f"alone-{number}")
+        assert networks_in(folder.parent / f"alone-{number}" / "seed-1") == networks_in(
+            study.trial_folder(number) / "seed-1"
+        )
+        assert (alone.value, [seed.curve for seed in alone.seeds]) == (trial.value, [s.curve for s in trial.seeds])
+
+
+def test_a_killed_driver_loses_and_repeats_no_finished_trial(nodes, tmp_path):
+    folder = tmp_path / "study"
+    with sweep(folder, *NEW, "--trials", "5", "--decisions", "2000", "--address", nodes.address) as driver:
+        wait_for(lambda: len(finished(folder)) >= 2, driver)
+        driver.send_signal(signal.SIGKILL)
+    kept = {name: (folder / "trials" / name / "trial.json").stat() for name in finished(folder)}
+    assert 2 <= len(kept) < 5
+    asked = {path.stem: json.loads(path.read_text()) for path in folder.glob("started/*.json")}
+    assert asked
+    with sweep(folder, "--resume", "--address", nodes.address) as driver:
+        out = ended(driver)
+    assert "5 of 5 trials" in out
+    for name, stat in kept.items():
+        now = (folder / "trials" / name / "trial.json").stat()
+        assert (now.st_ino, now.st_mtime_ns) == (stat.st_ino, stat.st_mtime_ns), "a finished trial was written again"
+    study = Study.load(folder)
+    for name, told in asked.items():
+        assert study.trials[int(name)].params == told["params"], "an interrupted trial has kept its settings"
+    assert len({json.dumps(trial.params) for trial in study.trials.values()}) == 5
+
+
+def test_a_population_on_two_nodes_is_what_it_is_alone(nodes, tmp_path):
+    folder = tmp_path / "study"
+    options = ["--search", "population", "--population", "2", "--trials", "4", "--decisions", "400"]
+    with sweep(folder, *NEW, *options, "--address", nodes.address) as driver:
+        ended(driver)
+    assert_as_alone(folder)
+    assert any(trial.parent is not None for trial in Study.load(folder).trials.values())
+
+
+def test_any_function_is_called_for_many_items_and_each_answer_finds_its_place(nodes):
+    program = f"""
+from ai.sweep.cluster import each
+from ai.sweep.table import duration
+print(sorted(each(duration, [1.0, 300.0, 8000.0], {nodes.address!r})))
+"""
+    done = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.stdout.strip() == "[(0, '1 s'), (1, '5 min'), (2, '2 h 13 min')]", done.stderr
+
+
+def test_without_an_address_nothing_listens_but_on_this_machine(tmp_path):
+    folder = tmp_path / "study"
+    with sweep(folder, *NEW, "--trials", "2", "--decisions", "400", "--workers", "1", "--stop-early") as driver:
+        wait_for(lambda: finished(folder), driver)
+        opened = listening([driver.pid, *descendants(driver.pid)])
+        ended(driver)
+    assert opened <= {"0100007F", "0000000000000000FFFF00000100007F"}
+    assert len(opened) == 2
+    assert len(finished(folder)) == 2
+
+
+def test_a_killed_worker_and_a_killed_node_change_no_result(nodes, tmp_path):
+    """The last of this module's tests on the cluster: its second node is gone afterwards."""
+    folder = tmp_path / "study"
+    with sweep(folder, *NEW, "--trials", "4", "--decisions", "1200", "--address", nodes.address) as driver:
+        wait_for(lambda: len(training_workers(nodes.pid)) == 2, driver)
+        os.kill(training_workers(nodes.pid)[0], signal.SIGKILL)
+        wait_for(lambda: finished(folder), driver)
+        nodes.stdin.write("take the second node away\n")
+        nodes.stdin.flush()
+        assert nodes.stdout.readline().strip() == "gone"
+        ended(driver)
+    assert_as_alone(folder)
