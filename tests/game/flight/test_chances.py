@@ -205,13 +205,18 @@ def test_coasting_under_a_guardian_is_the_persons_own_while_it_is_safe():
     assert not flight.overridden
 
 
-def test_chances_are_known_on_the_moon_alone():
-    assert known_for(Flight(1).env)
-    assert known_for(Flight(1, pads=3).env)
-    assert not known_for(Flight(1, mission="mars").env)
-    flight = Flight(1)
-    flight.set_gravity(1.2)
-    assert not known_for(flight.env)
+def test_most_critics_know_the_moon_alone_and_that_for_every_world_all_worlds():
+    critic, _ = critic_of(agent())
+    everywhere, problem = critic_of(DeepQAgent.load(MODERN.parent / "anywhere"))
+    assert everywhere is not None, problem
+    assert known_for(Flight(1).env, critic)
+    assert known_for(Flight(1, pads=3).env, critic)
+    heavy = Flight(1)
+    heavy.set_gravity(1.2)
+    for env in (Flight(1, mission="mars").env, heavy.env):
+        assert not known_for(env, critic)
+        assert not known_for(env, None)
+        assert known_for(env, everywhere)
 
 
 def test_a_pilot_without_a_critic_is_told_apart():
