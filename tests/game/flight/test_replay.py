@@ -1,3 +1,4 @@
+import shutil
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -9,11 +10,13 @@ import pytest
 from ai.lander.environment import ACTION_NAMES, Outcome
 from ai.lander.pilots import ScriptedPilot
 from game.core import texts
+from game.core.assets import MODELS_DIR
 from game.core.settings import Settings
 from game.drawing.canvas import Canvas
 from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Record
 from game.flight.logbook import Records
+from game.flight.networks import PLAYERS
 from game.flight.replay import FlightReplay, ReplayedFlight
 from game.panels.chance_values import of_hundred
 from game.panels.falls import fall_words
@@ -339,7 +342,7 @@ def test_a_landing_says_how_low_the_chance_was_and_a_mission_elsewhere_is_judged
 
 
 def test_under_a_network_of_ones_own_a_mission_elsewhere_is_not_judged(context: Context):
-    own = context.user_dir / "models" / "mine"
+    own = context.user_dir / PLAYERS / "mine"
     shutil.copytree(MODELS_DIR / "lander" / "modern", own)
     context.settings.model = "mine"
     scene = ReplayScene(context, kept(context, scripted(mission="mars")))
