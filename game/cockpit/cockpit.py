@@ -168,4 +168,5 @@ class Cockpit:
 
     def _dial_means(self) -> str:
         """Say what the dial means now."""
-        return dial_words(self._settings.assist, self._flight.copilot)
+        several = self._flight.env.ground.at_once > 1
+        return dial_words(self._settings.assist, self._flight.copilot, among_hills=several)

@@ -14,8 +14,11 @@ if TYPE_CHECKING:
 Why = tuple[str, str, str]  # a title, and two lines
 
 
-def dial_words(assist: float, copilot: CoPilot | None) -> str:
-    """Say when a guardian at that assist, 0 to 1, steps in; empty for a co-pilot of another kind."""
+def dial_words(assist: float, copilot: CoPilot | None, *, among_hills: bool = False) -> str:
+    """Say when a guardian at that assist, 0 to 1, steps in; empty for a co-pilot of another kind.
+
+    `among_hills`, where there are several pads, it asks for no more than can be reached.
+    """
     from ai.copilot.copilot import Mode, guardian_margin
     from ai.copilot.guardian import required_chance
 
@@ -27,7 +30,8 @@ def dial_words(assist: float, copilot: CoPilot | None) -> str:
         by_points = texts.DIAL_BY_POINTS.format(margin=float(guardian_margin(assist)))
         return f"{no_critic(copilot)} {by_points}"
     percent, required = round(100 * assist), of_hundred(float(required_chance(assist)), digits=int(assist > 0.7))
-    return texts.DIAL_MEANS.format(percent=percent, required=required)
+    means = texts.DIAL_MEANS_HILLS if among_hills else texts.DIAL_MEANS
+    return means.format(percent=percent, required=required)
 
 
 def no_critic(copilot: CoPilot) -> str:

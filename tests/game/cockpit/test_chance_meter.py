@@ -98,6 +98,8 @@ def test_the_dial_says_in_figures_when_a_guardian_steps_in(agent: DeepQAgent):
     assert "40 %" in dial_words(0.4, copilot)
     assert "fewer than 99 of 100" in dial_words(0.4, copilot)
     assert float(required_chance(0.4)) == pytest.approx(0.99)
+    assert "fewer than 99 of 100" in dial_words(0.4, copilot, among_hills=True)
+    assert "another action is clearly safer" in dial_words(0.4, copilot, among_hills=True)
     assert dial_words(0.0, copilot) == texts.DIAL_NEVER
     assert dial_words(0.4, CoPilot(agent, 0.4, Mode.TOLERANCE)) == ""
     assert dial_words(0.4, None) == ""
