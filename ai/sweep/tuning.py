@@ -167,16 +167,29 @@ class _Stopper(tune.Stopper):
 
 
 def run_trials(study: Study, table: Table, stop: Sequence[int]) -> Recorder:
-    """Run the trials that a study has left, on the Ray that was joined; return what became of them."""
+    """Run the trials that a study has left, on the Ray that was joined; return what became of them.
+
+    A worker that dies before its trial has begun costs Tune the trial at once, however many tries it is allowed. So
+    what was lost is run again, as long as the trials before it have ended.
+    """
     optuna.logging.set_verbosity(optuna.logging.ERROR)
     logging.getLogger("ray").setLevel(logging.CRITICAL)
     warnings.filterwarnings("ignore", module=r"ray\..*")
+    while True:
+        before, recorder = len(study.trials), Recorder(study, table, stop)
+        _run_left(study, recorder, stop)
+        recorder.write()
+        if not recorder.lost or stop or recorder.trouble or len(study.trials) == before:
+            return recorder
+
+
+def _run_left(study: Study, recorder: Recorder, stop: Sequence[int]) -> None:
+    """Run each trial that a study has left, once."""
     plan = study.plan
-    recorder = Recorder(study, table, stop)
     shared = {"plan": json.dumps(plan.to_json()), "code": fingerprint()}
     search: Searcher = PopulationSearch(study, shared) if plan.search == POPULATION else StudySearch(study, shared)
     with tempfile.TemporaryDirectory(prefix="tranquility-sweep-") as temporary:
-        tuner = tune.Tuner(
+        tune.Tuner(
             SweepTrial,
             tune_config=tune.TuneConfig(
                 search_alg=search,
@@ -192,10 +205,7 @@ def run_trials(study: Study, table: Table, stop: Sequence[int]) -> Recorder:
                 callbacks=[recorder],
                 failure_config=tune.FailureConfig(max_failures=TRIES - 1),
             ),
-        )
-        tuner.fit()
-    recorder.write()
-    return recorder
+        ).fit()
 
 
 def _scheduler(study: Study) -> TrialScheduler:
