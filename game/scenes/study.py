@@ -10,6 +10,7 @@ import pygame
 from ai.agent.config import LANDER
 from ai.nn.files import brief
 from ai.sweep.results import FinishedTrial
+from ai.sweep.runs import DIGITS
 from ai.sweep.study import Study, StudyError
 from game.charts.chart import Chart, Series
 from game.core import texts
@@ -199,7 +200,8 @@ class StudyScene(ListScene[FinishedTrial]):
         if study is None or trial is None:
             return
         title = f"{texts.STUDY_TRIAL.format(number=trial.number)}   {_shown(study, trial.value)}"
-        canvas.text(title, (_LEFT, 146), size=TITLE + 6, weight="light", room=_WIDTH)
+        end = canvas.text(title, (_LEFT, 146), size=TITLE + 6, weight="light", room=_WIDTH).right + 14
+        canvas.text(_metric(study), (end, 146), size=SMALL, colour=MUTE, room=_LEFT + _WIDTH - end)
         settings = " · ".join(f"{label(name)} {knob_value(value)}" for name, value in trial.params.items())
         draw_wrapped(canvas, brief(settings, 190), (_LEFT, 174), _WIDTH, size=SMALL, colour=MUTE, leading=19)
         self._chart.draw(canvas)
@@ -218,7 +220,10 @@ class StudyScene(ListScene[FinishedTrial]):
 
 def _metric(study: Study) -> str:
     """Return in words what trials are compared by."""
-    return texts.STUDY_METRICS[study.metric.kind].format(percent=round(100 * study.metric.share))
+    kind = study.metric.kind
+    if study.plan.kind == DIGITS:
+        kind = {"time": "epochs", "success": "accuracy"}.get(kind, kind)
+    return texts.STUDY_METRICS[kind].format(percent=round(100 * study.metric.share))
 
 
 def _shown(study: Study, value: float | None) -> str:
