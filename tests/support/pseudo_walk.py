@@ -5,6 +5,7 @@ A program, because texts are read when the game is imported: python -m tests.sup
 
 from __future__ import annotations
 
+import gc
 import json
 import os
 import sys
@@ -410,6 +411,7 @@ def strings(value: object) -> Iterator[str]:
 def main() -> None:
     """Walk, and write what was seen and what was wrong."""
     inline_worker.install(setattr)
+    gc.freeze()  # as the game does: each scene that is left collects once
     setattr(pay, "DECISIONS", SHORT)  # noqa: B010 - it is final for all others
     for chapter in (TargetChapter, MemoryChapter, DaringChapter):
         chapter.LENGTH = SHORT_RUN

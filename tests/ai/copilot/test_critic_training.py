@@ -128,25 +128,25 @@ def small(monkeypatch):
     for name, value in (
         ("_FLIGHTS", 24),
         ("_PER_ROUND", 300),
-        ("_FIRST", 3),
-        ("_FITS", 4),
-        ("_PLAIN", 100),
+        ("_FIRST", 2),
+        ("_FITS", 3),
+        ("_PLAIN", 200),
         ("_CALIBRATED", 1),
-        ("_TESTED", 2),
+        ("_TESTED", 1),
         ("_HIDDEN", (32,)),
         ("_STEPS", 500),
     ):
         monkeypatch.setattr(critic_training, name, value)
-    monkeypatch.setattr(commands, "ROUNDS_ALLOWED", (3, 5))
+    monkeypatch.setattr(commands, "ROUNDS_ALLOWED", (2, 5))
 
 
 @cache
 def learnt(agent):
     """The critic that comes of a small training from seed 5."""
-    training = CriticTraining(agent, np.random.default_rng(5), rounds=4)
+    training = CriticTraining(agent, np.random.default_rng(5), rounds=3)
     steps = list(training.run())
-    assert [step.round for step in steps] == [3, 4]
-    assert steps[-1].moments == 1200
+    assert [step.round for step in steps] == [2, 3]
+    assert steps[-1].moments == 900
     return training.critic
 
 
@@ -154,8 +154,8 @@ def test_a_critic_learns_to_tell_moments_apart(agent, small):
     critic = learnt(agent)
     assert sum(row.moments for row in critic.facts.reliability) == 200
     rng = np.random.default_rng(9)
-    env = moon(48, rng)
-    moments = flown(env, any_hands(48, rng, agent))
+    env = moon(24, rng)
+    moments = flown(env, any_hands(24, rng, agent))
     moments = moments.take(rng.choice(len(moments), 300, replace=False))
     landed = saved(agent, moments, moments.action)
     chance = critic.chances(moments.observation, moments.surroundings)[np.arange(300), moments.action]
@@ -167,11 +167,11 @@ def test_the_command_trains_the_one_that_follows_from_its_seed_and_the_co_pilot_
     agent, small, tmp_path, capsys
 ):
     agent.save(tmp_path / "mine")
-    assert main.main(["train-guardian", "--model", str(tmp_path / "mine"), "--rounds", "4", "--seed", "5"]) == 0
-    assert "1,200 moments" in capsys.readouterr().out
+    assert main.main(["train-guardian", "--model", str(tmp_path / "mine"), "--rounds", "3", "--seed", "5"]) == 0
+    assert "900 moments" in capsys.readouterr().out
     critic = SafetyCritic.load(tmp_path / "mine" / "guardian")
     assert CoPilot(DeepQAgent.load(tmp_path / "mine"), 0.4, "guardian").critic is not None
-    assert critic.facts.moments == 1200
+    assert critic.facts.moments == 900
     np.testing.assert_array_equal(critic.network.values, learnt(agent).network.values)
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from ai.agent.agent import DeepQAgent
 from ai.copilot import measurement
-from ai.copilot.measurement import INTENT_PILOTS, one_pad, three_pads
+from ai.copilot.measurement import one_pad, three_pads
 from ai.sweep import copilot_table
 from ai.sweep import shards as module
 from ai.sweep.cluster import each
@@ -71,11 +71,14 @@ def test_a_worker_flies_one_shard_after_another_with_the_same_network(monkeypatc
 
 
 def test_the_copilots_table_is_the_same_in_parts(monkeypatch):
-    monkeypatch.setattr(measurement, "ONE_PAD", measurement.ONE_PAD[:3])  # the rest takes long
-    monkeypatch.setattr(measurement, "PILOTS", {name: measurement.PILOTS[name] for name in (*INTENT_PILOTS, "none")})
-    asked = parts(MODERN, False, 5, 2)
+    monkeypatch.setattr(measurement, "ONE_PAD", measurement.ONE_PAD[:2])  # the rest takes long
+    monkeypatch.setattr(measurement, "THREE_PADS", measurement.THREE_PADS[:2])
+    monkeypatch.setattr(measurement, "INTENT_PILOTS", ("laggy",))
+    monkeypatch.setattr(measurement, "GROUNDS", 2)
+    monkeypatch.setattr(measurement, "PILOTS", {name: measurement.PILOTS[name] for name in ("laggy", "noisy")})
+    asked = parts(MODERN, False, 3, 2)
     done = {index: copilot_table.fly(part) for index, part in reversed([*enumerate(asked)])}
     tables = tables_of(asked, done)
     agent = DeepQAgent.load(MODERN)
-    assert tables["one_pad"] == list(one_pad(agent, agent, 5, 2))
-    assert tables["three_pads"] == list(three_pads(agent, agent, 5, 2))
+    assert tables["one_pad"] == list(one_pad(agent, agent, 3, 2))
+    assert tables["three_pads"] == list(three_pads(agent, agent, 3, 2))
