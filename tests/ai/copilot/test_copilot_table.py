@@ -23,7 +23,7 @@ def few(monkeypatch):
     monkeypatch.setattr(copilot_table, "PILOTS", {name: copilot_table.PILOTS[name] for name in ("laggy", "none")})
     monkeypatch.setattr(copilot_table, "INTENT_PILOTS", ("laggy",))
     monkeypatch.setattr(copilot_table, "GROUNDS", 1)
-    monkeypatch.setattr(copilot_table, "ORACLE_FLIGHTS", 2)
+    monkeypatch.setattr(copilot_table, "ORACLE_FLIGHTS", 1)
     monkeypatch.setattr(
         copilot_table, "ONE_PAD", ((ALONE, 0.0), (Mode.TOLERANCE, 0.6), (Mode.GUARDIAN, 0.4), (VALUES, 0.4))
     )
@@ -38,12 +38,12 @@ def test_the_co_pilot_helps_on_one_pad(agent, few, monkeypatch):
         *(("none", mode) for mode in modes),
         ("co-pilot", "alone"),
     ]
-    # The oracle takes as long as everything else together: a few flights of one pilot.
+    # The oracle takes as long as everything else together: one flight.
     monkeypatch.setattr(copilot_table, "PILOTS", {"laggy": copilot_table.PILOTS["laggy"]})
     monkeypatch.setattr(copilot_table, "ONE_PAD", ((ALONE, 0.0), (ORACLE, 0.0)))
     _, limit, _ = one_pad(agent, agent, 4)
     assert (limit.pilot, limit.mode) == ("laggy", ORACLE)
-    assert [row.episodes for row in (*rows, limit)] == [24] * 9 + [2]
+    assert [row.episodes for row in (*rows, limit)] == [24] * 9 + [1]
     for row in (*rows, limit):
         assert row.success + row.crash + row.out_of_bounds + row.time_out == pytest.approx(1.0)
         assert row.own_pad == row.success

@@ -131,27 +131,6 @@ def assert_as_alone(folder):
         assert (alone.value, [seed.curve for seed in alone.seeds]) == (trial.value, [s.curve for s in trial.seeds])
 
 
-def test_a_killed_driver_loses_and_repeats_no_finished_trial(nodes, tmp_path):
-    folder = tmp_path / "study"
-    with sweep(folder, *NEW, "--trials", "5", "--decisions", "2000", "--address", nodes.address) as driver:
-        wait_for(lambda: len(finished(folder)) >= 2, driver)
-        driver.send_signal(signal.SIGKILL)
-    kept = {name: (folder / "trials" / name / "trial.json").stat() for name in finished(folder)}
-    assert 2 <= len(kept) < 5
-    asked = {path.stem: json.loads(path.read_text()) for path in folder.glob("started/*.json")}
-    assert asked
-    with sweep(folder, "--resume", "--address", nodes.address) as driver:
-        out = ended(driver)
-    assert "5 of 5 trials" in out
-    for name, stat in kept.items():
-        now = (folder / "trials" / name / "trial.json").stat()
-        assert (now.st_ino, now.st_mtime_ns) == (stat.st_ino, stat.st_mtime_ns), "a finished trial was written again"
-    study = Study.load(folder)
-    for name, told in asked.items():
-        assert study.trials[int(name)].params == told["params"], "an interrupted trial has kept its settings"
-    assert len({json.dumps(trial.params) for trial in study.trials.values()}) == 5
-
-
 def test_a_population_on_two_nodes_is_what_it_is_alone(nodes, tmp_path):
     folder = tmp_path / "study"
     options = ["--search", "population", "--population", "2", "--trials", "4", "--decisions", "400"]
@@ -182,15 +161,30 @@ def test_without_an_address_nothing_listens_but_on_this_machine(tmp_path):
     assert len(finished(folder)) == 2
 
 
-def test_a_killed_worker_and_a_killed_node_change_no_result(nodes, tmp_path):
+def test_a_killed_worker_driver_and_node_lose_and_repeat_no_finished_trial_and_change_none(nodes, tmp_path):
     """The last of this module's tests on the cluster: its second node is gone afterwards."""
     folder = tmp_path / "study"
-    with sweep(folder, *NEW, "--trials", "4", "--decisions", "1200", "--address", nodes.address) as driver:
+    with sweep(folder, *NEW, "--trials", "5", "--decisions", "1200", "--address", nodes.address) as driver:
         wait_for(lambda: len(training_workers(nodes.pid)) == 2, driver)
         os.kill(training_workers(nodes.pid)[0], signal.SIGKILL)
-        wait_for(lambda: finished(folder), driver)
+        wait_for(lambda: len(finished(folder)) >= 2, driver)
+        driver.send_signal(signal.SIGKILL)
+    kept = {name: (folder / "trials" / name / "trial.json").stat() for name in finished(folder)}
+    assert 2 <= len(kept) < 5
+    asked = {path.stem: json.loads(path.read_text()) for path in folder.glob("started/*.json")}
+    assert asked
+    with sweep(folder, "--resume", "--address", nodes.address) as driver:
+        wait_for(lambda: len(finished(folder)) > len(kept), driver)
         nodes.stdin.write("take the second node away\n")
         nodes.stdin.flush()
         assert nodes.stdout.readline().strip() == "gone"
-        ended(driver)
+        out = ended(driver)
+    assert "5 of 5 trials" in out
+    for name, stat in kept.items():
+        now = (folder / "trials" / name / "trial.json").stat()
+        assert (now.st_ino, now.st_mtime_ns) == (stat.st_ino, stat.st_mtime_ns), "a finished trial was written again"
+    study = Study.load(folder)
+    for name, told in asked.items():
+        assert study.trials[int(name)].params == told["params"], "an interrupted trial has kept its settings"
+    assert len({json.dumps(trial.params) for trial in study.trials.values()}) == 5
     assert_as_alone(folder)
