@@ -1,7 +1,7 @@
 """Two-dimensional rigid bodies on NumPy, in batches of independent worlds.
 
 Reading order: `vector`, `shapes`, `state`, `integrate`, `collide`, `broad_phase`, `solver`, `contacts`, `world`,
-`body`, `sprite`.
+`body`, `sprite`, `free_flight`.
 
     from engine import Circle, Polygon, World
 
@@ -15,8 +15,9 @@ Reading order: `vector`, `shapes`, `state`, `integrate`, `collide`, `broad_phase
 
 from engine.body import Body
 from engine.collide import Manifold, collide
+from engine.free_flight import FreeFlight
 from engine.shapes import Circle, Polygon, Shape
 from engine.sprite import Sprite
 from engine.world import DT, World
 
-__all__ = ["DT", "Body", "Circle", "Manifold", "Polygon", "Shape", "Sprite", "World", "collide"]
+__all__ = ["DT", "Body", "Circle", "FreeFlight", "Manifold", "Polygon", "Shape", "Sprite", "World", "collide"]

@@ -1,0 +1,131 @@
+"""One lander alone: its free flight and its readings in plain numbers, many times as fast as in arrays of length one.
+
+The arithmetic is that of `ai.lander.craft` and `ai.lander.environment`, operation for operation, so that a lander
+alone flies as it would in a batch, bit for bit. Whatever comes near the ground is left to them.
+"""
+
+from __future__ import annotations
+
+from math import pi
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ai.common.environment import Floats
+from ai.lander.rewards import TILT_ALLOWED, Situation, situated
+from ai.lander.rules import Outcome
+from ai.lander.sensing import scaled
+from engine import DT, FreeFlight
+
+if TYPE_CHECKING:
+    from ai.lander.environment import LanderEnv
+
+
+class Flown(NamedTuple):
+    """Physics steps that were flown, those of them that leaned by more than `TILT_ALLOWED`, and the outcome so far."""
+
+    steps: int
+    tilted: int
+    outcome: Outcome
+
+
+class Alone:
+    """The only lander of an environment in free flight."""
+
+    def __init__(self, env: LanderEnv) -> None:
+        self._env = env
+        self.read_rules()
+
+    def read_rules(self) -> None:
+        """Read all that stays the same in a flight: rules, conditions, and the boxes of what could be hit."""
+        env = self._env
+        self._rules = env.params, env.limits, env.conditions
+        params, limits, conditions = self._rules
+        self._body = FreeFlight(env.world, env.lander.index, _number(np.abs(conditions.swing)))
+        self._main_thrust, self._side_thrust = _number(params.main_thrust), _number(params.side_thrust)
+        self._half_width, self._ceiling = _number(limits.half_width), _number(limits.ceiling)
+        self._latest = _number(limits.time) - 1e-9
+        self._pads: list[list[float]] = env.ground.middles.tolist()
+
+    def fly(self, steps: int, *, solid: bool = True) -> Flown:
+        """Fly up to so many physics steps, until something is near or the flight ends.
+
+        Without `solid`, fly all of them, through everything.
+        """
+        env, body = self._env, self._body
+        params, limits, conditions = self._rules
+        if env.params is not params or env.limits is not limits or env.conditions is not conditions:
+            self.read_rules()
+            return self.fly(steps, solid=solid)
+        body.take()
+        start, tilted, outcome = env.steps.item(), 0, Outcome.FLYING
+        now, main_steps, side_steps = start, env.main_steps.item(), env.side_steps.item()
+        main_share, side_share = env.shares[0].tolist()
+        while now - start < steps and not (outcome or (solid and body.near())):
+            main, side, time = main_share, side_share, now * DT
+            if conditions.fails:
+                dry = (main_steps + params.jet_fuel * side_steps) * DT >= conditions.tank
+                main = 0.0 if dry or not conditions.main_works(time) else main
+                side = 0.0 if dry else side
+            up, aside, cos, sin = self._main_thrust * main, self._side_thrust * side, body.cos, body.sin
+            push = aside * cos - up * sin
+            if conditions.pushes:
+                push += conditions.push(time).item()
+            body.step(push, aside * sin + up * cos, -aside * params.side_arm, DT)
+            now, main_steps, side_steps = now + 1, main_steps + main, side_steps + abs(side)
+            if solid:
+                tilted += _tilt(body.angle) > TILT_ALLOWED
+                outcome = self._judged(now * DT)
+        if now > start:
+            body.give()
+            env.steps[0], env.main_steps[0], env.side_steps[0] = now, main_steps, side_steps
+        return Flown(now - start, tilted, outcome)
+
+    def _judged(self, time: float) -> Outcome:
+        """Return the outcome of a flight in the air."""
+        if abs(self._body.x) > self._half_width or self._body.y > self._ceiling:
+            return Outcome.OUT_OF_BOUNDS
+        return Outcome.TIMED_OUT if time >= self._latest else Outcome.FLYING
+
+    def observe(self, pad: Any) -> Floats:
+        """Return the observation (1, 9) of a pad."""
+        env, body = self._env, self._body
+        body.take()
+        pad = _index(pad)
+        x, top, drift = self._pad(pad)
+        feet, pads = env.contacts[0].tolist(), env.ground.at_once
+        if pads > 1 and env.touched.item() != pad:
+            feet = [False, False]
+        offset = body.x - x, body.y - (top + env.params.stand)
+        numbers = np.array([[*offset, body.vx - drift, body.vy, body.sin, body.cos, body.spin, *feet]])
+        return scaled(numbers, pads)
+
+    def situation(self) -> Situation:
+        """Return what the shaping reward depends on, in plain numbers."""
+        body = self._body
+        body.take()
+        x, top, drift = self._pad(_index(self._env.target))
+        above = body.y - top - self._env.params.stand
+        return situated(body.x - x, above, body.vx - drift, body.vy, _tilt(body.angle))
+
+    def _pad(self, pad: int) -> tuple[float, float, float]:
+        """Return the middle of a pad's top where it is now, and the pad's velocity to the right."""
+        (x, top), conditions = self._pads[pad], self._env.conditions
+        if not conditions.moves:
+            return x, top, 0.0
+        shift, drift = conditions.shift(self._env.steps.item() * DT)
+        return x + shift.item(), top, drift.item()
+
+
+def _tilt(angle: float) -> float:
+    """Return radians from upright, 0 to pi."""
+    return abs((angle + pi) % (2 * pi) - pi)
+
+
+def _number(value: Any) -> float:
+    """Return a number, or the only one of an array, as a plain float."""
+    return float(value) if np.ndim(value) == 0 else float(value.item())
+
+
+def _index(pad: Any) -> int:
+    return pad if isinstance(pad, int) else int(pad.item())
