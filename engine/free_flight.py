@@ -23,8 +23,8 @@ class FreeFlight:
     """The only body that forces can move in a world of batch 1, while nothing fixed is near it.
 
     `step` is `World.step` without contacts, in the same operations and the same order: its results are the same, bit
-    for bit. `take` reads the body's state before it, `give` writes it back after some steps. What does not change in
-    flight is read once, by the constructor, and so are the boxes of fixed bodies; those that may sway by some metres
+    for bit. `take` and `feel` read what it needs, `give` writes the body's state back after some steps. Mass and linear
+    drag are read once, by the constructor, and so are the boxes of fixed bodies; those that may sway by some metres
     to both sides of their places are counted as everywhere at once.
 
     Attributes:
@@ -49,25 +49,28 @@ class FreeFlight:
         self._boxes: list[list[float]] = np.concatenate([low - sideways, high + sideways], axis=2)[0].tolist()
         self._highest = max((box[3] for box in self._boxes), default=-np.inf)
         self.take()
+        self.feel()
 
     def take(self) -> None:
-        """Read the body's state, and what may have changed since the last flight: gravity and the air."""
-        world, body = self._world, self._body
-        state = world.state
+        """Read the body's state."""
+        state, body = self._world.state, self._body
         self.x, self.y, self.angle = state.pose[0, body].tolist()
         self.vx, self.vy, self.spin = state.velocity[0, body].tolist()
         self.cos, self.sin = state.cos.item(0, body), state.sin.item(0, body)
-        self._gravity = world.gravity.ravel().tolist()
-        self._air, _, self._turn_air = world.params.quadratic_drag[..., body, :].ravel().tolist()
+
+    def feel(self) -> None:
+        """Read gravity and the air's drag, which may have changed since the last flight."""
+        self._gravity = self._world.gravity.ravel().tolist()
+        self._air, _, self._turn_air = self._world.params.quadratic_drag[..., self._body, :].ravel().tolist()
 
     def give(self) -> None:
         """Write the body's state back, as after a step in which nothing touched."""
-        world, body = self._world, self._body
-        state = world.state
-        state.pose[0, body] = self.x, self.y, self.angle
-        state.velocity[0, body] = self.vx, self.vy, self.spin
+        state, body = self._world.state, self._body
+        pose, velocity = state.pose, state.velocity
+        pose[0, body, 0], pose[0, body, 1], pose[0, body, 2] = self.x, self.y, self.angle
+        velocity[0, body, 0], velocity[0, body, 1], velocity[0, body, 2] = self.vx, self.vy, self.spin
         state.cos[0, body], state.sin[0, body] = self.cos, self.sin
-        world.untouched()
+        self._world.untouched()
 
     def near(self) -> bool:
         """Whether something fixed is so near that a step must look for contacts: the broad phase, in floats."""

@@ -6,7 +6,7 @@ alone flies as it would in a batch, bit for bit. Whatever comes near the ground 
 
 from __future__ import annotations
 
-from math import pi
+from math import pi, sqrt
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -58,6 +58,7 @@ class Alone:
             self.read_rules()
             return self.fly(steps, solid=solid)
         body.take()
+        body.feel()
         start, tilted, outcome = env.steps.item(), 0, Outcome.FLYING
         now, main_steps, side_steps = start, env.main_steps.item(), env.side_steps.item()
         main_share, side_share = env.shares[0].tolist()
@@ -106,7 +107,7 @@ class Alone:
         body.take()
         x, top, drift = self._pad(_index(self._env.target))
         above = body.y - top - self._env.params.stand
-        return situated(body.x - x, above, body.vx - drift, body.vy, _tilt(body.angle))
+        return situated(body.x - x, above, body.vx - drift, body.vy, _tilt(body.angle), sqrt)
 
     def _pad(self, pad: int) -> tuple[float, float, float]:
         """Return the middle of a pad's top where it is now, and the pad's velocity to the right."""

@@ -45,12 +45,15 @@ class Situation:
     tilt: Doubles  # radians from upright, 0 to pi
 
 
-def situated(across: Any, above: Any, velocity_x: Any, velocity_y: Any, tilt: Any) -> Situation:
-    """Return the situation at these metres from standing on the middle of the pad, at m/s relative to it."""
+def situated(across: Any, above: Any, velocity_x: Any, velocity_y: Any, tilt: Any, root: Any = np.sqrt) -> Situation:
+    """Return the situation at these metres from standing on the middle of the pad, at m/s relative to it.
+
+    `root` is a square root of what is given, arrays (n,) or plain numbers.
+    """
     return Situation(
-        distance=np.sqrt(across * across + above * above),
-        offset=np.abs(across),
-        speed=np.sqrt(velocity_x * velocity_x + velocity_y * velocity_y),
+        distance=root(across * across + above * above),
+        offset=abs(across),
+        speed=root(velocity_x * velocity_x + velocity_y * velocity_y),
         tilt=tilt,
     )
 
@@ -74,10 +77,12 @@ TILT_ALLOWED: Final = 0.6
 FEET_STEPS_PAID: Final = 30
 
 
-def _aligned(situation: Situation) -> Doubles:
-    near = np.maximum(0.0, 1.0 - situation.offset / 3.0)
-    aligned: Doubles = near * np.maximum(0.0, 1.0 - situation.tilt / 0.5)
-    return aligned
+def _aligned(situation: Situation) -> Any:
+    return _at_least_0(1.0 - situation.offset / 3.0) * _at_least_0(1.0 - situation.tilt / 0.5)
+
+
+def _at_least_0(value: Any) -> Any:
+    return np.maximum(0.0, value) if isinstance(value, np.ndarray) else max(0.0, value)
 
 
 REWARDS: Final[dict[str, Callable[[SituationChange, RewardWeights], NDArray[np.floating[Any]]]]] = {
