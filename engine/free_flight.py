@@ -12,19 +12,20 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from engine.contacts import MARGIN
+from engine.vector import dot, length, rotate
 
 if TYPE_CHECKING:
     from engine.world import World
 
-_SLACK: Final = 1e-6  # metres by which boxes are larger than the broad phase's: far more than rounding makes of them
+_APART: Final = MARGIN + 1e-6  # metres between shapes that do not touch, and far more than rounding makes of them
 
 
 class FreeFlight:
-    """The only body that forces can move in a world of batch 1, while nothing fixed is near it.
+    """The only body that forces can move in a world of batch 1 and of polygons, while nothing fixed is near it.
 
     `step` is `World.step` without contacts, in the same operations and the same order: its results are the same, bit
     for bit. `take` and `feel` read what it needs, `give` writes the body's state back after some steps. Mass and linear
-    drag are read once, by the constructor, and so are the boxes of fixed bodies; those that may sway by some metres
+    drag are read once, by the constructor, and so are the faces of fixed bodies; those that may sway by some metres
     to both sides of their places are counted as everywhere at once.
 
     Attributes:
@@ -37,17 +38,25 @@ class FreeFlight:
     def __init__(self, world: World, body: int, sway: float = 0.0) -> None:
         self._world, self._body = world, body
         params, shapes, state = world.params, world.detector.shapes, world.state
+        if shapes.is_circle.any():
+            raise ValueError("free flight knows polygons alone")
         self._inverse_mass, _, self._inverse_inertia = params.inverse_mass[body].tolist()
         self._drag, _, self._turn_drag = params.linear_drag[body].tolist()
         mine = shapes.body == body
-        circles = np.column_stack([shapes.centre, shapes.reach + MARGIN + _SLACK])[mine]
-        self._circles: list[list[float]] = circles.tolist()
-        self._reach = float((np.hypot(*circles[:, :2].T) + circles[:, 2]).max())
+        corners = np.unique(shapes.start[mine].reshape(-1, 2), axis=0)
+        self._corners: list[list[float]] = corners.tolist()
+        self._reach = float(length(corners).max()) + _APART
         fixed = np.flatnonzero(~mine & state.active[0, shapes.body])
-        low, high = shapes.bounds(state, fixed)
+        owner = shapes.body[fixed]
+        cos, sin = state.cos[0, owner, None], state.sin[0, owner, None]
+        start = rotate(shapes.start[fixed], cos, sin) + state.pose[0, owner, None, :2]
+        normal = rotate(shapes.normal[fixed], cos, sin)
+        far = dot(normal, start) + 2 * sway * np.abs(normal[..., 0]) + _APART
         sideways = np.array([2 * sway, 0.0])
-        self._boxes: list[list[float]] = np.concatenate([low - sideways, high + sideways], axis=2)[0].tolist()
-        self._highest = max((box[3] for box in self._boxes), default=-np.inf)
+        boxes = np.concatenate([start.min(axis=1) - sideways, start.max(axis=1) + sideways], axis=1)
+        faces = np.concatenate([normal, far[..., None]], axis=2)
+        self._fixed: list[tuple[list[float], list[list[float]]]] = list(zip(boxes.tolist(), faces.tolist(), strict=True))
+        self._highest = float(boxes[:, 3].max(initial=-np.inf))
         self.take()
         self.feel()
 
@@ -73,27 +82,25 @@ class FreeFlight:
         self._world.untouched()
 
     def near(self) -> bool:
-        """Whether something fixed is so near that a step must look for contacts: the broad phase, in floats."""
+        """Whether anything fixed is so near that a step must look for contacts.
+
+        It need not where a face of every fixed shape has the whole body before it: a separating axis, as in `collide`.
+        """
         x, y, reach = self.x, self.y, self._reach
         if y - reach > self._highest:
             return False
         around = [
-            box
-            for box in self._boxes
-            if y - reach <= box[3] and box[1] <= y + reach and x - reach <= box[2] and box[0] <= x + reach
+            faces
+            for (low_x, low_y, high_x, high_y), faces in self._fixed
+            if y - reach <= high_y and low_y <= y + reach and x - reach <= high_x and low_x <= x + reach
         ]
-        for right, up, own in self._circles if around else ():
-            centre_x = right * self.cos - up * self.sin + x
-            centre_y = right * self.sin + up * self.cos + y
-            for low_x, low_y, high_x, high_y in around:
-                if (
-                    centre_y - own <= high_y
-                    and low_y <= centre_y + own
-                    and centre_x - own <= high_x
-                    and low_x <= centre_x + own
-                ):
-                    return True
-        return False
+        if not around:
+            return False
+        cos, sin = self.cos, self.sin
+        corners = [(right * cos - up * sin + x, right * sin + up * cos + y) for right, up in self._corners]
+        return not all(
+            any(all(nx * right + ny * up > far for right, up in corners) for nx, ny, far in faces) for faces in around
+        )
 
     def step(self, force_x: float, force_y: float, torque: float, dt: float) -> None:
         """Advance by `dt` seconds under gravity, drag and this force, as `integrate` does."""
