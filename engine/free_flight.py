@@ -55,7 +55,9 @@ class FreeFlight:
         sideways = np.array([2 * sway, 0.0])
         boxes = np.concatenate([start.min(axis=1) - sideways, start.max(axis=1) + sideways], axis=1)
         faces = np.concatenate([normal, far[..., None]], axis=2)
-        self._fixed: list[tuple[list[float], list[list[float]]]] = list(zip(boxes.tolist(), faces.tolist(), strict=True))
+        self._fixed: list[tuple[list[float], list[list[float]]]] = list(
+            zip(boxes.tolist(), faces.tolist(), strict=True)
+        )
         self._highest = float(boxes[:, 3].max(initial=-np.inf))
         self.take()
         self.feel()

@@ -34,13 +34,18 @@ class Alone:
 
     def __init__(self, env: LanderEnv) -> None:
         self._env = env
-        self.read_rules()
+        self._rules: tuple[Any, Any, Any] = (None, None, None)
+        self._read_rules()
 
-    def read_rules(self) -> None:
-        """Read all that stays the same in a flight: rules, conditions, and the boxes of what could be hit."""
+    def forget(self) -> None:
+        """Read rules and ground again before the next flight."""
+        self._rules = (None, None, None)
+
+    def _read_rules(self) -> None:
+        """Read all that stays the same in a flight: rules, conditions, and the ground that could be hit."""
         env = self._env
-        self._rules = env.params, env.limits, env.conditions
-        params, limits, conditions = self._rules
+        params, limits, conditions = env.params, env.limits, env.conditions
+        self._rules = params, limits, conditions
         self._body = FreeFlight(env.world, env.lander.index, _number(np.abs(conditions.swing)))
         self._main_thrust, self._side_thrust = _number(params.main_thrust), _number(params.side_thrust)
         self._half_width, self._ceiling = _number(limits.half_width), _number(limits.ceiling)
@@ -52,27 +57,23 @@ class Alone:
 
         Without `solid`, fly all of them, through everything.
         """
-        env, body = self._env, self._body
-        params, limits, conditions = self._rules
-        if env.params is not params or env.limits is not limits or env.conditions is not conditions:
-            self.read_rules()
-            return self.fly(steps, solid=solid)
+        env, rules = self._env, self._rules
+        if env.params is not rules[0] or env.limits is not rules[1] or env.conditions is not rules[2]:
+            self._read_rules()
+        body, pushes = self._body, env.conditions.pushes
         body.take()
         body.feel()
         start, tilted, outcome = env.steps.item(), 0, Outcome.FLYING
         now, main_steps, side_steps = start, env.main_steps.item(), env.side_steps.item()
-        main_share, side_share = env.shares[0].tolist()
+        asked_main, asked_side = env.shares[0].tolist()
         while now - start < steps and not (outcome or (solid and body.near())):
-            main, side, time = main_share, side_share, now * DT
-            if conditions.fails:
-                dry = (main_steps + params.jet_fuel * side_steps) * DT >= conditions.tank
-                main = 0.0 if dry or not conditions.main_works(time) else main
-                side = 0.0 if dry else side
+            time, fuel = now * DT, (main_steps + env.params.jet_fuel * side_steps) * DT
+            main, side = self._thrust(asked_main, asked_side, time, fuel)
             up, aside, cos, sin = self._main_thrust * main, self._side_thrust * side, body.cos, body.sin
             push = aside * cos - up * sin
-            if conditions.pushes:
-                push += conditions.push(time).item()
-            body.step(push, aside * sin + up * cos, -aside * params.side_arm, DT)
+            if pushes:
+                push += env.conditions.push(time).item()
+            body.step(push, aside * sin + up * cos, -aside * env.params.side_arm, DT)
             now, main_steps, side_steps = now + 1, main_steps + main, side_steps + abs(side)
             if solid:
                 tilted += _tilt(body.angle) > TILT_ALLOWED
@@ -81,6 +82,15 @@ class Alone:
             body.give()
             env.steps[0], env.main_steps[0], env.side_steps[0] = now, main_steps, side_steps
         return Flown(now - start, tilted, outcome)
+
+    def _thrust(self, main: float, side: float, time: float, fuel: float) -> tuple[float, float]:
+        """Return the shares of thrust that take effect."""
+        conditions = self._env.conditions
+        if not conditions.fails:
+            return main, side
+        if fuel >= conditions.tank:
+            return 0.0, 0.0
+        return (main if conditions.main_works(time) else 0.0), side
 
     def _judged(self, time: float) -> Outcome:
         """Return the outcome of a flight in the air."""

@@ -182,8 +182,10 @@ class LanderEnv(Craft):
         held = self.actions
         self._take(actions)
         # The same rules for arrays and, where one lander is alone, for plain numbers, which are much faster.
-        arrays = np.copy, self.situation, np.minimum
-        number, situation, least = (np.ndarray.item, self._alone.situation, min) if self._alone else arrays
+        forms: tuple[Any, ...] = np.copy, self.situation, np.minimum
+        if self._alone:
+            forms = np.ndarray.item, self._alone.situation, min
+        number, situation, least = forms
         flying, before = number(self.outcome) == _FLYING, situation()
         flown, feet = number(self.steps), number(self._feet_steps)
         tilted = self._fly_on()
@@ -322,7 +324,7 @@ class LanderEnv(Craft):
         self.world.detector.recall_memory(snapshot["contacts"])
         self._started = True
         if self._alone:
-            self._alone.read_rules()
+            self._alone.forget()
 
     def situation(self) -> Situation:
         """Return what the shaping reward depends on: distance, offset, speed and tilt from the pad, (batch,) each."""
