@@ -17,6 +17,7 @@ from engine.vector import dot, length, rotate
 if TYPE_CHECKING:
     from engine.world import World
 
+Fixed = tuple[list[float], list[list[float]]]  # a fixed shape: its box, low and high corner, and its faces nx, ny, far
 _APART: Final = MARGIN + 1e-6  # metres between shapes that do not touch, and far more than rounding makes of them
 
 
@@ -25,8 +26,8 @@ class FreeFlight:
 
     `step` is `World.step` without contacts, in the same operations and the same order: its results are the same, bit
     for bit. `take` and `feel` read what it needs, `give` writes the body's state back after some steps. Mass and linear
-    drag are read once, by the constructor, and so are the faces of fixed bodies; those that may sway by some metres
-    to both sides of their places are counted as everywhere at once.
+    drag are read once, and so are the faces of fixed bodies, until `forget`; what may sway by some metres to both
+    sides of its place counts as everywhere at once. Raises ValueError if any shape of the world is a circle.
 
     Attributes:
         x, y, angle: metres and radians.
@@ -36,31 +37,38 @@ class FreeFlight:
     """
 
     def __init__(self, world: World, body: int, sway: float = 0.0) -> None:
-        self._world, self._body = world, body
-        params, shapes, state = world.params, world.detector.shapes, world.state
+        self._world, self._body, self._sway = world, body, sway
+        params, shapes = world.params, world.detector.shapes
         if shapes.is_circle.any():
             raise ValueError("free flight knows polygons alone")
         self._inverse_mass, _, self._inverse_inertia = params.inverse_mass[body].tolist()
         self._drag, _, self._turn_drag = params.linear_drag[body].tolist()
-        mine = shapes.body == body
-        corners = np.unique(shapes.start[mine].reshape(-1, 2), axis=0)
+        corners = np.unique(shapes.start[shapes.body == body].reshape(-1, 2), axis=0)
         self._corners: list[list[float]] = corners.tolist()
         self._reach = float(length(corners).max()) + _APART
-        fixed = np.flatnonzero(~mine & state.active[0, shapes.body])
-        owner = shapes.body[fixed]
-        cos, sin = state.cos[0, owner, None], state.sin[0, owner, None]
-        start = rotate(shapes.start[fixed], cos, sin) + state.pose[0, owner, None, :2]
-        normal = rotate(shapes.normal[fixed], cos, sin)
-        far = dot(normal, start) + 2 * sway * np.abs(normal[..., 0]) + _APART
-        sideways = np.array([2 * sway, 0.0])
-        boxes = np.concatenate([start.min(axis=1) - sideways, start.max(axis=1) + sideways], axis=1)
-        faces = np.concatenate([normal, far[..., None]], axis=2)
-        self._fixed: list[tuple[list[float], list[list[float]]]] = list(
-            zip(boxes.tolist(), faces.tolist(), strict=True)
-        )
-        self._highest = float(boxes[:, 3].max(initial=-np.inf))
+        self._fixed: list[Fixed] | None = None
+        self._highest = -np.inf
         self.take()
         self.feel()
+
+    def forget(self) -> None:
+        """Read again where fixed bodies are, before it matters: they were put elsewhere."""
+        self._fixed = None
+
+    def _look_around(self) -> list[Fixed]:
+        """Read where fixed bodies are, and how high the highest reaches."""
+        shapes, state = self._world.detector.shapes, self._world.state
+        fixed = np.flatnonzero((shapes.body != self._body) & state.active[0, shapes.body])
+        body = shapes.body[fixed]
+        sway = np.array([2 * self._sway, 0.0])  # what is at one end of its way now may go to the other
+        cos, sin = state.cos[0, body, None], state.sin[0, body, None]
+        start = rotate(shapes.start[fixed], cos, sin) + state.pose[0, body, None, :2]
+        normal = rotate(shapes.normal[fixed], cos, sin)
+        far = dot(normal, start) + dot(np.abs(normal), sway) + _APART
+        boxes = np.concatenate([start.min(axis=1) - sway, start.max(axis=1) + sway], axis=1)
+        faces = np.concatenate([normal, far[..., None]], axis=2)
+        self._highest = float(boxes[:, 3].max(initial=-np.inf))
+        return list(zip(boxes.tolist(), faces.tolist(), strict=True))
 
     def take(self) -> None:
         """Read the body's state."""
@@ -88,6 +96,8 @@ class FreeFlight:
 
         It need not where a face of every fixed shape has the whole body before it: a separating axis, as in `collide`.
         """
+        if self._fixed is None:
+            self._fixed = self._look_around()
         x, y, reach = self.x, self.y, self._reach
         if y - reach > self._highest:
             return False

@@ -34,18 +34,16 @@ class Alone:
 
     def __init__(self, env: LanderEnv) -> None:
         self._env = env
-        self._rules: tuple[Any, Any, Any] = (None, None, None)
         self._read_rules()
 
     def forget(self) -> None:
-        """Read rules and ground again before the next flight."""
-        self._rules = (None, None, None)
+        """Read again where the ground is, before the next flight."""
+        self._body.forget()
 
     def _read_rules(self) -> None:
         """Read all that stays the same in a flight: rules, conditions, and the ground that could be hit."""
         env = self._env
-        params, limits, conditions = env.params, env.limits, env.conditions
-        self._rules = params, limits, conditions
+        self._rules = params, limits, conditions = env.params, env.limits, env.conditions
         self._body = FreeFlight(env.world, env.lander.index, _number(np.abs(conditions.swing)))
         self._main_thrust, self._side_thrust = _number(params.main_thrust), _number(params.side_thrust)
         self._half_width, self._ceiling = _number(limits.half_width), _number(limits.ceiling)
