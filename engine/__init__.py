@@ -1,7 +1,7 @@
 """Two-dimensional rigid bodies on NumPy, in batches of independent worlds.
 
 Reading order: `vector`, `shapes`, `state`, `integrate`, `collide`, `broad_phase`, `solver`, `contacts`, `world`,
-`body`, `sprite`, `free_flight`.
+`body`, `sprite`.
 
     from engine import Circle, Polygon, World
 
@@ -11,6 +11,8 @@ Reading order: `vector`, `shapes`, `state`, `integrate`, `collide`, `broad_phase
     for _ in range(60):
         world.step()
     print(ball.position)        # (batch, 2)
+
+`free_flight` flies one body of one world in plain floats, as long as it touches nothing.
 """
 
 from engine.body import Body
