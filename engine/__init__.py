@@ -11,12 +11,15 @@ Reading order: `vector`, `shapes`, `state`, `integrate`, `collide`, `broad_phase
     for _ in range(60):
         world.step()
     print(ball.position)        # (batch, 2)
+
+`free_flight` flies one body of one world in plain floats, as long as it touches nothing.
 """
 
 from engine.body import Body
 from engine.collide import Manifold, collide
+from engine.free_flight import FreeFlight
 from engine.shapes import Circle, Polygon, Shape
 from engine.sprite import Sprite
 from engine.world import DT, World
 
-__all__ = ["DT", "Body", "Circle", "Manifold", "Polygon", "Shape", "Sprite", "World", "collide"]
+__all__ = ["DT", "Body", "Circle", "FreeFlight", "Manifold", "Polygon", "Shape", "Sprite", "World", "collide"]

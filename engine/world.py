@@ -137,6 +137,11 @@ class World:
         self.state.force[:] = 0.0
         self.contacts = contacts
 
+    def untouched(self) -> None:
+        """Note that nothing touched in the latest step, which `free_flight` took."""
+        self.detector.remember(None)
+        self.contacts = None
+
     @property
     def detector(self) -> Detector:
         """Contact detector; made anew when a body has been added."""

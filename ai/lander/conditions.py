@@ -48,7 +48,7 @@ class Conditions:
         """Whether the pad moves."""
         return bool(np.any(self.swing))
 
-    def push(self, time: Doubles) -> Doubles:
+    def push(self, time: Doubles | float) -> Doubles:
         """Force of the wind to the right in N, at times (n,) in seconds."""
         push: Doubles = self.wind + self.gust * np.sin(2 * np.pi / self.gust_period * time)
         return push
@@ -59,13 +59,13 @@ class Conditions:
         given: Doubles = self.wind * time + self.gust / rate * (1 - np.cos(rate * time))
         return given
 
-    def main_works(self, time: Doubles) -> Bools:
+    def main_works(self, time: Doubles | float) -> Bools:
         """Whether the main engine fires when it is asked to, (n,)."""
         start, end = self.outage
-        works: Bools = (time < start) | (time >= end)
+        works: Bools = np.logical_or(time < start, time >= end)
         return works
 
-    def shift(self, time: Doubles) -> tuple[Doubles, Doubles]:
+    def shift(self, time: Doubles | float) -> tuple[Doubles, Doubles]:
         """Displacement of the pad to the right of its place, in metres, and its velocity in m/s, each (n,)."""
         rate = 2 * np.pi / self.swing_period
         return self.swing * np.sin(rate * time), self.swing * rate * np.cos(rate * time)

@@ -13,10 +13,19 @@ from typing import Any, Final
 import numpy as np
 
 from ai.common.environment import Bools, Doubles, Floats, Ints, StepResult
+from ai.lander.alone import Alone
 from ai.lander.conditions import CALM, Conditions
 from ai.lander.craft import Craft
 from ai.lander.ground import Ground
-from ai.lander.rewards import FEET_STEPS_PAID, REWARDS, TILT_ALLOWED, RewardWeights, Situation, SituationChange
+from ai.lander.rewards import (
+    FEET_STEPS_PAID,
+    REWARDS,
+    TILT_ALLOWED,
+    RewardWeights,
+    Situation,
+    SituationChange,
+    situated,
+)
 from ai.lander.rules import (
     ACTION_NAMES,
     ACTION_SHARES,
@@ -50,6 +59,8 @@ __all__ = [
 
 _COUNTERS: Final = ("outcome", "cause", "actions", "shares", "contacts", "impact", "steps", "main_steps", "side_steps",
                     "touched", "_still", "_feet_steps")  # fmt: skip
+# NumPy compares with plain numbers many times as fast as with members of an enumeration.
+_FLYING, _LANDED, _CRASHED, _OUT, _LATE = (int(outcome) for outcome in Outcome)
 
 
 class LanderEnv(Craft):
@@ -102,6 +113,7 @@ class LanderEnv(Craft):
         self._pair_pad = pairs.max(axis=1) - 3  # the pad's number; the plain and its hills come after the pads
         self._pair_on_pad = self._pair_pad < len(self.ground.pads)
         self._started = False
+        self._alone = Alone(self) if num_envs == 1 else None
 
     @property
     def landed_on(self) -> Ints:
@@ -169,36 +181,39 @@ class LanderEnv(Craft):
         """Fly one decision; `actions` (n,) are 0 to 5. Raises ValueError for others, RuntimeError before a reset."""
         held = self.actions
         self._take(actions)
-        flying = self.outcome == Outcome.FLYING
-        before = self.situation()
-        flown, tilted, feet = self.steps.copy(), np.zeros_like(self.steps), self._feet_steps.copy()
-        for _ in range(self.frame_skip):
-            still_flying = self.outcome == Outcome.FLYING
-            if not still_flying.any():
-                break
-            self._fly(still_flying)
-            tilted += still_flying & (self.tilt > TILT_ALLOWED)
-        ended = flying & (self.outcome != Outcome.FLYING)
-        flown = self.steps - flown
+        # The same rules for arrays and, where one lander is alone, for plain numbers, which are much faster.
+        forms: tuple[Any, ...] = np.copy, self.situation, np.minimum
+        if self._alone:
+            forms = np.ndarray.item, self._alone.situation, min
+        number, situation, least = forms
+        flying, before = number(self.outcome) == _FLYING, situation()
+        flown, feet = number(self.steps), number(self._feet_steps)
+        tilted = self._fly_on()
+        flown, actions, outcome = number(self.steps) - flown, number(self.actions), number(self.outcome)
+        ended = flying & (outcome != _FLYING)
         change = SituationChange(
             before,
-            self.situation(),
+            situation(),
             flown=flown,
-            fired=flown * (self.actions > 0),
-            tilted=tilted,
-            switched=flying * engines_switched(held, self.actions),
-            feet_down=np.minimum(self._feet_steps, FEET_STEPS_PAID) - np.minimum(feet, FEET_STEPS_PAID),
-            landed=ended & (self.outcome == Outcome.LANDED),
-            lost=ended & ((self.outcome == Outcome.CRASHED) | (self.outcome == Outcome.OUT_OF_BOUNDS)),
+            fired=flown * (actions > 0),
+            tilted=number(tilted),
+            switched=flying * engines_switched(number(held), actions),
+            feet_down=least(number(self._feet_steps), FEET_STEPS_PAID) - least(feet, FEET_STEPS_PAID),
+            landed=ended & (outcome == _LANDED),
+            lost=ended & ((outcome == _CRASHED) | (outcome == _OUT)),
         )
-        components = {name: part(change, self.weights).astype(np.float32) for name, part in REWARDS.items()}
+        parts = np.array([part(change, self.weights) for part in REWARDS.values()], np.float32)
+        parts = parts.reshape(len(REWARDS), self.num_envs)
+        # One by one, in their order; for one lander, NumPy's sum takes them in another.
+        reward = np.add.accumulate(parts)[-1] if self._alone else sum(parts[1:], start=parts[0])
+        truncated = self.outcome == _LATE
         return StepResult(
             observation=self.observe(),
-            reward=sum(components.values(), start=np.zeros(self.num_envs, dtype=np.float32)),
-            terminated=(self.outcome != Outcome.FLYING) & (self.outcome != Outcome.TIMED_OUT),
-            truncated=self.outcome == Outcome.TIMED_OUT,
+            reward=reward,
+            terminated=(self.outcome != _FLYING) & ~truncated,
+            truncated=truncated,
             outcome=self.outcome.copy(),
-            components=components,
+            components=dict(zip(REWARDS, parts, strict=True)),
         )
 
     def fly(self, actions: Any, shares: Doubles | None = None) -> None:
@@ -211,10 +226,7 @@ class LanderEnv(Craft):
         self._take(actions)
         if shares is not None:
             self.shares = self._checked(shares)
-        for _ in range(self.frame_skip):
-            flying = self.outcome == Outcome.FLYING
-            if flying.any():
-                self._fly(flying)
+        self._fly_on()
 
     def glide(self, actions: Ints) -> Floats:
         """Fly one decision in every slot without collisions; return the observations, (n, 9).
@@ -224,6 +236,9 @@ class LanderEnv(Craft):
         """
         self.actions, self.shares = actions, ACTION_SHARES.take(actions, axis=0)
         flying = self.outcome == Outcome.FLYING
+        if self._alone and flying[0]:
+            self._alone.fly(self.frame_skip, solid=False)
+            return self.observe()
         for _ in range(self.frame_skip):
             self._move(flying, touching=False)
         return self.observe()
@@ -231,6 +246,8 @@ class LanderEnv(Craft):
     def observe(self, pad: Any = None) -> Floats:
         """Return every lander's observation (n, 9) of its target, or of another `pad`, one number or (n,)."""
         pad = self.target if pad is None else np.asarray(pad)
+        if self._alone:
+            return self._alone.observe(pad)
         pads = self.ground.at_once
         contacts = self.contacts if pads == 1 else self.contacts * (self.touched == pad)[:, None]
         offset = self.position - (self._top(pad) + np.array([0.0, self.params.stand]))
@@ -306,25 +323,20 @@ class LanderEnv(Craft):
             setattr(self.world.state, name, value.copy())
         self.world.detector.recall_memory(snapshot["contacts"])
         self._started = True
+        if self._alone:
+            self._alone.forget()
 
     def situation(self) -> Situation:
         """Return what the shaping reward depends on: distance, offset, speed and tilt from the pad, (batch,) each."""
-        offset = self.position - self.pad
-        across, above = offset[:, 0], offset[:, 1] - self.params.stand
-        velocity = self._relative_velocity()
-        return Situation(
-            distance=np.sqrt(across**2 + above**2),
-            offset=np.abs(across),
-            speed=np.sqrt(velocity[:, 0] ** 2 + velocity[:, 1] ** 2),
-            tilt=self.tilt,
-        )
+        offset, velocity = self.position - self.pad, self._relative_velocity()
+        return situated(offset[:, 0], offset[:, 1] - self.params.stand, velocity[:, 0], velocity[:, 1], self.tilt)
 
     def _take(self, actions: Any) -> None:
         """Set the actions to fly from now on; raises as `step` does."""
         actions = np.asarray(actions)
         if actions.shape != (self.num_envs,) or actions.dtype.kind not in "iu":
             raise ValueError(f"actions must be {self.num_envs} whole numbers, not {actions.dtype} {actions.shape}")
-        if ((actions < 0) | (actions >= NUM_ACTIONS)).any():
+        if np.count_nonzero(actions.astype(np.uintp) >= NUM_ACTIONS):  # those below 0 become huge
             raise ValueError(f"actions run from 0 to {NUM_ACTIONS - 1}, not {actions.min()} to {actions.max()}")
         if not self._started:
             raise RuntimeError("reset() must come before the first step()")
@@ -338,6 +350,26 @@ class LanderEnv(Craft):
         if shares.shape != (self.num_envs, 2) or not ((shares >= lowest) & (shares <= highest)).all():
             raise ValueError(f"shares of thrust are {self.num_envs} rows, main 0 to 1 and side -1 to 1")
         return shares
+
+    def _fly_on(self) -> Ints:
+        """Fly one decision where flights go on; return in how many physics steps each tilted too far, (n,)."""
+        tilted, left = np.zeros(self.num_envs, dtype=np.intp), self.frame_skip
+        while left and np.count_nonzero(flying := self.outcome == _FLYING):
+            if self._alone and (flown := self._alone.fly(left)).steps:
+                left -= flown.steps
+                tilted[0] += flown.tilted
+                self._up_in_the_air(flown.outcome)
+                continue
+            self._fly(flying)
+            tilted += flying & (self.tilt > TILT_ALLOWED)
+            left -= 1
+        return tilted
+
+    def _up_in_the_air(self, outcome: Outcome) -> None:
+        """Judge the only lander after steps in which nothing touched."""
+        self.contacts, self._still[0] = np.zeros((1, 2), dtype=bool), 0
+        if outcome:
+            self.outcome, self.lander.active = np.array([int(outcome)], dtype=np.intp), False
 
     def _fly(self, flying: Bools) -> None:
         """One physics step of the slots that fly: push, move, judge."""

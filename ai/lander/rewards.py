@@ -5,7 +5,7 @@ ends alone, and no loop earns anything. An agent that discounts sees a little mo
 would pay it γΦ' - Φ, and this is that plus (1 - γ)Φ'. Upright above the pad that is at most 0.45 points a
 decision (modern; classic 0.30), less than its time costs (1.6; 0.4), so it does not pay to stay. The parts are
 kept without γ because they are points that a player can follow: 0.5 for each 0.1 m. The rest is paid per physics
-step.
+step. Every part takes arrays (n,), or the plain numbers of one lander.
 """
 
 from __future__ import annotations
@@ -45,6 +45,19 @@ class Situation:
     tilt: Doubles  # radians from upright, 0 to pi
 
 
+def situated(across: Any, above: Any, velocity_x: Any, velocity_y: Any, tilt: Any, root: Any = np.sqrt) -> Situation:
+    """Return the situation at these metres from standing on the middle of the pad, at m/s relative to it.
+
+    `root` is a square root of what is given, arrays (n,) or plain numbers.
+    """
+    return Situation(
+        distance=root(across * across + above * above),
+        offset=abs(across),
+        speed=root(velocity_x * velocity_x + velocity_y * velocity_y),
+        tilt=tilt,
+    )
+
+
 @dataclass
 class SituationChange:
     """Change made by one decision: the situations before and after, and counts of its physics steps, each (n,)."""
@@ -64,10 +77,12 @@ TILT_ALLOWED: Final = 0.6
 FEET_STEPS_PAID: Final = 30
 
 
-def _aligned(situation: Situation) -> Doubles:
-    near = np.maximum(0.0, 1.0 - situation.offset / 3.0)
-    aligned: Doubles = near * np.maximum(0.0, 1.0 - situation.tilt / 0.5)
-    return aligned
+def _aligned(situation: Situation) -> Any:
+    return _at_least_0(1.0 - situation.offset / 3.0) * _at_least_0(1.0 - situation.tilt / 0.5)
+
+
+def _at_least_0(value: Any) -> Any:
+    return np.maximum(0.0, value) if isinstance(value, np.ndarray) else max(0.0, value)
 
 
 REWARDS: Final[dict[str, Callable[[SituationChange, RewardWeights], NDArray[np.floating[Any]]]]] = {
@@ -79,5 +94,5 @@ REWARDS: Final[dict[str, Callable[[SituationChange, RewardWeights], NDArray[np.f
     "engine": lambda c, w: w.engine * c.fired,
     "switch": lambda c, w: w.switch * c.switched,
     "time": lambda c, w: w.time * c.flown,
-    "terminal": lambda c, w: w.terminal * (c.landed.astype(float) - c.lost),
+    "terminal": lambda c, w: w.terminal * (1.0 * c.landed - c.lost),
 }

@@ -74,6 +74,11 @@ def sensed(
     numbers[:, 5] = cos
     numbers[:, 6] = spin
     numbers[:, 7:9] = contacts
+    return scaled(numbers, pads)
+
+
+def scaled(numbers: Doubles, pads: int) -> Floats:
+    """Return the observations of numbers (n, 9) in SI units, which are changed, over a ground with so many pads."""
     if pads > 1:
         numbers[:, 0].clip(-_FAR, _FAR, out=numbers[:, 0])
     numbers *= OBSERVATION_SCALE
