@@ -37,8 +37,11 @@ class BroadPhase:
         """Discard the cached boxes: a body that forces do not move was put elsewhere, or will be."""
         self._boxes = None
 
-    def near(self, state: BodyState) -> tuple[Ints, Ints]:
-        """Return world and row of `pairs`, each (n,), where boxes overlap; sorted by world, then by row."""
+    def near(self, state: BodyState, awake: Bools | None = None) -> tuple[Ints, Ints]:
+        """Return world and row of `pairs`, each (n,), where boxes overlap; sorted by world, then by row.
+
+        Given which bodies are `awake`, (batch, bodies), pairs without any are left out.
+        """
         boxes = self._boxes_now(state)
         low_x, low_y, high_x, high_y = boxes[:, :, None, :]
         my_low_x, my_low_y, my_high_x, my_high_y = boxes[:, :, self._moving, None]
@@ -48,6 +51,8 @@ class BroadPhase:
         near &= low_x <= my_high_x
         if not state.active.all():
             near &= state.active[:, self._moving, None] & state.active[:, None, :]
+        if awake is not None:
+            near &= awake[:, self._moving, None] | awake[:, None, :]
         world, mover, other = near.nonzero()
         pair = self._first[mover, other]
         if not self._several or not len(world):

@@ -22,8 +22,12 @@ class MovingBodies:
         self.any_drag = self.fast_drag or bool(self.linear_drag.any())
 
 
-def integrate_velocity(state: BodyState, movers: MovingBodies, gravity: Array, dt: float) -> None:
+def integrate_velocity(
+    state: BodyState, movers: MovingBodies, gravity: Array, dt: float, awake: Bools | None = None
+) -> None:
     """Apply gravity (2,) or (batch, 2), accumulated forces and drag to the velocities of `movers`, in place.
+
+    Of them, those move that are active, and `awake` (batch, bodies) if that is given.
 
     Drag is the force -(linear + quadratic·|v|)·v, for translation and rotation apart. It is taken implicitly
     in v, so that no coefficient, however large, can reverse a motion; terminal speeds are exact.
@@ -35,6 +39,8 @@ def integrate_velocity(state: BodyState, movers: MovingBodies, gravity: Array, d
     if not movers.all_fall:
         fall = np.where(movers.falls, fall, 0.0)
     active = state.active[:, bodies, None]
+    if awake is not None:
+        active = active & awake[:, bodies, None]
     if not active.all():
         ease, fall = ease * active, fall * active
     damping = movers.linear_drag
@@ -48,10 +54,12 @@ def integrate_velocity(state: BodyState, movers: MovingBodies, gravity: Array, d
         state.velocity[:, bodies] = velocity
 
 
-def integrate_position(state: BodyState, bodies: Span, dt: float) -> None:
-    """Move `bodies`, if active, along their velocities, in place."""
+def integrate_position(state: BodyState, bodies: Span, dt: float, awake: Bools | None = None) -> None:
+    """Move `bodies`, if active, and awake if that is given, along their velocities, in place."""
     step = state.velocity[:, bodies] * dt
     active = state.active[:, bodies, None]
+    if awake is not None:
+        active = active & awake[:, bodies, None]
     if not active.all():
         step *= active
     state.pose[:, bodies] += step
