@@ -20,6 +20,13 @@ class MovingBodies:
         self.all_fall = bool(self.falls.all())
         self.fast_drag = bool(self.quadratic_drag.any())  # whether any grows with the square of the speed
         self.any_drag = self.fast_drag or bool(self.linear_drag.any())
+        self._ease = (np.nan, self.inverse_mass)
+
+    def ease(self, dt: float) -> Array:
+        """Change of velocity (bodies, 3) per unit of force in a step of `dt` seconds; kept, for it is always the same."""
+        if self._ease[0] != dt:
+            self._ease = (dt, self.inverse_mass * dt)
+        return self._ease[1]
 
 
 def integrate_velocity(
@@ -34,7 +41,7 @@ def integrate_velocity(
     """
     bodies = movers.bodies
     velocity = state.velocity[:, bodies]
-    ease = movers.inverse_mass * dt  # change of velocity per unit of force in one step
+    ease = movers.ease(dt)
     fall = np.asarray(gravity)[..., None, :] * dt
     if not movers.all_fall:
         fall = np.where(movers.falls, fall, 0.0)
@@ -47,7 +54,8 @@ def integrate_velocity(
     if movers.fast_drag:
         damping = damping + movers.quadratic_drag * _speeds(velocity)
     velocity += state.force[:, bodies] * ease
-    velocity[..., :2] += fall
+    places = velocity[..., :2]
+    places += fall
     if movers.any_drag:
         velocity /= 1.0 + damping * ease
     if not isinstance(bodies, slice):  # indexing made a copy; a slice is a view
@@ -62,7 +70,11 @@ def integrate_position(state: BodyState, bodies: Span, dt: float, awake: Bools |
         active = active & awake[:, bodies, None]
     if not active.all():
         step *= active
-    state.pose[:, bodies] += step
+    if isinstance(bodies, slice):
+        pose = state.pose[:, bodies]
+        pose += step
+    else:
+        state.pose[:, bodies] += step
 
 
 def _speeds(velocity: Array) -> Array:

@@ -39,6 +39,7 @@ class Rest:
 
     def __init__(self, params: BodyParams, batch: int) -> None:
         self._dynamic = params.dynamic
+        self._fixed = np.flatnonzero(~params.dynamic)
         shape = (batch, len(params.group))
         self.asleep: Bools = np.zeros(shape, dtype=bool)
         self.awake: Bools | None = None
@@ -84,6 +85,8 @@ class Rest:
 
     def settle(self, state: BodyState, contacts: Contacts | None, gravity: Array) -> Contacts | None:
         """Let fall asleep what has been still for long enough; return its contacts beside those of this step."""
+        if contacts is None and not self._counts and self._known is None:
+            return None
         merged = Contacts.join(contacts, self.contacts)
         if contacts is not None:
             self._count(state, contacts)
@@ -95,7 +98,7 @@ class Rest:
         self._known = self.awake = None
         if self.asleep.any():
             self._known, self._gravity = _watched(state, gravity), np.array(gravity)
-            self.awake = np.where(self._dynamic, ~self.asleep, state.velocity.any(axis=2))
+            self.awake = self._dynamic & ~self.asleep | self._lifts(state)
             self._all_asleep = not (self.awake & state.active).any()
         return merged
 
@@ -117,15 +120,21 @@ class Rest:
     def _fall_asleep(self, state: BodyState, contacts: Contacts, merged: Contacts | None) -> None:
         """Put to sleep every island that something holds up and of which each body has been still for long enough."""
         lies = self._steps >= STEPS
-        moves = state.velocity.any(axis=2)
-        restless = self._spread(np.where(self._dynamic, ~lies, moves), contacts)
-        held = self._spread(~self._dynamic & ~moves & state.active, contacts)
+        lifts = self._lifts(state)
+        restless = self._spread(self._dynamic & ~lies | lifts, contacts)
+        held = self._spread(~self._dynamic & ~lifts, contacts)
         tired = self._dynamic & lies & held & ~restless
         if tired.any():
             self.asleep |= tired
             self._steps[tired] = 0
             state.velocity[tired] = 0.0
             self.contacts = self._sleeping(merged)
+
+    def _lifts(self, state: BodyState) -> Bools:
+        """Whether each body moves though no force can move it, (batch, bodies)."""
+        lifts = np.zeros_like(self.asleep)
+        lifts[:, self._fixed] = state.velocity[:, self._fixed].any(axis=2)
+        return lifts
 
     def _sleeping(self, contacts: Contacts | None) -> Contacts | None:
         """Return those contacts of which no body is awake."""

@@ -33,6 +33,8 @@ TOLERANCE = 1e-4
 # for as long as one looks.
 LENIENCE = 1e-2
 OLD = 15
+# Manifolds among which there nearly always is one that would be pulled; it is not asked then.
+_MANY = 12
 
 
 @dataclass
@@ -251,7 +253,7 @@ class Rows:
         both = np.multiply(self.inverse, lacking, out=space.both)
         both += total
         both += np.multiply(self.cross_inverse, lacking[::-1], out=space.alone)
-        if both.min() >= 0:
+        if len(self.index) < _MANY and both.min() >= 0:
             return both
         # Where that would pull at one point, there is no impulse at it, and the other point has to do alone.
         alone = np.multiply(self.coupling, total[::-1], out=space.alone)
