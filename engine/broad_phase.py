@@ -51,19 +51,25 @@ class BroadPhase:
             return _NONE, _NONE
         fixed = self._boxes is not None
         boxes = self._boxes_now(state)
+        worlds = None if awake is None else np.flatnonzero(awake.any(axis=1))
+        active = state.active
+        if awake is not None and worlds is not None:
+            boxes, active, awake = boxes[:, worlds], active[worlds], awake[worlds]
         low_x, low_y, high_x, high_y = boxes[:, :, None, :]
         my_low_x, my_low_y, my_high_x, my_high_y = boxes[:, :, self._moving, None]
         near: Bools = (my_low_y <= high_y) & (self._count > 0)
         near &= low_y <= my_high_y
         near &= my_low_x <= high_x
         near &= low_x <= my_high_x
-        if not state.active.all():
-            near &= state.active[:, self._moving, None] & state.active[:, None, :]
+        if not active.all():
+            near &= active[:, self._moving, None] & active[:, None, :]
         if awake is not None:
             near &= awake[:, self._moving, None] | awake[:, None, :]
         world, mover, other = near.nonzero()
         pair = self._first[mover, other]
-        if fixed and not len(world):
+        if worlds is not None:
+            world = worlds[world]
+        if fixed and worlds is None and not len(world):
             self._measure_clearance(state, boxes)
         if not self._several or not len(world):
             return world, pair

@@ -18,7 +18,7 @@ from typing import Final
 import numpy as np
 
 from engine.solver import Contacts
-from engine.state import BodyParams, BodyState
+from engine.state import BodyParams, BodyState, span
 from engine.vector import Array, Bools, Ints
 
 STILL: Final = 0.01  # m/s and rad/s below which a body is still
@@ -39,7 +39,7 @@ class Rest:
 
     def __init__(self, params: BodyParams, batch: int) -> None:
         self._dynamic = params.dynamic
-        self._fixed = np.flatnonzero(~params.dynamic)
+        self._fixed = span(~params.dynamic)
         shape = (batch, len(params.group))
         self.asleep: Bools = np.zeros(shape, dtype=bool)
         self.awake: Bools | None = None
@@ -66,7 +66,8 @@ class Rest:
 
     def wake(self, chosen: Bools) -> None:
         """Wake the chosen bodies (batch, bodies) and their islands; a fixed body wakes what lies on it."""
-        woken = self._spread(chosen, self.contacts)
+        kept = self.contacts
+        woken = self._spread(chosen, kept.world, kept.body) if kept else chosen
         self.asleep &= ~woken
         self._steps[woken] = 0
         self._all_asleep = False
@@ -90,8 +91,10 @@ class Rest:
         merged = Contacts.join(contacts, self.contacts)
         if contacts is not None:
             self._count(state, contacts)
-            if (self._steps >= STEPS).any():
-                self._fall_asleep(state, contacts, merged)
+            # The last of an island's bodies to have been still for long enough asks for it, and now and then asks again.
+            due = np.flatnonzero(((self._steps > 0) & (self._steps % STEPS == 0)).any(axis=1))
+            if len(due) and self._fall_asleep(state, contacts, due):
+                self.contacts = self._sleeping(merged)
         elif self._counts:
             self._steps[:] = 0
             self._counts = False
@@ -117,23 +120,33 @@ class Rest:
         self._steps[world, body] = count
         self._counts = True
 
-    def _fall_asleep(self, state: BodyState, contacts: Contacts, merged: Contacts | None) -> None:
-        """Put to sleep every island that something holds up and of which each body has been still for long enough."""
-        lies = self._steps >= STEPS
-        lifts = self._lifts(state)
-        restless = self._spread(self._dynamic & ~lies | lifts, contacts)
-        held = self._spread(~self._dynamic & ~lifts, contacts)
+    def _fall_asleep(self, state: BodyState, contacts: Contacts, due: Ints) -> bool:
+        """Put to sleep every island that lies on something, in the worlds that are `due`; return whether there was one.
+
+        Each of its bodies has to have been still for long enough.
+        """
+        row = np.full(len(self.asleep), -1)
+        row[due] = np.arange(len(due))
+        here = np.flatnonzero(row[contacts.world] >= 0)
+        world, body = row[contacts.world[here]], contacts.body[here]
+        lies = self._steps[due] >= STEPS
+        lifts = self._lifts(state)[due]
+        restless = self._spread(self._dynamic & ~lies | lifts, world, body)
+        held = self._spread(~self._dynamic & ~lifts, world, body)
         tired = self._dynamic & lies & held & ~restless
-        if tired.any():
-            self.asleep |= tired
-            self._steps[tired] = 0
-            state.velocity[tired] = 0.0
-            self.contacts = self._sleeping(merged)
+        worlds, bodies = tired.nonzero()
+        worlds = due[worlds]
+        self.asleep[worlds, bodies] = True
+        self._steps[worlds, bodies] = 0
+        state.velocity[worlds, bodies] = 0.0
+        return bool(len(worlds))
 
     def _lifts(self, state: BodyState) -> Bools:
         """Whether each body moves though no force can move it, (batch, bodies)."""
         lifts = np.zeros_like(self.asleep)
-        lifts[:, self._fixed] = state.velocity[:, self._fixed].any(axis=2)
+        speeds = state.velocity[:, self._fixed]
+        if speeds.any():
+            lifts[:, self._fixed] = speeds.any(axis=2)
         return lifts
 
     def _sleeping(self, contacts: Contacts | None) -> Contacts | None:
@@ -143,17 +156,18 @@ class Rest:
         asleep = self.asleep[contacts.world[:, None], contacts.body] | ~self._dynamic[contacts.body]
         return contacts.resting(np.flatnonzero(asleep.all(axis=1)))
 
-    def _spread(self, chosen: Bools, contacts: Contacts | None) -> Bools:
-        """Return the chosen bodies (batch, bodies) and all that contacts link to them; only they link as fixed ones."""
-        if contacts is None:
-            return chosen
+    def _spread(self, chosen: Bools, world: Ints, body: Ints) -> Bools:
+        """Return the chosen bodies (worlds, bodies), and all that pairs link to them: `world` (n,), `body` (n, 2).
+
+        Bodies that no force can move link to others only if they are chosen.
+        """
         links = chosen | self._dynamic
-        a, b = contacts.world, contacts.body[:, 0]
-        c = contacts.body[:, 1]
-        reached, size = chosen.copy(), -1
-        while size < (size := int(reached.sum())):
-            met = reached[a, b] | reached[a, c]
-            reached[a[met], b[met]] = reached[a[met], c[met]] = True
+        a, b = body.T
+        reached, before = chosen.copy(), -1
+        while before < (count := int(reached.sum())):
+            before = count
+            met = np.flatnonzero(reached[world, a] | reached[world, b])
+            reached[world[met], a[met]] = reached[world[met], b[met]] = True
             reached &= links
         return reached
 
