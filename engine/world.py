@@ -149,6 +149,12 @@ class World:
         self.contacts = rest.settle(self.state, contacts, self.gravity) if rest else contacts
         self.detector.remember(self.contacts)
 
+    def wake(self) -> None:
+        """Wake every body in every world."""
+        rest = self.detector.rest
+        if rest:
+            rest.wake(np.ones_like(rest.asleep))
+
     @property
     def detector(self) -> Detector:
         """Contact detector; made anew when a body has been added."""
