@@ -73,7 +73,7 @@ class Body:
 
     @property
     def asleep(self) -> Bools:
-        """Whether the body lies still and is left alone until something about it or its neighbours changes, (batch,)."""
+        """Whether the body lies still and is left alone until something changes about what it lies with, (batch,)."""
         rest = self.world.detector.rest
         return np.zeros(self.world.batch, dtype=bool) if rest is None else _read_only(rest.asleep[:, self.index])
 

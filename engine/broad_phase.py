@@ -7,7 +7,6 @@ import numpy as np
 from engine.state import BodyParams, BodyState, ShapeTable, span
 from engine.vector import Array, Bools, Ints
 
-
 _NONE: Ints = np.zeros(0, dtype=np.intp)
 _SLACK = 1e-6  # metres, far more than rounding makes of a box
 
@@ -90,7 +89,7 @@ class BroadPhase:
         return clear
 
     def _measure_clearance(self, state: BodyState, boxes: Array) -> None:
-        """Note how far every body may go, (batch, 1, 1), before any boxes can overlap: their least gap, or half of it."""
+        """Note how far all bodies may go, (batch, 1, 1), before boxes can overlap: the least gap, or half of it."""
         mine = boxes[:, :, self._moving, None]
         others = boxes[:, :, None, :]
         gaps = np.maximum(mine[:2] - others[2:], others[:2] - mine[2:]).max(axis=0)

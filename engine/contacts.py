@@ -9,8 +9,9 @@ import numpy as np
 
 from engine.broad_phase import BroadPhase
 from engine.collide import Manifold, PlacedPolygons, collide_circles, collide_polygon_circle, collide_polygons
+from engine.contact_set import Contacts
 from engine.rest import Rest
-from engine.solver import Contacts, colour
+from engine.solver import colour
 from engine.state import BodyParams, BodyState, ShapeTable
 from engine.vector import Array, Bools, Ints, dot, length, rotate
 

@@ -23,7 +23,7 @@ class MovingBodies:
         self._ease = (np.nan, self.inverse_mass)
 
     def ease(self, dt: float) -> Array:
-        """Change of velocity (bodies, 3) per unit of force in a step of `dt` seconds; kept, for it is always the same."""
+        """Change of velocity (bodies, 3) per unit of force in a step of `dt` seconds, kept from the last call."""
         if self._ease[0] != dt:
             self._ease = (dt, self.inverse_mass * dt)
         return self._ease[1]

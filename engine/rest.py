@@ -17,7 +17,7 @@ from typing import Final
 
 import numpy as np
 
-from engine.solver import Contacts
+from engine.contact_set import Contacts
 from engine.state import BodyParams, BodyState, span
 from engine.vector import Array, Bools, Ints
 
@@ -91,7 +91,7 @@ class Rest:
         merged = Contacts.join(contacts, self.contacts)
         if contacts is not None:
             self._count(state, contacts)
-            # The last of an island's bodies to have been still for long enough asks for it, and now and then asks again.
+            # The last of an island's bodies to be still for long enough asks for it, and asks again now and then.
             due = np.flatnonzero(((self._steps > 0) & (self._steps % STEPS == 0)).any(axis=1))
             if len(due) and self._fall_asleep(state, contacts, due):
                 self.contacts = self._sleeping(merged)
@@ -178,7 +178,8 @@ class Rest:
             np.frombuffer(was, now.dtype).reshape(now.shape) != now
             for was, now in zip(self._known, _parts(state), strict=False)
         )
-        fall = np.broadcast_to((self._gravity != gravity), (len(active), 2)).any(axis=1)
+        differs: Bools = np.not_equal(self._gravity, gravity)
+        fall = np.broadcast_to(differs, (len(active), 2)).any(axis=1)
         changed: Bools = (pose | velocity | force).any(axis=2) | active
         return changed | (fall[:, None] & self.asleep)
 

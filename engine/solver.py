@@ -19,6 +19,7 @@ from functools import cached_property
 import numpy as np
 
 from engine.collide import Manifold
+from engine.contact_set import Contacts
 from engine.state import BodyParams, BodyState
 from engine.vector import Array, Bools, Ints, cross, right_of
 
@@ -35,60 +36,6 @@ LENIENCE = 1e-2
 OLD = 15
 # Manifolds among which there nearly always is one that would be pulled; it is not asked then.
 _MANY = 12
-
-
-@dataclass
-class Contacts:
-    """The touching pairs of one step, m of them, in the order of their colours."""
-
-    world: Ints  # (m,)
-    pair: Ints  # (m,) row of the world's table of shape pairs
-    body: Ints  # (m, 2) A and B
-    manifold: Manifold
-    friction: Array  # (m,)
-    restitution: Array  # (m,)
-    impulse: Array  # (3, m) N·s: normal, normal, friction; begins with what the last step needed
-    approach: Array  # (3, m) m/s before the impulses: closing at each point, then sliding
-    age: Ints  # (m,) steps for which the pair has touched without a break
-    colour_ends: list[int]  # manifolds up to each of these indices share no dynamic body
-
-    def __len__(self) -> int:
-        return len(self.world)
-
-    @classmethod
-    def join(cls, solved: Contacts | None, kept: Contacts | None) -> Contacts | None:
-        """Return the contacts of a step, and after them those of sleeping bodies, which it left as they were."""
-        if solved is None or kept is None:
-            return solved or kept
-        return cls(
-            world=np.concatenate([solved.world, kept.world]),
-            pair=np.concatenate([solved.pair, kept.pair]),
-            body=np.concatenate([solved.body, kept.body]),
-            manifold=Manifold.join(solved.manifold, kept.manifold),
-            friction=np.concatenate([solved.friction, kept.friction]),
-            restitution=np.concatenate([solved.restitution, kept.restitution]),
-            impulse=np.concatenate([solved.impulse, kept.impulse], axis=1),
-            approach=np.concatenate([solved.approach, kept.approach], axis=1),
-            age=np.concatenate([solved.age, kept.age]),
-            colour_ends=solved.colour_ends,
-        )
-
-    def resting(self, rows: Ints) -> Contacts | None:
-        """Return these contacts as those of sleeping bodies, which do not move; None if there are none."""
-        if not len(rows):
-            return None
-        return Contacts(
-            world=self.world[rows],
-            pair=self.pair[rows],
-            body=self.body[rows],
-            manifold=self.manifold.rows(rows),
-            friction=self.friction[rows],
-            restitution=self.restitution[rows],
-            impulse=self.impulse[:, rows],
-            approach=np.zeros((3, len(rows))),
-            age=self.age[rows],
-            colour_ends=[],
-        )
 
 
 class Solver:
@@ -136,17 +83,21 @@ class Solver:
         self._sweep(shift, push, CORRECTION * excess, None, iterations)
         state.pose += shift.reshape(state.pose.shape)
 
-    def _sweep(
-        self, velocity: Array, impulse: Array, target: Array, friction: Array | None, iterations: int
-    ) -> None:
-        """Projected Gauss-Seidel: drive each normal speed to `target` (2, m) or more, by pushing only."""
+    def _sweep(self, velocity: Array, impulse: Array, target: Array, friction: Array | None, iterations: int) -> None:
+        """Projected Gauss-Seidel: drive each normal speed to `target` (2, m) or more, by pushing only.
+
+        It ends early only where a further iteration would change no bit, so a world is the same alone and among others.
+        """
         parts = [
             (rows, impulse[:, span], target[:, span], None if friction is None else friction[span])
             for rows, span in zip(self._colours, self._spans, strict=True)
         ]
         for _ in range(iterations):
+            before = impulse.tobytes()
             for rows, total, wanted, coefficient in parts:
                 rows.relax(velocity, total, wanted, coefficient)
+            if impulse.tobytes() == before and not any(rows.space.change.any() for rows in self._colours):
+                return
 
 
 @dataclass

@@ -7,11 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from engine.body import Body
+from engine.contact_set import Contacts
 from engine.contacts import Detector
 from engine.integrate import MovingBodies, integrate_position, integrate_velocity
 from engine.rest import Rest
 from engine.shapes import Point, Shape, mass_properties
-from engine.solver import Contacts, Solver
+from engine.solver import Solver
 from engine.state import BodyParams, BodyState, ShapeTable
 from engine.vector import Array, Bools
 
