@@ -69,7 +69,6 @@ class Rest:
         kept = self.contacts
         woken = self._spread(chosen, kept.world, kept.body) if kept else chosen
         self.asleep &= ~woken
-        self._steps[woken] = 0
         self._all_asleep = False
         self.contacts = self._sleeping(self.contacts)
         if self.awake is not None:
@@ -109,6 +108,7 @@ class Rest:
         """Count the steps for which each touching body has been still."""
         still = np.zeros_like(self.asleep)
         still[contacts.world[:, None], contacts.body] = True
+        still &= self._dynamic
         world, body = still.nonzero()
         pose = state.pose[world, body]
         calm = (np.abs(state.velocity[world, body]) < STILL).all(axis=1)
@@ -178,8 +178,8 @@ class Rest:
             np.frombuffer(was, now.dtype).reshape(now.shape) != now
             for was, now in zip(self._known, _parts(state), strict=False)
         )
-        differs: Bools = np.not_equal(self._gravity, gravity)
-        fall = np.broadcast_to(differs, (len(active), 2)).any(axis=1)
+        before, after = (np.broadcast_to(each, (len(active), 2)) for each in (self._gravity, gravity))
+        fall = (before != after).any(axis=1)
         changed: Bools = (pose | velocity | force).any(axis=2) | active
         return changed | (fall[:, None] & self.asleep)
 

@@ -135,6 +135,7 @@ class World:
         """
         rest = self.detector.rest
         if rest and rest.undisturbed(self.state, self.gravity):
+            self.contacts = rest.contacts
             return
         contacts = self.detector.find(self.state) if touching else None
         awake = rest.awake if rest else None
