@@ -1,7 +1,7 @@
 """Two-dimensional rigid bodies on NumPy, in batches of independent worlds.
 
-Reading order: `vector`, `shapes`, `state`, `integrate`, `collide`, `broad_phase`, `solver`, `contacts`, `world`,
-`body`, `sprite`.
+Reading order: `vector`, `shapes`, `state`, `integrate`, `collide`, `broad_phase`, `contact_set`, `solver`, `rest`,
+`contacts`, `world`, `body`, `sprite`.
 
     from engine import Circle, Polygon, World
 

@@ -72,6 +72,20 @@ class Body:
         self.world.state.active[:, self.index] = value
 
     @property
+    def asleep(self) -> Bools:
+        """Whether the body lies still and is left alone until something changes about what it lies with, (batch,)."""
+        rest = self.world.detector.rest
+        return np.zeros(self.world.batch, dtype=bool) if rest is None else _read_only(rest.asleep[:, self.index])
+
+    def wake(self, mask: Bools | None = None) -> None:
+        """Wake the body, and all that it lies with, in the worlds of `mask` (batch,), or in all."""
+        rest = self.world.detector.rest
+        if rest is not None:
+            chosen = np.zeros_like(rest.asleep)
+            chosen[:, self.index] = True if mask is None else mask
+            rest.wake(chosen)
+
+    @property
     def static(self) -> bool:
         """Whether no force can move the body. A static body with a velocity still moves along it, like a lift."""
         return not self.world.params.dynamic[self.index]

@@ -7,6 +7,9 @@ import numpy as np
 from engine.state import BodyParams, BodyState, ShapeTable, span
 from engine.vector import Array, Bools, Ints
 
+_NONE: Ints = np.zeros(0, dtype=np.intp)
+_SLACK = 1e-6  # metres, far more than rounding makes of a box
+
 
 class BroadPhase:
     """Table of all pairs of shapes that may ever meet, and search for those whose boxes overlap now.
@@ -27,6 +30,7 @@ class BroadPhase:
         self._reach = np.zeros(len(params.group))
         np.maximum.at(self._reach, shapes.body, far)
         self._boxes: Array | None = None  # (4, batch, bodies): low x and y, high x and y
+        self._clear: tuple[Array, Array] | None = None  # where nothing was near, and how far all may go from there
         self._shape_boxes = np.zeros((4, 0, 0))  # the same of shapes; only those of fixed ones are filled
         self._movers_first, self._first, self._count = _meeting_pairs(params, shapes)
         a, b = self._movers_first.T
@@ -35,21 +39,37 @@ class BroadPhase:
 
     def forget_boxes(self) -> None:
         """Discard the cached boxes: a body that forces do not move was put elsewhere, or will be."""
-        self._boxes = None
+        self._boxes = self._clear = None
 
-    def near(self, state: BodyState) -> tuple[Ints, Ints]:
-        """Return world and row of `pairs`, each (n,), where boxes overlap; sorted by world, then by row."""
+    def near(self, state: BodyState, awake: Bools | None = None) -> tuple[Ints, Ints]:
+        """Return world and row of `pairs`, each (n,), where boxes overlap; sorted by world, then by row.
+
+        Given which bodies are `awake`, (batch, bodies), pairs without any are left out.
+        """
+        if self._all_clear(state):
+            return _NONE, _NONE
+        fixed = self._boxes is not None
         boxes = self._boxes_now(state)
+        worlds = None if awake is None else np.flatnonzero(awake.any(axis=1))
+        active = state.active
+        if awake is not None and worlds is not None:
+            boxes, active, awake = boxes[:, worlds], active[worlds], awake[worlds]
         low_x, low_y, high_x, high_y = boxes[:, :, None, :]
         my_low_x, my_low_y, my_high_x, my_high_y = boxes[:, :, self._moving, None]
         near: Bools = (my_low_y <= high_y) & (self._count > 0)
         near &= low_y <= my_high_y
         near &= my_low_x <= high_x
         near &= low_x <= my_high_x
-        if not state.active.all():
-            near &= state.active[:, self._moving, None] & state.active[:, None, :]
+        if not active.all():
+            near &= active[:, self._moving, None] & active[:, None, :]
+        if awake is not None:
+            near &= awake[:, self._moving, None] | awake[:, None, :]
         world, mover, other = near.nonzero()
         pair = self._first[mover, other]
+        if worlds is not None:
+            world = worlds[world]
+        if fixed and worlds is None and not len(world):
+            self._measure_clearance(state, boxes)
         if not self._several or not len(world):
             return world, pair
         count = self._count[mover, other]
@@ -57,6 +77,26 @@ class BroadPhase:
         pair = first + np.arange(len(first))
         kept = self._shapes_near(state, world, pair)
         return world[kept], pair[kept]
+
+    def _all_clear(self, state: BodyState) -> bool:
+        """Whether no body has gone so far since nothing was near that it could have met another (Verlet, 1967)."""
+        if self._clear is None:
+            return False
+        place, room = self._clear
+        clear = bool((np.abs(state.pose[:, self._moving, :2] - place) < room).all())
+        if not clear:
+            self._clear = None
+        return clear
+
+    def _measure_clearance(self, state: BodyState, boxes: Array) -> None:
+        """Note how far all bodies may go, (batch, 1, 1), before boxes can overlap: the least gap, or half of it."""
+        mine = boxes[:, :, self._moving, None]
+        others = boxes[:, :, None, :]
+        gaps = np.maximum(mine[:2] - others[2:], others[:2] - mine[2:]).max(axis=0)
+        gaps[:, self._count == 0] = np.inf
+        each = 1.0 if len(self._first) == 1 else 0.5
+        room = gaps.reshape(len(gaps), -1).min(axis=1, initial=np.inf) * each - _SLACK
+        self._clear = state.pose[:, self._moving, :2].copy(), room[:, None, None]
 
     def _boxes_now(self, state: BodyState) -> Array:
         boxes = self._boxes

@@ -24,6 +24,7 @@ from engine.vector import Array, Bools, Ints, dot, length, rotate
 _REFERENCE_BIAS = 5e-4
 # Pairs whose corners are all compared at once: as many as fit the cache.
 _BLOCK = 512
+_PARTS = ("normal", "points", "depth", "valid", "feature")
 
 
 @dataclass
@@ -51,9 +52,14 @@ class Manifold:
         """Return the manifold of these pairs alone."""
         return Manifold(self.normal[rows], self.points[rows], self.depth[rows], self.valid[rows], self.feature[rows])
 
+    @classmethod
+    def join(cls, first: Manifold, second: Manifold) -> Manifold:
+        """Return the pairs of two manifolds, one after the other."""
+        return cls(*(np.concatenate([getattr(first, name), getattr(second, name)]) for name in _PARTS))
+
     def put(self, rows: Ints, other: Manifold) -> None:
         """Overwrite these pairs with those of `other`."""
-        for name in ("normal", "points", "depth", "valid", "feature"):
+        for name in _PARTS:
             getattr(self, name)[rows] = getattr(other, name)
 
 

@@ -9,14 +9,19 @@ import numpy as np
 
 from engine.broad_phase import BroadPhase
 from engine.collide import Manifold, PlacedPolygons, collide_circles, collide_polygon_circle, collide_polygons
-from engine.solver import Contacts, colour
+from engine.contact_set import Contacts
+from engine.rest import Rest
+from engine.solver import colour
 from engine.state import BodyParams, BodyState, ShapeTable
-from engine.vector import Array, Bools, Ints, rotate
+from engine.vector import Array, Bools, Ints, dot, length, rotate
 
 _DEFAULT_FRICTION = 0.5
 # Distance in metres below which shapes count as touching: a contact that came and went with rounding errors would
 # start from no impulse each time, and a heap would never come to rest.
 MARGIN = 0.002
+# Metres within which a point takes over the impulse of one that is gone, and how alike the normals must be (a cosine).
+_NEAR = 0.2
+_ALIKE = 0.9
 
 
 @dataclass(frozen=True)
@@ -26,28 +31,65 @@ class WarmStart:
     key: Ints  # (k,) world · pairs + pair, rising
     feature: Ints  # (k, 2), 0 for a point that was not there
     impulse: Array  # (3, k)
+    points: Array  # (k, 2, 2)
+    normal: Array  # (k, 2)
+    age: Ints  # (k,)
 
     @classmethod
     def of(cls, contacts: Contacts, pairs: int) -> WarmStart:
         """Return the features and impulses of a solved step."""
         key = contacts.world * pairs + contacts.pair
         rising = np.argsort(key)
-        feature = contacts.manifold.feature * contacts.manifold.valid
-        return cls(key[rising], feature[rising], contacts.impulse[:, rising])
+        manifold = contacts.manifold
+        feature = manifold.feature * manifold.valid
+        return cls(
+            key[rising],
+            feature[rising],
+            contacts.impulse[:, rising],
+            manifold.points[rising],
+            manifold.normal[rising],
+            contacts.age[rising],
+        )
 
     def where(self, kept: Bools) -> WarmStart:
         """Return the memory of these manifolds alone."""
-        return WarmStart(self.key[kept], self.feature[kept], self.impulse[:, kept])
+        return WarmStart(
+            self.key[kept],
+            self.feature[kept],
+            self.impulse[:, kept],
+            self.points[kept],
+            self.normal[kept],
+            self.age[kept],
+        )
 
 
-_NOTHING = WarmStart(np.zeros(0, dtype=np.intp), np.zeros((0, 2), dtype=np.intp), np.zeros((3, 0)))
+_NOTHING = WarmStart(
+    np.zeros(0, dtype=np.intp),
+    np.zeros((0, 2), dtype=np.intp),
+    np.zeros((3, 0)),
+    np.zeros((0, 2, 2)),
+    np.zeros((0, 2)),
+    np.zeros(0, dtype=np.intp),
+)
+
+
+@dataclass(frozen=True)
+class Memory:
+    """All that the next step takes over from the last ones: impulses, and what sleeps."""
+
+    impulses: WarmStart
+    rest: Rest | None
 
 
 class Detector:
-    """Contact detector of every world. It remembers impulses (warm starting), so that a resting stack starts solved."""
+    """Contact detector of every world. It remembers impulses (warm starting), so that a resting stack starts solved.
 
-    def __init__(self, params: BodyParams, shapes: ShapeTable) -> None:
+    With `rest`, bodies sleep, and no contact of theirs is looked for.
+    """
+
+    def __init__(self, params: BodyParams, shapes: ShapeTable, rest: Rest | None = None) -> None:
         self.shapes = shapes
+        self.rest = rest
         self.broad = BroadPhase(params, shapes, MARGIN)
         self.pairs = self.broad.pairs  # (pairs, 2) of shapes, a polygon before a circle
         self.body_pairs = shapes.body[self.pairs]
@@ -59,17 +101,24 @@ class Detector:
         self._colours = (np.zeros(0, dtype=np.intp), np.zeros(0, dtype=np.intp), [0])  # of what, order, ends
 
     def find(self, state: BodyState) -> Contacts | None:
-        """Return every touching pair of active bodies, in the solver's order; None if nothing touches."""
-        world, pair = self.broad.near(state)
-        if not len(world):
-            return None
-        manifold = self._touch(state, world, pair)
-        touching = np.flatnonzero(manifold.valid.any(axis=1))
-        if not len(touching):
-            return None
+        """Return every touching pair of active bodies, one of them awake, in the solver's order; None if there is none.
+
+        What an awake body touches wakes.
+        """
+        while True:
+            world, pair = self.broad.near(state, self.rest.awake if self.rest else None)
+            if not len(world):
+                return None
+            manifold = self._touch(state, world, pair)
+            touching = np.flatnonzero(manifold.valid.any(axis=1))
+            if not len(touching):
+                return None
+            if not (self.rest and self.rest.wake_touched(world[touching], self.body_pairs[pair[touching]])):
+                break
         order, ends = self._colour(world[touching], pair[touching], state.pose.shape[1])
         kept = touching[order]
         world, pair, manifold = world[kept], pair[kept], manifold.rows(kept)
+        impulse, age = self._recall(world, pair, manifold)
         return Contacts(
             world=world,
             pair=pair,
@@ -77,8 +126,9 @@ class Detector:
             manifold=manifold,
             friction=self.friction[pair],
             restitution=self.restitution[pair],
-            impulse=self._recall(world, pair, manifold),
+            impulse=impulse,
             approach=np.zeros((3, len(kept))),
+            age=age,
             colour_ends=ends,
         )
 
@@ -86,13 +136,14 @@ class Detector:
         """Keep the impulses of a step to warm-start the next one, and only that."""
         self._memory = WarmStart.of(contacts, len(self.pairs)) if contacts else _NOTHING
 
-    def memory(self) -> WarmStart:
-        """Return the impulses that `remember` has kept, to be put back by `recall_memory`."""
-        return self._memory
+    def memory(self) -> Memory:
+        """Return the impulses that `remember` has kept, and what sleeps, to be put back by `recall_memory`."""
+        return Memory(self._memory, self.rest.copy() if self.rest else None)
 
-    def recall_memory(self, memory: WarmStart) -> None:
-        """Put back the impulses that a call of `memory` returned."""
-        self._memory = memory
+    def recall_memory(self, memory: Memory) -> None:
+        """Put back what a call of `memory` returned."""
+        self._memory = memory.impulses
+        self.rest = memory.rest.copy() if memory.rest else None
         self.broad.forget_boxes()
 
     def forget(self, body: int, worlds: Bools | None) -> None:
@@ -146,19 +197,48 @@ class Detector:
         end += position
         return PlacedPolygons(start, end, rotate(self.shapes.normal[shape], cos, sin))
 
-    def _recall(self, world: Ints, pair: Ints, manifold: Manifold) -> Array:
-        """Return the last step's impulses (3, m) for points made by the same faces as then, 0 for others."""
-        impulse = np.zeros((3, len(world)))
+    def _recall(self, world: Ints, pair: Ints, manifold: Manifold) -> tuple[Array, Ints]:
+        """Return the last step's impulses (3, m) for points made by the same faces as then, 0 for others; and ages."""
+        impulse, age = np.zeros((3, len(world))), np.zeros(len(world), dtype=np.intp)
         last = self._memory
         if not len(last.key):
-            return impulse
+            return impulse, age
         key = world * len(self.pairs) + pair
         row = np.minimum(last.key.searchsorted(key), len(last.key) - 1)
-        same = (last.key[row] == key)[:, None] & (last.feature[row] == manifold.feature) & manifold.valid
+        known = last.key[row] == key
+        same = known[:, None] & (last.feature[row] == manifold.feature) & manifold.valid
         np.multiply(last.impulse[:2, row], same.T, out=impulse[:2])
         rubs = same.all(axis=1) | (same.any(axis=1) & (manifold.valid.sum(axis=1) == 1))
         np.multiply(last.impulse[2, row], rubs, out=impulse[2])
-        return impulse
+        if self.rest:
+            np.multiply(last.age[row] + 1, known, out=age)
+            lost = known & ~(rubs & (same == manifold.valid).all(axis=1))
+            if lost.any():
+                rows = np.flatnonzero(lost)
+                _pass_on(last, row[rows], same[rows], manifold.rows(rows), impulse, rows)
+        return impulse, age
+
+
+def _pass_on(last: WarmStart, row: Ints, same: Bools, manifold: Manifold, impulse: Array, rows: Ints) -> None:
+    """Give points that other faces make now the impulses of the nearest that are gone; fill `impulse` at `rows`.
+
+    Two boxes that lie face to face make the same points by one's face or the other's, whichever happens to be a
+    little less deep. If their impulses were lost with it, a heap would start afresh here and there in every step, and
+    never come to rest. Friction stays if any push does.
+    """
+    alike = dot(last.normal[row], manifold.normal) > _ALIKE
+    gone = (last.feature[row] > 0) & ~same & alike[:, None]
+    new = manifold.valid & ~same
+    away = length(manifold.points[:, :, None] - last.points[row][:, None])  # (n, new, gone)
+    away = np.where(new[:, :, None] & gone[:, None], np.minimum(away, _NEAR), _NEAR)
+    crossed = away[:, 0, 1] + away[:, 1, 0] < away[:, 0, 0] + away[:, 1, 1]
+    passed = np.zeros_like(same)
+    for point in (0, 1):
+        heir = np.where(crossed, 1 - point, point)
+        passed[:, point] = away[np.arange(len(row)), point, heir] < _NEAR
+        impulse[point, rows] += np.where(passed[:, point], last.impulse[heir, row], 0.0)
+    rubs = alike & (passed | same).any(axis=1)
+    impulse[2, rows] = np.where(rubs, last.impulse[2, row], impulse[2, rows])
 
 
 def _mix(values: Array, combine: Callable[[Array, Array], Array], default: float) -> Array:

@@ -20,41 +20,61 @@ class MovingBodies:
         self.all_fall = bool(self.falls.all())
         self.fast_drag = bool(self.quadratic_drag.any())  # whether any grows with the square of the speed
         self.any_drag = self.fast_drag or bool(self.linear_drag.any())
+        self._ease = (np.nan, self.inverse_mass)
+
+    def ease(self, dt: float) -> Array:
+        """Change of velocity (bodies, 3) per unit of force in a step of `dt` seconds, kept from the last call."""
+        if self._ease[0] != dt:
+            self._ease = (dt, self.inverse_mass * dt)
+        return self._ease[1]
 
 
-def integrate_velocity(state: BodyState, movers: MovingBodies, gravity: Array, dt: float) -> None:
+def integrate_velocity(
+    state: BodyState, movers: MovingBodies, gravity: Array, dt: float, awake: Bools | None = None
+) -> None:
     """Apply gravity (2,) or (batch, 2), accumulated forces and drag to the velocities of `movers`, in place.
+
+    Of them, those move that are active, and `awake` (batch, bodies) if that is given.
 
     Drag is the force -(linear + quadratic·|v|)·v, for translation and rotation apart. It is taken implicitly
     in v, so that no coefficient, however large, can reverse a motion; terminal speeds are exact.
     """
     bodies = movers.bodies
     velocity = state.velocity[:, bodies]
-    ease = movers.inverse_mass * dt  # change of velocity per unit of force in one step
+    ease = movers.ease(dt)
     fall = np.asarray(gravity)[..., None, :] * dt
     if not movers.all_fall:
         fall = np.where(movers.falls, fall, 0.0)
     active = state.active[:, bodies, None]
+    if awake is not None:
+        active = active & awake[:, bodies, None]
     if not active.all():
         ease, fall = ease * active, fall * active
     damping = movers.linear_drag
     if movers.fast_drag:
         damping = damping + movers.quadratic_drag * _speeds(velocity)
     velocity += state.force[:, bodies] * ease
-    velocity[..., :2] += fall
+    places = velocity[..., :2]
+    places += fall
     if movers.any_drag:
         velocity /= 1.0 + damping * ease
     if not isinstance(bodies, slice):  # indexing made a copy; a slice is a view
         state.velocity[:, bodies] = velocity
 
 
-def integrate_position(state: BodyState, bodies: Span, dt: float) -> None:
-    """Move `bodies`, if active, along their velocities, in place."""
+def integrate_position(state: BodyState, bodies: Span, dt: float, awake: Bools | None = None) -> None:
+    """Move `bodies`, if active, and awake if that is given, along their velocities, in place."""
     step = state.velocity[:, bodies] * dt
     active = state.active[:, bodies, None]
+    if awake is not None:
+        active = active & awake[:, bodies, None]
     if not active.all():
         step *= active
-    state.pose[:, bodies] += step
+    if isinstance(bodies, slice):
+        pose = state.pose[:, bodies]
+        pose += step
+    else:
+        state.pose[:, bodies] += step
 
 
 def _speeds(velocity: Array) -> Array:

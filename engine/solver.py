@@ -14,10 +14,12 @@ of array operations however many worlds and bodies it spans.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from engine.collide import Manifold
+from engine.contact_set import Contacts
 from engine.state import BodyParams, BodyState
 from engine.vector import Array, Bools, Ints, cross, right_of
 
@@ -27,24 +29,13 @@ SLOP = 0.005
 CORRECTION = 0.25
 # Smallest excess that is corrected, so that a stack at rest needs no correction; metres.
 TOLERANCE = 1e-4
-
-
-@dataclass
-class Contacts:
-    """The touching pairs of one step, m of them, in the order of their colours."""
-
-    world: Ints  # (m,)
-    pair: Ints  # (m,) row of the world's table of shape pairs
-    body: Ints  # (m, 2) A and B
-    manifold: Manifold
-    friction: Array  # (m,)
-    restitution: Array  # (m,)
-    impulse: Array  # (3, m) N·s: normal, normal, friction; begins with what the last step needed
-    approach: Array  # (3, m) m/s before the impulses: closing at each point, then sliding
-    colour_ends: list[int]  # manifolds up to each of these indices share no dynamic body
-
-    def __len__(self) -> int:
-        return len(self.world)
+# The same between bodies that are to fall asleep, for a point under load where they have touched for OLD steps. What
+# is left by then is jammed: to press it out, a few iterations at a time and without friction, would make a heap creep
+# for as long as one looks.
+LENIENCE = 1e-2
+OLD = 15
+# Manifolds among which there nearly always is one that would be pulled; it is not asked then.
+_MANY = 12
 
 
 class Solver:
@@ -71,30 +62,42 @@ class Solver:
             velocity[rows.index] += rows.effect(contacts.impulse[:, span])
         self._sweep(velocity, contacts.impulse, target, contacts.friction, iterations)
 
-    def solve_overlaps(self, state: BodyState, iterations: int, dt: float) -> None:
-        """Move bodies out of overlaps by a velocity that lasts for this step alone, and so adds no energy."""
+    def solve_overlaps(self, state: BodyState, iterations: int, dt: float, lenient: bool = False) -> None:
+        """Move bodies out of overlaps by a velocity that lasts for this step alone, and so adds no energy.
+
+        A `lenient` solver leaves alone what is up to LENIENCE more, if that has not gone within OLD steps.
+        """
         manifold = self.contacts.manifold
         # What a rebound is about to undo is left to it; taken back twice, it would lift a ball at each bounce.
         depth = manifold.depth.T - dt * self._rows.speeds(state.velocity.reshape(-1))[:2]
         excess = np.where(manifold.valid.T, depth - SLOP, 0.0)
-        excess[excess < TOLERANCE] = 0.0
+        tolerance: Array | float = TOLERANCE
+        if lenient:
+            jammed = (self.contacts.age >= OLD) & (self.contacts.impulse[:2] > 0)
+            tolerance = np.where(jammed, LENIENCE, TOLERANCE)
+        excess[excess < tolerance] = 0.0
         if not excess.any():
             return
         shift = np.zeros(state.velocity.size)
-        frictionless = np.zeros(len(self.contacts))
         push = np.zeros((3, len(self.contacts)))
-        self._sweep(shift, push, CORRECTION * excess, frictionless, iterations)
+        self._sweep(shift, push, CORRECTION * excess, None, iterations)
         state.pose += shift.reshape(state.pose.shape)
 
-    def _sweep(self, velocity: Array, impulse: Array, target: Array, friction: Array, iterations: int) -> None:
-        """Projected Gauss-Seidel: drive each normal speed to `target` (2, m) or more, by pushing only."""
+    def _sweep(self, velocity: Array, impulse: Array, target: Array, friction: Array | None, iterations: int) -> None:
+        """Projected Gauss-Seidel: drive each normal speed to `target` (2, m) or more, by pushing only.
+
+        It ends early only where a further iteration would change no bit, so a world is the same alone and among others.
+        """
         parts = [
-            (rows, impulse[:, span], target[:, span], friction[span])
+            (rows, impulse[:, span], target[:, span], None if friction is None else friction[span])
             for rows, span in zip(self._colours, self._spans, strict=True)
         ]
         for _ in range(iterations):
+            before = impulse.tobytes()
             for rows, total, wanted, coefficient in parts:
                 rows.relax(velocity, total, wanted, coefficient)
+            if impulse.tobytes() == before and not any(rows.space.change.any() for rows in self._colours):
+                return
 
 
 @dataclass
@@ -109,6 +112,11 @@ class Rows:
     rub_coupling: Array  # (2, m): how friction moves both points
     inverse: Array  # (2, m): of the 2 × 2 matrix of both pushes, the diagonal
     cross_inverse: Array  # (m,): and what stands beside it
+
+    @cached_property
+    def space(self) -> Space:
+        """Where `relax` works."""
+        return Space(len(self.index))
 
     @classmethod
     def build(cls, state: BodyState, params: BodyParams, contacts: Contacts) -> Rows:
@@ -158,29 +166,67 @@ class Rows:
         total: Array = change[0] + change[1] + change[2]
         return total
 
-    def relax(self, velocity: Array, total: Array, wanted: Array, friction: Array) -> None:
-        """Bring these manifolds to rest, friction last, so that it ends within its cone; adds to `total` (3, m)."""
-        motion = velocity.take(self.index)
-        speed = np.vecdot(self.jacobian, motion)
-        change = np.empty_like(total)
-        pushes = self.push(wanted - speed[:2], total[:2])
-        np.subtract(pushes, total[:2], out=change[:2])
-        sliding = speed[2] + self.rub_coupling[0] * change[0] + self.rub_coupling[1] * change[1]
-        cone = friction * (pushes[0] + pushes[1])
-        rub = np.minimum(np.maximum(total[2] - self.mass[2] * sliding, -cone), cone)
-        np.subtract(rub, total[2], out=change[2])
+    def relax(self, velocity: Array, total: Array, wanted: Array, friction: Array | None) -> None:
+        """Bring these manifolds to rest, friction last, so that it ends within its cone; adds to `total` (3, m).
+
+        Without `friction`, none is applied. A step calls this a hundred times on some dozens of numbers, so what counts
+        is how many arrays are made: results go where those of the last call were.
+        """
+        space = self.space
+        change, pushed = space.change, total[:2]
+        motion = velocity.take(self.index, out=space.motion, mode="clip")
+        speed = np.vecdot(self.jacobian, motion, out=space.speed)
+        pushes = self.push(np.subtract(wanted, space.closing, out=space.lacking), pushed)
+        np.subtract(pushes, pushed, out=space.pushed)
+        if friction is not None:
+            nudges = np.multiply(self.rub_coupling, space.pushed, out=space.nudges)
+            sliding = np.add(speed[2], nudges[0], out=space.sliding)
+            sliding += nudges[1]
+            cone = np.add(pushes[0], pushes[1], out=space.cone)
+            cone *= friction
+            rub = np.multiply(self.mass[2], sliding, out=space.rub)
+            np.subtract(total[2], rub, out=rub)
+            np.maximum(rub, np.negative(cone, out=space.low), out=rub)
+            np.minimum(rub, cone, out=rub)
+            np.subtract(rub, total[2], out=change[2])
         total += change
+        turn = np.multiply(self.response, space.column, out=space.turn)
+        moved = np.add(turn[0], turn[1], out=space.moved)
+        if friction is not None:
+            moved += turn[2]
+        moved += motion
         # A static body may stand in many rows at once; its response is zero, so any one of them may win.
-        velocity[self.index] = motion + self.effect(change)
+        velocity[self.index] = moved
 
     def push(self, lacking: Array, total: Array) -> Array:
         """Impulses (2, m) >= 0 that give both points the speed they are `lacking`; 0 where none is."""
-        both = total + self.inverse * lacking + self.cross_inverse * lacking[::-1]
-        if (both >= 0).all():
+        space = self.space
+        both = np.multiply(self.inverse, lacking, out=space.both)
+        both += total
+        both += np.multiply(self.cross_inverse, lacking[::-1], out=space.alone)
+        if len(self.index) < _MANY and both.min() >= 0:
             return both
         # Where that would pull at one point, there is no impulse at it, and the other point has to do alone.
-        alone = total + self.mass[:2] * (lacking + self.coupling * total[::-1])
-        return np.maximum(np.where(both[::-1] >= 0, both, alone), 0.0)
+        alone = np.multiply(self.coupling, total[::-1], out=space.alone)
+        alone += lacking
+        alone *= self.mass[:2]
+        alone += total
+        np.copyto(alone, both, where=both[::-1] >= 0)
+        return np.maximum(alone, 0.0, out=alone)
+
+
+class Space:
+    """Arrays in which `Rows.relax` works on m manifolds, and views of them, made once for all its calls."""
+
+    def __init__(self, count: int) -> None:
+        self.motion, self.moved = np.empty((2, count, 6))
+        self.turn = np.empty((3, count, 6))
+        self.speed = np.empty((3, count))
+        self.closing = self.speed[:2]
+        self.change = np.zeros((3, count))  # of impulses; friction's stays zero where there is none
+        self.pushed, self.column = self.change[:2], self.change[:, :, None]
+        self.lacking, self.both, self.alone, self.nudges = np.empty((4, 2, count))
+        self.sliding, self.cone, self.low, self.rub = np.empty((4, count))
 
 
 def colour(slots: Ints, free: Bools) -> tuple[Ints, list[int]]:

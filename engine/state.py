@@ -110,7 +110,7 @@ class ShapeTable:
             if isinstance(shape, Polygon):
                 rows = np.minimum(np.arange(count), len(shape.vertices) - 1)
                 self.start[row] = shape.vertices[rows]
-                self.end[row] = np.roll(shape.vertices, -1, axis=0)[rows]
+                self.end[row] = shape.vertices[(rows + 1) % len(shape.vertices)]
                 self.normal[row] = shape.normals[rows]
 
     def __len__(self) -> int:

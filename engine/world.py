@@ -7,10 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from engine.body import Body
+from engine.contact_set import Contacts
 from engine.contacts import Detector
 from engine.integrate import MovingBodies, integrate_position, integrate_velocity
+from engine.rest import Rest
 from engine.shapes import Point, Shape, mass_properties
-from engine.solver import Contacts, Solver
+from engine.solver import Solver
 from engine.state import BodyParams, BodyState, ShapeTable
 from engine.vector import Array, Bools
 
@@ -23,6 +25,11 @@ class World:
     Bodies live in fixed slots, the same in every world; `active` masks, not shorter lists, take one out.
     `gravity` may be reassigned at any time to an array (2,) or (batch, 2). After a step, `contacts` holds
     what touched in it (or would have, but for 2 mm), with closing speeds and impulses.
+
+    Unless `sleeping` is off, what lies still falls asleep and costs nothing, until something about it changes. So
+    that it comes to lie still, impulses pass over to the points that take the place of others, and overlaps of
+    less than a centimetre are left alone. Off, each step computes everything anew, as a flight needs that was
+    recorded so.
     """
 
     def __init__(
@@ -32,6 +39,7 @@ class World:
         *,
         iterations: int = 10,
         restitution_threshold: float = 0.25,
+        sleeping: bool = True,
     ) -> None:
         if batch < 1:
             raise ValueError(f"a world needs a batch of at least 1, not {batch}")
@@ -39,6 +47,7 @@ class World:
         self.batch = batch
         self.iterations = iterations
         self.restitution_threshold = restitution_threshold
+        self.sleeping = sleeping
         self.state = BodyState.empty(batch)
         self.params = BodyParams()
         self.bodies: list[Body] = []
@@ -124,18 +133,29 @@ class World:
 
         Skipping is cheaper, and gives the same result, bit for bit, as long as nothing touches.
         """
+        rest = self.detector.rest
+        if rest and rest.undisturbed(self.state, self.gravity):
+            self.contacts = rest.contacts
+            return
         contacts = self.detector.find(self.state) if touching else None
+        awake = rest.awake if rest else None
         solver = Solver(self.state, self.params, contacts) if contacts else None
-        integrate_velocity(self.state, self.movers, self.gravity, DT)
+        integrate_velocity(self.state, self.movers, self.gravity, DT, awake)
         if solver:
             solver.solve_velocities(self.state, self.iterations, self.restitution_threshold, DT)
-        integrate_position(self.state, self.movers.bodies, DT)
+        integrate_position(self.state, self.movers.bodies, DT, awake)
         if solver:
-            solver.solve_overlaps(self.state, max(2, self.iterations // 3), DT)
+            solver.solve_overlaps(self.state, max(2, self.iterations // 3), DT, lenient=rest is not None)
         self.state.refresh_rotation(self.movers.bodies)
-        self.detector.remember(contacts)
         self.state.force[:] = 0.0
-        self.contacts = contacts
+        self.contacts = rest.settle(self.state, contacts, self.gravity) if rest else contacts
+        self.detector.remember(self.contacts)
+
+    def wake(self) -> None:
+        """Wake every body in every world."""
+        rest = self.detector.rest
+        if rest:
+            rest.wake(np.ones_like(rest.asleep))
 
     def untouched(self) -> None:
         """Note that nothing touched in the latest step, which `free_flight` took."""
@@ -147,7 +167,7 @@ class World:
         """Contact detector; made anew when a body has been added."""
         if self._detector is None:
             table = ShapeTable(self.shapes, self._shape_bodies, self.params.dynamic)
-            self._detector = Detector(self.params, table)
+            self._detector = Detector(self.params, table, Rest(self.params, self.batch) if self.sleeping else None)
         return self._detector
 
     @property

@@ -53,7 +53,7 @@ class Craft:
     def _build_world(self) -> None:
         params = self.params
         surface: dict[str, Any] = {"restitution": params.restitution, "friction": params.friction}
-        self.world = World(gravity=(0.0, -params.gravity), batch=self.num_envs, iterations=5)
+        self.world = World(gravity=(0.0, -params.gravity), batch=self.num_envs, iterations=5, sleeping=False)
         foot_x, foot_y = FOOT_CENTRE
         self.lander = self.world.add(
             [Polygon(HULL), Polygon.box(*FOOT_SIZE, (-foot_x, foot_y)), Polygon.box(*FOOT_SIZE, (foot_x, foot_y))],

@@ -159,6 +159,8 @@ class Impulse:
 class StepRecord:
     """One step of an exhibit, recorded on a copy of it; a grip pulls in it as it would in the exhibit.
 
+    Nothing is computed for bodies that sleep, so a record wakes the exhibit first.
+
     Attributes:
         exhibit: the copy, after the step.
         before: poses and velocities (bodies, 3) before the step.
@@ -175,7 +177,9 @@ class StepRecord:
     """
 
     def __init__(self, exhibit: Exhibit, grip: Grip | None = None) -> None:
+        exhibit.world.wake()
         self.exhibit, grip = copy.deepcopy((exhibit, grip))
+        self.exhibit.world.detector.broad.forget_boxes()  # or it may know that nothing is near, and make none
         state = self.exhibit.world.state
         self.before = (state.pose[0].copy(), state.velocity[0].copy())
         with Recorder(_RECORDED) as recorder:

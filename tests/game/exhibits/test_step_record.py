@@ -59,7 +59,9 @@ def test_impulses_lead_from_one_to_the_next_and_end_as_the_solver_left_them(name
     if contacts is None:
         assert not record.impulses
         return
-    assert len(record.impulses) == len(contacts) * record.exhibit.world.iterations
+    # Iterations end once one has changed nothing.
+    assert 0 < len(record.impulses) <= len(contacts) * record.exhibit.world.iterations
+    assert len(record.impulses) % len(contacts) == 0
     velocity = record.warm
     assert velocity is not None
     velocity = velocity.copy()

@@ -1,0 +1,340 @@
+"""What lies still falls asleep, stays where it is, and wakes as soon as anything about it changes."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from engine import Circle, Polygon, World
+from tests.support.worlds import advance
+
+BOX = Polygon.box(1.0, 1.0)
+STATE = ("pose", "velocity", "cos", "sin")
+
+
+def tower(height=3, batch=1, gravity=9.81, **settings):
+    """A floor, and boxes on it, one on another."""
+    world = World(gravity=(0.0, -gravity), batch=batch, **settings)
+    world.add(Polygon.box(30.0, 1.0), (0.0, -0.5), static=True)
+    for row in range(height):
+        world.add(BOX, (0.0, 0.5 + row), friction=0.5)
+    return world
+
+
+def asleep(world):
+    return np.stack([body.asleep for body in world.bodies], axis=1)
+
+
+def sleeping_tower(**settings):
+    world = advance(tower(**settings), 120)
+    assert asleep(world)[:, 1:].all()
+    return world
+
+
+def assert_same(world, other, rows=slice(None)):
+    for name in STATE:
+        assert getattr(world.state, name)[rows].tobytes() == getattr(other.state, name).tobytes(), name
+
+
+@pytest.mark.parametrize("sleeping", [True, False])
+def test_a_stack_stands_for_a_minute_asleep_and_awake(sleeping):
+    world = tower(height=3, sleeping=sleeping)
+    start = world.state.pose.copy()
+    advance(world, 3600)
+    assert asleep(world)[:, 1:].all() == sleeping
+    assert abs(world.state.pose - start).max() < 0.02
+    assert abs(world.state.velocity).max() < 1e-6
+    assert len(world.contacts) == 3
+
+
+def test_a_sleeping_stack_does_not_move_by_a_bit_and_keeps_its_forces():
+    world = sleeping_tower(height=4)
+    before = world.state.pose.tobytes()
+    advance(world, 100)
+    assert world.state.pose.tobytes() == before
+    assert not world.state.velocity.any()
+    floor = (world.contacts.body == 0).any(axis=1)
+    assert world.contacts.impulse[:2, floor].sum() * 60 == pytest.approx(4 * 9.81, rel=1e-3)
+    assert not world.contacts.approach.any()
+
+
+def hit(world):
+    world.bodies[-1].set(position=(-3.0, 0.5), velocity=(6.0, 0.0))
+
+
+def take_the_lowest_box(world):
+    world.bodies[1].active = False
+
+
+def take_the_floor(world):
+    world.bodies[0].active = False
+
+
+def lower_the_floor(world):
+    world.bodies[0].position = (0.0, -0.8)
+
+
+def tilt_the_floor(world):
+    world.bodies[0].angle = 0.3
+
+
+def drive_the_floor(world):
+    world.bodies[0].velocity = (1.0, 0.0)
+
+
+def push(world):
+    world.bodies[2].apply_force((400.0, 0.0))
+
+
+def turn(world):
+    world.bodies[3].apply_torque(200.0)
+
+
+def strike(world):
+    world.bodies[3].velocity = (0.0, 3.0)
+
+
+def spin(world):
+    world.bodies[3].angular_velocity = 2.0
+
+
+def turn_gravity(world):
+    world.gravity = np.array([5.0, -9.81])
+
+
+DISTURBANCES = [
+    take_the_lowest_box, take_the_floor, lower_the_floor, tilt_the_floor, drive_the_floor, push, turn, strike, spin,
+    turn_gravity,
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("disturb", DISTURBANCES)
+def test_a_sleeping_stack_wakes_by(disturb):
+    world, awake = sleeping_tower(), tower(sleeping=False)
+    top = world.bodies[3].position.copy()
+    disturb(world)
+    world.step()
+    assert not asleep(world)[0, world.state.active[0]].any()
+    advance(world, 30)
+    assert abs(world.bodies[3].position - top).max() > 0.002
+    # It goes on as a stack does that has never slept.
+    advance(awake, 120)
+    disturb(awake)
+    advance(awake, 31)
+    assert world.state.pose == pytest.approx(awake.state.pose, abs=0.01)
+
+
+def test_a_sleeping_stack_wakes_by_a_hit():
+    world = tower(height=4)
+    world.bodies[-1].position = (-8.0, 3.0)
+    advance(world, 120)
+    assert asleep(world)[0, 1:].all()
+    hit(world)
+    world.step()
+    assert asleep(world)[0].tolist() == [False, True, True, True, False]
+    advance(world, 60)
+    assert not asleep(world)[0, 1:].any()
+    assert world.bodies[1].position[0, 0] > 0.05
+
+
+def test_only_what_touches_wakes():
+    world = tower(height=2)
+    for row in range(2):
+        world.add(BOX, (4.0, 0.5 + row))
+    advance(world, 120)
+    world.bodies[4].apply_force((0.0, 30.0))
+    world.step()
+    assert asleep(world)[0].tolist() == [False, True, True, False, False]
+
+
+def test_a_body_laid_onto_a_sleeping_one_wakes_it_and_a_moved_wall_too():
+    world = tower(height=1)
+    wall = world.add(BOX, (6.0, 0.5), static=True)
+    box = world.add(BOX, (3.0, 3.0))
+    box.active = False
+    advance(world, 90)
+    assert asleep(world)[0].tolist() == [False, True, False, False]
+    box.set(position=(0.2, 1.499), velocity=(0.0, 0.0))
+    box.active = True
+    world.step()
+    assert not asleep(world)[0, 1]
+    box.active = False
+    advance(world, 90)
+    assert asleep(world)[0, 1]
+    wall.position = (0.9, 0.5)
+    advance(world, 30)
+    assert world.bodies[1].position[0, 0] < -0.05
+
+
+def test_wake_wakes_an_island_in_the_worlds_of_a_mask_and_all_of_it():
+    world = sleeping_tower(batch=3)
+    world.bodies[2].wake(np.array([False, True, False]))
+    assert asleep(world)[:, 1:].all(axis=1).tolist() == [True, False, True]
+    assert not asleep(world)[1].any()
+    advance(world, 60)
+    assert asleep(world)[:, 1:].all()
+    world.wake()
+    assert not asleep(world).any()
+
+
+def test_gravity_of_one_world_wakes_that_world_alone():
+    world = sleeping_tower(batch=3)
+    world.gravity = np.array([[0.0, -9.81], [1.0, -9.81], [0.0, -9.81]])
+    world.step()
+    assert asleep(world)[:, 1].tolist() == [True, False, True]
+
+
+def test_a_body_added_wakes_the_world_and_lies_down_with_it():
+    world = sleeping_tower(height=2)
+    world.add(BOX, (0.0, 3.5))
+    assert not asleep(world).any()
+    advance(world, 200)
+    assert asleep(world)[0, 1:].all()
+    assert world.bodies[3].position[0, 1] == pytest.approx(2.5, abs=0.02)
+
+
+def test_what_floats_creeps_or_rides_is_never_stopped():
+    adrift = World(gravity=(0.0, 0.0))
+    lonely = adrift.add(Circle(0.5), (0.0, 0.0))
+    pair = [adrift.add(BOX, (3.0, y)) for y in (0.0, 0.999)]
+    lonely.velocity = (0.004, 0.0)
+    advance(adrift, 300)
+    assert not asleep(adrift).any()
+    assert lonely.position[0, 0] == pytest.approx(0.02)
+    assert pair[0].velocity.tolist() == [[0.0, 0.0]]
+
+    lift = World(gravity=(0.0, -9.81))
+    plate = lift.add(Polygon.box(4.0, 0.5), (0.0, 0.0), static=True)
+    plate.velocity = (0.0, 0.005)
+    rider = lift.add(BOX, (0.0, 0.75))
+    advance(lift, 300)
+    assert not rider.asleep.any()
+    assert rider.position[0, 1] == pytest.approx(0.75 + 0.025, abs=0.006)
+
+
+@pytest.mark.parametrize("pull", [0.02, 0.05, 0.2])
+def test_what_slides_ever_faster_is_not_stopped_however_slowly_it_begins(pull):
+    world = World(gravity=(pull, -9.81))
+    world.add(Polygon.box(40.0, 1.0), (0.0, -0.5), static=True, friction=0.0)
+    box = world.add(BOX, (0.0, 0.5), friction=0.0)
+    advance(world, 180)
+    assert box.velocity[0, 0] == pytest.approx(3.0 * pull, rel=1e-6)
+
+
+def test_a_world_without_sleep_never_sleeps():
+    world = advance(tower(sleeping=False), 200)
+    assert not asleep(world).any()
+    world.bodies[1].wake()
+    world.wake()
+    assert not asleep(world).any()
+
+
+def heap(seed, batch=1):
+    random = np.random.default_rng(seed)
+    world = World(gravity=(0.0, -9.81), batch=batch)
+    world.add(Polygon.box(30.0, 1.0), (0.0, -0.5), static=True)
+    for side in (-1, 1):
+        world.add(Polygon.box(1.0, 16.0), (side * 3.0, 8.0), static=True)
+    for i in range(24):
+        place = (random.uniform(-0.3, 0.3) + 1.2 * (i % 4) - 1.8, 1.0 + 1.2 * (i // 4))
+        shape = Circle(random.uniform(0.25, 0.45)) if i % 6 == 0 else Polygon.box(*random.uniform(0.5, 1.1, 2))
+        world.add(shape, place, random.uniform(0, 3), friction=0.5, angular_drag=0.02)
+    return world
+
+
+def islands(world):
+    """Bodies that touch, and those that they touch in turn: the obvious way, one pair after another."""
+    group = {body.index: {body.index} for body in world.bodies if not body.static}
+    for a, b in world.contacts.body.tolist():
+        if a in group and b in group and group[a] is not group[b]:
+            group[a] |= group[b]
+            for each in group[b]:
+                group[each] = group[a]
+    return group.values()
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_a_heap_comes_to_rest_and_sleeps_island_by_island(seed):
+    world = heap(seed)
+    for _ in range(600):
+        world.step()
+        for island in islands(world) if world.contacts else ():
+            slept = asleep(world)[0, sorted(island)]
+            assert slept.all() or not slept.any()
+    assert asleep(world)[0, 3:].all()
+    assert np.where(world.contacts.manifold.valid, world.contacts.manifold.depth, 0.0).max() < 0.02
+
+
+@settings(max_examples=5, deadline=None)
+@given(data=st.data())
+def test_worlds_that_sleep_and_wake_in_a_batch_are_the_same_alone(data):
+    batch = 3
+    many, few = tower(batch=batch), [tower() for _ in range(batch)]
+    for row in range(batch):
+        aside = data.draw(st.floats(-0.1, 0.1))
+        many.bodies[2].set(position=(aside, 1.5), mask=np.arange(batch) == row)
+        few[row].bodies[2].position = (aside, 1.5)
+    for _ in range(5):
+        row = data.draw(st.integers(0, batch - 1))
+        body = data.draw(st.integers(1, 3))
+        kind = data.draw(st.sampled_from(["push", "throw", "wake", "nothing"]))
+        mask = np.arange(batch) == row
+        if kind == "push":
+            many.bodies[body].apply_force(mask[:, None] * np.array([150.0, 0.0]))
+            few[row].bodies[body].apply_force((150.0, 0.0))
+        elif kind == "throw":
+            many.bodies[body].set(velocity=(1.0, 2.0), mask=mask)
+            few[row].bodies[body].velocity = (1.0, 2.0)
+        elif kind == "wake":
+            many.bodies[body].wake(mask)
+            few[row].bodies[body].wake()
+        for _ in range(data.draw(st.integers(5, 45))):
+            many.step()
+            for row, alone in enumerate(few):
+                alone.step()
+                assert_same(many, alone, [row])
+                assert asleep(many)[row].tolist() == asleep(alone)[0].tolist()
+    for row, alone in enumerate(few):
+        rows = np.flatnonzero(many.contacts.world == row) if many.contacts else np.zeros(0, dtype=int)
+        assert len(rows) == (len(alone.contacts) if alone.contacts else 0)
+        if len(rows):
+            assert np.array_equal(many.contacts.impulse[:, rows], alone.contacts.impulse)
+
+
+def test_heaps_fall_asleep_in_a_batch_as_they_do_alone():
+    many, few = heap(5, batch=2), [heap(5) for _ in range(2)]
+    for row, alone in enumerate(few):
+        many.bodies[5].set(velocity=(row, 0.0), mask=np.arange(2) == row)
+        alone.bodies[5].velocity = (row, 0.0)
+    for _ in range(400):
+        many.step()
+    for row, alone in enumerate(few):
+        advance(alone, 400)
+        assert_same(many, alone, [row])
+    assert asleep(many)[:, 3:].all(axis=1).any()
+
+
+def test_a_recalled_memory_brings_sleep_back_too():
+    world = advance(tower(height=4, batch=2), 20)
+    world.bodies[2].set(velocity=(0.5, 0.0), mask=np.array([True, False]))
+    advance(world, 35)
+    state = {name: getattr(world.state, name).copy() for name in STATE}
+    memory, slept = world.detector.memory(), asleep(world)
+    advance(world, 60)
+    first = world.state.pose.copy()
+    for name, value in state.items():
+        setattr(world.state, name, value)
+    world.detector.recall_memory(memory)
+    assert np.array_equal(asleep(world), slept)
+    advance(world, 60)
+    assert world.state.pose.tobytes() == first.tobytes()
+
+
+def test_worlds_that_go_to_nan_neither_sleep_nor_wake_others():
+    world = sleeping_tower(batch=2)
+    world.bodies[1].set(position=(np.nan, 0.5), mask=np.array([True, False]))
+    before = world.state.pose[1].tobytes()
+    advance(world, 60)
+    assert asleep(world)[1, 1:].all()
+    assert world.state.pose[1].tobytes() == before
+    assert not world.bodies[1].asleep[0]
