@@ -20,6 +20,9 @@ from engine import DT, FreeFlight
 if TYPE_CHECKING:
     from ai.lander.environment import LanderEnv
 
+# Looked up once: by its enumeration, a member takes longer to find than a tenth of a step.
+_FLYING, _OUT, _LATE = Outcome.FLYING, Outcome.OUT_OF_BOUNDS, Outcome.TIMED_OUT
+
 
 class Flown(NamedTuple):
     """Physics steps that were flown, those of them that leaned by more than `TILT_ALLOWED`, and the outcome so far."""
@@ -61,7 +64,7 @@ class Alone:
         body, pushes = self._body, env.conditions.pushes
         body.take()
         body.feel()
-        start, tilted, outcome = env.steps.item(), 0, Outcome.FLYING
+        start, tilted, outcome = env.steps.item(), 0, _FLYING
         now, main_steps, side_steps = start, env.main_steps.item(), env.side_steps.item()
         asked_main, asked_side = env.shares[0].tolist()
         while now - start < steps and not (outcome or (solid and body.near())):
@@ -93,8 +96,8 @@ class Alone:
     def _judged(self, time: float) -> Outcome:
         """Return the outcome of a flight in the air."""
         if abs(self._body.x) > self._half_width or self._body.y > self._ceiling:
-            return Outcome.OUT_OF_BOUNDS
-        return Outcome.TIMED_OUT if time >= self._latest else Outcome.FLYING
+            return _OUT
+        return _LATE if time >= self._latest else _FLYING
 
     def observe(self, pad: Any) -> Floats:
         """Return the observation (1, 9) of a pad."""
