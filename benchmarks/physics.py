@@ -4,10 +4,10 @@
 
 A lander over twenty segments of ground, first while it falls and then while it lies there; ten columns of ten
 boxes at rest; a hundred boxes falling in a heap. Each is stepped alone and in a batch of worlds with starts of
-their own; what a batch takes is divided by its worlds. Our bodies sleep once they lie still, unless `--awake` forbids it;
-pymunk's do not, unless they are told to, and here they are not. All sides take turns, run after run, and processor time
-is counted, so that a busy machine does not matter; medians of the runs are printed. A ratio above 1 means that
-pymunk is quicker.
+their own; what a batch takes is divided by its worlds. Our bodies sleep once they lie still, unless `--awake`
+forbids it; pymunk's do not, unless they are told to, and here they are not. All sides take turns, run after run,
+and processor time is counted, so that a busy machine does not matter; medians of the runs are printed. A ratio
+above 1 means that pymunk is quicker.
 """
 
 import os
