@@ -1,12 +1,13 @@
 """How long one physics step takes, beside pymunk (Chipmunk in C) stepping the same bodies.
 
-    python -m benchmarks.physics
+    python -m benchmarks.physics [--awake]
 
 A lander over twenty segments of ground, first while it falls and then while it lies there; ten columns of ten
 boxes at rest; a hundred boxes falling in a heap. Each is stepped alone and in a batch of worlds with starts of
-their own; what a batch takes is divided by its worlds. All sides take turns, run after run, and processor time
-is counted, so that a busy machine does not matter; medians of the runs are printed. A ratio above 1 means that
-pymunk is quicker.
+their own; what a batch takes is divided by its worlds. Our bodies sleep once they lie still, unless `--awake`
+forbids it; pymunk's do not, unless they are told to, and here they are not. All sides take turns, run after run,
+and processor time is counted, so that a busy machine does not matter; medians of the runs are printed. A ratio
+above 1 means that pymunk is quicker.
 """
 
 import os
@@ -90,8 +91,8 @@ def pile() -> Scene:
     return scene
 
 
-def ours(scene: Scene, batch: int) -> Callable[[], None]:
-    world = World(gravity=(0.0, -scene.gravity), batch=batch, iterations=ITERATIONS)
+def ours(scene: Scene, batch: int, sleeping: bool = True) -> Callable[[], None]:
+    world = World(gravity=(0.0, -scene.gravity), batch=batch, iterations=ITERATIONS, sleeping=sleeping)
     random = np.random.default_rng(batch)
     for thing in scene.things:
         shift = np.zeros((batch, 2))
@@ -128,7 +129,9 @@ def microseconds(scene: Scene, step: Callable[[], None]) -> float:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--runs", type=int, default=5)
-    runs = parser.parse_args().runs
+    parser.add_argument("--awake", action="store_true", help="let no body sleep")
+    arguments = parser.parse_args()
+    runs, sleeping = arguments.runs, not arguments.awake
     rival = f"pymunk {pymunk.version}" if pymunk else "no pymunk"
     print(f"Python {platform.python_version()}, NumPy {np.__version__}, {rival}; {platform.machine()}")
     print(f"microseconds a step, medians of {runs} runs on one thread\n")
@@ -136,8 +139,8 @@ def main() -> None:
     for scene in (lander("falling", 0), lander("lying", 6), columns(), pile()):
         alone, batched, rivals = [], [], []
         for _ in range(runs):
-            alone.append(microseconds(scene, ours(scene, 1)))
-            batched.append(microseconds(scene, ours(scene, scene.batch)) / scene.batch)
+            alone.append(microseconds(scene, ours(scene, 1, sleeping)))
+            batched.append(microseconds(scene, ours(scene, scene.batch, sleeping)) / scene.batch)
             if pymunk:
                 rivals.append(microseconds(scene, theirs(scene)))
         one, many = statistics.median(alone), statistics.median(batched)

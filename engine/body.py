@@ -74,8 +74,7 @@ class Body:
     @property
     def asleep(self) -> Bools:
         """Whether the body lies still and is left alone until something changes about what it lies with, (batch,)."""
-        rest = self.world.detector.rest
-        return np.zeros(self.world.batch, dtype=bool) if rest is None else _read_only(rest.asleep[:, self.index])
+        return _read_only(self.world.asleep[:, self.index])
 
     def wake(self, mask: Bools | None = None) -> None:
         """Wake the body, and all that it lies with, in the worlds of `mask` (batch,), or in all."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from engine.state import BodyParams, BodyState, ShapeTable, span
-from engine.vector import Array, Bools, Ints
+from engine.vector import Array, Bools, Ints, every
 
 _NONE: Ints = np.zeros(0, dtype=np.intp)
 _SLACK = 1e-6  # metres, far more than rounding makes of a box
@@ -60,7 +60,7 @@ class BroadPhase:
         near &= low_y <= my_high_y
         near &= my_low_x <= high_x
         near &= low_x <= my_high_x
-        if not active.all():
+        if not every(active):
             near &= active[:, self._moving, None] & active[:, None, :]
         if awake is not None:
             near &= awake[:, self._moving, None] | awake[:, None, :]
@@ -83,7 +83,7 @@ class BroadPhase:
         if self._clear is None:
             return False
         place, room = self._clear
-        clear = bool((np.abs(state.pose[:, self._moving, :2] - place) < room).all())
+        clear = every(np.abs(state.pose[:, self._moving, :2] - place) < room)
         if not clear:
             self._clear = None
         return clear
@@ -117,9 +117,11 @@ class BroadPhase:
         self._shape_boxes = np.zeros((4, len(state.pose), len(self._shapes)))
         self._shape_boxes[:2, :, shapes] = np.moveaxis(low, 2, 0)
         self._shape_boxes[2:, :, shapes] = np.moveaxis(high, 2, 0)
-        for body in self._fixed:
-            parts = self._shape_boxes[:, :, self._shapes.body == body]
-            boxes[:2, :, body], boxes[2:, :, body] = parts[:2].min(axis=2), parts[2:].max(axis=2)
+        if len(self._fixed):
+            # A body's shapes stand side by side.
+            first = self._shapes.body[shapes].searchsorted(self._fixed)
+            boxes[:2, :, self._fixed] = np.minimum.reduceat(self._shape_boxes[:2, :, shapes], first, axis=2)
+            boxes[2:, :, self._fixed] = np.maximum.reduceat(self._shape_boxes[2:, :, shapes], first, axis=2)
 
     def _shapes_near(self, state: BodyState, world: Ints, pair: Ints) -> Bools:
         """Whether the boxes of some pairs of shapes overlap, (n,)."""

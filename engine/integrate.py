@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from engine.state import BodyParams, BodyState, Span, span
-from engine.vector import Array, Bools
+from engine.vector import Array, Bools, every
 
 
 class MovingBodies:
@@ -48,7 +48,7 @@ def integrate_velocity(
     active = state.active[:, bodies, None]
     if awake is not None:
         active = active & awake[:, bodies, None]
-    if not active.all():
+    if not every(active):
         ease, fall = ease * active, fall * active
     damping = movers.linear_drag
     if movers.fast_drag:
@@ -68,7 +68,7 @@ def integrate_position(state: BodyState, bodies: Span, dt: float, awake: Bools |
     active = state.active[:, bodies, None]
     if awake is not None:
         active = active & awake[:, bodies, None]
-    if not active.all():
+    if not every(active):
         step *= active
     if isinstance(bodies, slice):
         pose = state.pose[:, bodies]

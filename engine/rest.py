@@ -179,9 +179,10 @@ class Rest:
             for was, now in zip(self._known, _parts(state), strict=False)
         )
         before, after = (np.broadcast_to(each, (len(active), 2)) for each in (self._gravity, gravity))
-        fall = (before != after).any(axis=1)
+        fall: Bools = (before != after).any(axis=1)
         changed: Bools = (pose | velocity | force).any(axis=2) | active
-        return changed | (fall[:, None] & self.asleep)
+        changed |= fall[:, None] & self.asleep
+        return changed
 
 
 def _parts(state: BodyState) -> tuple[Array, Array, Array, Bools]:

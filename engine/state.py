@@ -108,10 +108,13 @@ class ShapeTable:
         self.normal = np.zeros_like(self.start)
         for row, shape in enumerate(shapes):
             if isinstance(shape, Polygon):
-                rows = np.minimum(np.arange(count), len(shape.vertices) - 1)
-                self.start[row] = shape.vertices[rows]
-                self.end[row] = shape.vertices[(rows + 1) % len(shape.vertices)]
-                self.normal[row] = shape.normals[rows]
+                last = len(shape.vertices) - 1
+                for table, edges in (
+                    (self.start[row], shape.vertices),
+                    (self.end[row], shape.vertices[[*range(1, last + 1), 0]]),
+                    (self.normal[row], shape.normals),
+                ):
+                    table[:last], table[last:] = edges[:last], edges[last]
 
     def __len__(self) -> int:
         return len(self.body)

@@ -151,6 +151,12 @@ class World:
         self.contacts = rest.settle(self.state, contacts, self.gravity) if rest else contacts
         self.detector.remember(self.contacts)
 
+    @property
+    def asleep(self) -> Bools:
+        """Whether each body sleeps, (batch, bodies)."""
+        rest = self.detector.rest
+        return rest.asleep.copy() if rest else np.zeros(self.state.active.shape, dtype=bool)
+
     def wake(self) -> None:
         """Wake every body in every world."""
         rest = self.detector.rest

@@ -50,6 +50,7 @@ _REACH: Final = 8.0  # points by which the mouse may miss a body
 _HINTS: Final = 960.0
 _ROOM_LEFT: Final = LEFT - MARGIN - 24.0  # points for the sentences beside the sliders
 _SCALE: Final = (330.0, 702.0)  # left end of the forces' legend, on its baseline
+_SLEEP: Final = (330.0, 677.0)  # left end of the sentence on sleeping bodies, on its baseline
 _SMOOTHING: Final = 0.05
 
 
@@ -139,7 +140,8 @@ class PhysicsScene(FormScene):
         self._sky.draw(canvas)
         self._draw_ground(canvas, view)
         lit = self.grip.body.index if self.grip else self._hovered()
-        self._outlines.draw(canvas, view, poses, lit, held=self.grip is not None)
+        asleep = self.exhibit.world.asleep[0]
+        self._outlines.draw(canvas, view, poses, lit, held=self.grip is not None, asleep=asleep)
         if self.contacts_drawn:
             draw_contacts(canvas, view, self.exhibit.world, self._weight)
         for label in self.exhibit.labels():
@@ -261,6 +263,8 @@ class PhysicsScene(FormScene):
         hud.draw_readouts(canvas, self._readouts(), _COLUMNS)
         if self.contacts_drawn:
             draw_force_scale(canvas, _SCALE, self._weight, _COLUMNS[0] - _SCALE[0] - 16)
+        if self.exhibit.world.asleep.any():
+            canvas.text(texts.PHYSICS_ASLEEP, _SLEEP, size=SMALL, colour=MUTE, room=_COLUMNS[0] - _SLEEP[0] - 16)
         self.bench.draw(canvas)
         self.form.draw(canvas)
         self.draw_hints(canvas)

@@ -9,7 +9,7 @@ import pytest
 
 from game.cli import add_commands
 from game.core import texts
-from game.drawing.tokens import HUMAN, NET
+from game.drawing.tokens import HUMAN, MUTE, NET
 from game.exhibits import EXHIBITS
 from game.exhibits.falls import Slopes
 from game.exhibits.momentum import Spin
@@ -229,3 +229,26 @@ def test_an_exhibit_that_is_not_there_is_named(tmp_path):
     assert finished.returncode == 2
     assert "trebuchet" in finished.stderr
     assert "stack" in finished.stderr
+
+
+def test_sleeping_bodies_are_drawn_faintly_until_something_stirs_them(gallery: Driver):
+    def brightness(body) -> float:
+        scene(gallery).draw(gallery.app.canvas, 1.0)
+        x, y = seen(gallery, body)
+        return float(pygame.surfarray.array3d(gallery.app.canvas.surface)[int(x) - 24 : int(x) + 24, int(y)].mean())
+
+    exhibit = scene(gallery).exhibit
+    assert isinstance(exhibit, Stack)
+    box, other = exhibit.columns[0][4], exhibit.columns[1][4]
+    gallery.frames(10)
+    awake = brightness(box)
+    legend = pygame.Rect(330, 664, 380, 18)
+    assert not shows(gallery, MUTE, legend)
+    gallery.frames(140)
+    assert exhibit.world.asleep[0, box.index]
+    assert brightness(box) < 0.9 * awake
+    assert shows(gallery, MUTE, legend) > 20
+    box.apply_force((0.0, 1.0))
+    gallery.frames(2)
+    assert brightness(box) == pytest.approx(awake, rel=0.02)
+    assert brightness(other) < 0.9 * awake
