@@ -38,6 +38,7 @@ from __future__ import annotations
 from copy import deepcopy
 from functools import cached_property
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 
@@ -53,6 +54,8 @@ from ai.common.decision import Decision, decide
 from ai.common.environment import Bools, Doubles, Env, Floats, Ints, StepResult
 from ai.nn import NeuralNetwork
 from ai.nn.optimizers import Optimizer
+
+TOGETHER: Final = 1024  # states that are judged at a time: fewer calls, and what layers make of them stays in the cache
 
 
 class DeepQAgent:
@@ -194,8 +197,8 @@ class DeepQAgent:
 
     def targets(self, transitions: MemoryCell) -> tuple[Floats, Floats]:
         """Return Bellman targets (n,), reward + γ^steps · value, and the values (n,) of the next states."""
-        size = self.config.batch_size  # what many layers make of a batch stays in the cache
-        parts = (transitions.next_state[first : first + size] for first in range(0, len(transitions.action), size))
+        firsts = range(0, len(transitions.action), TOGETHER)
+        parts = (transitions.next_state[first : first + TOGETHER] for first in firsts)
         value = np.concatenate([self._next_value(part) for part in parts])
         discount = np.float32(self.config.discount) ** transitions.steps.astype(np.float32)
         targets: Floats = transitions.reward + discount * value * ~transitions.terminal
