@@ -8,7 +8,9 @@ Mnih et al. 2015, Human-level control through deep reinforcement learning
   `gradient_steps` steps: NumPy pays per call. All their targets are computed beforehand, by the networks as they are
   before the first of them, in a few large passes.
 - The target network is copied every 10,000 steps, and the online one acts. Here it follows softly by `tau` after each
-  step (Lillicrap et al. 2016), and acts itself, in training too (`fly_target`): it is steadier to watch.
+  step (Lillicrap et al. 2016), and acts itself, in training too (`fly_target`): it is steadier to watch. In `modern`
+  that is all it does: next states are judged by the online network (`target_judges`), as in Gallici et al. 2025, who
+  need no target network, thanks to layer normalisation. A decision's targets stay as they are for all its steps.
 - Rewards are clipped to ±1. Here they are only scaled (`reward_scale`): a landing must outweigh what leads to it.
 - RMSProp at a fixed rate. Here Adam, at a rate that falls in a straight line, and gradients are clipped by length.
   The paper's clipped error is the Huber cost.
@@ -18,7 +20,7 @@ Mnih et al. 2015, Human-level control through deep reinforcement learning
   that engines do not flicker. Targets use the greatest value all the same.
 - An episode's end has no value beyond. Here the end by the clock has, as time is not observed (Pardo et al. 2018).
 - Images and convolutions. Here features, and layer normalisation before each activation.
-van Hasselt et al. 2016, double Q-learning: as published, but for the networks that choose and act, as above.
+van Hasselt et al. 2016, double Q-learning (off in both presets): as published, but for the networks that act.
 Schaul et al. 2016, prioritised replay (off in both presets)
 - Priorities change after every minibatch. Here the transitions of all minibatches of a decision are drawn together,
   in as many strata, and get their priorities once, after the last step; weights are relative to the largest of all.
@@ -36,6 +38,7 @@ from __future__ import annotations
 from copy import deepcopy
 from functools import cached_property
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 
@@ -51,6 +54,8 @@ from ai.common.decision import Decision, decide
 from ai.common.environment import Bools, Doubles, Env, Floats, Ints, StepResult
 from ai.nn import NeuralNetwork
 from ai.nn.optimizers import Optimizer
+
+TOGETHER: Final = 1024  # states that are judged at a time: fewer calls, and what layers make of them stays in the cache
 
 
 class DeepQAgent:
@@ -192,18 +197,18 @@ class DeepQAgent:
 
     def targets(self, transitions: MemoryCell) -> tuple[Floats, Floats]:
         """Return Bellman targets (n,), reward + γ^steps · value, and the values (n,) of the next states."""
-        size = self.config.batch_size  # what many layers make of a batch stays in the cache
-        parts = (transitions.next_state[first : first + size] for first in range(0, len(transitions.action), size))
+        firsts = range(0, len(transitions.action), TOGETHER)
+        parts = (transitions.next_state[first : first + TOGETHER] for first in firsts)
         value = np.concatenate([self._next_value(part) for part in parts])
         discount = np.float32(self.config.discount) ** transitions.steps.astype(np.float32)
         targets: Floats = transitions.reward + discount * value * ~transitions.terminal
         return targets, value
 
     def _next_value(self, states: Floats) -> Floats:
-        """Return the value of the best action in each state by the target network, (n,)."""
-        values = self.target.predict(states)
+        """Return the value of the best action in each state by the network that judges, (n,)."""
+        values = self.target.predict(states) if self.config.target_judges else self.online.predict(states)
         # van Hasselt et al. 2016: the online network picks, the target judges.
-        best = (self.online.predict(states) if self.config.double else values).argmax(axis=1)
+        best = (self.online.predict(states) if self.double else values).argmax(axis=1)
         value: Floats = values[np.arange(len(best)), best]
         return value
 
@@ -238,6 +243,11 @@ class DeepQAgent:
     def network(self) -> NeuralNetwork:
         """Network that chooses actions: the target network if `config.fly_target`, else the online one."""
         return self.target if self.config.fly_target else self.online
+
+    @property
+    def double(self) -> bool:
+        """Whether one network picks the next action and the other judges it."""
+        return self.config.double and self.config.target_judges
 
     def q_values(self, observation: Floats) -> Floats:
         """Return the Q-value of every action, (n, actions), for observations (n, features)."""

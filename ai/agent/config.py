@@ -20,7 +20,11 @@ _HASTE: Final = RewardWeights(time=-0.4, switch=-0.05)  # quick, and without fli
 
 @dataclass(frozen=True)
 class Config(Knobs):
-    """Settings of one training run. The defaults are the `modern` preset."""
+    """Settings of one training run.
+
+    The defaults are what a file means that does not name a setting, as it was saved before there was that choice.
+    `PRESETS` has what is offered today.
+    """
 
     # fmt: off
     learning_rate: float = knob(2e-3, "Learning rate: how far each step moves the weights.",
@@ -65,7 +69,10 @@ class Config(Knobs):
     success_batch_size: int = knob(32, "Batch size of the second pass, in memories.",
                                    "memory", low=4, high=512, live=True, needs="success_pass")
 
-    double: bool = knob(True, "Double Q-learning: one network chooses, the other judges.", "target", live=True)
+    target_judges: bool = knob(True, "The target network judges next states: steadier. Off, the newest does: faster.",
+                               "target", live=True)
+    double: bool = knob(True, "Double Q-learning: one network chooses, the other judges.",
+                        "target", live=True, needs="target_judges")
     target_update_interval: int = knob(1, "Gradient steps between two updates of the target network.",
                                        "target", low=1, high=10_000, log=True, live=True, formerly="target_every")
     tau: float = knob(0.005, "Target update rate τ: 1 copies the network, less follows softly.",
@@ -130,7 +137,10 @@ LANDS_ANYWHERE: Final = Config(
     reward_weights=RewardWeights(time=-0.2, switch=-0.1),
 )  # fmt: skip
 PRESETS: Final[dict[str, Config]] = {
-    "modern": Config(),
+    "modern": Config(
+        learning_rate=3e-3, schedule_decisions=100_000, n_step=8, batch_size=128, gradient_steps=16,
+        activation="leaky_relu", target_judges=False, double=False, epsilon_decisions=15_000, spawn="mixed",
+    ),
     "classic": Config(
         learning_rate=1e-3, final_learning_rate=1e-3, schedule_decisions=300_000, discount=0.99, n_step=1,
         batch_size=64, gradient_steps=1, optimizer="sgd", cost="mse", hidden=(128, 128), activation="tanh",

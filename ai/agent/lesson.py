@@ -64,10 +64,10 @@ class Lesson:
         weight: its weight in the cost, by importance sampling; 1 in uniform replay.
         target_values: (parameters,) of the target network.
         predicted: (actions,) values of the state by the online network, before the step.
-        next_online: (actions,) values of the next state by the online network; None if it does not pick.
-        next_target: (actions,) the same by the target network.
+        next_online: (actions,) values of the next state by the online network; None if it picks for no other.
+        next_judged: (actions,) the same by the network that judges.
         best: the action that is picked in the next state.
-        next_value: its value by the target network.
+        next_value: its value by the network that judges.
         discount: γ to the power of the memory's decisions.
         target: what the value should have been.
         error: the value of the action taken, less its target.
@@ -88,7 +88,7 @@ class Lesson:
     target_values: Floats
     predicted: Floats
     next_online: Floats | None
-    next_target: Floats
+    next_judged: Floats
     best: int
     next_value: float
     discount: float
@@ -156,7 +156,7 @@ def explain(before: Before, cell: MemoryCell, agent: DeepQAgent, flown: Flown | 
     # Recorded of `predict` is what both networks said of the next states.
     said = {id(event.owner): event.values[RETURN] for event in recorder.of("NeuralNetwork.predict")
             if RETURN in event.values}  # fmt: skip
-    picks = said.get(id(twin.online)) if before.config.double else None
+    picks = said.get(id(twin.online)) if twin.double else None
     states, errors = last("DeepQAgent.gradient_step", "states"), last("DeepQAgent.gradient_step", "errors")
     return Lesson(
         config=before.config,
@@ -169,7 +169,7 @@ def explain(before: Before, cell: MemoryCell, agent: DeepQAgent, flown: Flown | 
         target_values=before.target,
         predicted=last("DeepQAgent.gradient_step", "predicted")[row],
         next_online=None if picks is None else picks[row],
-        next_target=last("DeepQAgent._next_value", "values")[row],
+        next_judged=last("DeepQAgent._next_value", "values")[row],
         best=int(last("DeepQAgent._next_value", "best")[row]),
         next_value=float(last("DeepQAgent._next_value", "value")[row]),
         discount=float(last("DeepQAgent.targets", "discount")[row]),

@@ -72,6 +72,14 @@ def _thorough(rng: np.random.Generator) -> Doubles:
     return SPAWNS["graded" if kind < 0.4 else "wide"](rng)
 
 
+def _mixed(rng: np.random.Generator) -> Doubles:
+    """Draw a start for a quick run of training: most ways to the pad are short, and each ends in a touch."""
+    kind = rng.random()
+    if kind < 0.35:
+        return SPAWNS["near"](rng)
+    return SPAWNS["graded" if kind < 0.7 else "wide"](rng)
+
+
 def _rung(share: float) -> Spawn:
     """Return starts that are `share` of the way from the bottom of the ladder to random ones."""
     return _around(_BOTTOM + share * (_MIDDLE - _BOTTOM), _BOTTOM_REACH + share * (_REACH - _BOTTOM_REACH))
@@ -90,6 +98,7 @@ SPAWNS: Final[dict[str, Spawn]] = {
     "wide": _around(_MIDDLE, _WIDE_REACH),
     "practice": _practice,
     "thorough": _thorough,
+    "mixed": _mixed,
     **RUNGS,
 }
 

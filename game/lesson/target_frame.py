@@ -80,12 +80,12 @@ class TargetFrame(Frame):
 
     def _write_values(self) -> None:
         lesson = self._lesson
-        picks = lesson.next_online if lesson.next_online is not None else lesson.next_target
-        columns = [(lesson.next_target, texts.LESSON_JUDGE, texts.LESSON_JUDGE_HELP)]
+        picks = lesson.next_online if lesson.next_online is not None else lesson.next_judged
+        columns = [(lesson.next_judged, texts.LESSON_JUDGE, texts.LESSON_JUDGE_HELP)]
         if lesson.next_online is not None:
             columns.insert(0, (lesson.next_online, texts.LESSON_PICK, texts.LESSON_PICK_HELP))
         else:
-            columns[0] = (lesson.next_target, texts.LESSON_PICK_AND_JUDGE, texts.LESSON_SINGLE_HELP)
+            columns[0] = (lesson.next_judged, *self._alone())
         shown = np.concatenate([values for values, _, _ in columns])
         low, high = float(np.min(shown)), float(np.max(shown))
         for place in range(len(picks)):
@@ -94,6 +94,12 @@ class TargetFrame(Frame):
         for x, (values, title, help_) in zip(_COLUMNS, columns, strict=False):
             self.label(title, x, _TABLE, size=LABEL, colour=MUTE, explanation=Explanation((help_,)), room=280)
             self._write_column(x, values, low, high)
+
+    def _alone(self) -> tuple[str, str]:
+        """Return title and help of the one column, where one network both picks and judges."""
+        if self._lesson.config.target_judges:
+            return texts.LESSON_PICK_AND_JUDGE, texts.LESSON_SINGLE_HELP
+        return texts.LESSON_NEWEST_JUDGES, texts.LESSON_NEWEST_HELP
 
     def _write_column(self, x: float, values: Floats, low: float, high: float) -> None:
         """Write the values of the six actions by one network, in points."""
@@ -109,12 +115,13 @@ class TargetFrame(Frame):
     def _write_roles(self) -> None:
         """Say in words which network picks, which one judges, and what comes of it."""
         lesson, y = self._lesson, _TABLE + _ROW * 7 + 18
-        values = in_points(lesson.next_target, self._scale)
+        values = in_points(lesson.next_judged, self._scale)
         own = points(float(values[lesson.best]))
         most = points(float(values.max()))
         picked = said_action(lesson.best)
         if lesson.next_online is None:
-            lines = [text.format(action=picked, value=own) for text in texts.LESSON_ROLES_SINGLE]
+            said = texts.LESSON_ROLES_SINGLE if lesson.config.target_judges else texts.LESSON_ROLES_NEWEST
+            lines = [text.format(action=picked, value=own) for text in said]
         else:
             lines = [text.format(action=picked, value=own, most=most) for text in texts.LESSON_ROLES_DOUBLE]
         for line in lines:

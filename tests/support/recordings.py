@@ -15,6 +15,7 @@ import numpy as np
 from ai.agent.config import PRESETS, Config
 from ai.training.history import History, Point, SettingChange
 
+_MADE_WITH = PRESETS | {"modern": Config()}  # recorded before modern learned as it does now
 FILE = Path(__file__).parents[1] / "ai" / "training" / "broken_runs.npz"
 
 
@@ -44,7 +45,7 @@ def growing(name: str) -> Iterator[Recorded]:
     """A recording as it grew, point by point; the history is the same object each time."""
     told, tables = _file()
     case = told["cases"][name]
-    config = Config.from_json(PRESETS[case["preset"]].to_json() | Config.renamed(case["changes"]))
+    config = Config.from_json(_MADE_WITH[case["preset"]].to_json() | Config.renamed(case["changes"]))
     turns, history = [tuple(turn) for turn in case["turns"]], History()
     history.reward_scale = config.reward_scale
     for row in tables[name]:

@@ -58,7 +58,9 @@ def _q_runs_away(run: RecentCurves) -> bool:
 
 def _target_stands(run: RecentCurves) -> bool:
     """Whether the target network lags far behind, and with it the targets, and the flights where it flies them."""
-    return run.config.target_update_interval / run.config.tau > _TARGET_STEPS
+    config = run.config
+    in_use = config.target_judges or config.fly_target
+    return in_use and config.target_update_interval / config.tau > _TARGET_STEPS
 
 
 def _short_sight(run: RecentCurves) -> bool:
@@ -144,6 +146,8 @@ def _slower(factor: float) -> Callable[[RecentCurves], Mapping[str, Any]]:
 
 
 def _calm_q(run: RecentCurves) -> Mapping[str, Any]:
+    if not run.config.target_judges:
+        return {"target_judges": True}
     if not run.config.double:
         return {"double": True}
     if run.config.tau > 0.05 and run.config.target_update_interval < 50:
@@ -207,7 +211,7 @@ def _fewer_steps(run: RecentCurves) -> Mapping[str, Any]:
     """Take fewer steps where there are many, or let more landers feed them."""
     config = run.config
     enough = 500 * config.num_envs // config.batch_size
-    return {"gradient_steps": enough} if config.gradient_steps > 12 and enough else {"num_envs": 256}
+    return {"gradient_steps": enough} if config.gradient_steps > 16 and enough else {"num_envs": 256}
 
 
 def _longer(run: RecentCurves) -> Mapping[str, Any]:

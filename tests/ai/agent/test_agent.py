@@ -3,7 +3,7 @@ import json
 import numpy as np
 import pytest
 
-from ai.agent.agent import DeepQAgent
+from ai.agent.agent import TOGETHER, DeepQAgent
 from ai.agent.config import PRESETS, Config
 from ai.agent.replay import MemoryCell
 from ai.agent.symmetry import Symmetry
@@ -40,6 +40,23 @@ def test_bellman_targets_by_hand():
                       np.array([False, True, False]), np.array([1, 1, 4]))  # fmt: skip
     values = agent.target.predict(states).max(axis=1)
     assert agent.targets(cell)[0] == pytest.approx([1 + 0.9 * values[0], 1.0, 1 + 0.9**4 * values[2]], rel=1e-5)
+
+
+@pytest.mark.parametrize("changes", [{}, {"double": False}, {"target_judges": False}])
+def test_the_targets_of_many_memories_are_those_of_each_alone(changes):
+    agent, rng, count = DeepQAgent(3, 2, SMALL.changed(**changes)), np.random.default_rng(4), 2 * TOGETHER + 5
+    agent.online.values = rng.normal(size=agent.online.values.shape)
+    states = rng.normal(size=(count, 3)).astype(np.float32)
+    cells = MemoryCell(states, states, np.zeros(count, int), rng.normal(size=count).astype(np.float32),
+                       rng.random(count) < 0.2, rng.integers(1, 5, count))  # fmt: skip
+    targets, values = agent.targets(cells)
+    for row in (0, 7, TOGETHER - 1, TOGETHER, count - 1):
+        online, target = (network.predict(states[row : row + 1])[0] for network in (agent.online, agent.target))
+        judge = target if agent.config.target_judges else online
+        value = judge[(online if agent.config.double else judge).argmax()]
+        left = 0.0 if cells.terminal[row] else agent.config.discount ** int(cells.steps[row]) * value
+        assert values[row] == pytest.approx(value, rel=1e-4, abs=1e-5)
+        assert targets[row] == pytest.approx(cells.reward[row] + left, rel=1e-4, abs=1e-5)
 
 
 def test_double_q_lets_the_online_network_pick():

@@ -17,6 +17,8 @@ from ai.training.loop import Training
 SMALL = {
     "modern": replace(PRESETS["modern"], num_envs=8, batch_size=16, gradient_steps=2, learning_starts=32, n_step=3,
                       hidden=(16, 12), replay_size=2000),
+    "double": replace(PRESETS["modern"], num_envs=8, batch_size=16, gradient_steps=2, learning_starts=32, n_step=3,
+                      hidden=(16, 12), replay_size=2000, target_judges=True, double=True),
     "classic": replace(PRESETS["classic"], hidden=(16, 12), batch_size=16, learning_starts=32),
     "all": replace(PRESETS["modern"], num_envs=8, batch_size=16, gradient_steps=1, learning_starts=32, n_step=2,
                    hidden=(16,), replay_size=2000, prioritised=True, dueling=True, normalise_inputs=True,
@@ -91,10 +93,11 @@ def test_the_target_is_the_agents(case):
     assert lesson.target == targets[row]
     assert lesson.next_value == values[row]
     assert lesson.error == lesson.predicted[int(cell.action)] - np.float32(lesson.target)
-    np.testing.assert_allclose(lesson.next_target, agent.target.predict(cells.next_state)[row], rtol=1e-6)
-    best = lesson.next_online if agent.config.double else lesson.next_target
+    judge = agent.target if agent.config.target_judges else agent.online
+    np.testing.assert_allclose(lesson.next_judged, judge.predict(cells.next_state)[row], rtol=1e-6)
+    best = lesson.next_online if agent.double else lesson.next_judged
     assert lesson.best == int(np.argmax(best))
-    assert (lesson.next_online is None) == (not agent.config.double)
+    assert (lesson.next_online is None) == (not agent.double)
     sum_up = float(cell.reward) + lesson.discount * lesson.next_value * (not cell.terminal)
     assert lesson.target == pytest.approx(sum_up, rel=1e-6)
 

@@ -54,10 +54,10 @@ def test_what_is_called_idle_changes_nothing_bit_for_bit(config: Config, at: int
 @pytest.mark.parametrize(
     ("preset", "decisions", "episodes", "expected"),
     [
-        ("modern", 0, 0, {"success_batch_size"}),
-        ("modern", 39_000, 250, {"success_batch_size"}),
-        ("modern", 40_000, 250, {"success_batch_size", "epsilon_decay"}),
-        ("modern", 600_000, 5_000, {"success_batch_size", "epsilon_decay", "learning_rate"}),
+        ("modern", 0, 0, {"success_batch_size", "double"}),
+        ("modern", 14_000, 250, {"success_batch_size", "double"}),
+        ("modern", 15_000, 250, {"success_batch_size", "double", "epsilon_decay"}),
+        ("modern", 100_000, 5_000, {"success_batch_size", "double", "epsilon_decay", "learning_rate"}),
         ("classic", 0, 0, {"epsilon_spread"}),
         ("classic", 299_999, 2_000, {"epsilon_spread"}),
         ("classic", 300_000, 4_000, {"epsilon_spread", "learning_rate", "epsilon_decisions"}),
@@ -93,6 +93,6 @@ def test_what_a_run_says_is_in_force_is_what_it_learns_and_flies_with():
 
 
 def test_half_way_it_is_half_way():
-    said = in_force(PRESETS["modern"], 20_000, 0)
+    said = in_force(PRESETS["modern"], 7_500, 0)
     assert said.values["epsilon_start"] == pytest.approx(0.525)
-    assert in_force(PRESETS["modern"], 300_000, 0).values["learning_rate"] == pytest.approx((2e-3 + 3e-4) / 2)
+    assert in_force(PRESETS["modern"], 50_000, 0).values["learning_rate"] == pytest.approx((3e-3 + 3e-4) / 2)

@@ -252,7 +252,7 @@ def test_spawns_lie_where_they_should():
     rng = np.random.default_rng(0)
     for name, draw in SPAWNS.items():
         drawn = np.array([draw(rng) for _ in range(500)])
-        beyond = name in ("wide", "thorough")
+        beyond = name in ("wide", "thorough", "mixed")
         assert np.abs(drawn[:, 0]).max() <= (17 if beyond else 15)
         assert drawn[:, 1].min() >= STAND
         assert drawn[:, 1].max() <= (21 if beyond else 20)

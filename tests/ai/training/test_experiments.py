@@ -37,7 +37,7 @@ def test_only_the_knob_differs_or_what_its_sabotage_takes_away(base: str):
 def test_a_hundred_times_more_or_less_where_the_scale_is_logarithmic_and_the_ends_elsewhere():
     rate = {each.kind: each for each in experiments(MODERN, "learning_rate")}
     assert rate["times"].sabotage == "rate_times_100"
-    assert rate["divided"].changes == {"learning_rate": 2e-5}
+    assert rate["divided"].changes == {"learning_rate": 3e-5}
     assert [each.amount for each in experiments(MODERN, "discount")] == [0.8, 0.9999]
     assert [each.changes["batch_size"] for each in experiments(MODERN, "batch_size")] == [8, 1024]
     assert [each.sabotage for each in experiments(MODERN, "epsilon_end")] == ["no_exploration", ""]

@@ -101,8 +101,9 @@ def test_gradients_that_are_cut_short_are_counted():
 
 
 def test_dead_units_are_counted_where_units_can_die():
-    assert holding(points(), dead_share=0.7) == {"dead_units"}
-    assert holding(points(), dead_share=0.3) == set()
+    relu = MODERN.changed(activation="relu")
+    assert holding(points(), relu, dead_share=0.7) == {"dead_units"}
+    assert holding(points(), relu, dead_share=0.3) == set()
     assert holding(points(), MODERN.changed(activation="tanh"), dead_share=0.7) == set()
 
 
@@ -134,11 +135,11 @@ def test_no_number_stops_a_rule(column: str):
 
 @pytest.mark.parametrize("before", [None, "x", -1, 1e9, True, [1], {"a": 1}])
 def test_no_value_that_a_file_holds_of_a_rate_stops_a_rule(before: Any):
-    run = history(points())
+    run, config = history(points()), MODERN.changed(schedule_decisions=600_000)
     run.append(SettingChange(200_000, "learning_rate", before, 1e-3))
-    assert RecentCurves(run, MODERN).damaged_at() is None
+    assert RecentCurves(run, config).damaged_at() is None
     run.append(SettingChange(300_000, "learning_rate", 1.0, 1e-3))
-    assert RecentCurves(run, MODERN).damaged_at() == 0, "before that, it may have been so from the start"
+    assert RecentCurves(run, config).damaged_at() == 0, "before that, it may have been so from the start"
 
 
 def test_what_a_flight_can_pay_follows_the_weights():
@@ -156,11 +157,14 @@ def test_what_a_flight_can_pay_follows_the_weights():
 @pytest.mark.parametrize(
     ("name", "curve", "config", "cure"),
     [
-        ("loss_explodes", points(), MODERN, {"learning_rate": 2e-4, "final_learning_rate": 2e-4}),
+        ("loss_explodes", points(), MODERN, {"learning_rate": 3e-4}),
+        ("loss_explodes", points(), MODERN.changed(learning_rate=2e-3),
+         {"learning_rate": 2e-4, "final_learning_rate": 2e-4}),
         ("loss_explodes", points(), MODERN.changed(learning_rate=1e-5, final_learning_rate=1e-6),
          {"learning_rate": 1e-5}),
-        ("q_runs_away", points(), MODERN.changed(double=False), {"double": True}),
-        ("q_runs_away", points(), sabotaged(MODERN, "no_target"), {"tau": 0.005}),
+        ("q_runs_away", points(), MODERN, {"target_judges": True}),
+        ("q_runs_away", points(), MODERN.changed(target_judges=True), {"double": True}),
+        ("q_runs_away", points(), sabotaged(Config(), "no_target"), {"tau": 0.005}),
         ("crashes", points(), sabotaged(MODERN, "plain_steps"), {"optimizer": "adam"}),
         ("rate_too_high", points(), sabotaged(MODERN, "rate_times_100"),
          {"learning_rate": 2e-3, "final_learning_rate": 3e-4}),
@@ -175,7 +179,7 @@ def test_what_a_flight_can_pay_follows_the_weights():
         ("overfed", points(), sabotaged(MODERN, "one_lander"), {"num_envs": 256}),
         ("random", points(), MODERN.changed(epsilon_end=0.5), {"epsilon_end": 0.05}),
         ("clipped", points(), MODERN.changed(gradient_clip=0.1), {"gradient_clip": 10.0}),
-        ("clipped", points(), MODERN, {"learning_rate": 7e-4}),
+        ("clipped", points(), MODERN, {"learning_rate": 1e-3}),
         ("random", points(), PRESETS["classic"], {"epsilon_decay": 0.995}),
         ("plateau", points(), sabotaged(MODERN, "no_n_step"), {"n_step": 10}),
     ],
@@ -197,10 +201,11 @@ def test_a_collapse_leads_back_to_the_best_checkpoint():
     run = history(later(0.6, success=0.2))
     for decisions, success in ((0, 0.0), (200_000, 0.98), (380_000, 0.2)):
         run.append(Checkpoint(0.0, decisions, success, np.zeros(3, dtype=np.float32)))
-    hint = watch(Adviser(MODERN), run)[-1]
+    config = MODERN.changed(schedule_decisions=600_000)  # its rate has not come down yet
+    hint = watch(Adviser(config), run, config)[-1]
     assert hint is not None
     assert (hint.name, hint.back_to) == ("collapsed", 200_000)
-    assert hint.remedy["learning_rate"] < MODERN.learning_rate
+    assert hint.remedy["learning_rate"] < config.learning_rate
 
 
 # The adviser

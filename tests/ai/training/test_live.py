@@ -197,7 +197,7 @@ def live_knobs():
 
 ELSEWHERE = {
     "batch_size": 64, "gradient_steps": 3, "mirror": False, "double": False, "fly_target": False,
-    "target_update_interval": 7,
+    "target_judges": False, "target_update_interval": 7,
     "success_pass": True, "success_batch_size": 16, "epsilon_decisions": 100, "epsilon_decay": 0.91,
     "steadiness": 0.5, "discount": 0.9,
 }  # fmt: skip

@@ -3,7 +3,7 @@ import json
 import numpy as np
 import pytest
 
-from ai.agent.config import Config
+from ai.agent.config import PRESETS
 from ai.agent.schedule import geometric, linear
 from ai.lander.environment import LIMITS, LanderEnv, Outcome
 from ai.lander.pilots import NoPilot, ScriptedPilot
@@ -11,7 +11,7 @@ from ai.nn import ModelFormatError
 from ai.training.checkpoints import TrainingClock, resume_run, save_run
 from ai.training.loop import Evaluation, Training, evaluate, run
 
-SMALL = Config(
+SMALL = PRESETS["modern"].changed(
     hidden=(16,), batch_size=16, gradient_steps=1, learning_starts=32, replay_size=2000, num_envs=8, spawn="near"
 )
 QUICK = {"evaluate_every": 0, "validation_episodes": 4}

@@ -5,7 +5,7 @@ from typing import Any
 import pygame
 import pytest
 
-from ai.agent.config import PRESETS, Config
+from ai.agent.config import PRESETS
 from ai.agent.schedule import in_force
 from game.core import texts
 from game.core.scene import Transition
@@ -22,6 +22,7 @@ from tests.support.written import words_written
 
 BOX = pygame.Rect(868, 20, 384, 404)
 PAGES = pages(knob_descriptions())
+MODERN = PRESETS["modern"]
 
 
 class Panel(FormPage):
@@ -104,10 +105,10 @@ def test_tab_goes_through_the_panel_before_what_was_added_after_it(panel: tuple[
     assert scene.form.widgets[-1] is scene.other
     scene.form.focus(scene.tabs)
     seen = []
-    for _ in range(4):
+    for _ in range(5):
         game.key(pygame.K_TAB)
         seen.append(scene.form.focused.label if scene.form.focused else "")
-    assert seen == ["Double", "Target sync every", "Target rate τ", "Fly the target"]
+    assert seen == ["Target judges", "Double", "Target sync every", "Target rate τ", "Fly the target"]
 
 
 def test_the_mouse_drags_a_slider_from_stop_to_stop(panel: tuple[Driver, Panel]):
@@ -138,9 +139,9 @@ def test_r_brings_a_changed_knob_back_and_is_the_scenes_otherwise(panel: tuple[D
     game, scene = panel
     scene.form.focus(scene.knob("n_step"))
     game.keys(pygame.K_LEFT, pygame.K_LEFT)
-    assert scene.knobs.config.n_step == 8
+    assert scene.knobs.config.n_step == MODERN.n_step - 2
     game.key(pygame.K_r)
-    assert (scene.knobs.config.n_step, scene.retries) == (10, 0)
+    assert (scene.knobs.config.n_step, scene.retries) == (MODERN.n_step, 0)
     game.key(pygame.K_r)
     assert scene.retries == 1
 
@@ -157,12 +158,14 @@ def test_arrows_go_from_stop_to_stop_even_from_between_them(panel: tuple[Driver,
 
 def test_the_presets_own_value_is_a_stop_as_well(panel: tuple[Driver, Panel]):
     game, scene = panel
-    turn_to(game, scene, "exploration")
-    knob = scene.knob("epsilon_decisions")
-    assert Config().epsilon_decisions not in knob.description.stops
+    game.click(scene.word("Classic").box.center)
+    turn_to(game, scene, "memory")
+    knob = scene.knob("learning_starts")
+    assert PRESETS["classic"].learning_starts not in knob.description.stops
     scene.form.focus(knob)
+    scene.heard.clear()
     game.keys(pygame.K_RIGHT, pygame.K_LEFT)
-    assert [value for _, value in scene.heard] == [50_000, 40_000]
+    assert [value for _, value in scene.heard] == [70, 64]
 
 
 def test_a_weight_below_zero_grows_to_the_right(panel: tuple[Driver, Panel]):
@@ -189,7 +192,7 @@ def test_switches_and_words_for_keyboard_pad_and_mouse(panel: tuple[Driver, Pane
 def test_sizes_that_no_word_stands_for_have_one_made(panel: tuple[Driver, Panel]):
     game, scene = panel
     turn_to(game, scene, "network")
-    scene.knobs.set_config(Config(hidden=(48,)), 0)
+    scene.knobs.set_config(MODERN.changed(hidden=(48,)), 0)
     knob = scene.knob("hidden")
     assert knob.row.words[knob.values.index((48,))] == "48"
     game.frames(2)
@@ -200,11 +203,11 @@ def test_what_takes_a_new_run_waits_and_says_so(panel: tuple[Driver, Panel]):
     scene.knobs.set_running(True)
     game.click(at(scene.knob("n_step"), 0.0))
     assert scene.heard == []
-    assert scene.knobs.config.n_step == 10
+    assert scene.knobs.config.n_step == MODERN.n_step
     assert scene.knob("n_step").waits
     assert scene.knobs.waiting == ["n_step"]
     game.click(scene.word(texts.KNOBS_APPLY).box.center)
-    assert scene.heard == [(Config(n_step=1), 0)]
+    assert scene.heard == [(MODERN.changed(n_step=1), 0)]
     assert not scene.has(texts.KNOBS_APPLY)
     game.frames(3)
 
@@ -229,11 +232,11 @@ def test_presets_and_sabotages_are_words(panel: tuple[Driver, Panel]):
     game.click(scene.word(texts.SABOTAGE).box.center)
     assert not any(isinstance(each, Knob) for each in scene.form.widgets)
     game.click(scene.word("1-step returns").box.center)
-    assert scene.knobs.config == Config(n_step=1)
+    assert scene.knobs.config == MODERN.changed(n_step=1)
     assert scene.knobs.name == "1-step returns"
     assert scene.knob("n_step").changed  # from modern: R is the cure
     game.click(scene.word("Modern").box.center)
-    assert scene.knobs.config == Config()
+    assert scene.knobs.config == MODERN
 
 
 def test_the_sabotage_page_can_be_left_as_it_was(panel: tuple[Driver, Panel]):
@@ -261,7 +264,7 @@ def test_turned_knobs_survive_a_preset_by_undo(panel: tuple[Driver, Panel]):
     game.click(at(scene.knob("batch_size"), 0.0))
     game.click(scene.word("Classic").box.center)
     game.click(scene.word(texts.KNOBS_UNDO).box.center)
-    assert scene.knobs.config == Config(batch_size=8)
+    assert scene.knobs.config == MODERN.changed(batch_size=8)
     assert scene.knobs.name == "Modern"
 
 
@@ -302,7 +305,7 @@ def test_a_refused_value_is_explained_on_the_panel(panel: tuple[Driver, Panel]):
     scene.knobs.turn("discount", 2.0)
     game.frames(2)
     after = pygame.surfarray.array3d(game.app.canvas.surface)
-    assert scene.knobs.config == Config()
+    assert scene.knobs.config == MODERN
     changed = (before != after).any(axis=2)
     assert changed[BOX.left : BOX.right, BOX.bottom - 60 : BOX.bottom].any()
 
@@ -326,16 +329,16 @@ def test_what_acts_now_is_shown_beside_what_is_set(panel: tuple[Driver, Panel], 
     game, scene = panel
     knobs = scene.knobs
     knobs.set_running(True)
-    knobs.show_in_force(in_force(PRESETS["modern"], 300_000, 2_000))
+    knobs.show_in_force(in_force(MODERN, 50_000, 400))
     rate, last = scene.knob("learning_rate"), scene.knob("final_learning_rate")
-    assert rate.now == pytest.approx(1.15e-3)
+    assert rate.now == pytest.approx(1.65e-3)
     assert not rate.idle
     assert last.now is None
     written = words_drawn(game, monkeypatch)
-    assert texts.KNOB_NOW.format(value="0.00115") in written
-    assert "0.002" in written, "and what is set stays"
+    assert texts.KNOB_NOW.format(value="0.00165") in written
+    assert "0.003" in written, "and what is set stays"
 
-    knobs.show_in_force(in_force(PRESETS["modern"], 600_000, 4_000))
+    knobs.show_in_force(in_force(MODERN, 100_000, 900))
     assert rate.now is None
     assert rate.idle == texts.KNOBS_IDLE["learning_rate"]
     assert not last.idle

@@ -239,9 +239,11 @@ def test_the_target_is_a_sum_that_can_be_read(driver: Driver, lesson: Lesson):
     for value in (lesson.target, float(lesson.cell.reward), lesson.next_value):
         assert points(value / scale) in words
     assert f"{lesson.discount:.3f}" in words
-    assert (texts.LESSON_PICK in words) == lesson.config.double
-    assert (texts.LESSON_PICK_AND_JUDGE in words) != lesson.config.double
-    for value in in_points(lesson.next_target, scale).tolist():
+    judged = lesson.config.target_judges
+    assert (texts.LESSON_PICK in words) == (judged and lesson.config.double)
+    assert (texts.LESSON_PICK_AND_JUDGE in words) == (judged and not lesson.config.double)
+    assert (texts.LESSON_NEWEST_JUDGES in words) == (not judged)
+    for value in in_points(lesson.next_judged, scale).tolist():
         assert points(value) in words
 
 

@@ -94,7 +94,7 @@ def test_in_a_run_the_live_ones_change_and_the_others_wait(run_settings: RunSett
     run_settings.turn("seed", 7)
     assert heard == [("learning_rate", 0.01)]
     assert run_settings.waiting == ["n_step", "seed"]
-    assert (run_settings.config.n_step, run_settings.seed) == (10, 0)
+    assert (run_settings.config.n_step, run_settings.seed) == (PRESETS["modern"].n_step, 0)
     run_settings.apply()
     assert heard[1:] == [(PRESETS["modern"].changed(n_step=3, learning_rate=0.01), 7)]
     assert not run_settings.waiting
