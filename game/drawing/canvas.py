@@ -246,16 +246,13 @@ class Canvas:
         the English shrinks to it, to seven tenths of its size at least.
         """
         scale, (left, top) = self.scale, self.origin
-        pixels = typeface.fitting(string, size, weight, tabular, scale, room, LEAST)
-        width = typeface.span(string, pixels, weight, tabular)
+        parts, width, above, below = typeface.line(string, size, weight, colour, tabular, scale, room, LEAST)
         x, y = left + position[0] * scale - _SHIFT[align] * width, top + round(position[1] * scale)
-        if tabular:
-            for surface, across, baseline in typeface.digits(string, pixels, weight, colour):
+        if alpha >= 1:
+            self.surface.fblits([(surface, (round(x + across), y - baseline)) for surface, across, baseline in parts])
+        else:
+            for surface, across, baseline in parts:
                 self._blit(surface, (round(x + across), y - baseline), alpha)
-        elif string:
-            surface, baseline = typeface.render(string, pixels, weight, colour)
-            self._blit(surface, (round(x), y - baseline), alpha)
-        above, below = typeface.extent(pixels, weight)
         if alpha > _FAINT_WORDS:
             self.cover(pygame.Rect(x, y - above, width, above + below))
         return pygame.FRect((x - left) / scale, (y - above - top) / scale, width / scale, (above + below) / scale)
@@ -371,15 +368,15 @@ class Canvas:
         edge = shapes.rounded(area.size, radius * self.scale, colour, max(1, self.px(width)))
         self._blit(edge, area.topleft, alpha)
 
-    def panel(self, rect: pygame.typing.RectLike, alpha: float = PANEL_ALPHA) -> None:
-        """Draw a translucent panel; all panels of the game look like this."""
-        if alpha == PANEL_ALPHA:
+    def panel(self, rect: pygame.typing.RectLike, alpha: float = PANEL_ALPHA, shown: float = 1.0) -> None:
+        """Draw a translucent panel; all panels of the game look like this. `shown` is how far it has come, 0 to 1."""
+        if shown >= 1:
             area = self.rect(*pygame.FRect(rect))
             area.size = (max(1, area.width), max(1, area.height))
             self._blit(shapes.rounded(area.size, 8 * self.scale, PANEL, cover=alpha), area.topleft)
         else:
-            self.rounded(rect, 8, PANEL, alpha)
-        if alpha > _FAINT_WORDS:
+            self.rounded(rect, 8, PANEL, alpha * shown)
+        if alpha * shown > _FAINT_WORDS:
             self.cover(self.rect(*pygame.FRect(rect)))
 
     def glow(self, centre: Point, radius: float, colour: Colour, strength: float = 1.0) -> None:
