@@ -140,9 +140,10 @@ class Canvas:
 
     def rect(self, x: float, y: float, width: float, height: float) -> pygame.Rect:
         """Return a rectangle in pixels; rectangles adjacent in points stay adjacent in pixels."""
-        left, top = self.px(x), self.px(y)
-        size = self.px(x + width) - left, self.px(y + height) - top
-        return pygame.Rect((left + self.origin[0], top + self.origin[1]), size)
+        scale, origin = self.scale, self.origin
+        left, top = round(x * scale), round(y * scale)
+        right, bottom = round((x + width) * scale), round((y + height) * scale)
+        return pygame.Rect(left + origin[0], top + origin[1], right - left, bottom - top)
 
     def pixels(self, point: Point) -> Point:
         """Return the place of a point on the surface, in pixels."""
@@ -343,15 +344,14 @@ class Canvas:
 
     def pill(self, rect: pygame.typing.RectLike, colour: Colour, alpha: float = 1.0) -> None:
         """Fill a rectangle whose shorter sides are round."""
-        box = pygame.FRect(rect)
-        self.rounded(box, min(box.width, box.height) / 2, colour, alpha)
+        x, y, width, height = rect if isinstance(rect, tuple) else pygame.FRect(rect)
+        self.rounded((x, y, width, height), min(width, height) / 2, colour, alpha)
 
     def rounded(self, rect: pygame.typing.RectLike, radius: float, colour: Colour, alpha: float = 1.0) -> None:
         """Fill a rectangle with round corners."""
-        box = pygame.FRect(rect)
-        area = self.rect(box.x, box.y, box.width, box.height)
-        area.size = (max(1, area.width), max(1, area.height))
-        self._blit(shapes.rounded(area.size, radius * self.scale, colour), area.topleft, alpha)
+        area = self.rect(*(rect if isinstance(rect, tuple) else pygame.FRect(rect)))
+        size = (max(1, area.width), max(1, area.height))
+        self._blit(shapes.rounded(size, radius * self.scale, colour), area.topleft, alpha)
 
     def outline(
         self,
@@ -385,9 +385,9 @@ class Canvas:
         level = round(32 * min(max(strength, 0.0), 4.0))
         if pixels > 0 and level > 0:
             surface = shapes.glow(pixels if pixels < 24 else 4 * round(pixels / 4), colour, level)
-            x, y = self.rect(*centre, 0, 0).topleft
-            corner = (x - surface.width // 2, y - surface.height // 2)
-            self.surface.blit(surface, corner, special_flags=pygame.BLEND_RGB_ADD)
+            half, (left, top), scale = surface.width // 2, self.origin, self.scale
+            corner = (round(centre[0] * scale) + left - half, round(centre[1] * scale) + top - half)
+            self.surface.blit(surface, corner, None, pygame.BLEND_RGB_ADD)
 
 
 def moved(view: pygame.FRect, across: int, down: int) -> Point:
