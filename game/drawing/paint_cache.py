@@ -16,7 +16,7 @@ T = TypeVar("T")
 # What paints in steps: it yields how many pixels each step has painted, and returns the picture.
 Steps = Generator[int, None, T]
 
-A_FRAME: Final = 80_000  # pixels of a large picture to paint in one frame: some 3 ms
+A_FRAME: Final = 60_000  # pixels of a large picture to paint in one frame: some 2 ms
 _ROUGH: Final = 0.16  # resolution of a picture that is shown until the whole one is painted
 
 
