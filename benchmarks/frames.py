@@ -283,9 +283,7 @@ def _table(lines: str, only: Sequence[str], runs: int) -> bool:
     print(f"{lines:26s}" + "".join(f"{name:>8s}" for name in ("enter", "mean", "p50", "p99", "max", "MB")))
     slow, seen = [], set[type]()
     most_memory()
-    for name, row in rows().items():
-        if not name.startswith(tuple(only)):
-            continue
+    for name, row in (row for row in rows().items() if row[0].startswith(tuple(only))):
         enter, *spent = np.median([cost(row, (width, height), seen) for _ in range(runs)], axis=0)
         p50, p99 = np.percentile(spent, (50, 99))
         if p99 >= most or enter >= longest:

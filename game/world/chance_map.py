@@ -103,6 +103,7 @@ class ChanceMap:
     def __init__(self, grid: tuple[int, int] = GRID) -> None:
         self._picture = PaintCache()
         self._places: Doubles = grid_places(*grid)
+        self._veils = grid != LINES_GRID
         self.forget()
 
     @property
@@ -142,6 +143,9 @@ class ChanceMap:
             yield
         cells = ChanceCells.of(self._places, np.concatenate(pieces).astype(float).reshape(self._places.shape[:2]))
         yield
+        if self._veils:
+            _ = cells.veil  # takes as long as a piece, and would else be made while it is drawn
+            yield
         safe = [part for line in cells.safe for part in _over_ground(env, line)]
         edges = [(part, _ticks(part)) for line in cells.edges for part in _over_ground(env, line)]
         self.cells, self._safe, self._edges = cells, safe, edges
