@@ -111,5 +111,5 @@ def _draw_unlit(
     reach = 0.34 if away[1] else 0.2
     for number in range(_DOTS):
         right, up = (at + reach * (number + 0.6) * way for at, way in zip(start, away, strict=True))
-        spot = view.points((x + right * cos - up * sin, y + right * sin + up * cos)).tolist()
+        spot = view.point(x + right * cos - up * sin, y + right * sin + up * cos)
         canvas.dot(spot, 2.0 - 0.2 * number, HUMAN, 0.95 - 0.13 * number)

@@ -199,7 +199,7 @@ class Watched:
         self.policy_map.draw(canvas, view)
         if self._maps_chances:
             self.chance_map.draw_veil(canvas, view)
-            self.chance_map.draw_edge(canvas, view, self.env, _CLEAR.head)
+            self.chance_map.draw_edge(canvas, view, _CLEAR.head)
         env, poses = self.env, self.swarm.poses.at(between)
         others = self._others()
         self.stage.draw_fires(canvas, view, poses, others, size)  # the pad hides what reaches below it

@@ -140,9 +140,10 @@ class Canvas:
 
     def rect(self, x: float, y: float, width: float, height: float) -> pygame.Rect:
         """Return a rectangle in pixels; rectangles adjacent in points stay adjacent in pixels."""
-        left, top = self.px(x), self.px(y)
-        size = self.px(x + width) - left, self.px(y + height) - top
-        return pygame.Rect((left + self.origin[0], top + self.origin[1]), size)
+        scale, origin = self.scale, self.origin
+        left, top = round(x * scale), round(y * scale)
+        right, bottom = round((x + width) * scale), round((y + height) * scale)
+        return pygame.Rect(left + origin[0], top + origin[1], right - left, bottom - top)
 
     def pixels(self, point: Point) -> Point:
         """Return the place of a point on the surface, in pixels."""
@@ -246,16 +247,13 @@ class Canvas:
         the English shrinks to it, to seven tenths of its size at least.
         """
         scale, (left, top) = self.scale, self.origin
-        pixels = typeface.fitting(string, size, weight, tabular, scale, room, LEAST)
-        width = typeface.span(string, pixels, weight, tabular)
+        parts, width, above, below = typeface.line(string, size, weight, colour, tabular, scale, room, LEAST)
         x, y = left + position[0] * scale - _SHIFT[align] * width, top + round(position[1] * scale)
-        if tabular:
-            for surface, across, baseline in typeface.digits(string, pixels, weight, colour):
+        if alpha >= 1:
+            self.surface.fblits([(surface, (round(x + across), y - baseline)) for surface, across, baseline in parts])
+        else:
+            for surface, across, baseline in parts:
                 self._blit(surface, (round(x + across), y - baseline), alpha)
-        elif string:
-            surface, baseline = typeface.render(string, pixels, weight, colour)
-            self._blit(surface, (round(x), y - baseline), alpha)
-        above, below = typeface.extent(pixels, weight)
         if alpha > _FAINT_WORDS:
             self.cover(pygame.Rect(x, y - above, width, above + below))
         return pygame.FRect((x - left) / scale, (y - above - top) / scale, width / scale, (above + below) / scale)
@@ -346,15 +344,14 @@ class Canvas:
 
     def pill(self, rect: pygame.typing.RectLike, colour: Colour, alpha: float = 1.0) -> None:
         """Fill a rectangle whose shorter sides are round."""
-        box = pygame.FRect(rect)
-        self.rounded(box, min(box.width, box.height) / 2, colour, alpha)
+        x, y, width, height = rect if isinstance(rect, tuple) else pygame.FRect(rect)
+        self.rounded((x, y, width, height), min(width, height) / 2, colour, alpha)
 
     def rounded(self, rect: pygame.typing.RectLike, radius: float, colour: Colour, alpha: float = 1.0) -> None:
         """Fill a rectangle with round corners."""
-        box = pygame.FRect(rect)
-        area = self.rect(box.x, box.y, box.width, box.height)
-        area.size = (max(1, area.width), max(1, area.height))
-        self._blit(shapes.rounded(area.size, radius * self.scale, colour), area.topleft, alpha)
+        area = self.rect(*(rect if isinstance(rect, tuple) else pygame.FRect(rect)))
+        size = (max(1, area.width), max(1, area.height))
+        self._blit(shapes.rounded(size, radius * self.scale, colour), area.topleft, alpha)
 
     def outline(
         self,
@@ -371,15 +368,15 @@ class Canvas:
         edge = shapes.rounded(area.size, radius * self.scale, colour, max(1, self.px(width)))
         self._blit(edge, area.topleft, alpha)
 
-    def panel(self, rect: pygame.typing.RectLike, alpha: float = PANEL_ALPHA) -> None:
-        """Draw a translucent panel; all panels of the game look like this."""
-        if alpha == PANEL_ALPHA:
+    def panel(self, rect: pygame.typing.RectLike, alpha: float = PANEL_ALPHA, shown: float = 1.0) -> None:
+        """Draw a translucent panel; all panels of the game look like this. `shown` is how far it has come, 0 to 1."""
+        if shown >= 1:
             area = self.rect(*pygame.FRect(rect))
             area.size = (max(1, area.width), max(1, area.height))
             self._blit(shapes.rounded(area.size, 8 * self.scale, PANEL, cover=alpha), area.topleft)
         else:
-            self.rounded(rect, 8, PANEL, alpha)
-        if alpha > _FAINT_WORDS:
+            self.rounded(rect, 8, PANEL, alpha * shown)
+        if alpha * shown > _FAINT_WORDS:
             self.cover(self.rect(*pygame.FRect(rect)))
 
     def glow(self, centre: Point, radius: float, colour: Colour, strength: float = 1.0) -> None:
@@ -388,9 +385,9 @@ class Canvas:
         level = round(32 * min(max(strength, 0.0), 4.0))
         if pixels > 0 and level > 0:
             surface = shapes.glow(pixels if pixels < 24 else 4 * round(pixels / 4), colour, level)
-            x, y = self.rect(*centre, 0, 0).topleft
-            corner = (x - surface.width // 2, y - surface.height // 2)
-            self.surface.blit(surface, corner, special_flags=pygame.BLEND_RGB_ADD)
+            half, (left, top), scale = surface.width // 2, self.origin, self.scale
+            corner = (round(centre[0] * scale) + left - half, round(centre[1] * scale) + top - half)
+            self.surface.blit(surface, corner, None, pygame.BLEND_RGB_ADD)
 
 
 def moved(view: pygame.FRect, across: int, down: int) -> Point:

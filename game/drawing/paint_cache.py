@@ -16,7 +16,7 @@ T = TypeVar("T")
 # What paints in steps: it yields how many pixels each step has painted, and returns the picture.
 Steps = Generator[int, None, T]
 
-A_FRAME: Final = 80_000  # pixels of a large picture to paint in one frame: some 3 ms
+A_FRAME: Final = 60_000  # pixels of a large picture to paint in one frame: some 2 ms
 _ROUGH: Final = 0.16  # resolution of a picture that is shown until the whole one is painted
 
 
@@ -101,10 +101,11 @@ def at_once(steps: Steps[T]) -> T:
 class _Spread:
     """How many pixels of large pictures a frame paints, 0 where each is painted at once; and how many there were.
 
-    And how many there were `before` this frame.
+    And how many there were `before` this frame, and how many could have been painted in the time that this frame has
+    given to `other` work.
     """
 
-    pixels = painted = before = 0
+    pixels = painted = before = other = 0
 
 
 _unfinished: deque[ref[InPieces[Any]]] = deque()
@@ -120,6 +121,17 @@ def painted() -> int:
     return _Spread.painted
 
 
+def spend(pixels: int) -> None:
+    """Count other work of this frame against its share, as long as it would take to paint so many pixels."""
+    _Spread.other += pixels
+
+
+def busy() -> bool:
+    """Whether this frame has had other work already, so that what can wait had better wait; never in films."""
+    done = _Spread.painted - _Spread.before + _Spread.other
+    return done > _Spread.pixels // 8 > 0
+
+
 def idle() -> bool:
     """Whether nothing is unfinished, so that there is time for what will only be seen later."""
     # What nobody wants any more is gone by itself.
@@ -130,9 +142,9 @@ def idle() -> bool:
 
 def paint_on() -> int:
     """Paint what is left of a frame's share, of what was begun the latest first; return how many pixels it was."""
-    already = _Spread.painted - _Spread.before  # in this frame, rough
+    already = _Spread.painted - _Spread.before + min(_Spread.other, _Spread.pixels // 2)  # in this frame, rough
     done = 0
     while already + done < _Spread.pixels and not idle() and (latest := _unfinished[-1]()):
         done += latest.paint_on(_Spread.pixels - already - done)
-    _Spread.before = _Spread.painted
+    _Spread.before, _Spread.other = _Spread.painted, 0
     return done

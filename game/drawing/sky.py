@@ -6,13 +6,17 @@ import math
 from collections.abc import Sequence
 from functools import lru_cache
 from itertools import product
+from typing import Final
 
 import numpy as np
 import pygame
 
 from ai.common.environment import Bools, Doubles
 from game.drawing.canvas import Canvas
+from game.drawing.paint import PIECE, Sheet, blocks
 from game.drawing.tokens import DUSK, EMBER, NIGHT0, NIGHT1, VIEW_SIZE
+
+_FINE: Final = 270  # lines in which the night is computed; each of their pixels fills a square of the window's
 
 
 class NightSky:
@@ -69,18 +73,22 @@ def _spread(places: Doubles, view: pygame.FRect) -> Doubles:
 @lru_cache(maxsize=4)
 def _paint_night(size: tuple[int, int], ember: float) -> pygame.Surface:
     """Return a sky without stars, cached for all screens with the same one."""
-    width, height = -(-size[0] // 2), -(-size[1] // 2)  # too smooth to need every pixel
-    across = np.linspace(0, 1, width, dtype=np.float32)[:, None, None]
-    down = np.linspace(0, 1, height, dtype=np.float32)[None, :, None]
-    night0, night1, dusk, glow = (np.array(colour, np.float32) for colour in (NIGHT0, NIGHT1, DUSK, EMBER))
-    sky = night0 + (night1 - night0) * down
-    sky = sky + (dusk - sky) * (ember * 0.6 * np.clip((down - 0.55) / 0.45, 0, 1) ** 2)
+    times = max(2, size[1] // _FINE)  # too smooth to need every pixel
+    width, height = -(-size[0] // times), -(-size[1] // times)
+    across = np.linspace(0, 1, width, dtype=np.float32)[None, :]
+    down = np.linspace(0, 1, height, dtype=np.float32)[:, None]
+    low = ember * 0.6 * np.clip((down - 0.55) / 0.45, 0, 1) ** 2
     away = np.hypot((across - 0.78) * 1.5, (down - 1.06) * 1.9)
-    sky = sky + (glow - sky) * (ember * 0.55 * np.clip(1 - away, 0, 1) ** 2.2)
-    sky = sky.repeat(2, 0).repeat(2, 1)[: size[0], : size[1]]
-    # A little noise keeps the long gradient from showing bands.
-    sky += np.random.default_rng(0).random((*size, 1), dtype=np.float32) - 0.5
-    return pygame.surfarray.make_surface(np.clip(sky, 0, 255, out=sky).astype(np.uint8)).convert()
+    near = ember * 0.55 * np.clip(1 - away, 0, 1) ** 2.2
+    channels = []
+    for night0, night1, dusk, glow in zip(NIGHT0, NIGHT1, DUSK, EMBER, strict=True):
+        sky = night0 + (night1 - night0) * down
+        sky = sky + (dusk - sky) * low
+        channels.append(sky + (glow - sky) * near - np.float32(0.5))
+    sheet = Sheet(size[::-1], np.random.default_rng(0), clear=False)
+    for rows in blocks((height, width), PIECE // times):
+        sheet.put_larger(rows.start, [channel[rows] for channel in channels], times)
+    return sheet.done()
 
 
 def beside(places: Doubles, boxes: Sequence[pygame.Rect]) -> Bools:

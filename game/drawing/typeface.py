@@ -163,6 +163,33 @@ def digits(string: str, pixels: float, weight: Weight, colour: Colour) -> list[t
     return found
 
 
+@lru_cache(maxsize=1024)
+def line(
+    string: str,
+    size: float,
+    weight: Weight,
+    colour: Colour,
+    tabular: bool,
+    scale: float,
+    room: float,
+    least: float,
+) -> tuple[list[tuple[pygame.Surface, float, int]], float, float, float]:
+    """Return all that is needed to write a text in one look-up: most words on a screen stay from frame to frame.
+
+    Its surfaces, each with its place across and the row of its baseline; its width, ascent and descent in pixels. The
+    arguments are those of `fitting`.
+    """
+    pixels = fitting(string, size, weight, tabular, scale, room, least)
+    if tabular:
+        parts = digits(string, pixels, weight, colour)
+    elif string:
+        surface, baseline = render(string, pixels, weight, colour)
+        parts = [(surface, 0.0, baseline)]
+    else:
+        parts = []
+    return parts, span(string, pixels, weight, tabular), *extent(pixels, weight)
+
+
 def _write(string: str, pixels: float, weight: Weight, colour: Colour) -> pygame.Surface:
     """Return the surface of a string with signs, before it is scaled down."""
     font, factor = _font(pixels, weight), _oversampling(pixels)
@@ -201,5 +228,5 @@ def _cut(string: str, pixels: float, weight: Weight) -> str:
 
 def forget() -> None:
     """Clear the cache of rendered strings, after a change of the window's size."""
-    for cache in (_font, grown, reach, extent, digit_width, render, fitting, span, digits):
+    for cache in (_font, grown, reach, extent, digit_width, render, fitting, span, digits, line):
         cache.cache_clear()

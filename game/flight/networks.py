@@ -6,6 +6,7 @@ import logging
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from threading import RLock
 from typing import Final, Protocol, runtime_checkable
 
 from ai.common.decision import Decision
@@ -23,6 +24,10 @@ SCRIPTED: Final = "scripted"
 LANDER: Final = "lander"  # folder of the networks that come with the game
 PLAYERS: Final = "models"  # folder of the player's own networks
 PARTS: Final = ("config.json", "online", "target")  # a folder with none of these files is not a network
+_KEPT: Final = 3  # networks that are kept
+_Stamp = list[tuple[str, int, int]]
+_read: dict[tuple[Path, int], tuple[_Stamp, Network]] = {}  # by folder and number of inputs, the latest last
+reading: Final = RLock()  # held while a network is read, or made ready in a thread: nobody uses it before it is
 _log = logging.getLogger("tranquility")
 
 
@@ -107,7 +112,29 @@ def folders(models_dir: Path, user_dir: Path) -> dict[str, Path]:
 
 
 def load(name: str, folder: Path, features: int = NUM_FEATURES) -> Network:
-    """Read one network with so many inputs. Never raises: `problem` of the answer says what is wrong."""
+    """Read one network with so many inputs. Never raises: `problem` of the answer says what is wrong.
+
+    The last few are kept, as long as none of their files changes: every scene that flies begins with reading one.
+    """
+    with reading:
+        stamp, kept = _stamp(folder), _read.pop((folder, features), None)
+        network = kept[1] if kept and kept[0] == stamp else _fresh(name, folder, features)
+        if network.policy is not None and stamp:
+            _read[folder, features] = stamp, network
+            if len(_read) > _KEPT:
+                del _read[next(iter(_read))]
+    return replace(network, name=name)
+
+
+def _stamp(folder: Path) -> _Stamp:
+    """Return what tells whether a file of a network has changed: names, sizes and times of all, the critic's too."""
+    try:
+        return sorted((str(path), (told := path.stat()).st_size, told.st_mtime_ns) for path in folder.rglob("*"))
+    except OSError:
+        return []
+
+
+def _fresh(name: str, folder: Path, features: int) -> Network:
     from ai.agent.agent import DeepQAgent
     from ai.nn import ModelFormatError
 

@@ -211,7 +211,7 @@ class Descent(Challenge):
     def _draw_goal(self, canvas: Canvas, view: View, env: LanderEnv) -> None:
         """Point to the goal and write how far it is, at the edge of the view where it lies beyond."""
         pad = env.ground.pads[0]
-        x, y = view.points((pad.x, pad.top + _OVER_PAD[0])).tolist()
+        x, y = view.point(pad.x, pad.top + _OVER_PAD[0])
         (side, low), seen = _EDGE, canvas.view
         row = min(max(y - _OVER_PAD[1], seen.top + ClearArea.head), seen.bottom - low)
         spot = min(max(x, seen.left + side), seen.right - side), row

@@ -249,7 +249,7 @@ class FlownFlight:
             self.cockpit.track.draw(canvas, view)
         edge = self.cockpit.chance_meter.wished and not flight.over
         if edge:
-            self.chance_map.draw_edge(canvas, view, flight.env, self.scenery.clear.head, safe=False)
+            self.chance_map.draw_edge(canvas, view, self.scenery.clear.head, safe=False)
         self.path_preview.draw(canvas, view, self.scenery.clear.head)
         if self.ghost:
             self.ghost.draw(canvas, view, alpha)

@@ -101,7 +101,7 @@ def _draw_fire(canvas: Canvas, view: View, pose: Doubles, step: int) -> None:
     if fire:
         sheet, (left, top) = fire
         reach = art.NOZZLE[1]
-        nozzle = view.pixels((x - reach * math.sin(angle), y + reach * math.cos(angle))).tolist()
+        nozzle = view.pixel(x - reach * math.sin(angle), y + reach * math.cos(angle))
         corner = (round(nozzle[0] - left), round(nozzle[1] - top))
         canvas.surface.blit(sheet, corner, special_flags=pygame.BLEND_RGB_ADD)
 

@@ -65,11 +65,17 @@ class MenuBackground:
 
     def _load_network(self) -> None:
         from ai.lander.pilots import ScriptedPilot
+        from ai.lander.route import sink_of
         from game.flight import networks
+        from game.flight.chances import critic_of
 
         context = self._context
-        network = networks.chosen(context.models_dir, context.user_dir, context.settings.model)
-        self.pilot = network.policy or ScriptedPilot()
+        with networks.reading:  # what is read and measured here is kept, and the next scene need not wait for it
+            policy = networks.chosen(context.models_dir, context.user_dir, context.settings.model).policy
+            critic_of(policy)
+            if isinstance(policy, networks.QPolicy):
+                sink_of(policy)  # type: ignore[arg-type]  # one network is one object
+        self.pilot = policy or ScriptedPilot()
 
     def update(self) -> None:
         """Advance by 1/60 s."""

@@ -75,7 +75,7 @@ class Note:
         alpha = min(1.0, self._left / _STEPS_FADING)
         box = self.box(canvas)
         with canvas.unnoted():  # the note avoids the page, not itself
-            canvas.panel(box, _COVER * alpha)
+            canvas.panel(box, _COVER, alpha)
             canvas.outline(box, 8, FAINT, alpha=alpha)
             for number, line in enumerate(wrapped(canvas, self.text, SMALL, _WIDEST)):
                 middle = (box.centerx, box.top + 20 + _LINE * number)

@@ -66,11 +66,10 @@ class Callouts:
         light = pygame.transform.smoothscale(light_pool(level, INK), (2 * round(reach), round(0.22 * reach) + 6))
         for side in (-1, 1):
             foot = foot_place(x, y, angle, side)
-            at_x, at_y = view.pixels(foot).tolist()
+            at_x, at_y = view.pixel(*foot)
             corner = (round(at_x - light.get_width() / 2), round(at_y - light.get_height() / 2))
             canvas.surface.blit(light, corner, special_flags=pygame.BLEND_RGB_ADD)
-            place = view.points(foot).tolist()
-            canvas.glow((place[0], place[1]), 0.5 * view.pixels_per_metre / view.scale, INK, 1.3 * (1 - gone) ** 2)
+            canvas.glow(view.point(*foot), 0.5 * view.pixels_per_metre / view.scale, INK, 1.3 * (1 - gone) ** 2)
 
     def draw_words(self, canvas: Canvas, view: View, pose: Doubles) -> None:
         """Write what has happened above the craft."""
@@ -93,13 +92,13 @@ class Callouts:
         return min(1.0, (since + 1) / come, (come + stay + go - since) / go)
 
     def _write(self, canvas: Canvas, view: View, pose: Doubles, text: str, shown: float, *, crash: bool) -> None:
-        x, y = view.points((pose[0], pose[1] + _ABOVE)).tolist()
+        x, y = view.point(float(pose[0]), float(pose[1]) + _ABOVE)
         width = canvas.text_width(text, size=SMALL, weight="medium") + 22
         seen = canvas.view
         x = min(max(x, seen.left + _EDGE + width / 2), seen.right - _EDGE - width / 2)
         y = min(max(y, seen.top + _HEAD), seen.bottom - _FOOT) - 6 * (1 - shown)
         if crash:
-            canvas.panel((x - width / 2 - 12, y - 20, width + 24, 30), 0.8 * shown)
+            canvas.panel((x - width / 2 - 12, y - 20, width + 24, 30), 0.8, shown)
             canvas.marker("cross", (x - width / 2 + 4, y - 5), 10, canvas.palette.warn, shown)
         else:
             canvas.glow((x - width / 2 + 4, y - 4), 13, INK, 0.9 * shown)

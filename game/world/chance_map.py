@@ -6,6 +6,7 @@ theory the backward reachable set, here by the chances of a safety critic). Its 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
@@ -23,15 +24,15 @@ from game.drawing.tokens import INK, NET, NIGHT0, Colour
 from game.flight.chances import Critic, chances_to_any_pad
 from game.world.camera import GROUND_LINE, View
 from game.world.contours import contours, smooth
-from game.world.paths import draw_faint, draw_stretch
+from game.world.paths import draw_faint
 from game.world.policy_map import HALF, TOP, finer, grid_places
 
 EDGE: Final = 0.5  # chance on the edge of no return: as many are lost as are saved
 SAFE: Final = 0.97  # chance on the line within which nearly all are saved
 GRID: Final = (65, 29)  # places across and up
 LINES_GRID: Final = (45, 20)  # enough for the lines alone
-_REST: Final = 6  # updates between two maps of a lander that moves
-_PIECE: Final = 400  # places asked about in one update: about a third of a millisecond
+_REST: Final = 2  # updates between two maps of a lander that moves
+_PIECE: Final = 225  # places and pads asked about in one update: about half a millisecond
 _FADE: Final = 2.0  # metres over which it fades out at its top and sides
 _LOW: Final = 0.6  # and at the ground
 _TICKS: Final = 0.9  # metres from one tick of the edge to the next
@@ -102,6 +103,7 @@ class ChanceMap:
     def __init__(self, grid: tuple[int, int] = GRID) -> None:
         self._picture = PaintCache()
         self._places: Doubles = grid_places(*grid)
+        self._veils = grid != LINES_GRID
         self.forget()
 
     @property
@@ -116,39 +118,54 @@ class ChanceMap:
     def forget(self) -> None:
         """Forget all that was computed."""
         self.cells: ChanceCells | None = None
+        self._edges: list[tuple[Doubles, Doubles]] = []  # lines over the ground, each with its ticks
+        self._safe: list[Doubles] = []
         self._state = b""
-        self._observations: Floats | None = None
-        self._chances: list[Floats] = []
+        self._work: Iterator[None] | None = None
         self._rested = _REST
 
     def follow(self, env: LanderEnv, slot: int, critic: Critic) -> None:
         """Compute a piece of the map for the tilt, turn and speed of a lander; nothing while it is up to date."""
         self._rested += 1
-        if self._observations is None and self._rested > _REST:
-            self._begin(env, slot)
-        if self._observations is None:
-            return
-        done = len(self._chances) * _PIECE
-        if done >= len(self._observations):  # in an update of its own, for the lines
-            self._finish()
-            return
-        rows = self._observations[done : done + _PIECE]
-        self._chances.append(chances_to_any_pad(critic, rows).max(axis=1))
+        if self._work is None and self._rested > _REST:
+            state = np.array([*env.velocity[slot], env.angle[slot], env.angular_velocity[slot]]).tobytes()
+            if self.cells is None or state != self._state:
+                self._state, self._work = state, self._compute(env, slot, critic)
+        if self._work is not None and next(self._work, self) is self:
+            self._work, self._rested = None, 0
 
-    def _begin(self, env: LanderEnv, slot: int) -> None:
-        """Begin a new map, unless nothing has changed since the last."""
-        state = np.array([*env.velocity[slot], env.angle[slot], env.angular_velocity[slot]]).tobytes()
-        if self.cells is not None and state == self._state:
-            return
-        self._state, self._chances = state, []
-        places = self._places.reshape(-1, 2)
-        around = [(env.observe_at(slot, places, pad), env.around_at(slot, places, pad))
-                  for pad in range(len(env.ground.pads))]  # fmt: skip
-        self._observations = np.stack([np.concatenate(parts, axis=1) for parts in around], axis=1)
+    def _compute(self, env: LanderEnv, slot: int, critic: Critic) -> Iterator[None]:
+        """Compute a map of the state that there is when it begins, in pieces of about the same time."""
+        moments = self._moments(env, slot)
+        pieces, step = [], max(1, _PIECE // moments.shape[1])
+        for start in range(0, len(moments), step):
+            pieces.append(chances_to_any_pad(critic, moments[start : start + step]).max(axis=1))
+            yield
+        cells = ChanceCells.of(self._places, np.concatenate(pieces).astype(float).reshape(self._places.shape[:2]))
+        yield
+        if self._veils:
+            _ = cells.veil  # takes as long as a piece, and would else be made while it is drawn
+            yield
+        safe = [part for line in cells.safe for part in _over_ground(env, line)]
+        edges = [(part, _ticks(part)) for line in cells.edges for part in _over_ground(env, line)]
+        self.cells, self._safe, self._edges = cells, safe, edges
 
-    def _finish(self) -> None:
-        chances = np.concatenate(self._chances).astype(float).reshape(self._places.shape[:2])
-        self.cells, self._observations, self._rested = ChanceCells.of(self._places, chances), None, 0
+    def _moments(self, env: LanderEnv, slot: int) -> Floats:
+        """Return what there is to be observed at every place on the way to each pad, (places, pads, 9 + k)."""
+        places, columns = self._places.reshape(-1, 2), self._places[0]  # the ground beside depends on the column alone
+        return np.stack(
+            [
+                np.concatenate(
+                    [
+                        env.observe_at(slot, places, pad),
+                        np.tile(env.around_at(slot, columns, pad), (len(self._places), 1)),
+                    ],
+                    axis=1,
+                )
+                for pad in range(len(env.ground.pads))
+            ],
+            axis=1,
+        )
 
     # The picture
 
@@ -160,17 +177,13 @@ class ChanceMap:
         with canvas.unnoted():  # stars shine through it
             self._picture.draw(canvas, (left, top, right - left, bottom - top), self.cells, self._paint)
 
-    def draw_edge(self, canvas: Canvas, view: View, env: LanderEnv, head: float, *, safe: bool = True) -> None:
+    def draw_edge(self, canvas: Canvas, view: View, head: float, *, safe: bool = True) -> None:
         """Draw the edge of no return with ticks on its lost side, and the line within which nearly all are `safe`."""
-        if self.cells is None:
-            return
-        for line in self.cells.safe if safe else []:
-            for part in _over_ground(env, line):
-                draw_faint(canvas.surface, view.pixels(part), NET, 0.35, head * canvas.scale)
-        for line in self.cells.edges:
-            for part in _over_ground(env, line):
-                draw_faint(canvas.surface, view.pixels(part), INK, 0.75, head * canvas.scale)
-                _draw_ticks(canvas, view, part, head)
+        for line in self._safe if safe else []:
+            draw_faint(canvas.surface, view.pixels(line), NET, 0.35, head * canvas.scale)
+        for line, ticks in self._edges:
+            draw_faint(canvas.surface, view.pixels(line), INK, 0.75, head * canvas.scale)
+            _draw_ticks(canvas, view, ticks, head)
 
     def _paint(self, sheet: Canvas) -> None:
         """Paint the veil on a sheet whose corners are the outermost places; at half resolution, since it is soft."""
@@ -213,20 +226,23 @@ def _over_ground(env: LanderEnv, line: Doubles) -> list[Doubles]:
     return [part for part, up in zip(parts, clear[[0, *breaks]], strict=True) if up and len(part) > 1]
 
 
-def _draw_ticks(canvas: Canvas, view: View, line: Doubles, head: float) -> None:
-    """Draw short strokes on the lost side of an edge, evenly along it, as maps mark the brink of a cliff."""
+def _ticks(line: Doubles) -> Doubles:
+    """Return short strokes on the lost side of an edge, evenly along it: their ends in metres, (n, 2, 2)."""
     steps = np.diff(line, axis=0)
     lengths = np.concatenate([[0.0], np.cumsum(np.hypot(*steps.T))])
     marks = np.arange(0.5 * _TICKS, lengths[-1], _TICKS)
-    if not len(marks):
-        return
     at = np.stack([np.interp(marks, lengths, line[:, k]) for k in range(2)], axis=1)
     way = steps[np.minimum(np.searchsorted(lengths, marks, "right") - 1, len(steps) - 1)]
     way = way / np.maximum(np.hypot(*way.T), 1e-9)[:, None]
-    scale, area = canvas.scale, canvas.surface.get_rect()
     lost = np.stack([-way[:, 1], way[:, 0]], axis=1)
-    for start, end in zip(view.points(at).tolist(), view.points(at + _TICK * lost).tolist(), strict=True):
-        place = (int(start[0] * scale), int(start[1] * scale))
-        if start[1] > head and area.collidepoint(place):
-            tone = canvas.surface.get_at(place).lerp(INK, 0.4)
-            draw_stretch(canvas.surface, tone, [(x * scale, y * scale) for x, y in (start, end)])
+    return np.stack([at, at + _TICK * lost], axis=1)
+
+
+def _draw_ticks(canvas: Canvas, view: View, ticks: Doubles, head: float) -> None:
+    """Draw the ticks of an edge below the uppermost `head` points, as maps mark the brink of a cliff."""
+    surface, least = canvas.surface, head * canvas.scale
+    width, height = surface.get_size()
+    for start, end in view.pixels(ticks).tolist():
+        x, y = int(start[0]), int(start[1])
+        if y > least and 0 <= x < width and y < height:
+            pygame.draw.aaline(surface, surface.get_at((x, y)).lerp(INK, 0.4), start, end)

@@ -40,7 +40,7 @@ def draw_craft(
     surface = canvas.surface
     x, y, angle = pose.tolist()
     metre = view.pixels_per_metre * size
-    middle_x, middle_y = view.pixels(stand(x, y, angle, size)).tolist()
+    middle_x, middle_y = view.pixel(*stand(x, y, angle, size))
     cos, sin = math.cos(angle), math.sin(angle)
 
     def place(right: float, up: float) -> tuple[float, float]:

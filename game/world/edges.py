@@ -35,7 +35,7 @@ def draw_edges(canvas: Canvas, view: View, env: LanderEnv, colour: Colour) -> No
             corners = (-_ACROSS, edge.place), (_ACROSS, edge.place + inward)
         else:
             corners = (edge.place, ceiling), (edge.place + inward, GROUND_LINE)
-        (x0, y0), (x1, y1) = (view.pixels(corner).tolist() for corner in corners)
+        (x0, y0), (x1, y1) = (view.pixel(*corner) for corner in corners)
         box = pygame.Rect(round(min(x0, x1)), round(y0), max(1, round(abs(x1 - x0))), max(1, round(y1 - y0)))
         wide, high = canvas.surface.get_size()
         seen = box.clip((0, box.top, wide, box.height) if edge.side == "above" else (box.left, 0, box.width, high))
@@ -43,7 +43,7 @@ def draw_edges(canvas: Canvas, view: View, env: LanderEnv, colour: Colour) -> No
             glow = pygame.transform.scale(_glow(edge.side, level, colour), seen.size)
             canvas.surface.blit(glow, seen, special_flags=pygame.BLEND_RGB_ADD)
         end = (_ACROSS, ceiling) if edge.side == "above" else (edge.place, GROUND_LINE)
-        (ax, ay), (bx, by) = (view.points(place).tolist() for place in (corners[0], end))
+        (ax, ay), (bx, by) = (view.point(*place) for place in (corners[0], end))
         canvas.line((ax, ay), (bx, by), colour, alpha=0.5 * level / _LEVELS)
 
 

@@ -45,11 +45,20 @@ def plume(
     level = math.ceil(min(thrust, 1.0) * LEVELS - 0.25)
     if level <= 0:
         return None
-    upright, (left, top) = _paint(kind, _FINE, 0, level, flicker % FLICKERS)
-    ratio = pixels_per_metre / _FINE
-    fire = pygame.transform.rotozoom(upright, math.degrees(angle), ratio)
-    right, down = ratio * (left - upright.get_width() / 2), ratio * (top - upright.get_height() / 2)
-    cos, sin = math.cos(angle), math.sin(angle)
+    fire, (x, y) = _turned(kind, level, flicker % FLICKERS, round(2 * math.degrees(angle)) % 720)
+    # To turn it small and then scale it takes a third of the time of both at once, in a large window a sixth.
+    width, height = (max(1, round(side * pixels_per_metre / _FINE)) for side in fire.get_size())
+    scaled = pygame.transform.smoothscale(fire, (width, height))
+    return scaled, (x * width / fire.get_width(), y * height / fire.get_height())
+
+
+@lru_cache(maxsize=256)
+def _turned(kind: Plume, level: int, flicker: int, half_degrees: int) -> tuple[pygame.Surface, tuple[float, float]]:
+    """Return a flame, not yet scaled, at an angle in half degrees, and the nozzle's place in it."""
+    upright, (left, top) = _paint(kind, _FINE, 0, level, flicker)
+    fire = pygame.transform.rotozoom(upright, half_degrees / 2, 1.0)
+    right, down = left - upright.get_width() / 2, top - upright.get_height() / 2
+    cos, sin = math.cos(math.radians(half_degrees / 2)), math.sin(math.radians(half_degrees / 2))
     return fire, (fire.get_width() / 2 + right * cos + down * sin, fire.get_height() / 2 - right * sin + down * cos)
 
 

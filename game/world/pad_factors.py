@@ -62,7 +62,7 @@ class PadFactors:
         for pad, meant in zip(self._pads, self.meant.tolist(), strict=False):
             if not pad.factor:  # nothing is earned there
                 continue
-            x, deck = view.points((pad.x + shift, pad.top)).tolist()
+            x, deck = view.point(pad.x + shift, pad.top)
             word = f"×{pad.factor}"
             width, rise = canvas.text_width(word, size=_SIZE, weight="medium"), _CAPITAL * _SIZE
             row = deck - _ABOVE[0] * metre - _ABOVE[1]

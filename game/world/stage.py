@@ -185,7 +185,7 @@ class Stage:
         x, y, angle = pose.tolist()
         self._draw_shadow(canvas, view, x, y, angle)
         self._draw_ground_light(canvas, view, x, y, angle, slot)
-        floor = float(view.pixels((x, surface_height(self._env, x)))[1]) + 2
+        floor = view.pixel(x, surface_height(self._env, x))[1] + 2
         if sprite.image == art.WRECK:
             self._draw_wreck(canvas, view, sprite, pose, slot)
         else:
@@ -202,8 +202,8 @@ class Stage:
             sag = 1 - (self.flash[slot] / _FLASH_STEPS) ** 2
             y, angle = y - 0.16 * sag, angle + 0.16 * sag * (1 if angle >= 0 else -1)
         size = art.share(sprite)
-        middle = view.pixels(stand(x, y, angle, size)).tolist()
-        craft = art.turned(sprite.image, view.painted_per_metre * size, angle, (middle[0], middle[1]), scaling(view))
+        middle = view.pixel(*stand(x, y, angle, size))
+        craft = art.turned(sprite.image, view.painted_per_metre * size, angle, middle, scaling(view))
         canvas.surface.blit(shaded(craft[0], self._light), craft[1])
 
     # A swarm, small and in one call, each standing on its feet; `shown` is a mask (n,)
@@ -257,14 +257,14 @@ class Stage:
         left = math.ceil(12 * self.flash[slot] / _FLASH_STEPS) / 12  # in steps, so that few glows are ever made
         if left > 0 and not self.calm:
             metre = view.pixels_per_metre / view.scale
-            canvas.glow(view.points((x, y)).tolist(), 4.6 * metre, (255, 176, 104), 0.8 * left**2)
-            canvas.glow(view.points((x, y)).tolist(), 1.7 * metre, (255, 226, 190), 1.0 * left**3)
+            canvas.glow(view.point(x, y), 4.6 * metre, (255, 176, 104), 0.8 * left**2)
+            canvas.glow(view.point(x, y), 1.7 * metre, (255, 226, 190), 1.0 * left**3)
 
 
 def _blit_middle(
     canvas: Canvas, sprite: pygame.Surface, view: View, position: tuple[float, float], flags: int = 0
 ) -> None:
-    x, y = view.pixels(position).tolist()
+    x, y = view.pixel(*position)
     corner = (round(x) - sprite.get_width() // 2, round(y) - sprite.get_height() // 2)
     canvas.surface.blit(sprite, corner, special_flags=flags)
 

@@ -91,11 +91,11 @@ class Backdrop:
         """
         view = view or View(self._unit, origin=(self._aside, self._above))
         across = -view.centre[0] * POINTS_PER_METRE * view.scale
-        horizon = float(view.pixels((0.0, HORIZON_HEIGHT))[1])
+        horizon = view.pixel(0.0, HORIZON_HEIGHT)[1]
         down = round(horizon - self._above - PLAIN_HORIZON * self._height)
         far, (plain, corner, solid) = self._far.picture, self._plain(view)
         seen = surface.get_clip()
-        behind = pygame.Rect(0, 0, self.size[0], math.ceil(float(view.pixels((0.0, solid))[1])) + 1)
+        behind = pygame.Rect(0, 0, self.size[0], math.ceil(view.pixel(0.0, solid)[1]) + 1)
         # The plain hides the rest, but for the least bit where it is scaled.
         surface.fill(NIGHT0, (0, behind.bottom, self.size[0], max(0, self.size[1] - behind.bottom)))
         surface.set_clip(behind.clip(seen))

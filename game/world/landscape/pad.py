@@ -36,7 +36,7 @@ def draw_pad(
     deck.draw(canvas.surface, view, (x + corner[0], top + corner[1]))
     breath = 0.86 + 0.14 * math.sin(1.7 * time)
     for side in (-1, 1):
-        lamp = view.points((centre[0] + side * (width / 2 - 0.08), centre[1] + _LAMP)).tolist()
+        lamp = view.point(centre[0] + side * (width / 2 - 0.08), centre[1] + _LAMP)
         metre = view.pixels_per_metre / view.scale
         canvas.glow(lamp, 0.95 * metre, colour, 0.75 * breath)
         canvas.glow(lamp, 0.34 * metre, colour, 1.1 * breath)

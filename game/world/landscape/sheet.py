@@ -8,10 +8,14 @@ from typing import Final
 
 import pygame
 
+from game.drawing.paint_cache import busy, spend
 from game.world.camera import View
 
 _STRIDE, _ROWS = 64, 16  # pixels of the picture: a scaled part begins and ends at multiples of these
-_SPARE: Final = 3  # pixels that the scaled part reaches beyond the view, at least
+_SPARE: Final = 12  # pixels that the scaled part reaches beyond the view, at least
+_PATIENT: Final = 2.0  # times its usual error that a large picture may have while others take the frame's time
+_LARGE: Final = 60_000  # pixels, scaled
+_PAINTED: Final = 16  # pixels that are scaled in the time in which one is painted
 _RIM_LEFT: Final = (1, 0, 2)  # pixels of the rim that are left out on one side: its middle moves the other way
 
 
@@ -20,13 +24,14 @@ class WorldPicture:
 
     `soft` is the relative error that its width may have, half of it at either end.
 
-    Scaling the part in view takes less than a millisecond; painting it anew takes a hundred times that. The last
-    scaled part is reused until the view has moved by a stride, or its error would exceed `soft`.
+    Scaling the part in view takes a millisecond; painting it anew takes a hundred times that. The last scaled part is
+    reused until it does not fill the view any more, or its error would exceed `soft`; where several pictures are due
+    in one frame, some wait for the next.
     """
 
     def __init__(self, picture: pygame.Surface, per_metre: float, soft: float = 1 / 300) -> None:
         self.picture, self.per_metre, self._soft = picture, per_metre, soft
-        self._crop = (0, 0, 0, 0)
+        self._crop = (0, 0, 0)  # first and last column, and last row, of the scaled part
         self._scaled = picture
 
     def draw(self, surface: pygame.Surface, view: View, corner: tuple[float, float], flags: int = 0) -> None:
@@ -34,23 +39,46 @@ class WorldPicture:
         ratio = view.pixels_per_metre / self.per_metre
         x, y = view.pixels(corner).tolist()
         width, height = self.picture.get_size()
-        start = max(0, math.floor((-x / ratio - _SPARE) / _STRIDE) * _STRIDE)
-        stop = min(width, math.ceil(((surface.get_width() - x) / ratio + _SPARE) / _STRIDE) * _STRIDE)
-        low = min(height, math.ceil(((surface.get_height() - y) / ratio + _SPARE) / _ROWS) * _ROWS)
-        if start >= stop or low <= 0:
+        left, right = max(0.0, -x / ratio), min(width, (surface.get_width() - x) / ratio)  # what is seen of it
+        low = min(height, (surface.get_height() - y) / ratio)
+        if left >= right or low <= 0:
             return
         if abs(ratio - 1) < 1e-6:
             surface.blit(self.picture, (round(x), round(y)), special_flags=flags)
             return
-        crop = (start, 0, stop - start, low)
-        size = (max(1, round((stop - start) * ratio)), max(1, round(low * ratio)))
-        if crop != self._crop or abs(size[0] - self._scaled.get_width()) > self._soft * size[0]:
-            self._crop = crop
-            if self.picture.get_flags() & pygame.RLEACCEL:  # scaling would decode and encode it again every time
-                self.picture.set_alpha(255)
-            self._scaled = pygame.transform.smoothscale(self.picture.subsurface(crop), size)
-        middle = x + (start + stop) / 2 * ratio
+        if not self._fills(left, right, low, ratio):
+            self._scale(
+                max(0, math.floor((left - _SPARE) / _STRIDE) * _STRIDE),
+                min(width, math.ceil((right + _SPARE) / _STRIDE) * _STRIDE),
+                min(height, math.ceil((low + _SPARE) / _ROWS) * _ROWS),
+                ratio,
+            )
+        middle = x + (self._crop[0] + self._crop[1]) / 2 * ratio
         surface.blit(self._scaled, (round(middle - self._scaled.get_width() / 2), round(y)), special_flags=flags)
+
+    def _fills(self, left: float, right: float, low: float, ratio: float) -> bool:
+        """Whether the last scaled part has all that is seen, and is still good enough."""
+        start, stop, rows = self._crop
+        if start >= stop:
+            return False
+        width, height = self._scaled.get_size()
+        wide = (stop - start) * ratio
+        aside, below = max(0.0, wide - width) / 2 / ratio, max(0.0, rows - height / ratio)  # what it is too small by
+        if (start and start + aside > left) or (stop < self.picture.get_width() and stop - aside < right):
+            return False
+        if rows < self.picture.get_height() and rows - below < low:
+            return False
+        patience = _PATIENT if width * height > _LARGE and busy() else 1.0
+        return abs(round(wide) - width) <= self._soft * patience * wide
+
+    def _scale(self, start: int, stop: int, rows: int, ratio: float) -> None:
+        """Scale the part from one column to another, down to a row."""
+        self._crop = (start, stop, rows)
+        if self.picture.get_flags() & pygame.RLEACCEL:  # scaling would decode and encode it again every time
+            self.picture.set_alpha(255)
+        size = (max(1, round((stop - start) * ratio)), max(1, round(rows * ratio)))
+        self._scaled = pygame.transform.smoothscale(self.picture.subsurface((start, 0, stop - start, rows)), size)
+        spend(size[0] * size[1] // _PAINTED)
 
 
 def fitted(

@@ -137,6 +137,8 @@ class NearStars:
                    for star in stars]  # fmt: skip
         self._rows = [sprites[kind] for kind in kinds.tolist()]
         self._half = np.array([row[0].get_width() // 2 for row in self._rows])
+        self._seen: list[int] = []  # the stars that the last words left free,
+        self._seen_for: tuple[Sequence[pygame.Rect], tuple[int, int]] = [], (-1, 0)  # and where the view was then
 
     def draw(
         self, surface: pygame.Surface, shift: tuple[float, float], time: float, words: Sequence[pygame.Rect] = ()
@@ -151,7 +153,10 @@ class NearStars:
         if not self._still:
             level = np.round(self.LEVELS - 1.9 + 1.3 * np.sin(self._phase + self._rate * time)).astype(int)
         sprites = [row[bright] for row, bright in zip(self._rows, level.tolist(), strict=True)]
-        seen = np.flatnonzero(beside(place, words)).tolist()
+        whole = round(self._depth.max() * shift[0]), round(shift[1])
+        if (words, whole) != self._seen_for:  # in less than a pixel, no star comes behind a word
+            self._seen, self._seen_for = np.flatnonzero(beside(place, words)).tolist(), (words, whole)
+        seen = self._seen
         surface.fblits([(sprites[star], corners[star]) for star in seen], pygame.BLEND_RGB_ADD)
 
 

@@ -1,6 +1,7 @@
 import gc
 import signal
 import weakref
+from itertools import pairwise
 from pathlib import Path
 
 import pygame
@@ -414,3 +415,26 @@ def test_the_picture_of_a_scene_gives_way_to_the_next_and_not_where_motion_is_re
         assert reds[-1] == 0
         assert reds == sorted(reds, reverse=True)
         assert (100 < reds[0] < 200) is not still
+
+
+def test_the_last_scene_fades_over_the_next_and_is_gone_after_a_moment(open_game):
+    class Plain(Probe):
+        def draw(self, canvas, alpha: float) -> None:
+            canvas.surface.fill((200, 100, 40))
+
+    game = open_game(Probe())
+    game.frames(1)
+    game.app.context.settings.reduced_motion = False
+    game.app.canvas.surface.fill((20, 60, 240))
+    game.app.scenes.apply(Push(Plain()))
+    seen = []
+    for _ in range(14):
+        game.app.scenes.draw(game.app.canvas, 1.0)
+        seen.append(tuple(game.app.canvas.surface.get_at((300, 200)))[:3])
+        game.app.scenes.update()
+    share = [(200 - red) / 180 for red, _, _ in seen]
+    assert share[0] == pytest.approx((11 / 12) ** 2, abs=0.02)
+    assert all(after <= before for before, after in pairwise(share))
+    assert seen[-1] == (200, 100, 40)
+    for red, green, blue in seen:  # always a mixture of both
+        assert (green, blue) == pytest.approx((100 - 40 * (200 - red) / 180, 40 + 200 * (200 - red) / 180), abs=4)

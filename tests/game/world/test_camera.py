@@ -166,6 +166,36 @@ def test_what_is_scaled_stays_where_it_belongs():
         assert abs(columns.max() + 1 - x - 32 * zoom) <= 1.5
 
 
+def test_what_is_scaled_fills_the_view_while_the_camera_pans_and_zooms_and_others_take_the_time():
+    import pygame
+
+    from game.drawing.paint_cache import A_FRAME, paint_on, spend, spread
+
+    picture = pygame.Surface((4000, 160), pygame.SRCALPHA)
+    picture.fill((255, 255, 255, 255))
+    sheet, surface = WorldPicture(picture, 48.0), pygame.Surface(VIEW_SIZE)
+    spread(A_FRAME)
+    try:
+        for step in range(240):
+            zoom = 1.3 + 0.7 * np.sin(step / 20)  # faster than any camera
+            spend(A_FRAME)
+            surface.fill((0, 0, 0))
+            sheet.draw(surface, View(1.0, (8 * np.sin(step / 15), 2.0), zoom, CLOSEST), (-40.0, 3.0))
+            rows = np.flatnonzero(pygame.surfarray.array3d(surface)[640, :, 0] > 100)
+            assert (pygame.surfarray.array3d(surface)[:, rows[len(rows) // 2], 0] > 200).all()
+            assert abs(len(rows) - min(32 * zoom * 160 / 48, VIEW_SIZE[1] - rows[0])) <= 2
+            paint_on()
+    finally:
+        spread(0)
+
+
+def test_one_place_is_turned_into_pixels_and_points_as_many_are():
+    view = View(1.7, (3.0, 8.0), 1.3, CLOSEST, (11, -7), 20.0)
+    for place in ((0.0, 0.0), (-12.5, 3.75), (1e3, -1e3)):
+        assert view.pixel(*place) == tuple(view.pixels(place).tolist())
+        assert view.point(*place) == tuple(view.points(place).tolist())
+
+
 @pytest.mark.parametrize("seed", range(12))
 def test_every_flight_begins_with_all_its_pads_in_view(seed: int):
     env = Flight(seed, pads=3).env

@@ -36,7 +36,7 @@ def over(env: LanderEnv, critic: SafetyCritic, start: np.ndarray = FALLING) -> C
     env.reset()
     env.begin_at(0, start)
     chance_map = ChanceMap()
-    for _ in range(20):
+    for _ in range(40):
         chance_map.follow(env, 0, critic)
         if chance_map.cells is not None:
             return chance_map
@@ -133,7 +133,7 @@ def test_it_is_drawn_at_any_size_and_says_so_where_there_is_no_edge(critic: Safe
             canvas = Canvas(pygame.Surface(size))
             before = pygame.image.tobytes(canvas.surface, "RGB")
             chance_map.draw_veil(canvas, View(canvas.scale))
-            chance_map.draw_edge(canvas, View(canvas.scale), env, 100.0)
+            chance_map.draw_edge(canvas, View(canvas.scale), 100.0)
             assert pygame.image.tobytes(canvas.surface, "RGB") != before
     assert ChanceMap().said == ""
 
