@@ -33,6 +33,7 @@ from game.scenes.digits import DigitsScene
 from game.shell.app import App
 from game.ui.context import Context
 
+
 def curve(corners: np.ndarray) -> np.ndarray:
     """Return a smooth way (n, 2) through points (Catmull-Rom, centripetal), with corners where one comes twice."""
     twice = np.flatnonzero((corners[1:] == corners[:-1]).all(axis=1)) + 1

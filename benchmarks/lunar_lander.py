@@ -2,8 +2,8 @@
 
     python -m benchmarks.lunar_lander [--seeds 3] [--decisions 400000] [--rival-seeds 3] [--rival-seconds 300]
 
-Ours has the settings `ai.training.gym_task.LUNAR_LANDER`; the rival those its authors tuned for this. Every ten seconds of
-training the network flies 50 validation episodes without random actions, and the best so far is kept; in the end
+Ours has the settings `ai.training.gym_task.LUNAR_LANDER`; the rival those its authors tuned for this. Every ten seconds
+of training the network flies 50 validation episodes without random actions, and the best so far is kept; in the end
 that one flies 100 others, which had no say in the choice. Seconds are processor time on one thread, of training
 alone.
 """
