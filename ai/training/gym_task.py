@@ -174,7 +174,7 @@ class GymTask:
 
     def make_env(self, rng: np.random.Generator) -> GymEnv:
         """Make the environments to train with."""
-        return self._env(self.config.num_envs, rng)
+        return self._env(self.config.num_envs, rng, self.config.frame_skip)
 
     def apply_live(self, config: Config, env: Env) -> None:  # noqa: ARG002 - nothing of an environment is live
         """Take over the live knobs of another configuration."""
@@ -183,11 +183,15 @@ class GymTask:
     def update_env(self, decisions: int, env: Env) -> None:
         """Do nothing: an environment of Gymnasium does not change with experience."""
 
-    def _env(self, num_envs: int, rng: np.random.Generator) -> GymEnv:
-        return GymEnv(self._make, num_envs, rng, self.threshold, self.config.frame_skip)
+    def _env(self, num_envs: int, rng: np.random.Generator, frame_skip: int = 1) -> GymEnv:
+        return GymEnv(self._make, num_envs, rng, self.threshold, frame_skip)
 
     def evaluate(self, pilot: Pilot, episodes: int, seed: int) -> GymScore:
-        """Play so many episodes side by side, without exploration."""
+        """Play so many episodes side by side, without exploration.
+
+        The pilot decides at every step of the environment: to hold an action for `frame_skip` of them makes learning
+        faster, and the best one may change sooner.
+        """
         env = self._env(episodes, np.random.default_rng(seed))
         observation, actions = env.reset(), np.zeros(episodes, dtype=np.intp)
         while (going_on := env.outcome == GOING_ON).any():
