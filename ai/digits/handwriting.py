@@ -1,9 +1,8 @@
 """Digits that simulated hands write, to learn from beside MNIST's: as the world writes them, and as a mouse tells them.
 
 A style is a way to write a digit, given by the few points that a pen goes through. A hand writes it in its own manner:
-wide or narrow, slanted, turned, bent, with round or sharp corners, sure or unsure of where points lie, haste deciding
-how many of them are told. MNIST's writers are American: long flags on a 1, bars through a 7, slashes through a 0 and
-open 4s are rare among them, and common here.
+wide or narrow, slanted, turned, bent, with round or sharp corners, sure or unsure of where points lie, and in haste
+or not, which decides how many of them a mouse tells. Few of MNIST's writers give a 1 a long flag: here it is common.
 """
 
 from __future__ import annotations
