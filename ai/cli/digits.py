@@ -26,8 +26,8 @@ def add_commands(commands: Any) -> None:
     teach = commands.add_parser("train-digits", help="teach a network to read handwritten digits")
     teach.add_argument(
         "--preset",
-        help="modern, classic, or as-described, the recipe of one epoch that the classic"
-        " one grew from (default: modern)",
+        help="modern, classic, thorough, which made the shipped modern network, or as-described, the recipe of one"
+        " epoch that the classic one grew from (default: modern)",
     )
     add_run_options(teach, "dropout=0.5")
     teach.add_argument("--epochs", type=int, help="how often every image is seen (default: as the preset says)")

@@ -14,6 +14,7 @@ import numpy.typing as npt
 from ai.digits.augmentation import Strength, augment
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DigitConfig, build_digit_network
+from ai.digits.handwriting import drawings
 from ai.digits.mnist import TRAIN, Images, Labels, load_part
 from ai.nn import OPTIMIZERS, Array
 
@@ -101,7 +102,8 @@ class DigitTraining:
             self._order = np.random.default_rng((self.seed, 1, epoch)).permutation(len(self.images))
         batch = self._order[place * config.batch_size : (place + 1) * config.batch_size]
         rng = np.random.default_rng((self.seed, 2, self.step))
-        images, labels = self._changed(self.images[batch], rng), self.labels[batch]
+        labels = self.labels[batch]
+        images = self._changed(self.images[batch], labels, rng)
         targets = np.full((len(batch), 10), config.label_smoothing / 10, np.float32)
         targets[np.arange(len(batch)), labels] += 1 - config.label_smoothing
 
@@ -128,13 +130,18 @@ class DigitTraining:
             len(batch) / spent if spent > 0 else 0.0, held_out, self.best,
         )  # fmt: skip
 
-    def _changed(self, images: Images, rng: np.random.Generator) -> Images:
-        if not self.config.augmentation:
-            return images
-        changed = augment(images, rng, Strength().times(self.config.augmentation))
-        same = rng.random(len(images)) < self.config.unaugmented
-        changed[same] = images[same]
-        return changed
+    def _changed(self, images: Images, labels: Labels, rng: np.random.Generator) -> Images:
+        config = self.config
+        if config.augmentation:
+            changed = augment(images, rng, Strength().times(config.augmentation))
+            same = rng.random(len(images)) < config.unaugmented
+            changed[same] = images[same]
+            images = changed
+        if config.drawn:
+            drawn = rng.random(len(images)) < config.drawn
+            images = images.copy()
+            images[drawn] = drawings(labels[drawn], rng)
+        return images
 
     def _measure(self) -> float | None:
         """Measure the average on the images held out, and keep it if it is the best so far."""

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 GOING_ON: Final = 0
 FAILED: Final = 2
-# Found by trial on CartPole-v1 and LunarLander-v3; docs/environments.md has the measurements.
+# Found by trial on CartPole-v1 and LunarLander-v3, before that got its own; docs/environments.md has measurements.
 GYM: Final = Config(
     env="CartPole-v1", num_envs=16, frame_skip=1, normalise_inputs=True, mirror=False, steadiness=0.0,
     learning_rate=2e-3, final_learning_rate=3e-4, schedule_decisions=700_000, discount=0.995, n_step=3,
@@ -27,10 +27,28 @@ GYM: Final = Config(
     epsilon_end=0.05, epsilon_spread=0.7, hidden=(64, 64), tau=0.005, reward_scale=0.01,
 )  # fmt: skip
 
+# Found by trial on LunarLander-v3 alone: docs/environments.md says what each did. A slow descent burns fuel, so a small
+# discount pays. Written out, so that no change of our lander's own settings changes these.
+LUNAR_LANDER: Final = Config(
+    env="LunarLander-v3", num_envs=16, frame_skip=3, normalise_inputs=True, mirror=True, steadiness=0.0,
+    learning_rate=2e-3, final_learning_rate=1e-5, schedule_decisions=400_000, discount=0.975, n_step=3,
+    batch_size=128, gradient_steps=4, replay_size=1_000_000, learning_starts=5_000, epsilon_decisions=40_000,
+    epsilon_end=0.02, epsilon_spread=0.6, hidden=(64, 64), dueling=True, tau=0.005, reward_scale=0.01,
+    optimizer="adam", cost="huber", gradient_clip=10.0, activation="relu", layer_normalisation=True, output_scale=0.1,
+    double=True, target_update_interval=1, fly_target=True, epsilon_start=1.0, epsilon_decay=1.0,
+    prioritised=False, success_pass=False, replay_prune=1,
+)  # fmt: skip
+_OWN: Final = {LUNAR_LANDER.env: LUNAR_LANDER}
+MIRRORS: Final = {  # of environments that look the same in a mirror
+    "LunarLander-v3": Symmetry(
+        np.array([-1, 1, -1, 1, -1, -1, 1, 1], np.float32), np.array([0, 1, 2, 3, 4, 5, 7, 6]), np.array([0, 3, 2, 1])
+    ),
+}
+
 
 def gym_config(env: str) -> Config:
     """Return the settings to learn an environment of Gymnasium with."""
-    return GYM.changed(env=env)
+    return _OWN.get(env) or GYM.changed(env=env)
 
 
 @dataclass(frozen=True)
@@ -125,12 +143,12 @@ class GymEnv:
 class GymTask:
     """Task of learning the environment of Gymnasium that `config.env` names."""
 
-    symmetry: Symmetry | None = None
     action_chances: Doubles | None = None
     evaluate_every, validation_episodes, test_episodes = 40_000, 100, 100
 
     def __init__(self, config: Config) -> None:
         self.config = config
+        self.symmetry = MIRRORS.get(config.env)
         self._gymnasium = _gymnasium()
         env = self._make()
         observations, actions, spaces = env.observation_space, env.action_space, self._gymnasium.spaces
@@ -156,7 +174,7 @@ class GymTask:
 
     def make_env(self, rng: np.random.Generator) -> GymEnv:
         """Make the environments to train with."""
-        return self._env(self.config.num_envs, rng)
+        return self._env(self.config.num_envs, rng, self.config.frame_skip)
 
     def apply_live(self, config: Config, env: Env) -> None:  # noqa: ARG002 - nothing of an environment is live
         """Take over the live knobs of another configuration."""
@@ -165,11 +183,15 @@ class GymTask:
     def update_env(self, decisions: int, env: Env) -> None:
         """Do nothing: an environment of Gymnasium does not change with experience."""
 
-    def _env(self, num_envs: int, rng: np.random.Generator) -> GymEnv:
-        return GymEnv(self._make, num_envs, rng, self.threshold, self.config.frame_skip)
+    def _env(self, num_envs: int, rng: np.random.Generator, frame_skip: int = 1) -> GymEnv:
+        return GymEnv(self._make, num_envs, rng, self.threshold, frame_skip)
 
     def evaluate(self, pilot: Pilot, episodes: int, seed: int) -> GymScore:
-        """Play so many episodes side by side, without exploration."""
+        """Play so many episodes side by side, without exploration.
+
+        The pilot decides at every step of the environment: to hold an action for `frame_skip` of them makes learning
+        faster, and the best one may change sooner.
+        """
         env = self._env(episodes, np.random.default_rng(seed))
         observation, actions = env.reset(), np.zeros(episodes, dtype=np.intp)
         while (going_on := env.outcome == GOING_ON).any():

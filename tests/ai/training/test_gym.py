@@ -200,3 +200,38 @@ class TestOurLanderForOthers:
         for _ in range(20):
             training.advance()
         assert training.agent.train_count > 0
+
+
+class Calm:
+    """Generator whose every uniform number is the middle of its range: flat ground, no push, no noise of engines."""
+
+    def uniform(self, low=0.0, high=1.0, size=None):
+        return (low + high) / 2 if size is None else np.full(size, (low + high) / 2)
+
+
+def test_lunar_lander_looks_the_same_in_a_mirror():
+    gymnasium = pytest.importorskip("gymnasium")
+    pytest.importorskip("Box2D")
+    mirror = GymTask(gym_config("LunarLander-v3")).symmetry
+    assert mirror is not None
+    assert GymTask(gym_config("CartPole-v1")).symmetry is None, "nothing is claimed of an environment that is not known"
+    here, there = (gymnasium.make("LunarLander-v3").unwrapped for _ in range(2))
+    for env in (here, there):
+        env.reset(seed=0)
+        env._np_random = Calm()
+        env.reset()
+    rng = np.random.default_rng(0)
+    for _ in range(80):
+        action = int(rng.choice(4, p=[0.3, 0.2, 0.3, 0.2]))  # more to the one side than to the other
+        one, other = here.step(action), there.step(int(mirror.actions[action]))
+        assert one[0] @ mirror.matrix == pytest.approx(other[0], abs=0.01)
+        assert one[1] == pytest.approx(other[1], abs=0.05)
+    assert abs(one[0][4]) > 0.1, "it has turned: the test is not of a lander that falls straight"
+
+
+def test_lunar_lander_has_settings_of_its_own():
+    lander, other = gym_config("LunarLander-v3"), gym_config("Acrobot-v1")
+    assert lander.env == "LunarLander-v3"
+    assert lander.mirror
+    assert not other.mirror
+    assert other.changed(env="CartPole-v1") == gym_config("CartPole-v1")

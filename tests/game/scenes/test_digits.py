@@ -152,7 +152,7 @@ def test_saliency_shows_what_ink_speaks_for_the_answer(drawing: Driver):
     why, seen = scene(drawing).live.why, scene(drawing).reading.stages.centred
     assert np.abs(why.saliency).max() == pytest.approx(1)
     assert np.abs(why.saliency[seen == 0]).max() == 0
-    assert [layer.shape for layer in why.layers] == [(32, 12, 12), (64, 4, 4), (128,)]
+    assert [layer.shape for layer in why.layers] == [(32, 12, 12), (96, 4, 4), (128,)]
 
 
 def test_what_is_put_right_is_what_is_drawn_however_soon_that_is(drawing: Driver, monkeypatch):

@@ -1,0 +1,70 @@
+import numpy as np
+import pytest
+
+from ai.digits.config import DIGIT_PRESETS
+from ai.digits.handwriting import STYLES, drawings, written
+from ai.digits.preprocessing import preprocess_strokes
+from ai.digits.training import DigitTraining
+
+CONFIG = DIGIT_PRESETS["classic"].changed(hidden=(8,), epochs=1, held_out=20, batch_size=40, unaugmented=0.0)
+
+
+def test_the_same_seed_writes_the_same_digits():
+    first, again, other = (drawings(np.arange(10), np.random.default_rng(seed)) for seed in (1, 1, 2))
+    np.testing.assert_array_equal(first, again)
+    assert (np.abs(first - other).mean(axis=(1, 2)) > 0.02).all()
+
+
+@pytest.mark.parametrize("digit", range(10))
+def test_hands_write_what_a_mouse_could_tell(digit):
+    rng = np.random.default_rng(digit)
+    for _ in range(20):
+        strokes = written(digit, rng)
+        points = np.concatenate(strokes)
+        assert all(len(stroke) >= 4 for stroke in strokes)
+        np.testing.assert_array_equal(points, np.rint(points))
+        width, height = np.ptp(points, axis=0)
+        assert 30 < height < 600
+        assert 0 < width < 600
+
+
+def test_drawings_are_what_a_network_would_read_of_the_strokes():
+    strokes = written(7, np.random.default_rng(5))
+    np.testing.assert_array_equal(drawings(np.array([7]), np.random.default_rng(5))[0], preprocess_strokes(strokes))
+    assert drawings(np.array([], int), np.random.default_rng(0)).shape == (0, 28, 28)
+
+
+def test_every_style_of_a_digit_is_written():
+    """Strokes and points tell most styles apart: as many kinds turn up as there are."""
+    for digit, styles in STYLES.items():
+        rng = np.random.default_rng(0)
+        kinds = {len(written(digit, rng)) for _ in range(40)}
+        assert kinds == {len(style) for style in styles}
+
+
+def test_a_run_learns_from_hands_as_often_as_asked_and_keeps_the_labels():
+    """Blank images stay blank but for those that a hand has drawn."""
+    labels = np.arange(420, dtype=np.uint8) % 10
+    blank = np.zeros((420, 28, 28), np.float32)
+    training = DigitTraining(CONFIG.changed(drawn=0.25), 3, (blank, labels))
+    seen = []
+    training.classifier.shaped = lambda images: seen.append(images.copy()) or images.reshape(-1, 784)
+    for _ in range(training.steps_per_epoch - 1):
+        training.advance()
+    written_on = np.concatenate(seen).any(axis=(1, 2))
+    assert 0.15 < written_on.mean() < 0.35
+    assert not training.images.any(), "the images themselves stay as they are"
+
+
+def test_without_hands_nothing_is_drawn():
+    labels = np.arange(120, dtype=np.uint8) % 10
+    runs = [
+        DigitTraining(CONFIG.changed(drawn=drawn), 3, (np.zeros((120, 28, 28), np.float32), labels))
+        for drawn in (0.0, 0.25)
+    ]
+    for run in runs:
+        run.advance()
+    weights = [run.classifier.network.layers[0].parameters[0].value for run in runs]
+    start = DigitTraining(CONFIG, 3, (np.zeros((120, 28, 28), np.float32), labels)).classifier.network.layers[0]
+    np.testing.assert_array_equal(weights[0], start.parameters[0].value)
+    assert (weights[1] != weights[0]).any()
