@@ -9,6 +9,7 @@ from engine.vector import Array, Bools, Ints, every
 
 _NONE: Ints = np.zeros(0, dtype=np.intp)
 _SLACK = 1e-6  # metres, far more than rounding makes of a box
+_PAUSE = 8
 
 
 class BroadPhase:
@@ -31,6 +32,7 @@ class BroadPhase:
         np.maximum.at(self._reach, shapes.body, far)
         self._boxes: Array | None = None  # (4, batch, bodies): low x and y, high x and y
         self._clear: tuple[Array, Array] | None = None  # where nothing was near, and how far all may go from there
+        self._pause = 0  # searches to wait before that is measured again, if it was of no use
         self._shape_boxes = np.zeros((4, 0, 0))  # the same of shapes; only those of fixed ones are filled
         self._movers_first, self._first, self._count = _meeting_pairs(params, shapes)
         a, b = self._movers_first.T
@@ -50,9 +52,9 @@ class BroadPhase:
             return _NONE, _NONE
         fixed = self._boxes is not None
         boxes = self._boxes_now(state)
-        worlds = None if awake is None else np.flatnonzero(awake.any(axis=1))
-        active = state.active
-        if awake is not None and worlds is not None:
+        worlds, active = None, state.active
+        if awake is not None:
+            worlds = np.flatnonzero(awake.any(axis=1))
             boxes, active, awake = boxes[:, worlds], active[worlds], awake[worlds]
         low_x, low_y, high_x, high_y = boxes[:, :, None, :]
         my_low_x, my_low_y, my_high_x, my_high_y = boxes[:, :, self._moving, None]
@@ -69,7 +71,9 @@ class BroadPhase:
         if worlds is not None:
             world = worlds[world]
         if fixed and worlds is None and not len(world):
-            self._measure_clearance(state, boxes)
+            self._pause -= 1
+            if self._pause < 0:
+                self._measure_clearance(state, boxes)
         if not self._several or not len(world):
             return world, pair
         count = self._count[mover, other]
@@ -84,7 +88,9 @@ class BroadPhase:
             return False
         place, room = self._clear
         clear = every(np.abs(state.pose[:, self._moving, :2] - place) < room)
-        if not clear:
+        if clear:
+            self._pause = 0
+        else:
             self._clear = None
         return clear
 
@@ -97,6 +103,7 @@ class BroadPhase:
         each = 1.0 if len(self._first) == 1 else 0.5
         room = gaps.reshape(len(gaps), -1).min(axis=1, initial=np.inf) * each - _SLACK
         self._clear = state.pose[:, self._moving, :2].copy(), room[:, None, None]
+        self._pause = _PAUSE
 
     def _boxes_now(self, state: BodyState) -> Array:
         boxes = self._boxes
