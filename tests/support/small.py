@@ -4,6 +4,6 @@ from ai.agent.config import PRESETS
 from ai.digits.config import DIGIT_PRESETS
 
 LANDERS = PRESETS["modern"].changed(
-    num_envs=4, hidden=(8,), learning_starts=64, replay_size=1000, batch_size=16, gradient_steps=1, spawn="thorough"
+    num_envs=4, hidden=(8,), learning_starts=64, replay_size=1000, batch_size=16, gradient_steps=1
 )
 DIGITS = DIGIT_PRESETS["classic"].changed(hidden=(8,), held_out=2_000, batch_size=20, augmentation=0.0)
