@@ -1,8 +1,8 @@
 """Ablations: named ways to take one part away from a configuration, so that a run shows what it is for.
 
 The effect depends on the base configuration: the words that go with these names were measured on one preset, with
-seeds 0 and 1, in 25 CPU seconds for each run. Shares of training flights are of the last hundred, with their chance
-moves; other shares are of 200 flights without any.
+seeds 0 and 1, over 150,000 decisions each. Shares of training flights are of the last hundred, with their chance
+moves.
 """
 
 from __future__ import annotations

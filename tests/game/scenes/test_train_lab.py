@@ -97,7 +97,7 @@ def test_both_runs_begin_alike_and_stay_in_step(beside: Driver) -> None:
     split(beside)
     run = beside.top.lander_run
     assert run.config == SMALL
-    assert run.twin.config == SMALL.changed(learning_rate=0.2, final_learning_rate=0.03)
+    assert run.twin.config == SMALL.changed(learning_rate=0.3, final_learning_rate=0.03)
     assert run.seed == run.twin.seed == 3
     gaps = []
     for _ in range(60):
@@ -142,7 +142,7 @@ def test_a_healthy_run_that_dies_is_reported_and_the_experiment_can_be_kept(besi
     assert "SIGKILL" in run.problem
     beside.press_on(texts.LAB_KEEP_EXPERIMENT)
     assert run.state is WorkerState.RUNNING
-    assert run.config.learning_rate == 0.2
+    assert run.config.learning_rate == 0.3
     beside.frames(5)
     beside.app.close()
     kept = Library(tmp_path / "user").rescued()
@@ -180,7 +180,7 @@ def test_a_turned_knob_is_turned_in_both_but_the_one_that_differs(train: Driver)
     train.wait(lambda: run.config.learning_rate == 0.001 and run.twin.config.discount == 0.9)
     train.frames(5)
     assert run.config.discount == 0.9
-    assert run.twin.config.learning_rate == 0.2
+    assert run.twin.config.learning_rate == 0.3
 
 
 def test_two_lines_in_every_chart_by_decisions(train: Driver) -> None:
