@@ -49,7 +49,7 @@ def test_the_gradient_is_that_of_what_is_to_grow(classifier):
 
     gradient = dream.gradient(dream.image)
     way = gradient / np.linalg.norm(gradient)
-    step = 1e-2
+    step = 1e-3  # between two of the kinks that ReLU and pooling make
     rise = (worth(dream.image + step * way) - worth(dream.image - step * way)) / (2 * step)
     assert rise == pytest.approx(np.linalg.norm(gradient), rel=0.03)
 
