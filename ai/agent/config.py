@@ -7,14 +7,13 @@ from typing import Any, Final
 
 from ai.common.knobs import Knobs, is_number, knob, shown
 from ai.lander.rewards import RewardWeights
-from ai.lander.spawns import RUNGS, SPAWNS
+from ai.lander.spawns import CURRICULA, RUNGS, SPAWNS
 from ai.nn import OPTIMIZERS
 from ai.nn.activations import ACTIVATIONS
 
-CURRICULUM: Final = "curriculum"
 LANDER: Final = "lander"
 ANYWHERE: Final = "lander-anywhere"  # our lander at random sites, with what is around it as further inputs
-_STARTS: Final = (CURRICULUM, *(name for name in SPAWNS if name not in RUNGS))  # a person's ladder is no choice here
+_STARTS: Final = (*CURRICULA, *(name for name in SPAWNS if name not in RUNGS))  # a person's ladder is no choice here
 _HASTE: Final = RewardWeights(time=-0.4, switch=-0.05)  # quick, and without flickering jets
 
 
@@ -139,7 +138,7 @@ LANDS_ANYWHERE: Final = Config(
 PRESETS: Final[dict[str, Config]] = {
     "modern": Config(
         learning_rate=3e-3, schedule_decisions=100_000, n_step=8, batch_size=128, gradient_steps=16,
-        activation="leaky_relu", target_judges=False, double=False, epsilon_decisions=15_000, spawn="mixed",
+        activation="leaky_relu", target_judges=False, double=False, epsilon_decisions=15_000, spawn="widening",
     ),
     "classic": Config(
         learning_rate=1e-3, final_learning_rate=1e-3, schedule_decisions=300_000, discount=0.99, n_step=1,
@@ -147,6 +146,6 @@ PRESETS: Final[dict[str, Config]] = {
         layer_normalisation=False, output_scale=1.0, replay_size=1500, replay_prune=1000, learning_starts=64,
         mirror=False, success_pass=True, double=False, target_update_interval=50, tau=1.0, fly_target=False,
         epsilon_decay=0.999, epsilon_decisions=0, epsilon_spread=0.0, random_main=0.5, num_envs=1, steadiness=0.0,
-        final_touchdown_limits=1.0, spawn=CURRICULUM, reward_scale=0.1, reward_weights=RewardWeights(time=-0.1),
+        final_touchdown_limits=1.0, spawn="curriculum", reward_scale=0.1, reward_weights=RewardWeights(time=-0.1),
     ),
 }  # fmt: skip

@@ -80,6 +80,11 @@ def _mixed(rng: np.random.Generator) -> Doubles:
     return SPAWNS["graded" if kind < 0.7 else "wide"](rng)
 
 
+def _far(rng: np.random.Generator) -> Doubles:
+    """Draw a start for one that lands already: a third of the flights begin as tilted as in the hardest tests."""
+    return SPAWNS["hard" if rng.random() < 0.3 else "thorough"](rng)
+
+
 def _rung(share: float) -> Spawn:
     """Return starts that are `share` of the way from the bottom of the ladder to random ones."""
     return _around(_BOTTOM + share * (_MIDDLE - _BOTTOM), _BOTTOM_REACH + share * (_REACH - _BOTTOM_REACH))
@@ -99,6 +104,7 @@ SPAWNS: Final[dict[str, Spawn]] = {
     "practice": _practice,
     "thorough": _thorough,
     "mixed": _mixed,
+    "far": _far,
     **RUNGS,
 }
 
@@ -128,4 +134,6 @@ class Curriculum:
         return self.stages[self.stage(landings)][1]
 
 
+# Ways to begin flights that change as a run lands; those of training, by name.
+CURRICULA: Final = {"curriculum": Curriculum(), "widening": Curriculum(((0, "mixed"), (1000, "far")))}
 LADDER: Final = Curriculum(tuple(enumerate((*RUNGS, "random"))))

@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from ai.agent.config import CURRICULUM, Config
+from ai.agent.config import Config
 from ai.agent.schedule import touchdown_limits
 from ai.agent.symmetry import Symmetry
 from ai.common.environment import Env
@@ -14,7 +14,7 @@ from ai.lander.anywhere import SITES, AnywhereEnv
 from ai.lander.environment import MIRROR_ACTIONS, MIRROR_FEATURES, MIRROR_SIGNS, NUM_FEATURES
 from ai.lander.pilots import Pilot
 from ai.lander.sensing import SURROUNDINGS, SURROUNDINGS_MIRROR
-from ai.lander.spawns import Curriculum
+from ai.lander.spawns import CURRICULA
 from ai.training.lander_task import Evaluation, LanderTask, evaluation_of, flown
 
 ANYWHERE_SYMMETRY: Final = Symmetry(
@@ -37,7 +37,7 @@ class AnywhereTask(LanderTask):
     def make_env(self, rng: np.random.Generator) -> AnywhereEnv:
         """Make the landers to train with."""
         config = self.config
-        spawn = Curriculum() if config.spawn == CURRICULUM else config.spawn
+        spawn = CURRICULA.get(config.spawn, config.spawn)
         return AnywhereEnv(config.num_envs, rng, spawn, config.frame_skip, weights=config.reward_weights)
 
     def update_env(self, decisions: int, env: Env) -> None:

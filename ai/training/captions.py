@@ -11,8 +11,8 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from ai.agent.config import CURRICULUM
 from ai.common.decision import in_points
+from ai.lander.spawns import CURRICULA
 from ai.training.hints import RULES, RecentCurves
 
 CHARTS: Final = ("success", "mean_return", "loss", "mean_q", "epsilon", "stage")
@@ -94,6 +94,10 @@ def _unknown(column: str) -> Callable[[RecentCurves], bool]:
 
 def _points(run: RecentCurves) -> float:
     return float(in_points(np.array(run.last("mean_q")), run.history.reward_scale))
+
+
+def _stages(run: RecentCurves) -> dict[str, float]:
+    return {"stage": run.last("stage", 1), "last": float(len(CURRICULA[run.config.spawn].stages) - 1)}
 
 
 def _q_gained(run: RecentCurves) -> float:
@@ -181,8 +185,8 @@ CAPTION_RULES: Final[Mapping[str, tuple[CaptionRule, ...]]] = {
         CaptionRule("steady", _always, values=_random),
     ),
     "stage": (
-        CaptionRule("same", lambda run: run.config.spawn != CURRICULUM),
-        CaptionRule("last", lambda run: run.last("stage", 1) >= 3),
-        CaptionRule("grows", _always, values=lambda run: {"stage": run.last("stage", 1)}),
+        CaptionRule("same", lambda run: run.config.spawn not in CURRICULA),
+        CaptionRule("last", lambda run: _stages(run)["stage"] >= _stages(run)["last"], values=_stages),
+        CaptionRule("grows", _always, values=_stages),
     ),
 }

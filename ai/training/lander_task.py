@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from ai.agent.config import CURRICULUM, Config
+from ai.agent.config import Config
 from ai.agent.schedule import touchdown_limits
 from ai.agent.symmetry import Symmetry
 from ai.common.environment import Doubles, Env
@@ -24,7 +24,7 @@ from ai.lander.environment import (
     engines_switched,
 )
 from ai.lander.pilots import Pilot
-from ai.lander.spawns import Curriculum
+from ai.lander.spawns import CURRICULA
 from ai.training.task import checked_score
 
 LANDER_SYMMETRY: Final = Symmetry(MIRROR_SIGNS, MIRROR_FEATURES, MIRROR_ACTIONS)
@@ -164,7 +164,7 @@ class LanderTask:
     def make_env(self, rng: np.random.Generator) -> LanderEnv:
         """Make the landers to train with."""
         config = self.config
-        spawn = Curriculum() if config.spawn == CURRICULUM else config.spawn
+        spawn = CURRICULA.get(config.spawn, config.spawn)
         return LanderEnv(config.num_envs, rng, spawn, config.frame_skip, weights=config.reward_weights)
 
     def apply_live(self, config: Config, env: Env) -> None:

@@ -218,7 +218,9 @@ class PayChapter(Chapter):
         pay = PAYS[self.pay]
         weights = texts.LEARN_PAY_NOTE.format(time=pay.time, terminal=pay.terminal)
         return [
-            Code(LanderEnv.step, "components = {name", {"components = {name": weights, "reward=sum": f"{len(REWARDS)}"})
+            Code(
+                LanderEnv.step, "parts = np.array", {"parts = np.array": weights, "reward = np.add": f"{len(REWARDS)}"}
+            )
         ]
 
     def draw(self, canvas: Canvas, alpha: float) -> None:

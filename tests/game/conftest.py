@@ -32,6 +32,12 @@ pygame.font.init()  # as long as the tests run, in whatever order
 
 
 @pytest.fixture(autouse=True)
+def networks_unread() -> None:
+    """Forget networks that were read: a test may have put other numbers into them."""
+    networks._read.clear()
+
+
+@pytest.fixture(autouse=True)
 def usual_text_size() -> Iterator[None]:
     """Leave text as large as it was found: its size is the process's, and the last game may have made it larger."""
     yield

@@ -252,11 +252,11 @@ def test_spawns_lie_where_they_should():
     rng = np.random.default_rng(0)
     for name, draw in SPAWNS.items():
         drawn = np.array([draw(rng) for _ in range(500)])
-        beyond = name in ("wide", "thorough", "mixed")
+        beyond = name in ("wide", "thorough", "mixed", "far")
         assert np.abs(drawn[:, 0]).max() <= (17 if beyond else 15)
         assert drawn[:, 1].min() >= STAND
         assert drawn[:, 1].max() <= (21 if beyond else 20)
-        limit = 90 if name == "hard" else 50 if beyond else 35
+        limit = 90 if name in ("hard", "far") else 50 if beyond else 35
         assert np.degrees(np.abs(drawn[:, 4])).max() <= limit + 1e-9
 
 

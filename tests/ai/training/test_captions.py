@@ -79,6 +79,6 @@ def test_a_curriculum_and_a_run_without_chance_have_captions_of_their_own():
     run = recorded("modern healthy", until=60_000)
     history, config = run.history, run.config.changed(spawn="curriculum", epsilon_spread=0.0)
     stage = captions(RecentCurves(history, config))["stage"]
-    assert (stage.name, dict(stage.values)) == ("grows", {"stage": 0.0})
+    assert (stage.name, dict(stage.values)) == ("grows", {"stage": 0.0, "last": 3.0})
     assert captions(RecentCurves(history, config))["epsilon"].name in ("falls", "steady")
     assert captions(RecentCurves(History(), config)) == {}
