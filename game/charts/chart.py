@@ -252,7 +252,8 @@ class Chart:
                 y = plot.bottom - up * plot.height
                 sheet.line((plot.x, y), (plot.right, y), LINE)
                 if number in (0, len(lines) - 1):
-                    text = plotting.round_number(self._value(float(value)))
+                    end = self._value(float(value))  # no round number where it is written in other units
+                    text = min(plotting.round_number(end), plotting.compact(end), key=len)
                     sheet.text(text, (plot.right + 6, y + 4), size=_AXES_SIZE, colour=_AXES)
         if self._log:
             for word, y in zip(texts.CHART_LOG, (plot.centery - 2, plot.centery + 9), strict=True):

@@ -158,7 +158,10 @@ def all_of(painting: Generator[None, None, Sheets]) -> Sheets:
 
 
 def _figure(value: float) -> str:
-    return f"{value:.2f}".replace("-", "−") if abs(value) < 1000 else plotting.compact(value)
+    """Write a value in no more room than -99.99 takes."""
+    if abs(value) >= 1000:
+        return plotting.compact(value)
+    return f"{value:.{2 if abs(value) < 99.995 else 1}f}".replace("-", "−")
 
 
 def _dimmed(colour: Colour, strength: float) -> Colour:

@@ -149,8 +149,10 @@ class LearningSwarm:
         draw_craft(canvas, view, LANDER, pose, thrust, 1.0, self._frame, min(1.0, 1.5 * size))
         x, y = view.points(pose[:2]).tolist()
         if word:
-            y -= 30 * min(1.0, 1.5 * size)
             width = canvas.text_width(word, size=LABEL)
+            edge = width / 2 + 8  # a lander may fly out of the picture, the word may not
+            x = min(max(x, edge), VIEW_SIZE[0] * self._share - edge)
+            y = max(y - 30 * min(1.0, 1.5 * size), 24)
             canvas.pill((x - width / 2 - 8, y - 22, width + 16, 17), NIGHT0, 0.72)  # over whatever flies behind
             canvas.text(word, (x, y - 9.5), size=LABEL, colour=colour, align="centre")
             canvas.marker("triangle_down", (x, y - 1), 6, colour)

@@ -264,7 +264,7 @@ def test_captions_follow_the_run(train: Driver) -> None:
     scene = train.top
     train.wait(lambda: scene.captions.shown)
     assert scene.captions.text("success") == texts.CHART_CAPTIONS["success"]["unknown"]
-    assert scene.captions.text("stage") == texts.CHART_CAPTIONS["stage"]["same"]
+    assert scene.captions.text("stage") == texts.CHART_CAPTIONS["stage"]["grows"].format(stage=0, last=1)
 
 
 def test_an_earlier_moment_shows_both_swarms_of_it(train: Driver) -> None:
