@@ -147,7 +147,8 @@ from ai.sweep.table import duration
 print(sorted(each(duration, [1.0, 300.0, 8000.0], {nodes.address!r})))
 """
     done = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False)
-    assert done.stdout.strip() == "[(0, '1 s'), (1, '5 min'), (2, '2 h 13 min')]", done.stderr
+    # Ray itself tells of a node that is gone, if another test has taken it away before.
+    assert done.stdout.splitlines()[-1] == "[(0, '1 s'), (1, '5 min'), (2, '2 h 13 min')]", done.stderr
 
 
 def test_without_an_address_nothing_listens_but_on_this_machine(tmp_path):
@@ -162,7 +163,7 @@ def test_without_an_address_nothing_listens_but_on_this_machine(tmp_path):
 
 
 def test_a_killed_worker_driver_and_node_lose_and_repeat_no_finished_trial_and_change_none(nodes, tmp_path):
-    """The last of this module's tests on the cluster: its second node is gone afterwards."""
+    """Its second node is gone afterwards, which the other tests bear."""
     folder = tmp_path / "study"
     with sweep(folder, *NEW, "--trials", "5", "--decisions", "1200", "--address", nodes.address) as driver:
         wait_for(lambda: len(training_workers(nodes.pid)) == 2, driver)
