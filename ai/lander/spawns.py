@@ -53,31 +53,17 @@ def _graded(rng: np.random.Generator) -> Doubles:
     return _around(middle, reach)(rng)
 
 
-def _practice(rng: np.random.Generator) -> Doubles:
-    """Draw a start for training: a quarter close to the pad and past its edges, a quarter graded, half random.
+def _mixed(near: float, graded: float, others: str) -> Spawn:
+    """Return starts for training: shares of them close to the pad and past its edges, and graded; and `others`.
 
     Without the close starts, random play never once touches the pad, and nothing is learned.
     """
-    kind = rng.random()
-    if kind < 0.25:
-        return SPAWNS["near"](rng)
-    return SPAWNS["graded" if kind < 0.5 else "random"](rng)
 
+    def draw(rng: np.random.Generator) -> Doubles:
+        kind = rng.random()
+        return SPAWNS["near" if kind < near else "graded" if kind < near + graded else others](rng)
 
-def _thorough(rng: np.random.Generator) -> Doubles:
-    """Draw a start for a long run of training: half of the flights begin a little beyond what is tested."""
-    kind = rng.random()
-    if kind < 0.2:
-        return SPAWNS["near"](rng)
-    return SPAWNS["graded" if kind < 0.4 else "wide"](rng)
-
-
-def _mixed(rng: np.random.Generator) -> Doubles:
-    """Draw a start for a quick run of training: most ways to the pad are short, and each ends in a touch."""
-    kind = rng.random()
-    if kind < 0.35:
-        return SPAWNS["near"](rng)
-    return SPAWNS["graded" if kind < 0.7 else "wide"](rng)
+    return draw
 
 
 def _far(rng: np.random.Generator) -> Doubles:
@@ -101,9 +87,9 @@ SPAWNS: Final[dict[str, Spawn]] = {
     "random": _around(_MIDDLE, _REACH),
     "hard": _around(_MIDDLE, _HARD_REACH),
     "wide": _around(_MIDDLE, _WIDE_REACH),
-    "practice": _practice,
-    "thorough": _thorough,
-    "mixed": _mixed,
+    "practice": _mixed(0.25, 0.25, "random"),
+    "thorough": _mixed(0.2, 0.2, "wide"),  # for a long run: most flights begin a little beyond what is tested
+    "mixed": _mixed(0.35, 0.35, "wide"),  # for a quick run: most ways to the pad are short, and each ends in a touch
     "far": _far,
     **RUNGS,
 }

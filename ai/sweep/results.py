@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from typing import Annotated, Any, Self
 
 from ai.nn.schema import Count, Duration, Seed, Share, Sized, read_as
 from ai.sweep.metric import Point
+
+_Words = Annotated[str, Sized(2000)]
 
 
 @dataclass(frozen=True)
@@ -24,9 +26,9 @@ class SeedResult:
     """
 
     seed: Seed
-    curve: Annotated[tuple[Point, ...], Sized(100_000)]
+    curve: tuple[Point, ...]
     value: float | None
-    problem: str
+    problem: _Words
     seconds: Duration
     figures: dict[str, Any]
 
@@ -54,9 +56,9 @@ class FinishedTrial:
     at: Count
     stopped: bool
     seconds: Duration
-    seeds: Annotated[tuple[SeedResult, ...], Sized(1000)]
+    seeds: tuple[SeedResult, ...]
     parent: Count | None = None
-    problem: str = ""
+    problem: _Words = ""
 
     @property
     def values(self) -> list[float]:
@@ -81,15 +83,9 @@ class FinishedTrial:
         """Read what `to_json` gave; raises ValueError, which names all that is wrong."""
         told = read_as(_TrialFile, values)
         seeds = tuple(
-            SeedResult(
-                seed.seed, tuple(Point(*point) for point in seed.curve), seed.value, seed.problem, seed.seconds,
-                seed.figures,
-            )
-            for seed in told.seeds
-        )  # fmt: skip
-        return cls(
-            told.number, told.params, told.value, told.at, told.stopped, told.seconds, seeds, told.parent, told.problem
+            SeedResult(**vars(seed) | {"curve": tuple(Point(*point) for point in seed.curve)}) for seed in told.seeds
         )
+        return cls(**vars(told) | {"seeds": seeds})
 
 
 def _rank(seed: SeedResult) -> tuple[float, float]:
@@ -99,24 +95,16 @@ def _rank(seed: SeedResult) -> tuple[float, float]:
     return known[0] + known[1], known[2]
 
 
-@dataclass(frozen=True)
-class _SeedFile:
-    seed: Seed
-    curve: Annotated[tuple[tuple[Count, Share | None, float], ...], Sized(100_000)]
-    value: float | None
-    problem: Annotated[str, Sized(2000)]
-    seconds: Duration
-    figures: dict[str, Any]
+# As a file has them: points as lists, and no field left out.
 
 
 @dataclass(frozen=True)
-class _TrialFile:
-    number: Count
-    params: dict[str, Any]
-    value: float | None
-    at: Count
-    stopped: bool
-    seconds: Duration
+class _SeedFile(SeedResult):
+    curve: Annotated[tuple[tuple[Count, Share | None, float], ...], Sized(100_000)]  # type: ignore[assignment]
+
+
+@dataclass(frozen=True)
+class _TrialFile(FinishedTrial):
     seeds: Annotated[tuple[_SeedFile, ...], Sized(1000)]
-    parent: Count | None
-    problem: Annotated[str, Sized(2000)]
+    parent: Count | None = field()
+    problem: _Words = field()

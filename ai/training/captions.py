@@ -97,7 +97,11 @@ def _points(run: RecentCurves) -> float:
 
 
 def _stages(run: RecentCurves) -> dict[str, float]:
-    return {"stage": run.last("stage", 1), "last": float(len(CURRICULA[run.config.spawn].stages) - 1)}
+    return {"stage": run.last("stage", 1), "last": _last_stage(run)}
+
+
+def _last_stage(run: RecentCurves) -> float:
+    return float(len(CURRICULA[run.config.spawn].stages) - 1)
 
 
 def _q_gained(run: RecentCurves) -> float:
@@ -186,7 +190,7 @@ CAPTION_RULES: Final[Mapping[str, tuple[CaptionRule, ...]]] = {
     ),
     "stage": (
         CaptionRule("same", lambda run: run.config.spawn not in CURRICULA),
-        CaptionRule("last", lambda run: _stages(run)["stage"] >= _stages(run)["last"], values=_stages),
+        CaptionRule("last", lambda run: run.last("stage", 1) >= _last_stage(run), values=_stages),
         CaptionRule("grows", _always, values=_stages),
     ),
 }
