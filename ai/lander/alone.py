@@ -7,18 +7,16 @@ alone flies as it would in a batch, bit for bit. Whatever comes near the ground 
 from __future__ import annotations
 
 from math import pi, sqrt
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ai.common.environment import Floats
-from ai.lander.rewards import TILT_ALLOWED, Situation, situated
+from ai.lander.judging import JudgedCraft
+from ai.lander.rewards import FEET_STEPS_PAID, TILT_ALLOWED, Moment, Situation, situated
 from ai.lander.rules import Outcome
 from ai.lander.sensing import scaled
 from engine import DT, FreeFlight
-
-if TYPE_CHECKING:
-    from ai.lander.environment import LanderEnv
 
 # Looked up once: by its enumeration, a member takes longer to find than a tenth of a step.
 _FLYING, _OUT, _LATE = Outcome.FLYING, Outcome.OUT_OF_BOUNDS, Outcome.TIMED_OUT
@@ -35,7 +33,7 @@ class Flown(NamedTuple):
 class Alone:
     """The only lander of an environment in free flight."""
 
-    def __init__(self, env: LanderEnv) -> None:
+    def __init__(self, env: JudgedCraft) -> None:
         self._env = env
         self._read_rules()
 
@@ -119,6 +117,18 @@ class Alone:
         x, top, drift = self._pad(_index(self._env.target))
         above = body.y - top - self._env.params.stand
         return situated(body.x - x, above, body.vx - drift, body.vy, _tilt(body.angle), sqrt)
+
+    def moment(self) -> Moment:
+        """Return all that rewards compare, in plain numbers."""
+        env = self._env
+        return Moment(
+            self.situation(),
+            outcome=env.outcome.item(),
+            actions=env.actions.item(),
+            steps=env.steps.item(),
+            tilted=env.tilted_steps.item(),
+            feet_down=min(env.feet_steps.item(), FEET_STEPS_PAID),
+        )
 
     def _pad(self, pad: int) -> tuple[float, float, float]:
         """Return the middle of a pad's top where it is now, and the pad's velocity to the right."""

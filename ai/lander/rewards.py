@@ -12,12 +12,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, Final, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ai.common.environment import Bools, Doubles, Ints
+from ai.lander.rules import Outcome, engines_switched
+
+# NumPy compares with plain numbers many times as fast as with members of an enumeration.
+_FLYING, _LANDED, _CRASHED, _OUT, _LATE = (int(outcome) for outcome in Outcome)
 
 
 @dataclass(frozen=True)
@@ -59,6 +63,18 @@ def situated(across: Any, above: Any, velocity_x: Any, velocity_y: Any, tilt: An
 
 
 @dataclass
+class Moment:
+    """All that rewards compare, before or after a decision: each (n,), or the plain numbers of one lander."""
+
+    situation: Situation
+    outcome: Any
+    actions: Any
+    steps: Any  # physics steps flown
+    tilted: Any  # of these, tilted by more than `TILT_ALLOWED`
+    feet_down: Any  # of these, with both feet down, as far as they are paid
+
+
+@dataclass
 class SituationChange:
     """Change made by one decision: the situations before and after, and counts of its physics steps, each (n,)."""
 
@@ -71,6 +87,23 @@ class SituationChange:
     feet_down: Ints  # of these, with both feet down, as far as they are paid
     landed: Bools  # ended by a landing in this decision
     lost: Bools  # ended by a crash, or out of bounds, in this decision
+
+    @classmethod
+    def between(cls, before: Moment, after: Moment) -> Self:
+        """Return the change that one decision made."""
+        flying, flown, outcome = before.outcome == _FLYING, after.steps - before.steps, after.outcome
+        ended = flying & (outcome != _FLYING)
+        return cls(
+            before.situation,
+            after.situation,
+            flown=flown,
+            fired=flown * (after.actions > 0),
+            tilted=after.tilted - before.tilted,
+            switched=flying * engines_switched(before.actions, after.actions),
+            feet_down=after.feet_down - before.feet_down,
+            landed=ended & (outcome == _LANDED),
+            lost=ended & ((outcome == _CRASHED) | (outcome == _OUT)),
+        )
 
 
 TILT_ALLOWED: Final = 0.6
