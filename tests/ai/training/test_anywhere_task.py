@@ -58,7 +58,8 @@ def test_a_network_is_measured_at_every_kind_of_site():
     assert score.episodes == 2 * len(SITES)
 
 
-def test_it_is_trained_resumed_and_measured_by_commands(tmp_path, capsys):
+def test_it_is_trained_resumed_and_measured_by_commands(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(AnywhereTask, "test_episodes", len(SITES))
     changes = ["hidden=[8]", "num_envs=8", "batch_size=16", "learning_starts=32", "gradient_steps=1"]
     given = [option for change in changes for option in ("--set", change)]
     folder = str(tmp_path / "flier")
