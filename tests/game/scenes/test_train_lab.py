@@ -22,6 +22,7 @@ from game.scenes.train import TrainScene
 from game.training.knob_descriptions import knob_descriptions
 from game.training.library import Library
 from game.training.split_run import AHEAD
+from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.small import LANDERS as SMALL
 
@@ -259,7 +260,8 @@ def test_the_guess_can_be_skipped_or_the_sabotage_flown_alone(train: Driver) -> 
     assert scene.laboratory.chosen.guess is None
 
 
-def test_captions_follow_the_run(train: Driver) -> None:
+def test_captions_follow_the_run(train: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(inline_worker, "TURNS", 1)  # so that no flight ends before the captions are read
     train.press_on(texts.TRAIN_START)
     scene = train.top
     train.wait(lambda: scene.captions.shown)
