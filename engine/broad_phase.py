@@ -23,25 +23,26 @@ class BroadPhase:
     def __init__(self, params: BodyParams, shapes: ShapeTable, margin: float) -> None:
         self._shapes = shapes
         self._moving = span(params.dynamic)
-        self._fixed = np.flatnonzero(~params.dynamic)
-        self._fixed_shapes = np.flatnonzero(~params.dynamic[shapes.body])
+        self._is_fixed = ~params.dynamic
         self._several = len(shapes) > len(params.group)
         self._shape_reach = shapes.reach + margin
         far = np.sqrt(shapes.centre[:, 0] ** 2 + shapes.centre[:, 1] ** 2) + self._shape_reach
         self._reach = np.zeros(len(params.group))
         np.maximum.at(self._reach, shapes.body, far)
         self._boxes: Array | None = None  # (4, batch, bodies): low x and y, high x and y
+        self._stale = self._is_fixed.copy()  # fixed bodies (bodies,) whose boxes are to be computed anew
         self._clear: tuple[Array, Array] | None = None  # where nothing was near, and how far all may go from there
         self._pause = 0  # searches to wait before that is measured again, if it was of no use
-        self._shape_boxes = np.zeros((4, 0, 0))  # the same of shapes; only those of fixed ones are filled
+        self._shape_boxes = np.zeros((4, 0, 0))  # the same of shapes; only those of fixed bodies are filled
         self._movers_first, self._first, self._count = _meeting_pairs(params, shapes)
         a, b = self._movers_first.T
         turned = shapes.is_circle[a] & ~shapes.is_circle[b]
         self.pairs = np.where(turned[:, None], self._movers_first[:, ::-1], self._movers_first)
 
-    def forget_boxes(self) -> None:
-        """Discard the cached boxes: a body that forces do not move was put elsewhere, or will be."""
-        self._boxes = self._clear = None
+    def forget_boxes(self, bodies: int | slice = slice(None)) -> None:
+        """Discard the cached boxes of `bodies`: those that forces do not move were put elsewhere, or will be."""
+        self._stale[bodies] = self._is_fixed[bodies]
+        self._clear = None
 
     def near(self, state: BodyState, awake: Bools | None = None) -> tuple[Ints, Ints]:
         """Return world and row of `pairs`, each (n,), where boxes overlap; sorted by world, then by row.
@@ -50,7 +51,7 @@ class BroadPhase:
         """
         if self._all_clear(state):
             return _NONE, _NONE
-        fixed = self._boxes is not None
+        fixed = not self._stale.any()
         boxes = self._boxes_now(state)
         worlds, active = None, state.active
         if awake is not None:
@@ -106,29 +107,29 @@ class BroadPhase:
         self._pause = _PAUSE
 
     def _boxes_now(self, state: BodyState) -> Array:
+        if self._boxes is None:
+            self._boxes = np.empty((4, *state.active.shape))
+            self._shape_boxes = np.zeros((4, len(state.pose), len(self._shapes)))
         boxes = self._boxes
-        if boxes is None:
-            boxes = np.empty((4, *state.active.shape))
-            self._box_fixed(state, boxes)
+        if self._stale.any():
+            self._box(state, boxes, np.flatnonzero(self._stale))
             # A lift has other boxes in the next step.
-            self._boxes = None if state.velocity[:, self._fixed].any() else boxes
+            self._stale = self._is_fixed & state.velocity.any(axis=(0, 2))
         centre, reach = state.pose[:, self._moving, :2], self._reach[self._moving]
         for axis in (0, 1):
             boxes[axis][:, self._moving] = centre[..., axis] - reach
             boxes[2 + axis][:, self._moving] = centre[..., axis] + reach
         return boxes
 
-    def _box_fixed(self, state: BodyState, boxes: Array) -> None:
-        shapes = self._fixed_shapes
+    def _box(self, state: BodyState, boxes: Array, bodies: Ints) -> None:
+        """Box some fixed bodies, in ascending order, and their shapes."""
+        shapes = np.flatnonzero(np.isin(self._shapes.body, bodies))
         low, high = self._shapes.bounds(state, shapes)
-        self._shape_boxes = np.zeros((4, len(state.pose), len(self._shapes)))
         self._shape_boxes[:2, :, shapes] = np.moveaxis(low, 2, 0)
         self._shape_boxes[2:, :, shapes] = np.moveaxis(high, 2, 0)
-        if len(self._fixed):
-            # A body's shapes stand side by side.
-            first = self._shapes.body[shapes].searchsorted(self._fixed)
-            boxes[:2, :, self._fixed] = np.minimum.reduceat(self._shape_boxes[:2, :, shapes], first, axis=2)
-            boxes[2:, :, self._fixed] = np.maximum.reduceat(self._shape_boxes[2:, :, shapes], first, axis=2)
+        first = self._shapes.body[shapes].searchsorted(bodies)  # a body's shapes stand side by side
+        boxes[:2, :, bodies] = np.minimum.reduceat(self._shape_boxes[:2, :, shapes], first, axis=2)
+        boxes[2:, :, bodies] = np.maximum.reduceat(self._shape_boxes[2:, :, shapes], first, axis=2)
 
     def _shapes_near(self, state: BodyState, world: Ints, pair: Ints) -> Bools:
         """Whether the boxes of some pairs of shapes overlap, (n,)."""

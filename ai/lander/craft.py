@@ -191,7 +191,7 @@ class Craft:
         shift, velocity = self.conditions.shift(self.time)
         state.pose[:, bodies, 0] = self.ground.middles[:, 0] + shift[:, None]
         state.velocity[:, bodies, 0] = velocity[:, None]
-        self.world.detector.broad.forget_boxes()
+        self.world.detector.broad.forget_boxes(bodies)
 
     def _move(self, flying: Bools, touching: bool = True) -> None:
         """Apply thrust and wind, and step the worlds; without `touching`, nothing collides."""
