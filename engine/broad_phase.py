@@ -30,6 +30,7 @@ class BroadPhase:
         far = np.sqrt(shapes.centre[:, 0] ** 2 + shapes.centre[:, 1] ** 2) + self._shape_reach
         self._reach = np.zeros(len(params.group))
         np.maximum.at(self._reach, shapes.body, far)
+        self.places = 0  # how often bodies that forces do not move were put elsewhere
         self._boxes: Array | None = None  # (4, batch, bodies): low x and y, high x and y
         self._clear: tuple[Array, Array] | None = None  # where nothing was near, and how far all may go from there
         self._pause = 0  # searches to wait before that is measured again, if it was of no use
@@ -42,6 +43,7 @@ class BroadPhase:
     def forget_boxes(self) -> None:
         """Discard the cached boxes: a body that forces do not move was put elsewhere, or will be."""
         self._boxes = self._clear = None
+        self.places += 1
 
     def near(self, state: BodyState, awake: Bools | None = None) -> tuple[Ints, Ints]:
         """Return world and row of `pairs`, each (n,), where boxes overlap; sorted by world, then by row.

@@ -51,6 +51,11 @@ class WarmStart:
             contacts.age[rising],
         )
 
+    @property
+    def parts(self) -> list[bytes]:
+        """All that a step takes over which does without ages, to be compared at once."""
+        return [part.tobytes() for part in (self.key, self.feature, self.impulse)]
+
     def where(self, kept: Bools) -> WarmStart:
         """Return the memory of these manifolds alone."""
         return WarmStart(
@@ -97,7 +102,7 @@ class Detector:
         self.friction = _mix(params.friction[self.body_pairs], _geometric_mean, _DEFAULT_FRICTION)
         self.restitution = _mix(params.restitution[self.body_pairs], np.maximum, 0.0)
         self._kinds = shapes.is_circle[self.pairs].sum(axis=1)  # how many of the two are circles
-        self._memory = _NOTHING
+        self.impulses = _NOTHING
         self._colours = (np.zeros(0, dtype=np.intp), np.zeros(0, dtype=np.intp), [0])  # of what, order, ends
 
     def find(self, state: BodyState) -> Contacts | None:
@@ -134,26 +139,26 @@ class Detector:
 
     def remember(self, contacts: Contacts | None) -> None:
         """Keep the impulses of a step to warm-start the next one, and only that."""
-        self._memory = WarmStart.of(contacts, len(self.pairs)) if contacts else _NOTHING
+        self.impulses = WarmStart.of(contacts, len(self.pairs)) if contacts else _NOTHING
 
     def memory(self) -> Memory:
         """Return the impulses that `remember` has kept, and what sleeps, to be put back by `recall_memory`."""
-        return Memory(self._memory, self.rest.copy() if self.rest else None)
+        return Memory(self.impulses, self.rest.copy() if self.rest else None)
 
     def recall_memory(self, memory: Memory) -> None:
         """Put back what a call of `memory` returned."""
-        self._memory = memory.impulses
+        self.impulses = memory.impulses
         self.rest = memory.rest.copy() if memory.rest else None
         self.broad.forget_boxes()
 
     def forget(self, body: int, worlds: Bools | None) -> None:
         """Forget the contacts of a body that was put elsewhere, in these worlds or in all: they no longer apply."""
-        if len(self._memory.key):
-            world, pair = np.divmod(self._memory.key, len(self.pairs))
+        if len(self.impulses.key):
+            world, pair = np.divmod(self.impulses.key, len(self.pairs))
             gone = (self.body_pairs[pair] == body).any(axis=1)
             if worlds is not None:
                 gone &= worlds[world]
-            self._memory = self._memory.where(~gone)
+            self.impulses = self.impulses.where(~gone)
 
     def _colour(self, world: Ints, pair: Ints, bodies: int) -> tuple[Ints, list[int]]:
         """Return the order and ends of the colours; those of the last step if the same pairs touch."""
@@ -200,7 +205,7 @@ class Detector:
     def _recall(self, world: Ints, pair: Ints, manifold: Manifold) -> tuple[Array, Ints]:
         """Return the last step's impulses (3, m) for points made by the same faces as then, 0 for others; and ages."""
         impulse, age = np.zeros((3, len(world))), np.zeros(len(world), dtype=np.intp)
-        last = self._memory
+        last = self.impulses
         if not len(last.key):
             return impulse, age
         key = world * len(self.pairs) + pair

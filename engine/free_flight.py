@@ -30,6 +30,7 @@ class FreeFlight:
     sides of its place counts as everywhere at once. Raises ValueError if any shape of the world is a circle.
 
     Attributes:
+        body: index of the body.
         x, y, angle: metres and radians.
         vx, vy, spin: m/s and rad/s.
         cos, sin: of the angle.
@@ -37,14 +38,15 @@ class FreeFlight:
     """
 
     def __init__(self, world: World, body: int, sway: float = 0.0) -> None:
-        self._world, self._body, self._sway = world, body, sway
+        self._world, self.body, self._sway = world, body, sway
+        self._places = 0  # how often fixed bodies had been put elsewhere when they were read
         params, shapes = world.params, world.detector.shapes
         if shapes.is_circle.any():
             raise ValueError("free flight knows polygons alone")
         self._inverse_mass, _, self._inverse_inertia = params.inverse_mass[body].tolist()
         self._drag, _, self._turn_drag = params.linear_drag[body].tolist()
-        corners = np.unique(shapes.start[shapes.body == body].reshape(-1, 2), axis=0)
-        self._corners: list[list[float]] = corners.tolist()
+        corners = shapes.start[shapes.body == body].reshape(-1, 2)
+        self._corners = sorted({(right, up) for right, up in corners.tolist()})
         self._reach = float(length(corners).max()) + _APART
         self._fixed: list[Fixed] | None = None
         self._highest = -np.inf
@@ -58,7 +60,7 @@ class FreeFlight:
     def _look_around(self) -> list[Fixed]:
         """Read where fixed bodies are, and how high the highest reaches."""
         shapes, state = self._world.detector.shapes, self._world.state
-        fixed = np.flatnonzero((shapes.body != self._body) & state.active[0, shapes.body])
+        fixed = np.flatnonzero((shapes.body != self.body) & state.active[0, shapes.body])
         body = shapes.body[fixed]
         sway = np.array([2 * self._sway, 0.0])  # what is at one end of its way now may go to the other
         cos, sin = state.cos[0, body, None], state.sin[0, body, None]
@@ -72,7 +74,7 @@ class FreeFlight:
 
     def take(self) -> None:
         """Read the body's state."""
-        state, body = self._world.state, self._body
+        state, body = self._world.state, self.body
         self.x, self.y, self.angle = state.pose[0, body].tolist()
         self.vx, self.vy, self.spin = state.velocity[0, body].tolist()
         self.cos, self.sin = state.cos.item(0, body), state.sin.item(0, body)
@@ -80,11 +82,11 @@ class FreeFlight:
     def feel(self) -> None:
         """Read gravity and the air's drag, which may have changed since the last flight."""
         self._gravity = self._world.gravity.ravel().tolist()
-        self._air, _, self._turn_air = self._world.params.quadratic_drag[..., self._body, :].ravel().tolist()
+        self._air, _, self._turn_air = self._world.params.quadratic_drag[..., self.body, :].ravel().tolist()
 
     def give(self) -> None:
         """Write the body's state back, as after a step in which nothing touched."""
-        state, body = self._world.state, self._body
+        state, body = self._world.state, self.body
         pose, velocity = state.pose, state.velocity
         pose[0, body, 0], pose[0, body, 1], pose[0, body, 2] = self.x, self.y, self.angle
         velocity[0, body, 0], velocity[0, body, 1], velocity[0, body, 2] = self.vx, self.vy, self.spin
@@ -96,8 +98,9 @@ class FreeFlight:
 
         It need not where a face of every fixed shape has the whole body before it: a separating axis, as in `collide`.
         """
-        if self._fixed is None:
-            self._fixed = self._look_around()
+        places = self._world.detector.broad.places
+        if self._fixed is None or (self._places != places and not self._sway):
+            self._fixed, self._places = self._look_around(), places
         x, y, reach = self.x, self.y, self._reach
         if y - reach > self._highest:
             return False

@@ -51,6 +51,11 @@ class Rest:
         self._known: list[bytes] | None = None  # the worlds after the last step; None if nothing sleeps
         self._all_asleep = False
 
+    @property
+    def idle(self) -> bool:
+        """Whether nothing sleeps, or has been still."""
+        return self._known is None and not self._counts
+
     def copy(self) -> Rest:
         """Return a copy that later steps do not change."""
         return copy.deepcopy(self)
@@ -183,6 +188,27 @@ class Rest:
         changed: Bools = (pose | velocity | force).any(axis=2) | active
         changed |= fall[:, None] & self.asleep
         return changed
+
+
+class Standstill:
+    """Worlds without sleep in which a step has led back to where it began, bit for bit, and so would lead there again.
+
+    All that a step depends on is compared with what the last one began with. That is done only while nothing moves, for
+    it takes longer than it could save as long as anything does.
+    """
+
+    def __init__(self) -> None:
+        self._before: list[object] | None = None
+
+    def lasts(self, state: BodyState, gravity: Array, impulses: list[bytes], settings: object) -> bool:
+        """Whether a step would change nothing, with these impulses of the last one and these settings of the world."""
+        before = self._before
+        self._before = [*_watched(state, gravity), *impulses, settings]
+        return self._before == before
+
+    def end(self) -> None:
+        """Note that something moves."""
+        self._before = None
 
 
 def _parts(state: BodyState) -> tuple[Array, Array, Array, Bools]:

@@ -9,14 +9,16 @@ import numpy as np
 from engine.body import Body
 from engine.contact_set import Contacts
 from engine.contacts import Detector
+from engine.free_flight import FreeFlight
 from engine.integrate import MovingBodies, integrate_position, integrate_velocity
-from engine.rest import Rest
+from engine.rest import Rest, Standstill
 from engine.shapes import Point, Shape, mass_properties
 from engine.solver import Solver
 from engine.state import BodyParams, BodyState, ShapeTable
-from engine.vector import Array, Bools
+from engine.vector import Array, Bools, every
 
 DT = 1.0 / 60.0
+_BARELY = 1e-12  # m/s and rad/s, at which a place does not change by a bit; what stands moves so fast by rounding
 
 
 class World:
@@ -30,7 +32,12 @@ class World:
     that it comes to lie still, impulses pass over to the points that take the place of others, and overlaps of
     less than a centimetre are left alone. Off, each step computes everything anew, as a flight needs that was
     recorded so.
+
+    Unless `in_floats` is off, the only body of a batch of one that forces can move flies in plain floats, and so many
+    times as fast, as long as nothing is near it (`engine.free_flight`): the same, bit for bit.
     """
+
+    in_floats: bool = True
 
     def __init__(
         self,
@@ -56,6 +63,8 @@ class World:
         self._shape_bodies: list[int] = []
         self._detector: Detector | None = None
         self._movers: MovingBodies | None = None
+        self._flight: FreeFlight | None = None
+        self._standstill = Standstill()
 
     def add(
         self,
@@ -125,7 +134,7 @@ class World:
         self.shapes += shapes
         self._shape_bodies += [len(self.bodies)] * len(shapes)
         self.bodies.append(Body(self, len(self.bodies)))
-        self._detector = self._movers = None
+        self._detector = self._movers = self._flight = None
         return self.bodies[-1]
 
     def step(self, touching: bool = True) -> None:
@@ -136,6 +145,11 @@ class World:
         rest = self.detector.rest
         if rest and rest.undisturbed(self.state, self.gravity):
             self.contacts = rest.contacts
+            return
+        if touching and self.contacts is None and self._fly():
+            return
+        if not rest and self.contacts and touching and self._stands():
+            self.state.force[:] = 0.0
             return
         contacts = self.detector.find(self.state) if touching else None
         awake = rest.awake if rest else None
@@ -150,6 +164,39 @@ class World:
         self.state.force[:] = 0.0
         self.contacts = rest.settle(self.state, contacts, self.gravity) if rest else contacts
         self.detector.remember(self.contacts)
+
+    def _stands(self) -> bool:
+        """Whether a step would change nothing, as the last one did."""
+        if np.abs(self.state.velocity).max() > _BARELY:
+            self._standstill.end()
+            return False
+        settings = (self.iterations, self.restitution_threshold)
+        return self._standstill.lasts(self.state, self.gravity, self.detector.impulses.parts, settings)
+
+    def _fly(self) -> bool:
+        """Take the step in plain floats, if the only body that can move has nothing near; return whether it was taken."""
+        flight, rest = self._free_flight(), self.detector.rest
+        if flight is None or (rest and not rest.idle) or not every(self.state.active):
+            return False
+        flight.take()
+        if flight.near():
+            return False
+        flight.feel()
+        flight.step(*self.state.force[0, flight.body].tolist(), DT)
+        flight.give()
+        self.state.force[:] = 0.0
+        return True
+
+    def _free_flight(self) -> FreeFlight | None:
+        """Return the free flight of the only body that moves; None if there are others, worlds or circles."""
+        body = self.movers.only
+        if body is None or self.batch > 1 or not self.in_floats:
+            return None
+        if self._flight is None or self._flight.body != body:
+            if self.detector.shapes.is_circle.any():
+                return None
+            self._flight = FreeFlight(self, body)
+        return self._flight
 
     @property
     def asleep(self) -> Bools:
