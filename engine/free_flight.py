@@ -17,7 +17,8 @@ from engine.vector import dot, length, rotate
 if TYPE_CHECKING:
     from engine.world import World
 
-Fixed = tuple[list[float], list[list[float]]]  # a fixed shape: its box, low and high corner, and its faces nx, ny, far
+# A fixed shape: its row, its box (low and high corner), and its faces (nx, ny, far).
+Fixed = tuple[int, list[float], list[list[float]]]
 _APART: Final = MARGIN + 1e-6  # metres between shapes that do not touch, and far more than rounding makes of them
 
 
@@ -70,7 +71,7 @@ class FreeFlight:
         boxes = np.concatenate([start.min(axis=1) - sway, start.max(axis=1) + sway], axis=1)
         faces = np.concatenate([normal, far[..., None]], axis=2)
         self._highest = float(boxes[:, 3].max(initial=-np.inf))
-        return list(zip(boxes.tolist(), faces.tolist(), strict=True))
+        return list(zip(fixed.tolist(), boxes.tolist(), faces.tolist(), strict=True))
 
     def take(self) -> None:
         """Read the body's state."""
@@ -98,27 +99,39 @@ class FreeFlight:
 
         It need not where a face of every fixed shape has the whole body before it: a separating axis, as in `collide`.
         """
+        around = self.around()
+        if not around:
+            return False
+        x, y, cos, sin = self.x, self.y, self.cos, self.sin
+        corners = [(right * cos - up * sin + x, right * sin + up * cos + y) for right, up in self._corners]
+        return not all(
+            any(all(nx * right + ny * up > far for right, up in corners) for nx, ny, far in faces)
+            for _, _, faces in around
+        )
+
+    def around(self) -> list[Fixed]:
+        """Return the fixed shapes whose boxes the body might touch, however it is turned."""
         places = self._world.detector.broad.places
+        # What sways is everywhere at once, and is moved about all the time.
         if self._fixed is None or (self._places != places and not self._sway):
             self._fixed, self._places = self._look_around(), places
         x, y, reach = self.x, self.y, self._reach
         if y - reach > self._highest:
-            return False
-        around = [
-            faces
-            for (low_x, low_y, high_x, high_y), faces in self._fixed
-            if y - reach <= high_y and low_y <= y + reach and x - reach <= high_x and low_x <= x + reach
+            return []
+        left, right, low, high = x - reach, x + reach, y - reach, y + reach
+        return [
+            fixed
+            for fixed in self._fixed
+            if low <= fixed[1][3] and fixed[1][1] <= high and left <= fixed[1][2] and fixed[1][0] <= right
         ]
-        if not around:
-            return False
-        cos, sin = self.cos, self.sin
-        corners = [(right * cos - up * sin + x, right * sin + up * cos + y) for right, up in self._corners]
-        return not all(
-            any(all(nx * right + ny * up > far for right, up in corners) for nx, ny, far in faces) for faces in around
-        )
 
     def step(self, force_x: float, force_y: float, torque: float, dt: float) -> None:
         """Advance by `dt` seconds under gravity, drag and this force, as `integrate` does."""
+        self.fall(force_x, force_y, torque, dt)
+        self.move(dt)
+
+    def fall(self, force_x: float, force_y: float, torque: float, dt: float) -> None:
+        """Change the velocity alone."""
         vx, vy, spin = self.vx, self.vy, self.spin
         ease, turn_ease = self._inverse_mass * dt, self._inverse_inertia * dt
         gravity_x, gravity_y = self._gravity
@@ -127,8 +140,15 @@ class FreeFlight:
         self.vx = (vx + force_x * ease + gravity_x * dt) / slowing
         self.vy = (vy + force_y * ease + gravity_y * dt) / slowing
         self.spin = (spin + torque * turn_ease) / turn_slowing
+
+    def move(self, dt: float) -> None:
+        """Move along the velocity."""
         self.x += self.vx * dt
         self.y += self.vy * dt
         self.angle += self.spin * dt
+        self.turn()
+
+    def turn(self) -> None:
+        """Bring `cos` and `sin` up to date."""
         # NumPy's own functions: `math` has others, which may differ in the last bit.
         self.cos, self.sin = float(np.cos(self.angle)), float(np.sin(self.angle))

@@ -34,6 +34,8 @@ TOLERANCE = 1e-4
 # for as long as one looks.
 LENIENCE = 1e-2
 OLD = 15
+# Share of what two points' pushes do to each other by which they must differ, or they nearly coincide.
+NARROWEST = 1e-3
 # Manifolds among which there nearly always is one that would be pulled; it is not asked then.
 _MANY = 12
 
@@ -259,7 +261,7 @@ def _stiffness(jacobian: Array, response: Array) -> Array:
 def _coincide(stiffness: Array) -> Bools:
     """Whether a manifold's two points are so near each other that no pair of pushes can tell them apart, (m,)."""
     product = stiffness[0] * stiffness[1]
-    near: Bools = (product > 0) & (product - stiffness[3] ** 2 <= 1e-3 * product)
+    near: Bools = (product > 0) & (product - stiffness[3] ** 2 <= NARROWEST * product)
     return near
 
 

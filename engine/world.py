@@ -11,6 +11,7 @@ from engine.contact_set import Contacts
 from engine.contacts import Detector
 from engine.free_flight import FreeFlight
 from engine.integrate import MovingBodies, integrate_position, integrate_velocity
+from engine.lone_contacts import LoneContacts
 from engine.rest import Rest, Standstill
 from engine.shapes import Point, Shape, mass_properties
 from engine.solver import Solver
@@ -63,7 +64,7 @@ class World:
         self._shape_bodies: list[int] = []
         self._detector: Detector | None = None
         self._movers: MovingBodies | None = None
-        self._flight: FreeFlight | None = None
+        self._lone: LoneContacts | None = None
         self._standstill = Standstill()
 
     def add(
@@ -134,7 +135,7 @@ class World:
         self.shapes += shapes
         self._shape_bodies += [len(self.bodies)] * len(shapes)
         self.bodies.append(Body(self, len(self.bodies)))
-        self._detector = self._movers = self._flight = None
+        self._detector = self._movers = self._lone = None
         return self.bodies[-1]
 
     def step(self, touching: bool = True) -> None:
@@ -146,10 +147,10 @@ class World:
         if rest and rest.undisturbed(self.state, self.gravity):
             self.contacts = rest.contacts
             return
-        if touching and self.contacts is None and self._fly():
-            return
         if not rest and self.contacts and touching and self._stands():
             self.state.force[:] = 0.0
+            return
+        if touching and self._step_in_floats():
             return
         contacts = self.detector.find(self.state) if touching else None
         awake = rest.awake if rest else None
@@ -173,30 +174,35 @@ class World:
         settings = (self.iterations, self.restitution_threshold)
         return self._standstill.lasts(self.state, self.gravity, self.detector.impulses.parts, settings)
 
-    def _fly(self) -> bool:
-        """Take the step in plain floats, if the only body that can move has nothing near; return whether it was taken."""
-        flight, rest = self._free_flight(), self.detector.rest
-        if flight is None or (rest and not rest.idle) or not every(self.state.active):
+    def _step_in_floats(self) -> bool:
+        """Take the step in plain floats, and return whether that was possible.
+
+        Only one body may move, and no shape may be a circle. In a world with sleep, nothing may be near it.
+        """
+        body, rest, state = self.movers.only, self.detector.rest, self.state
+        if body is None or self.batch > 1 or not self.in_floats or (rest and not rest.idle) or not every(state.active):
             return False
+        if self._lone is None or self._lone.flight.body != body:
+            if self.detector.shapes.is_circle.any():
+                return False
+            self._lone = LoneContacts(self, FreeFlight(self, body))
+        flight, (along, up, torque) = self._lone.flight, state.force[0, body].tolist()
         flight.take()
-        if flight.near():
-            return False
         flight.feel()
-        flight.step(*self.state.force[0, flight.body].tolist(), DT)
-        flight.give()
-        self.state.force[:] = 0.0
+        if not flight.near():
+            flight.step(along, up, torque, DT)
+            flight.give()
+        elif rest or self._others_move(body):
+            return False
+        else:
+            self.contacts = self._lone.step((along, up, torque), DT)
+            self.detector.remember(self.contacts)
+        state.force[:] = 0.0
         return True
 
-    def _free_flight(self) -> FreeFlight | None:
-        """Return the free flight of the only body that moves; None if there are others, worlds or circles."""
-        body = self.movers.only
-        if body is None or self.batch > 1 or not self.in_floats:
-            return None
-        if self._flight is None or self._flight.body != body:
-            if self.detector.shapes.is_circle.any():
-                return None
-            self._flight = FreeFlight(self, body)
-        return self._flight
+    def _others_move(self, body: int) -> bool:
+        velocity = self.state.velocity[0]
+        return bool(velocity[:body].any() or velocity[body + 1 :].any())
 
     @property
     def asleep(self) -> Bools:
