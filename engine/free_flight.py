@@ -40,7 +40,7 @@ class FreeFlight:
 
     def __init__(self, world: World, body: int, sway: float = 0.0) -> None:
         self._world, self.body, self._sway = world, body, sway
-        self._places = 0  # how often fixed bodies had been put elsewhere when they were read
+        self._seen: tuple[int, bytes] | None = None  # what tells whether fixed bodies are as they were when read
         params, shapes = world.params, world.detector.shapes
         if shapes.is_circle.any():
             raise ValueError("free flight knows polygons alone")
@@ -111,10 +111,11 @@ class FreeFlight:
 
     def around(self) -> list[Fixed]:
         """Return the fixed shapes whose boxes the body might touch, however it is turned."""
-        places = self._world.detector.broad.places
+        world = self._world
         # What sways is everywhere at once, and is moved about all the time.
-        if self._fixed is None or (self._places != places and not self._sway):
-            self._fixed, self._places = self._look_around(), places
+        seen = (0 if self._sway else world.detector.broad.places, world.state.active.tobytes())
+        if self._fixed is None or self._seen != seen:
+            self._fixed, self._seen = self._look_around(), seen
         x, y, reach = self.x, self.y, self._reach
         if y - reach > self._highest:
             return []

@@ -94,6 +94,9 @@ class Solver:
             (rows, impulse[:, span], target[:, span], None if friction is None else friction[span])
             for rows, span in zip(self._colours, self._spans, strict=True)
         ]
+        if friction is None:
+            for rows in self._colours:
+                rows.space.change[2] = 0.0
         for _ in range(iterations):
             before = impulse.tobytes()
             for rows, total, wanted, coefficient in parts:
@@ -225,7 +228,7 @@ class Space:
         self.turn = np.empty((3, count, 6))
         self.speed = np.empty((3, count))
         self.closing = self.speed[:2]
-        self.change = np.zeros((3, count))  # of impulses; friction's stays zero where there is none
+        self.change = np.zeros((3, count))  # of impulses
         self.pushed, self.column = self.change[:2], self.change[:, :, None]
         self.lacking, self.both, self.alone, self.nudges = np.empty((4, 2, count))
         self.sliding, self.cone, self.low, self.rub = np.empty((4, count))

@@ -16,7 +16,7 @@ from engine.rest import Rest, Standstill
 from engine.shapes import Point, Shape, mass_properties
 from engine.solver import Solver
 from engine.state import BodyParams, BodyState, ShapeTable
-from engine.vector import Array, Bools, every
+from engine.vector import Array, Bools
 
 DT = 1.0 / 60.0
 _BARELY = 1e-12  # m/s and rad/s, at which a place does not change by a bit; what stands moves so fast by rounding
@@ -180,7 +180,13 @@ class World:
         Only one body may move, and no shape may be a circle. In a world with sleep, nothing may be near it.
         """
         body, rest, state = self.movers.only, self.detector.rest, self.state
-        if body is None or self.batch > 1 or not self.in_floats or (rest and not rest.idle) or not every(state.active):
+        if (
+            body is None
+            or self.batch > 1
+            or not self.in_floats
+            or (rest and not rest.idle)
+            or not state.active[0, body]
+        ):
             return False
         if self._lone is None or self._lone.flight.body != body:
             if self.detector.shapes.is_circle.any():
