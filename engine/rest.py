@@ -32,6 +32,7 @@ class Rest:
     Attributes:
         asleep: whether each body sleeps, (batch, bodies).
         contacts: contacts of the sleeping bodies, as they were when they fell asleep; None if there are none.
+        woken: those of bodies that have woken since the last step, whose impulses the next one begins with.
         awake: whether each body moves or was moved by hand, (batch, bodies), and so may run into others; None if no
             body sleeps.
 
@@ -44,11 +45,12 @@ class Rest:
         self.asleep: Bools = np.zeros(shape, dtype=bool)
         self.awake: Bools | None = None
         self.contacts: Contacts | None = None
+        self.woken: Contacts | None = None
         self._steps: Ints = np.zeros(shape, dtype=np.intp)  # for which each body has been still
         self._place: Array = np.zeros((*shape, 3))  # where it was when it came to be still
         self._counts = False  # whether any has been still for a step or more
         self._gravity: Array = np.zeros(2)
-        self._known: list[bytes] | None = None  # the worlds after the last step; None if nothing sleeps
+        self._known: list[Array] | None = None  # the worlds after the last step; None if nothing sleeps
         self._all_asleep = False
 
     @property
@@ -64,7 +66,12 @@ class Rest:
         """Wake what has changed since the last step; return whether everything sleeps on, and a step does nothing."""
         if self._known is None:
             return False
-        if _watched(state, gravity) == self._known:
+        now = _parts(state)
+        if (
+            not state.force.any()
+            and all(_same_bits(a, b) for a, b in zip(now, self._known, strict=True))
+            and np.array_equal(gravity, self._gravity)
+        ):
             return self._all_asleep
         self.wake(self._changed(state, np.asarray(gravity)))
         return False
@@ -75,7 +82,10 @@ class Rest:
         woken = self._spread(chosen, kept.world, kept.body) if kept else chosen
         self.asleep &= ~woken
         self._all_asleep = False
-        self.contacts = self._sleeping(self.contacts)
+        if kept:
+            sleeping = self._sleep(kept)
+            self.contacts = kept.resting(np.flatnonzero(sleeping))
+            self.woken = Contacts.join(self.woken, kept.resting(np.flatnonzero(~sleeping)))
         if self.awake is not None:
             self.awake |= woken
 
@@ -89,28 +99,42 @@ class Rest:
         return True
 
     def settle(self, state: BodyState, contacts: Contacts | None, gravity: Array) -> Contacts | None:
-        """Let fall asleep what has been still for long enough; return its contacts beside those of this step."""
+        """Let fall asleep what has been still for long enough; return the contacts of what slept before.
+
+        What costs a step little where a few of many worlds are awake is done for these alone.
+        """
+        kept = self.contacts
         if contacts is None and not self._counts and self._known is None:
             return None
-        merged = Contacts.join(contacts, self.contacts)
         if contacts is not None:
-            self._count(state, contacts)
             # The last of an island's bodies to be still for long enough asks for it, and asks again now and then.
-            due = np.flatnonzero(((self._steps > 0) & (self._steps % STEPS == 0)).any(axis=1))
+            due = self._count(state, contacts)
             if len(due) and self._fall_asleep(state, contacts, due):
-                self.contacts = self._sleeping(merged)
+                fallen = contacts.resting(np.flatnonzero(self._sleep(contacts)))
+                self.contacts = Contacts.join(fallen, kept)
         elif self._counts:
             self._steps[:] = 0
             self._counts = False
-        self._known = self.awake = None
         if self.asleep.any():
-            self._known, self._gravity = _watched(state, gravity), np.array(gravity)
+            self._know(state)
+            self._gravity = np.array(gravity)
             self.awake = self._dynamic & ~self.asleep | self._lifts(state)
             self._all_asleep = not (self.awake & state.active).any()
-        return merged
+        else:
+            self._known = self.awake = None
+        return kept
 
-    def _count(self, state: BodyState, contacts: Contacts) -> None:
-        """Count the steps for which each touching body has been still."""
+    def _know(self, state: BodyState) -> None:
+        """Note how everything is; what the step has left alone is known."""
+        if self._known is None or self.awake is None:
+            self._known = [part.copy() for part in _parts(state)]
+            return
+        moved = np.flatnonzero(self.awake.any(axis=1))
+        for known, part in zip(self._known, _parts(state), strict=True):
+            known[moved] = part[moved]
+
+    def _count(self, state: BodyState, contacts: Contacts) -> Ints:
+        """Count the steps for which each touching body has been still; return worlds where one has been for long."""
         still = np.zeros_like(self.asleep)
         still[contacts.world[:, None], contacts.body] = True
         still &= self._dynamic
@@ -124,6 +148,7 @@ class Rest:
         self._steps[:] = 0
         self._steps[world, body] = count
         self._counts = True
+        return np.unique(world[(count > 0) & (count % STEPS == 0)])
 
     def _fall_asleep(self, state: BodyState, contacts: Contacts, due: Ints) -> bool:
         """Put to sleep every island that lies on something, in the worlds that are `due`; return whether there was one.
@@ -154,12 +179,11 @@ class Rest:
             lifts[:, self._fixed] = speeds.any(axis=2)
         return lifts
 
-    def _sleeping(self, contacts: Contacts | None) -> Contacts | None:
-        """Return those contacts of which no body is awake."""
-        if contacts is None:
-            return None
+    def _sleep(self, contacts: Contacts) -> Bools:
+        """Whether no body of each contact is awake, (m,)."""
         asleep = self.asleep[contacts.world[:, None], contacts.body] | ~self._dynamic[contacts.body]
-        return contacts.resting(np.flatnonzero(asleep.all(axis=1)))
+        sleep: Bools = asleep.all(axis=1)
+        return sleep
 
     def _spread(self, chosen: Bools, world: Ints, body: Ints) -> Bools:
         """Return the chosen bodies (worlds, bodies), and all that pairs link to them: `world` (n,), `body` (n, 2).
@@ -179,13 +203,10 @@ class Rest:
     def _changed(self, state: BodyState, gravity: Array) -> Bools:
         """Return which bodies, (batch, bodies), are not as they were after the last step."""
         assert self._known is not None
-        pose, velocity, force, active = (
-            np.frombuffer(was, now.dtype).reshape(now.shape) != now
-            for was, now in zip(self._known, _parts(state), strict=False)
-        )
+        pose, velocity, active = (was != now for was, now in zip(self._known, _parts(state), strict=True))
         before, after = (np.broadcast_to(each, (len(active), 2)) for each in (self._gravity, gravity))
         fall: Bools = (before != after).any(axis=1)
-        changed: Bools = (pose | velocity | force).any(axis=2) | active
+        changed: Bools = (pose | velocity | (state.force != 0.0)).any(axis=2) | active
         changed |= fall[:, None] & self.asleep
         return changed
 
@@ -211,10 +232,16 @@ class Standstill:
         self._before = None
 
 
-def _parts(state: BodyState) -> tuple[Array, Array, Array, Bools]:
-    return state.pose, state.velocity, state.force, state.active
+def _parts(state: BodyState) -> tuple[Array, Array, Bools]:
+    return state.pose, state.velocity, state.active
+
+
+def _same_bits(a: Array | Bools, b: Array | Bools) -> bool:
+    """Whether two arrays are equal, NaN to NaN."""
+    kind = np.int8 if a.dtype == bool else np.int64
+    return bool((a.view(kind) == b.view(kind)).all())
 
 
 def _watched(state: BodyState, gravity: Array) -> list[bytes]:
-    """Return all that wakes a body if it changes, to be compared at once: far cheaper than number by number."""
-    return [part.tobytes() for part in (*_parts(state), np.asarray(gravity))]
+    """Return all of a world's state that a step depends on, to be compared at once."""
+    return [part.tobytes() for part in (*_parts(state), state.force, np.asarray(gravity))]

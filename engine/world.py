@@ -60,7 +60,7 @@ class World:
         self.params = BodyParams()
         self.bodies: list[Body] = []
         self.shapes: list[Shape] = []
-        self.contacts: Contacts | None = None
+        self._touched: tuple[Contacts | None, Contacts | None] = (None, None)  # in the last step, and of what slept
         self._shape_bodies: list[int] = []
         self._detector: Detector | None = None
         self._movers: MovingBodies | None = None
@@ -145,7 +145,7 @@ class World:
         """
         rest = self.detector.rest
         if rest and rest.undisturbed(self.state, self.gravity):
-            self.contacts = rest.contacts
+            self._touched = (rest.contacts, None)
             return
         if not rest and self.contacts and touching and self._stands():
             self.state.force[:] = 0.0
@@ -163,8 +163,8 @@ class World:
             solver.solve_overlaps(self.state, max(2, self.iterations // 3), DT, lenient=rest is not None)
         self.state.refresh_rotation(self.movers.bodies)
         self.state.force[:] = 0.0
-        self.contacts = rest.settle(self.state, contacts, self.gravity) if rest else contacts
-        self.detector.remember(self.contacts)
+        self._touched = (contacts, rest.settle(self.state, contacts, self.gravity) if rest else None)
+        self.detector.remember(contacts)
 
     def _stands(self) -> bool:
         """Whether a step would change nothing, as the last one did."""
@@ -201,14 +201,21 @@ class World:
         elif rest or self._others_move(body):
             return False
         else:
-            self.contacts = self._lone.step((along, up, torque), DT)
-            self.detector.remember(self.contacts)
+            self._touched = (self._lone.step((along, up, torque), DT), None)
+            self.detector.remember(self._touched[0])
         state.force[:] = 0.0
         return True
 
     def _others_move(self, body: int) -> bool:
         velocity = self.state.velocity[0]
         return bool(velocity[:body].any() or velocity[body + 1 :].any())
+
+    @property
+    def contacts(self) -> Contacts | None:
+        """What touched in the last step, those of sleeping bodies last; joined when it is asked for."""
+        if self._touched[1] is not None:
+            self._touched = (Contacts.join(*self._touched), None)
+        return self._touched[0]
 
     @property
     def asleep(self) -> Bools:
@@ -225,7 +232,7 @@ class World:
     def untouched(self) -> None:
         """Note that nothing touched in the latest step, which `free_flight` took."""
         self.detector.remember(None)
-        self.contacts = None
+        self._touched = (None, None)
 
     @property
     def detector(self) -> Detector:
