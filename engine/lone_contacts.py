@@ -8,14 +8,14 @@ Scalar products of six numbers are NumPy's own, which rounds them in a way of it
 
 from __future__ import annotations
 
-from math import inf, sqrt
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from engine.collide import REFERENCE_BIAS, Manifold
+from engine.collide import Manifold
 from engine.contact_set import Contacts
 from engine.contacts import MARGIN, WarmStart
+from engine.lone_touch import Face, Touch, edges_of, placed, touch_of
 from engine.solver import CORRECTION, NARROWEST, SLOP, TOLERANCE
 from engine.vector import Array, Ints
 
@@ -24,30 +24,6 @@ if TYPE_CHECKING:
     from engine.world import World
 
 _STIFF: Final = ([0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2])  # which rows meet in the six numbers of a stiffness
-Corner = tuple[float, float]
-
-
-class Face(NamedTuple):
-    """An edge of a placed polygon, its outward normal, and how far along that it lies."""
-
-    start_x: float
-    start_y: float
-    end_x: float
-    end_y: float
-    x: float
-    y: float
-    far: float
-
-
-class Touch(NamedTuple):
-    """Manifold of one pair, as a row of `collide.Manifold`."""
-
-    pair: int
-    normal: Corner
-    points: tuple[Corner, Corner]
-    depth: Corner
-    valid: tuple[bool, bool]
-    feature: tuple[int, int]
 
 
 class LoneContacts:
@@ -58,9 +34,10 @@ class LoneContacts:
         detector, body = world.detector, flight.body
         shapes = detector.shapes
         self._friction, self._restitution = detector.friction.tolist(), detector.restitution.tolist()
-        self._parts = {  # its own shapes: corners, normals, middle and reach
-            part: (_edges(shapes.start[part], shapes.normal[part]), shapes.centre[part].tolist(), shapes.reach[part])
-            for part in np.flatnonzero(shapes.body == body).tolist()
+        self._parts = {  # its own shapes: corners, normals, middle, and how far from it contacts are looked for
+            part: (edges_of(shapes.start[part], shapes.normal[part]), shapes.centre[part].tolist(), reach + MARGIN)
+            for part, reach in enumerate(shapes.reach.tolist())
+            if shapes.body[part] == body
         }
         self._pairs: dict[int, list[tuple[int, int]]] = {}  # by fixed shape: row of the world's pairs, and own shape
         for row, (part, fixed) in enumerate(detector.pairs.tolist()):
@@ -90,18 +67,17 @@ class LoneContacts:
         if self._places != detector.broad.places:
             self._faces, self._places = {}, detector.broad.places
         x, y, cos, sin = flight.x, flight.y, flight.cos, flight.sin
-        placed: dict[int, list[Face]] = {}
+        own: dict[int, list[Face]] = {}
         found = []
         for shape, (low_x, low_y, high_x, high_y), _ in flight.around():
             for row, part in self._pairs.get(shape, ()):
                 edges, (right, up), reach = self._parts[part]
-                reach += MARGIN
                 at_x, at_y = right * cos - up * sin + x, right * sin + up * cos + y
                 if at_y - reach > high_y or at_y + reach < low_y or at_x - reach > high_x or at_x + reach < low_x:
                     continue
-                if part not in placed:
-                    placed[part] = _placed(edges, x, y, cos, sin)
-                if touch := _touch(row, placed[part], self._fixed(shape)):
+                if part not in own:
+                    own[part] = placed(edges, x, y, cos, sin)
+                if touch := touch_of(row, own[part], self._fixed(shape)):
                     found.append(touch)
         found.sort()
         return found
@@ -111,9 +87,9 @@ class LoneContacts:
         if shape not in self._faces:
             shapes, state = self._world.detector.shapes, self._world.state
             body = shapes.body[shape]
-            edges = _edges(shapes.start[shape], shapes.normal[shape])
+            edges = edges_of(shapes.start[shape], shapes.normal[shape])
             x, y, _ = state.pose[0, body].tolist()
-            self._faces[shape] = _placed(edges, x, y, state.cos.item(0, body), state.sin.item(0, body))
+            self._faces[shape] = placed(edges, x, y, state.cos.item(0, body), state.sin.item(0, body))
         return self._faces[shape]
 
 
@@ -260,74 +236,6 @@ class _Solver:
             age=np.zeros(count, dtype=np.intp),
             colour_ends=list(range(1, count + 1)),
         )
-
-
-def _edges(start: Array, normal: Array) -> list[tuple[float, float, float, float]]:
-    """Return a polygon's corners, and the normals of the edges that begin there, without those that pad the table."""
-    return list(dict.fromkeys(tuple(edge) for edge in np.concatenate([start, normal], axis=1).tolist()))
-
-
-def _placed(edges: list[tuple[float, float, float, float]], x: float, y: float, cos: float, sin: float) -> list[Face]:
-    """Return the faces of a polygon in the world."""
-    corners = [(right * cos - up * sin + x, right * sin + up * cos + y) for right, up, _, _ in edges]
-    ends = [*corners[1:], corners[0]]
-    faces = []
-    for (start_x, start_y), (end_x, end_y), (_, _, right, up) in zip(corners, ends, edges, strict=True):
-        out_x, out_y = right * cos - up * sin, right * sin + up * cos
-        faces.append(Face(start_x, start_y, end_x, end_y, out_x, out_y, out_x * start_x + out_y * start_y))
-    return faces
-
-
-def _deepest_face(faces: list[Face], others: list[Face]) -> tuple[float, int]:
-    """`collide.deepest_face`; a gap wider than the margin may be any such."""
-    widest, deepest = -inf, 0
-    corners = [(face.start_x, face.start_y) for face in others]
-    for number, (_, _, _, _, out_x, out_y, far) in enumerate(faces):
-        gap = min([x * out_x + y * out_y for x, y in corners]) - far
-        if gap > widest:
-            widest, deepest = gap, number
-            if gap > MARGIN:
-                break
-    return widest, deepest
-
-
-def _touch(pair: int, a: list[Face], b: list[Face]) -> Touch | None:
-    """`collide.collide_polygons` for one pair; None if it has no point."""
-    gap_b, face_b = _deepest_face(b, a)
-    if gap_b > MARGIN:
-        return None
-    gap_a, face_a = _deepest_face(a, b)
-    if gap_a > MARGIN:
-        return None
-    flip = gap_b > gap_a + REFERENCE_BIAS
-    reference, face, other = (b, face_b, a) if flip else (a, face_a, b)
-    start_x, start_y, end_x, end_y, x, y, _ = reference[face]
-    opposed = [each.x * x + each.y * y for each in other]
-    incident = opposed.index(min(opposed))
-    from_x, from_y, to_x, to_y, _, _, _ = other[incident]
-
-    edge_x, edge_y = end_x - start_x, end_y - start_y
-    length = sqrt(edge_x * edge_x + edge_y * edge_y)
-    along_x, along_y = edge_x / length, edge_y / length
-    first = (from_x - start_x) * along_x + (from_y - start_y) * along_y
-    last = (to_x - start_x) * along_x + (to_y - start_y) * along_y
-    span = last - first
-    if abs(span) < 1e-12:
-        span = 1e-12
-    low, high = min(first, last), max(first, last)
-    points, depths = [], []
-    for side in (0.0, edge_x * along_x + edge_y * along_y):
-        share = (min(max(side, low), high) - first) / span
-        corner_x, corner_y = from_x + (to_x - from_x) * share, from_y + (to_y - from_y) * share
-        depth = -((corner_x - start_x) * x + (corner_y - start_y) * y)
-        depths.append(depth)
-        points.append((corner_x + x * (depth / 2), corner_y + y * (depth / 2)))
-    valid = (depths[0] >= -MARGIN, depths[1] >= -MARGIN)
-    if not any(valid):
-        return None
-    number = ((flip * 64 + face) * 64 + incident) * 2
-    normal = (-x, -y) if flip else (x, y)
-    return Touch(pair, normal, (points[0], points[1]), (depths[0], depths[1]), valid, (number + 1, number + 2))
 
 
 def _recalled(last: WarmStart, touches: list[Touch]) -> list[list[float]]:

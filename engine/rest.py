@@ -13,9 +13,10 @@ velocity, a force, a body taken out, a floor moved away and another gravity wake
 from __future__ import annotations
 
 import copy
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from engine.contact_set import Contacts
 from engine.state import BodyParams, BodyState, span
@@ -50,7 +51,7 @@ class Rest:
         self._place: Array = np.zeros((*shape, 3))  # where it was when it came to be still
         self._counts = False  # whether any has been still for a step or more
         self._gravity: Array = np.zeros(2)
-        self._known: list[Array] | None = None  # the worlds after the last step; None if nothing sleeps
+        self._known: tuple[NDArray[Any], ...] | None = None  # the worlds after the last step; None if nothing sleeps
         self._all_asleep = False
 
     @property
@@ -66,10 +67,9 @@ class Rest:
         """Wake what has changed since the last step; return whether everything sleeps on, and a step does nothing."""
         if self._known is None:
             return False
-        now = _parts(state)
         if (
             not state.force.any()
-            and all(_same_bits(a, b) for a, b in zip(now, self._known, strict=True))
+            and all(_same_bits(part, known) for part, known in zip(_parts(state), self._known, strict=True))
             and np.array_equal(gravity, self._gravity)
         ):
             return self._all_asleep
@@ -99,10 +99,7 @@ class Rest:
         return True
 
     def settle(self, state: BodyState, contacts: Contacts | None, gravity: Array) -> Contacts | None:
-        """Let fall asleep what has been still for long enough; return the contacts of what slept before.
-
-        What costs a step little where a few of many worlds are awake is done for these alone.
-        """
+        """Let fall asleep what has been still for long enough; return the contacts of what slept before."""
         kept = self.contacts
         if contacts is None and not self._counts and self._known is None:
             return None
@@ -125,9 +122,9 @@ class Rest:
         return kept
 
     def _know(self, state: BodyState) -> None:
-        """Note how everything is; what the step has left alone is known."""
+        """Note how everything is; worlds that the step has left alone are known, and in a large batch they are many."""
         if self._known is None or self.awake is None:
-            self._known = [part.copy() for part in _parts(state)]
+            self._known = tuple(part.copy() for part in _parts(state))
             return
         moved = np.flatnonzero(self.awake.any(axis=1))
         for known, part in zip(self._known, _parts(state), strict=True):
@@ -135,10 +132,9 @@ class Rest:
 
     def _count(self, state: BodyState, contacts: Contacts) -> Ints:
         """Count the steps for which each touching body has been still; return worlds where one has been for long."""
-        still = np.zeros_like(self.asleep)
-        still[contacts.world[:, None], contacts.body] = True
-        still &= self._dynamic
-        world, body = still.nonzero()
+        bodies = len(self._dynamic)
+        world, body = np.divmod(np.unique(contacts.world[:, None] * bodies + contacts.body), bodies)
+        world, body = world[self._dynamic[body]], body[self._dynamic[body]]
         pose = state.pose[world, body]
         calm = (np.abs(state.velocity[world, body]) < STILL).all(axis=1)
         near = calm & (np.abs(pose - self._place[world, body]) < DRIFT).all(axis=1)
@@ -206,7 +202,7 @@ class Rest:
         pose, velocity, active = (was != now for was, now in zip(self._known, _parts(state), strict=True))
         before, after = (np.broadcast_to(each, (len(active), 2)) for each in (self._gravity, gravity))
         fall: Bools = (before != after).any(axis=1)
-        changed: Bools = (pose | velocity | (state.force != 0.0)).any(axis=2) | active
+        changed: Bools = np.any(pose | velocity | (state.force != 0.0), axis=2) | active
         changed |= fall[:, None] & self.asleep
         return changed
 
@@ -232,14 +228,14 @@ class Standstill:
         self._before = None
 
 
-def _parts(state: BodyState) -> tuple[Array, Array, Bools]:
+def _parts(state: BodyState) -> tuple[NDArray[Any], ...]:
     return state.pose, state.velocity, state.active
 
 
-def _same_bits(a: Array | Bools, b: Array | Bools) -> bool:
+def _same_bits(a: NDArray[Any], b: NDArray[Any]) -> bool:
     """Whether two arrays are equal, NaN to NaN."""
     kind = np.int8 if a.dtype == bool else np.int64
-    return bool((a.view(kind) == b.view(kind)).all())
+    return bool(np.all(a.view(kind) == b.view(kind)))
 
 
 def _watched(state: BodyState, gravity: Array) -> list[bytes]:
