@@ -21,7 +21,7 @@ from engine.shapes import Circle, Polygon, Shape
 from engine.vector import Array, Bools, Ints, dot, length, rotate
 
 # Two parallel faces are equally good references; a small bias keeps the choice from flickering.
-_REFERENCE_BIAS = 5e-4
+REFERENCE_BIAS = 5e-4
 # Pairs whose corners are all compared at once: as many as fit the cache.
 _BLOCK = 512
 _PARTS = ("normal", "points", "depth", "valid", "feature")
@@ -102,7 +102,7 @@ def collide_polygons(a: PlacedPolygons, b: PlacedPolygons, margin: float) -> Man
     gap_a, face_a = deepest_face(a, b.start)
     gap_b, face_b = deepest_face(b, a.start)
     touching = np.maximum(gap_a, gap_b) <= margin
-    flip = gap_b > gap_a + _REFERENCE_BIAS  # B holds the reference face
+    flip = gap_b > gap_a + REFERENCE_BIAS  # B holds the reference face
     rows = np.arange(len(flip))
     swap = flip[:, None]
     start = np.where(swap, b.start[rows, face_b], a.start[rows, face_a])

@@ -51,6 +51,11 @@ class WarmStart:
             contacts.age[rising],
         )
 
+    @property
+    def parts(self) -> list[bytes]:
+        """All that a step takes over which does without ages, to be compared at once."""
+        return [part.tobytes() for part in (self.key, self.feature, self.impulse)]
+
     def where(self, kept: Bools) -> WarmStart:
         """Return the memory of these manifolds alone."""
         return WarmStart(
@@ -60,6 +65,18 @@ class WarmStart:
             self.points[kept],
             self.normal[kept],
             self.age[kept],
+        )
+
+    def with_others(self, others: WarmStart) -> WarmStart:
+        """Return this memory and another together."""
+        order = np.argsort(np.concatenate([self.key, others.key]), kind="stable")
+        return WarmStart(
+            np.concatenate([self.key, others.key])[order],
+            np.concatenate([self.feature, others.feature])[order],
+            np.concatenate([self.impulse, others.impulse], axis=1)[:, order],
+            np.concatenate([self.points, others.points])[order],
+            np.concatenate([self.normal, others.normal])[order],
+            np.concatenate([self.age, others.age])[order],
         )
 
 
@@ -79,6 +96,7 @@ class Memory:
 
     impulses: WarmStart
     rest: Rest | None
+    forgotten: list[tuple[int, Bools | None]]
 
 
 class Detector:
@@ -97,7 +115,8 @@ class Detector:
         self.friction = _mix(params.friction[self.body_pairs], _geometric_mean, _DEFAULT_FRICTION)
         self.restitution = _mix(params.restitution[self.body_pairs], np.maximum, 0.0)
         self._kinds = shapes.is_circle[self.pairs].sum(axis=1)  # how many of the two are circles
-        self._memory = _NOTHING
+        self.impulses = _NOTHING
+        self._forgotten: list[tuple[int, Bools | None]] = []  # bodies, and in which worlds: see `forget`
         self._colours = (np.zeros(0, dtype=np.intp), np.zeros(0, dtype=np.intp), [0])  # of what, order, ends
 
     def find(self, state: BodyState) -> Contacts | None:
@@ -134,26 +153,44 @@ class Detector:
 
     def remember(self, contacts: Contacts | None) -> None:
         """Keep the impulses of a step to warm-start the next one, and only that."""
-        self._memory = WarmStart.of(contacts, len(self.pairs)) if contacts else _NOTHING
+        self.impulses = WarmStart.of(contacts, len(self.pairs)) if contacts else _NOTHING
+        if self.rest:
+            self.rest.woken = None
+            self._forgotten = []
 
     def memory(self) -> Memory:
         """Return the impulses that `remember` has kept, and what sleeps, to be put back by `recall_memory`."""
-        return Memory(self._memory, self.rest.copy() if self.rest else None)
+        return Memory(self.impulses, self.rest.copy() if self.rest else None, self._forgotten.copy())
 
     def recall_memory(self, memory: Memory) -> None:
         """Put back what a call of `memory` returned."""
-        self._memory = memory.impulses
+        self.impulses, self._forgotten = memory.impulses, memory.forgotten.copy()
         self.rest = memory.rest.copy() if memory.rest else None
         self.broad.forget_boxes()
 
     def forget(self, body: int, worlds: Bools | None) -> None:
         """Forget the contacts of a body that was put elsewhere, in these worlds or in all: they no longer apply."""
-        if len(self._memory.key):
-            world, pair = np.divmod(self._memory.key, len(self.pairs))
-            gone = (self.body_pairs[pair] == body).any(axis=1)
-            if worlds is not None:
-                gone &= worlds[world]
-            self._memory = self._memory.where(~gone)
+        self.impulses = self._without(self.impulses, body, worlds)
+        if self.rest:  # it may sleep, and wake with the next step
+            self._forgotten.append((body, worlds))
+
+    def _without(self, memory: WarmStart, body: int, worlds: Bools | None) -> WarmStart:
+        if not len(memory.key):
+            return memory
+        world, pair = np.divmod(memory.key, len(self.pairs))
+        gone = (self.body_pairs[pair] == body).any(axis=1)
+        if worlds is not None:
+            gone &= worlds[world]
+        return memory.where(~gone)
+
+    def _last(self) -> WarmStart:
+        """Return the impulses of the last step, and those that what has woken fell asleep with."""
+        if not (self.rest and self.rest.woken):
+            return self.impulses
+        woken = WarmStart.of(self.rest.woken, len(self.pairs))
+        for body, worlds in self._forgotten:
+            woken = self._without(woken, body, worlds)
+        return self.impulses.with_others(woken)
 
     def _colour(self, world: Ints, pair: Ints, bodies: int) -> tuple[Ints, list[int]]:
         """Return the order and ends of the colours; those of the last step if the same pairs touch."""
@@ -200,7 +237,7 @@ class Detector:
     def _recall(self, world: Ints, pair: Ints, manifold: Manifold) -> tuple[Array, Ints]:
         """Return the last step's impulses (3, m) for points made by the same faces as then, 0 for others; and ages."""
         impulse, age = np.zeros((3, len(world))), np.zeros(len(world), dtype=np.intp)
-        last = self._memory
+        last = self._last()
         if not len(last.key):
             return impulse, age
         key = world * len(self.pairs) + pair

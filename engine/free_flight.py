@@ -17,7 +17,8 @@ from engine.vector import dot, length, rotate
 if TYPE_CHECKING:
     from engine.world import World
 
-Fixed = tuple[list[float], list[list[float]]]  # a fixed shape: its box, low and high corner, and its faces nx, ny, far
+# A fixed shape: its row, its box (low and high corner), and its faces (nx, ny, far).
+Fixed = tuple[int, list[float], list[list[float]]]
 _APART: Final = MARGIN + 1e-6  # metres between shapes that do not touch, and far more than rounding makes of them
 
 
@@ -30,6 +31,7 @@ class FreeFlight:
     sides of its place counts as everywhere at once. Raises ValueError if any shape of the world is a circle.
 
     Attributes:
+        body: index of the body.
         x, y, angle: metres and radians.
         vx, vy, spin: m/s and rad/s.
         cos, sin: of the angle.
@@ -37,14 +39,15 @@ class FreeFlight:
     """
 
     def __init__(self, world: World, body: int, sway: float = 0.0) -> None:
-        self._world, self._body, self._sway = world, body, sway
+        self._world, self.body, self._sway = world, body, sway
+        self._seen: tuple[int, bytes] | None = None  # what tells whether fixed bodies are as they were when read
         params, shapes = world.params, world.detector.shapes
         if shapes.is_circle.any():
             raise ValueError("free flight knows polygons alone")
         self._inverse_mass, _, self._inverse_inertia = params.inverse_mass[body].tolist()
         self._drag, _, self._turn_drag = params.linear_drag[body].tolist()
-        corners = np.unique(shapes.start[shapes.body == body].reshape(-1, 2), axis=0)
-        self._corners: list[list[float]] = corners.tolist()
+        corners = shapes.start[shapes.body == body].reshape(-1, 2)
+        self._corners = sorted({(right, up) for right, up in corners.tolist()})
         self._reach = float(length(corners).max()) + _APART
         self._fixed: list[Fixed] | None = None
         self._highest = -np.inf
@@ -58,7 +61,7 @@ class FreeFlight:
     def _look_around(self) -> list[Fixed]:
         """Read where fixed bodies are, and how high the highest reaches."""
         shapes, state = self._world.detector.shapes, self._world.state
-        fixed = np.flatnonzero((shapes.body != self._body) & state.active[0, shapes.body])
+        fixed = np.flatnonzero((shapes.body != self.body) & state.active[0, shapes.body])
         body = shapes.body[fixed]
         sway = np.array([2 * self._sway, 0.0])  # what is at one end of its way now may go to the other
         cos, sin = state.cos[0, body, None], state.sin[0, body, None]
@@ -68,11 +71,11 @@ class FreeFlight:
         boxes = np.concatenate([start.min(axis=1) - sway, start.max(axis=1) + sway], axis=1)
         faces = np.concatenate([normal, far[..., None]], axis=2)
         self._highest = float(boxes[:, 3].max(initial=-np.inf))
-        return list(zip(boxes.tolist(), faces.tolist(), strict=True))
+        return list(zip(fixed.tolist(), boxes.tolist(), faces.tolist(), strict=True))
 
     def take(self) -> None:
         """Read the body's state."""
-        state, body = self._world.state, self._body
+        state, body = self._world.state, self.body
         self.x, self.y, self.angle = state.pose[0, body].tolist()
         self.vx, self.vy, self.spin = state.velocity[0, body].tolist()
         self.cos, self.sin = state.cos.item(0, body), state.sin.item(0, body)
@@ -80,11 +83,11 @@ class FreeFlight:
     def feel(self) -> None:
         """Read gravity and the air's drag, which may have changed since the last flight."""
         self._gravity = self._world.gravity.ravel().tolist()
-        self._air, _, self._turn_air = self._world.params.quadratic_drag[..., self._body, :].ravel().tolist()
+        self._air, _, self._turn_air = self._world.params.quadratic_drag[..., self.body, :].ravel().tolist()
 
     def give(self) -> None:
         """Write the body's state back, as after a step in which nothing touched."""
-        state, body = self._world.state, self._body
+        state, body = self._world.state, self.body
         pose, velocity = state.pose, state.velocity
         pose[0, body, 0], pose[0, body, 1], pose[0, body, 2] = self.x, self.y, self.angle
         velocity[0, body, 0], velocity[0, body, 1], velocity[0, body, 2] = self.vx, self.vy, self.spin
@@ -96,26 +99,40 @@ class FreeFlight:
 
         It need not where a face of every fixed shape has the whole body before it: a separating axis, as in `collide`.
         """
-        if self._fixed is None:
-            self._fixed = self._look_around()
-        x, y, reach = self.x, self.y, self._reach
-        if y - reach > self._highest:
-            return False
-        around = [
-            faces
-            for (low_x, low_y, high_x, high_y), faces in self._fixed
-            if y - reach <= high_y and low_y <= y + reach and x - reach <= high_x and low_x <= x + reach
-        ]
+        around = self.around()
         if not around:
             return False
-        cos, sin = self.cos, self.sin
+        x, y, cos, sin = self.x, self.y, self.cos, self.sin
         corners = [(right * cos - up * sin + x, right * sin + up * cos + y) for right, up in self._corners]
         return not all(
-            any(all(nx * right + ny * up > far for right, up in corners) for nx, ny, far in faces) for faces in around
+            any(all(nx * right + ny * up > far for right, up in corners) for nx, ny, far in faces)
+            for _, _, faces in around
         )
+
+    def around(self) -> list[Fixed]:
+        """Return the fixed shapes whose boxes the body might touch, however it is turned."""
+        world = self._world
+        # What sways is everywhere at once, and is moved about all the time.
+        seen = (0 if self._sway else world.detector.broad.places, world.state.active.tobytes())
+        if self._fixed is None or self._seen != seen:
+            self._fixed, self._seen = self._look_around(), seen
+        x, y, reach = self.x, self.y, self._reach
+        if y - reach > self._highest:
+            return []
+        left, right, low, high = x - reach, x + reach, y - reach, y + reach
+        return [
+            fixed
+            for fixed in self._fixed
+            if low <= fixed[1][3] and fixed[1][1] <= high and left <= fixed[1][2] and fixed[1][0] <= right
+        ]
 
     def step(self, force_x: float, force_y: float, torque: float, dt: float) -> None:
         """Advance by `dt` seconds under gravity, drag and this force, as `integrate` does."""
+        self.fall(force_x, force_y, torque, dt)
+        self.move(dt)
+
+    def fall(self, force_x: float, force_y: float, torque: float, dt: float) -> None:
+        """Change the velocity alone."""
         vx, vy, spin = self.vx, self.vy, self.spin
         ease, turn_ease = self._inverse_mass * dt, self._inverse_inertia * dt
         gravity_x, gravity_y = self._gravity
@@ -124,8 +141,15 @@ class FreeFlight:
         self.vx = (vx + force_x * ease + gravity_x * dt) / slowing
         self.vy = (vy + force_y * ease + gravity_y * dt) / slowing
         self.spin = (spin + torque * turn_ease) / turn_slowing
+
+    def move(self, dt: float) -> None:
+        """Move along the velocity."""
         self.x += self.vx * dt
         self.y += self.vy * dt
         self.angle += self.spin * dt
+        self.turn()
+
+    def turn(self) -> None:
+        """Bring `cos` and `sin` up to date."""
         # NumPy's own functions: `math` has others, which may differ in the last bit.
         self.cos, self.sin = float(np.cos(self.angle)), float(np.sin(self.angle))

@@ -13,9 +13,10 @@ velocity, a force, a body taken out, a floor moved away and another gravity wake
 from __future__ import annotations
 
 import copy
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from engine.contact_set import Contacts
 from engine.state import BodyParams, BodyState, span
@@ -32,6 +33,7 @@ class Rest:
     Attributes:
         asleep: whether each body sleeps, (batch, bodies).
         contacts: contacts of the sleeping bodies, as they were when they fell asleep; None if there are none.
+        woken: those of bodies that have woken since the last step, whose impulses the next one begins with.
         awake: whether each body moves or was moved by hand, (batch, bodies), and so may run into others; None if no
             body sleeps.
 
@@ -44,12 +46,18 @@ class Rest:
         self.asleep: Bools = np.zeros(shape, dtype=bool)
         self.awake: Bools | None = None
         self.contacts: Contacts | None = None
+        self.woken: Contacts | None = None
         self._steps: Ints = np.zeros(shape, dtype=np.intp)  # for which each body has been still
         self._place: Array = np.zeros((*shape, 3))  # where it was when it came to be still
         self._counts = False  # whether any has been still for a step or more
         self._gravity: Array = np.zeros(2)
-        self._known: list[bytes] | None = None  # the worlds after the last step; None if nothing sleeps
+        self._known: tuple[NDArray[Any], ...] | None = None  # the worlds after the last step; None if nothing sleeps
         self._all_asleep = False
+
+    @property
+    def idle(self) -> bool:
+        """Whether nothing sleeps, or has been still."""
+        return self._known is None and not self._counts
 
     def copy(self) -> Rest:
         """Return a copy that later steps do not change."""
@@ -59,7 +67,11 @@ class Rest:
         """Wake what has changed since the last step; return whether everything sleeps on, and a step does nothing."""
         if self._known is None:
             return False
-        if _watched(state, gravity) == self._known:
+        if (
+            not state.force.any()
+            and all(_same_bits(part, known) for part, known in zip(_parts(state), self._known, strict=True))
+            and np.array_equal(gravity, self._gravity)
+        ):
             return self._all_asleep
         self.wake(self._changed(state, np.asarray(gravity)))
         return False
@@ -70,7 +82,10 @@ class Rest:
         woken = self._spread(chosen, kept.world, kept.body) if kept else chosen
         self.asleep &= ~woken
         self._all_asleep = False
-        self.contacts = self._sleeping(self.contacts)
+        if kept:
+            sleeping = self._sleep(kept)
+            self.contacts = kept.resting(np.flatnonzero(sleeping))
+            self.woken = Contacts.join(self.woken, kept.resting(np.flatnonzero(~sleeping)))
         if self.awake is not None:
             self.awake |= woken
 
@@ -84,32 +99,42 @@ class Rest:
         return True
 
     def settle(self, state: BodyState, contacts: Contacts | None, gravity: Array) -> Contacts | None:
-        """Let fall asleep what has been still for long enough; return its contacts beside those of this step."""
+        """Let fall asleep what has been still for long enough; return the contacts of what slept before."""
+        kept = self.contacts
         if contacts is None and not self._counts and self._known is None:
             return None
-        merged = Contacts.join(contacts, self.contacts)
         if contacts is not None:
-            self._count(state, contacts)
             # The last of an island's bodies to be still for long enough asks for it, and asks again now and then.
-            due = np.flatnonzero(((self._steps > 0) & (self._steps % STEPS == 0)).any(axis=1))
+            due = self._count(state, contacts)
             if len(due) and self._fall_asleep(state, contacts, due):
-                self.contacts = self._sleeping(merged)
+                fallen = contacts.resting(np.flatnonzero(self._sleep(contacts)))
+                self.contacts = Contacts.join(fallen, kept)
         elif self._counts:
             self._steps[:] = 0
             self._counts = False
-        self._known = self.awake = None
         if self.asleep.any():
-            self._known, self._gravity = _watched(state, gravity), np.array(gravity)
+            self._know(state)
+            self._gravity = np.array(gravity)
             self.awake = self._dynamic & ~self.asleep | self._lifts(state)
             self._all_asleep = not (self.awake & state.active).any()
-        return merged
+        else:
+            self._known = self.awake = None
+        return kept
 
-    def _count(self, state: BodyState, contacts: Contacts) -> None:
-        """Count the steps for which each touching body has been still."""
-        still = np.zeros_like(self.asleep)
-        still[contacts.world[:, None], contacts.body] = True
-        still &= self._dynamic
-        world, body = still.nonzero()
+    def _know(self, state: BodyState) -> None:
+        """Note how everything is; worlds that the step has left alone are known, and in a large batch they are many."""
+        if self._known is None or self.awake is None:
+            self._known = tuple(part.copy() for part in _parts(state))
+            return
+        moved = np.flatnonzero(self.awake.any(axis=1))
+        for known, part in zip(self._known, _parts(state), strict=True):
+            known[moved] = part[moved]
+
+    def _count(self, state: BodyState, contacts: Contacts) -> Ints:
+        """Count the steps for which each touching body has been still; return worlds where one has been for long."""
+        bodies = len(self._dynamic)
+        world, body = np.divmod(np.unique(contacts.world[:, None] * bodies + contacts.body), bodies)
+        world, body = world[self._dynamic[body]], body[self._dynamic[body]]
         pose = state.pose[world, body]
         calm = (np.abs(state.velocity[world, body]) < STILL).all(axis=1)
         near = calm & (np.abs(pose - self._place[world, body]) < DRIFT).all(axis=1)
@@ -119,6 +144,7 @@ class Rest:
         self._steps[:] = 0
         self._steps[world, body] = count
         self._counts = True
+        return np.unique(world[(count > 0) & (count % STEPS == 0)])
 
     def _fall_asleep(self, state: BodyState, contacts: Contacts, due: Ints) -> bool:
         """Put to sleep every island that lies on something, in the worlds that are `due`; return whether there was one.
@@ -149,12 +175,11 @@ class Rest:
             lifts[:, self._fixed] = speeds.any(axis=2)
         return lifts
 
-    def _sleeping(self, contacts: Contacts | None) -> Contacts | None:
-        """Return those contacts of which no body is awake."""
-        if contacts is None:
-            return None
+    def _sleep(self, contacts: Contacts) -> Bools:
+        """Whether no body of each contact is awake, (m,)."""
         asleep = self.asleep[contacts.world[:, None], contacts.body] | ~self._dynamic[contacts.body]
-        return contacts.resting(np.flatnonzero(asleep.all(axis=1)))
+        sleep: Bools = asleep.all(axis=1)
+        return sleep
 
     def _spread(self, chosen: Bools, world: Ints, body: Ints) -> Bools:
         """Return the chosen bodies (worlds, bodies), and all that pairs link to them: `world` (n,), `body` (n, 2).
@@ -174,21 +199,45 @@ class Rest:
     def _changed(self, state: BodyState, gravity: Array) -> Bools:
         """Return which bodies, (batch, bodies), are not as they were after the last step."""
         assert self._known is not None
-        pose, velocity, force, active = (
-            np.frombuffer(was, now.dtype).reshape(now.shape) != now
-            for was, now in zip(self._known, _parts(state), strict=False)
-        )
+        pose, velocity, active = (was != now for was, now in zip(self._known, _parts(state), strict=True))
         before, after = (np.broadcast_to(each, (len(active), 2)) for each in (self._gravity, gravity))
         fall: Bools = (before != after).any(axis=1)
-        changed: Bools = (pose | velocity | force).any(axis=2) | active
+        changed: Bools = np.any(pose | velocity | (state.force != 0.0), axis=2) | active
         changed |= fall[:, None] & self.asleep
         return changed
 
 
-def _parts(state: BodyState) -> tuple[Array, Array, Array, Bools]:
-    return state.pose, state.velocity, state.force, state.active
+class Standstill:
+    """Worlds without sleep in which a step has led back to where it began, bit for bit, and so would lead there again.
+
+    All that a step depends on is compared with what the last one began with. That is done only while nothing moves, for
+    it takes longer than it could save as long as anything does.
+    """
+
+    def __init__(self) -> None:
+        self._before: list[object] | None = None
+
+    def lasts(self, state: BodyState, gravity: Array, impulses: list[bytes], settings: object) -> bool:
+        """Whether a step would change nothing, with these impulses of the last one and these settings of the world."""
+        before = self._before
+        self._before = [*_watched(state, gravity), *impulses, settings]
+        return self._before == before
+
+    def end(self) -> None:
+        """Note that something moves."""
+        self._before = None
+
+
+def _parts(state: BodyState) -> tuple[NDArray[Any], ...]:
+    return state.pose, state.velocity, state.active
+
+
+def _same_bits(a: NDArray[Any], b: NDArray[Any]) -> bool:
+    """Whether two arrays are equal, NaN to NaN."""
+    kind = np.int8 if a.dtype == bool else np.int64
+    return bool(np.all(a.view(kind) == b.view(kind)))
 
 
 def _watched(state: BodyState, gravity: Array) -> list[bytes]:
-    """Return all that wakes a body if it changes, to be compared at once: far cheaper than number by number."""
-    return [part.tobytes() for part in (*_parts(state), np.asarray(gravity))]
+    """Return all of a world's state that a step depends on, to be compared at once."""
+    return [part.tobytes() for part in (*_parts(state), state.force, np.asarray(gravity))]

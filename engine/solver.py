@@ -34,6 +34,8 @@ TOLERANCE = 1e-4
 # for as long as one looks.
 LENIENCE = 1e-2
 OLD = 15
+# Share of what two points' pushes do to each other by which they must differ, or they nearly coincide.
+NARROWEST = 1e-3
 # Manifolds among which there nearly always is one that would be pulled; it is not asked then.
 _MANY = 12
 
@@ -92,6 +94,9 @@ class Solver:
             (rows, impulse[:, span], target[:, span], None if friction is None else friction[span])
             for rows, span in zip(self._colours, self._spans, strict=True)
         ]
+        if friction is None:
+            for rows in self._colours:
+                rows.space.change[2] = 0.0
         for _ in range(iterations):
             before = impulse.tobytes()
             for rows, total, wanted, coefficient in parts:
@@ -223,7 +228,7 @@ class Space:
         self.turn = np.empty((3, count, 6))
         self.speed = np.empty((3, count))
         self.closing = self.speed[:2]
-        self.change = np.zeros((3, count))  # of impulses; friction's stays zero where there is none
+        self.change = np.zeros((3, count))  # of impulses
         self.pushed, self.column = self.change[:2], self.change[:, :, None]
         self.lacking, self.both, self.alone, self.nudges = np.empty((4, 2, count))
         self.sliding, self.cone, self.low, self.rub = np.empty((4, count))
@@ -259,7 +264,7 @@ def _stiffness(jacobian: Array, response: Array) -> Array:
 def _coincide(stiffness: Array) -> Bools:
     """Whether a manifold's two points are so near each other that no pair of pushes can tell them apart, (m,)."""
     product = stiffness[0] * stiffness[1]
-    near: Bools = (product > 0) & (product - stiffness[3] ** 2 <= 1e-3 * product)
+    near: Bools = (product > 0) & (product - stiffness[3] ** 2 <= NARROWEST * product)
     return near
 
 

@@ -9,14 +9,17 @@ import numpy as np
 from engine.body import Body
 from engine.contact_set import Contacts
 from engine.contacts import Detector
+from engine.free_flight import FreeFlight
 from engine.integrate import MovingBodies, integrate_position, integrate_velocity
-from engine.rest import Rest
+from engine.lone_contacts import LoneContacts
+from engine.rest import Rest, Standstill
 from engine.shapes import Point, Shape, mass_properties
 from engine.solver import Solver
 from engine.state import BodyParams, BodyState, ShapeTable
 from engine.vector import Array, Bools
 
 DT = 1.0 / 60.0
+_BARELY = 1e-12  # m/s and rad/s, at which a place does not change by a bit; what stands moves so fast by rounding
 
 
 class World:
@@ -30,7 +33,12 @@ class World:
     that it comes to lie still, impulses pass over to the points that take the place of others, and overlaps of
     less than a centimetre are left alone. Off, each step computes everything anew, as a flight needs that was
     recorded so.
+
+    Unless `in_floats` is off, the only body of a batch of one that forces can move flies in plain floats, and so many
+    times as fast, as long as nothing is near it (`engine.free_flight`): the same, bit for bit.
     """
+
+    in_floats: bool = True
 
     def __init__(
         self,
@@ -52,10 +60,12 @@ class World:
         self.params = BodyParams()
         self.bodies: list[Body] = []
         self.shapes: list[Shape] = []
-        self.contacts: Contacts | None = None
+        self._touched: tuple[Contacts | None, Contacts | None] = (None, None)  # in the last step, and of what slept
         self._shape_bodies: list[int] = []
         self._detector: Detector | None = None
         self._movers: MovingBodies | None = None
+        self._lone: LoneContacts | None = None
+        self._standstill = Standstill()
 
     def add(
         self,
@@ -125,7 +135,7 @@ class World:
         self.shapes += shapes
         self._shape_bodies += [len(self.bodies)] * len(shapes)
         self.bodies.append(Body(self, len(self.bodies)))
-        self._detector = self._movers = None
+        self._detector = self._movers = self._lone = None
         return self.bodies[-1]
 
     def step(self, touching: bool = True) -> None:
@@ -135,7 +145,12 @@ class World:
         """
         rest = self.detector.rest
         if rest and rest.undisturbed(self.state, self.gravity):
-            self.contacts = rest.contacts
+            self._touched = (rest.contacts, None)
+            return
+        if not rest and self.contacts and touching and self._stands():
+            self.state.force[:] = 0.0
+            return
+        if touching and self._step_in_floats():
             return
         contacts = self.detector.find(self.state) if touching else None
         awake = rest.awake if rest else None
@@ -148,8 +163,59 @@ class World:
             solver.solve_overlaps(self.state, max(2, self.iterations // 3), DT, lenient=rest is not None)
         self.state.refresh_rotation(self.movers.bodies)
         self.state.force[:] = 0.0
-        self.contacts = rest.settle(self.state, contacts, self.gravity) if rest else contacts
-        self.detector.remember(self.contacts)
+        self._touched = (contacts, rest.settle(self.state, contacts, self.gravity) if rest else None)
+        self.detector.remember(contacts)
+
+    def _stands(self) -> bool:
+        """Whether a step would change nothing, as the last one did."""
+        if np.abs(self.state.velocity).max() > _BARELY:
+            self._standstill.end()
+            return False
+        settings = (self.iterations, self.restitution_threshold)
+        return self._standstill.lasts(self.state, self.gravity, self.detector.impulses.parts, settings)
+
+    def _step_in_floats(self) -> bool:
+        """Take the step in plain floats, and return whether that was possible.
+
+        Only one body may move, and no shape may be a circle. In a world with sleep, nothing may be near it.
+        """
+        body, rest, state = self.movers.only, self.detector.rest, self.state
+        if (
+            body is None
+            or self.batch > 1
+            or not self.in_floats
+            or (rest and not rest.idle)
+            or not state.active[0, body]
+        ):
+            return False
+        if self._lone is None or self._lone.flight.body != body:
+            if self.detector.shapes.is_circle.any():
+                return False
+            self._lone = LoneContacts(self, FreeFlight(self, body))
+        flight, (along, up, torque) = self._lone.flight, state.force[0, body].tolist()
+        flight.take()
+        flight.feel()
+        if not flight.near():
+            flight.step(along, up, torque, DT)
+            flight.give()
+        elif rest or self._others_move(body):
+            return False
+        else:
+            self._touched = (self._lone.step((along, up, torque), DT), None)
+            self.detector.remember(self._touched[0])
+        state.force[:] = 0.0
+        return True
+
+    def _others_move(self, body: int) -> bool:
+        velocity = self.state.velocity[0]
+        return bool(velocity[:body].any() or velocity[body + 1 :].any())
+
+    @property
+    def contacts(self) -> Contacts | None:
+        """What touched in the last step, those of sleeping bodies last; joined when it is asked for."""
+        if self._touched[1] is not None:
+            self._touched = (Contacts.join(*self._touched), None)
+        return self._touched[0]
 
     @property
     def asleep(self) -> Bools:
@@ -166,7 +232,7 @@ class World:
     def untouched(self) -> None:
         """Note that nothing touched in the latest step, which `free_flight` took."""
         self.detector.remember(None)
-        self.contacts = None
+        self._touched = (None, None)
 
     @property
     def detector(self) -> Detector:

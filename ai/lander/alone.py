@@ -79,6 +79,8 @@ class Alone:
                 outcome = self._judged(now * DT)
         if now > start:
             body.give()
+            env.steps[0] = now - 1
+            env.leave_pads()
             env.steps[0], env.main_steps[0], env.side_steps[0] = now, main_steps, side_steps
         return Flown(now - start, tilted, outcome)
 

@@ -193,6 +193,13 @@ class Craft:
         state.velocity[:, bodies, 0] = velocity[:, None]
         self.world.detector.broad.forget_boxes(bodies)
 
+    def leave_pads(self) -> None:
+        """Put moving pads where a step of the world leaves them that has begun now: moved on by that step."""
+        if self.conditions.moves:
+            self._move_pads()
+            state, bodies = self.world.state, self._pad_bodies
+            state.pose[:, bodies, 0] += state.velocity[:, bodies, 0] * DT
+
     def _move(self, flying: Bools, touching: bool = True) -> None:
         """Apply thrust and wind, and step the worlds; without `touching`, nothing collides."""
         state, body = self.world.state, self.lander.index

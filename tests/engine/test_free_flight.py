@@ -6,9 +6,9 @@ import pytest
 from engine import DT, Circle, FreeFlight, Polygon, World
 
 
-def falling(rng, top=0.0):
+def falling(rng, top=0.0, **settings):
     """A world with a block that falls, turning, towards a floor and a slope that leans, and what it falls with."""
-    world = World((0.1, -3.0))
+    world = World((0.1, -3.0), **settings)
     x, y, angle, vx, vy, spin = rng.uniform((-6, 5, -3, -3, -3, -2), (6, 12, 3, 3, 1, 2))
     drag = {"linear_drag": 0.02, "quadratic_drag": 0.05, "angular_drag": 0.2, "angular_quadratic_drag": 0.1}
     block = world.add([Polygon.box(1.0, 0.6), Polygon.box(0.3, 0.5, (0.8, 0.1))], (x, y), angle, mass=2.0, **drag)
@@ -41,6 +41,33 @@ def test_free_flight_is_the_same_bit_for_bit_until_just_before_something_touches
         assert twin.contacts is not None  # it was not near before it had to be
         for name in ("pose", "velocity", "cos", "sin"):
             assert getattr(world.state, name).tobytes() == getattr(twin.state, name).tobytes()
+
+
+@pytest.mark.parametrize("sleeping", [True, False])
+def test_a_world_of_one_body_steps_in_floats_as_it_does_in_arrays(sleeping):
+    rng = np.random.default_rng(8)
+    for seed in range(6):
+        (world, block), (twin, other) = (falling(np.random.default_rng(seed), sleeping=sleeping) for _ in range(2))
+        twin.in_floats = False
+        touched = 0
+        for step in range(240):
+            push = rng.uniform(-4.0, 4.0, 3) if step % 3 else np.zeros(3)
+            for body in (block, other):
+                body.apply_force(push[:2])
+                body.apply_torque(push[2])
+            if step in (5, 90):  # a floor that is put elsewhere, a body taken out for a while, another gravity
+                for each in (world, twin):
+                    each.bodies[1].position = (0.0, -0.7 - 0.01 * step)
+                    each.bodies[0].active = step > 5
+                    each.gravity = np.array([0.1, -3.0 - 0.01 * step])
+            world.step()
+            twin.step()
+            assert not world.state.force.any()
+            for name in ("pose", "velocity", "cos", "sin"):
+                assert getattr(world.state, name).tobytes() == getattr(twin.state, name).tobytes()
+            assert (world.contacts is None) == (twin.contacts is None)
+            touched += twin.contacts is not None
+        assert 0 < touched < 240
 
 
 def test_what_sways_is_near_wherever_it_may_be():

@@ -131,3 +131,14 @@ def test_gliding_alone_is_gliding_among_others(case):
             assert np.array_equal(one.glide(actions[[slot]])[0], seen[slot])
     for slot, one in enumerate(alone):
         assert_same(many, slot, one)
+
+
+def test_pads_that_move_stand_where_the_engine_leaves_them():
+    rng = np.random.default_rng(6)
+    many, alone = begun("two pads", 3, rng)
+    for _ in range(12):
+        step(many, alone, rng.integers(0, NUM_ACTIONS, 3))
+        for slot, one in enumerate(alone):
+            assert many.outcome[slot] == Outcome.FLYING
+            assert np.array_equal(one.world.state.pose[0], many.world.state.pose[slot])
+            assert np.array_equal(one.world.state.velocity[0], many.world.state.velocity[slot])
