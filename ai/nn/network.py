@@ -76,25 +76,25 @@ class NeuralNetwork:
         return pack((parameter for layer in self.layers for parameter in layer.parameters), self.dtype)
 
     @cached_property
-    def _row(self) -> tuple[Array, list[Callable[[], Any]], Callable[[], Array]] | None:
-        """Memory for one example, the steps that predict it, and the last one, which returns the answer.
+    def _row(self) -> tuple[Array, list[Callable[[], Any]]]:
+        """Memory for one example (1, inputs), and the steps that predict it; the last one returns the answer.
 
         Each step has its arrays at hand, so that a decision of a small network takes little more time than its
-        arithmetic. The layers' own `predict` says the same at length. None for a network that takes images.
+        arithmetic. The layers' own `predict` says the same at length. Networks that take images have no steps.
         """
         sizes = [size for layer in self.layers for size in (layer.inputs, layer.outputs) if isinstance(size, int)]
         if not sizes or any(isinstance(layer.inputs, tuple) for layer in self.layers):
-            return None
+            return np.empty((0, 0), self.dtype), []
         units, values, steps = sizes[0], self.values, []
-        first = memory = np.ones((1, units + 1), self.dtype)
+        first = memory = np.ones(units + 1, self.dtype)
         for layer in self.layers:
             units = layer.outputs if isinstance(layer.outputs, int) else units
-            following = np.ones((1, units + 1), self.dtype)
+            following = np.ones(units + 1, self.dtype)
             size = sum(parameter.value.size for parameter in layer.parameters)
-            output = None if layer is self.layers[-1] else following[:, :-1]
+            output = None if layer is self.layers[-1] else following[:-1]
             steps.append(layer.row_step(memory, output, values[:size]))
             memory, values = following, values[size:]
-        return first[:, :-1], steps[:-1], steps[-1]
+        return first[None, :-1], steps
 
     def predict(self, input_data: npt.ArrayLike) -> Array:
         """Return the output for a batch (batch, inputs), or one example (inputs,), as a new array.
@@ -106,12 +106,12 @@ class NeuralNetwork:
         data: Array = np.asarray(input_data, self.dtype)
         if data.ndim == 4 and len(data) > IMAGES:
             return np.concatenate([self.predict(part) for part in np.split(data, range(IMAGES, len(data), IMAGES))])
-        if data.ndim == 2 and len(data) == 1 and self._row:
-            example, steps, answer = self._row
+        example, steps = self._row
+        if data.shape == example.shape:
             example[...] = data
             for step in steps:
-                step()
-            return answer()
+                data = step()
+            return data
         for layer in self.layers:
             data = layer.predict(data)
         return data
