@@ -5,7 +5,7 @@
 An update is the whole of it: next states through the target network, the largest Q of each, states through
 the online network, squared error at the chosen actions only, the way back, one step of Adam. A decision is
 one observation through the network. Both sides take turns, ten updates or a hundred decisions each, so that a
-busy machine slows both.
+busy machine slows both; times are processor time, without that of other work.
 """
 
 import os
@@ -135,15 +135,15 @@ def torch_decision() -> Callable[[], object]:
 
 
 def medians(*tasks: Callable[[], object], calls: int, rounds: int = ROUNDS) -> list[float]:
-    """Return the median time of each task in microseconds; the tasks take turns of so many calls."""
+    """Return the median processor time of each task in microseconds; the tasks take turns of so many calls."""
     times: list[list[float]] = [[] for _ in tasks]
     for measured in [False] * (rounds // 10) + [True] * rounds:
         for task, record in zip(tasks, times, strict=True):
-            start = time.perf_counter()
+            start = time.process_time()
             for _ in range(calls):
                 task()
             if measured:
-                record.append((time.perf_counter() - start) / calls * 1e6)
+                record.append((time.process_time() - start) / calls * 1e6)
     return [statistics.median(record) for record in times]
 
 

@@ -221,7 +221,7 @@ class DeepQAgent:
         rows = np.arange(len(actions))
         chosen = predicted[rows, actions]
         errors: Floats = chosen - targets
-        derivative = np.zeros_like(predicted)
+        derivative = np.zeros(predicted.shape, predicted.dtype)
         # Outputs have costs of their own: those of the other actions are 0.
         derivative[rows, actions] = self.online.cost.derivative(chosen[:, None], targets[:, None])[:, 0] * weights
         self.online.backward_propagate(derivative)
@@ -235,7 +235,8 @@ class DeepQAgent:
             if tau >= 1.0:
                 self.target.values = self.online.values
             else:
-                self.target.values += tau * (self.online.values - self.target.values)
+                values = self.target.values
+                values += tau * (self.online.values - values)  # in place: the property's setter would copy them again
 
     # Values and decisions
 

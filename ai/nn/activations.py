@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from types import MappingProxyType
 from typing import Self
 
@@ -95,7 +96,7 @@ class ActivationFunctions:
             raise ValueError(f"the slope of a leaky ReLU lies between 0 and 1, not {slope}")
         return Activation(
             lambda x, out=None: np.maximum(x, slope * x, out=out),
-            lambda x, _y, out: np.maximum(np.greater(x, 0, out=out), slope, out=out),
+            partial(_leaky_slope, slope),
             name="leaky_relu",
             options=MappingProxyType({"slope": slope}),
             initialisation="he",
@@ -120,6 +121,12 @@ def _relu(x: Array, out: Array | None = None) -> Array:
     y = np.empty_like(x) if out is None else out
     y.fill(0)
     return np.maximum(x, y, out=y)
+
+
+def _leaky_slope(slope: float, x: Array, _y: Array, out: Array) -> None:
+    np.greater(x, 0, out=out)
+    out *= 1 - slope  # two passes, and still faster than one that compares an array and a number
+    out += slope
 
 
 def _tanh_slope(_x: Array, y: Array, out: Array) -> None:

@@ -23,16 +23,25 @@ class Correlation:
 
     Windows are copied into the columns of a matrix (Chellapilla, Puri & Simard 2006): whole, so that one product
     with the kernels is the result; or only one column of each, and the products with all columns of the kernels
-    are added, every one shifted by its place. With many channels the second moves fewer numbers.
+    are added, every one shifted by its place. With many channels the second moves fewer numbers. `columns` chooses:
+    `kernel` or 1, the latter for a stride of 1 only; None is what should take less time.
     """
 
     def __init__(
-        self, kernel: int, channels: int, filters: int, width: int, *, stride: int = 1, padding: int = 0
+        self,
+        kernel: int,
+        channels: int,
+        filters: int,
+        width: int,
+        *,
+        stride: int = 1,
+        padding: int = 0,
+        columns: int | None = None,
     ) -> None:
         self.kernel, self.channels, self.filters, self.width = kernel, channels, filters, width
         self.stride, self.padding = stride, padding
         self.scratch: dict[str, Array] = {}
-        self._copy(min((kernel, 1) if stride == 1 else (kernel,), key=self._cost))
+        self._copy(columns or min((kernel, 1) if stride == 1 else (kernel,), key=self._cost))
 
     def _copy(self, columns: int) -> None:
         """Set how many columns of each window are copied: `kernel` or 1."""

@@ -82,7 +82,7 @@ class CostFunctions:
             return float(np.sum(curved * (error - 0.5 * curved))) / _batch(error)
 
         def derivative(prediction: Array, target: Array) -> Array:
-            error: Array = np.clip(np.subtract(prediction, target), -delta, delta)
+            error: Array = np.subtract(prediction, target).clip(-delta, delta)
             return error / _batch(error)
 
         return Cost(function, derivative, "huber", MappingProxyType({"delta": delta}))

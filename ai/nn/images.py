@@ -55,6 +55,9 @@ class ConvolutionLayer(FullyConnectedLayer):
         self.overhang = self.kernel - 1 - self.padding  # the padding of the way back
         self.forward = Correlation(self.kernel, channels, self.filters, reach, stride=self.stride, padding=self.padding)
         self.backward = Correlation(self.kernel, self.filters, channels, width, padding=self.overhang)
+        # What the gradient sums up is small whichever way windows are copied, so the way that copies least is best.
+        self.sums = Correlation(self.kernel, channels, self.filters, reach, stride=self.stride, padding=self.padding,
+                                columns=1 if self.stride == 1 else None)  # fmt: skip
         self.framed = self.framed_error = np.empty((0, 0, 0, 0), dtype)
 
     @property
@@ -88,7 +91,7 @@ class ConvolutionLayer(FullyConnectedLayer):
         weights, bias = self.parameters
         error = np.asarray(output_error, self.dtype, order="F").T
         error.reshape(self.filters, -1).dot(constant(error[0].size, 1.0, error.dtype), bias.gradient)
-        weights.gradient[...] = self.forward.gradient(self.framed.T, error).reshape(weights.value.shape)
+        weights.gradient[...] = self.sums.gradient(self.framed.T, error).reshape(weights.value.shape)
 
     def input_error(self, output_error: Array) -> Array:
         """Return E correlated with the kernels turned by half: (batch, height, width, channels)."""
@@ -162,13 +165,15 @@ class MaxPoolingLayer(HalvedLayer):
         """Return the error of the largest pixels, and 0 for all others: (batch, height, width, channels)."""
         if self.error.shape != self.input.shape or self.error.dtype != self.input.dtype:
             self.error = np.zeros(self.input.shape, self.input.dtype, order="F")
-            self.left = np.empty_like(self.output)
-        left = output_error
+            self.given, self.left = np.empty_like(self.output, bool), np.empty_like(self.output, bool)
+        self.left.fill(True)  # squares whose error no pixel has been given yet
         *others, (_, last) = zip(self._squares(self.input), self._squares(self.error), strict=True)
         for pixel, error in others:
-            np.multiply(left, pixel == self.output, out=error)
-            left = np.subtract(left, error, out=self.left)  # of what was given, nothing: equal pixels get 0
-        last[...] = left
+            np.equal(pixel, self.output, out=self.given)
+            self.given &= self.left
+            self.left ^= self.given
+            np.multiply(output_error, self.given, out=error)
+        np.multiply(output_error, self.left, out=last)
         return self.error
 
     def _maximum(self, images: Array, output: Array) -> Array:

@@ -55,19 +55,19 @@ class Optimizer(ABC):
         Raises DivergenceError, and leaves `values` as they are, if the cost, the gradient or the step is not
         finite, or too long for its length to be; ValueError if the size is not that of the steps before.
         """
-        length = _length(gradients)
         if not math.isfinite(cost):
             raise DivergenceError("cost", self)
-        if not math.isfinite(length):
-            raise DivergenceError("gradient", self)
         if self.scratch.shape != values.shape or self.scratch.dtype != values.dtype:
             self._prepare(values)
-        if self.clip is not None and length > self.clip:
-            gradients *= self.clip / length
-        with np.errstate(over="ignore", invalid="ignore"):  # found right below
+        with np.errstate(over="ignore", invalid="ignore"):  # once, as it takes as long as a pass: found right below
+            length = _length(gradients)
+            if not math.isfinite(length):
+                raise DivergenceError("gradient", self)
+            if self.clip is not None and length > self.clip:
+                gradients *= self.clip / length
             self._fill_step(gradients, self.steps + 1)
-        if not math.isfinite(_length(self.scratch)):
-            raise DivergenceError("step", self)
+            if not math.isfinite(_length(self.scratch)):
+                raise DivergenceError("step", self)
         values -= self.scratch
         self.steps += 1
         return length
@@ -185,8 +185,7 @@ class Adam(Optimizer):
 
 def _length(vector: Array) -> float:
     """Euclidean length of a flat vector; not finite where a number of it is not, or their squares overflow."""
-    with np.errstate(over="ignore", invalid="ignore"):
-        return math.sqrt(np.dot(vector, vector))
+    return math.sqrt(np.dot(vector, vector))
 
 
 OPTIMIZERS: dict[str, type[SGD] | type[Momentum] | type[Adam]] = {

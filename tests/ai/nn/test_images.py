@@ -60,6 +60,19 @@ def test_gradients_do_not_depend_on_the_blocks(monkeypatch):
         np.testing.assert_allclose(gradient, one, atol=1e-12)
 
 
+@pytest.mark.parametrize("padding", [0, 2])
+def test_gradients_do_not_depend_on_how_windows_are_copied(padding):
+    rng = np.random.default_rng(3)
+    images = np.pad(rng.normal(size=(2, 7, 6, 5)), [(0, 0), (padding, padding), (padding, padding), (0, 0)])
+    width, height = (size - 2 for size in images.shape[1:3])
+    error = rng.normal(size=(4, width, height, 5))
+    whole, by_columns = (
+        correlation.Correlation(3, 2, 4, width, padding=padding, columns=columns).gradient(images, error)
+        for columns in (3, 1)
+    )
+    np.testing.assert_allclose(by_columns.reshape(18, 4), whole.reshape(18, 4), atol=1e-12)
+
+
 def test_the_largest_of_each_square_comes_through():
     image = np.arange(30.0).reshape(1, 5, 6, 1)
     pooled = MaxPoolingLayer((5, 6, 1)).predict(image)
@@ -72,6 +85,21 @@ def test_of_equal_pixels_the_first_gets_the_error():
     layer.forward_propagate(image)
     error = layer.input_error(np.array([1.0, 2, 3]).reshape(1, 1, 3, 1))
     np.testing.assert_array_equal(error[0, :, :, 0], [[0, 1, 2, 0, 0, 0], [0, 0, 0, 0, 3, 0]])
+
+
+@pytest.mark.parametrize("size", [2, 3])
+def test_pooling_goes_back_as_pixel_by_pixel(size):
+    rng = np.random.default_rng(4)
+    layer = MaxPoolingLayer((7, 8, 2), size)
+    images = rng.integers(0, 3, (4, 7, 8, 2)).astype(float)  # a third of the pixels equal their neighbour
+    error = rng.normal(size=layer.forward_propagate(images).shape)
+    expected = np.zeros(images.shape)
+    for example, row, column, channel in np.ndindex(error.shape):
+        top, left = row * size, column * size
+        square = images[example, top : top + size, left : left + size, channel]
+        down, across = np.unravel_index(square.argmax(), square.shape)  # the first of equal ones
+        expected[example, top + down, left + across, channel] = error[example, row, column, channel]
+    np.testing.assert_array_equal(layer.input_error(error), expected)
 
 
 def test_what_fills_no_square_gets_no_error():

@@ -9,6 +9,7 @@ from ai.nn import (
     Adam,
     CostFunctions,
     DivergenceError,
+    DropoutLayer,
     DuelingLayer,
     FullyConnectedLayer,
     Layer,
@@ -274,6 +275,29 @@ def test_what_predict_returned_stays():
     network.train(XOR_X, XOR_Y)
     network.predict(XOR_X[::-1])
     np.testing.assert_array_equal(first, kept)
+
+
+@pytest.mark.parametrize(
+    "last",
+    [
+        lambda: FullyConnectedLayer(3, 3),
+        lambda: DuelingLayer(3, 3),
+        lambda: LayerNormalisation(3),
+        lambda: ActivationLayer(*ActivationFunctions.use_relu()),
+        lambda: ActivationLayer(lambda x: x, np.ones_like),
+        DropoutLayer,
+        lambda: Gain(3),
+    ],
+)
+def test_one_example_is_answered_by_an_array_of_its_own(last):
+    network = NeuralNetwork(*CostFunctions.use_mse()).add_layer(FullyConnectedLayer(2, 3)).add_layer(last())
+    rng = np.random.default_rng(1)
+    network.values += rng.normal(size=network.values.shape)
+    x = rng.normal(size=(3, 2))
+    answers = [network.predict(row[None]) for row in x]
+    np.testing.assert_allclose(np.concatenate(answers), network.predict(x), rtol=1e-5, atol=1e-6)
+    answers[1][...] = 7
+    np.testing.assert_allclose(network.predict(x[1:2]), network.predict(x)[1:2], rtol=1e-5, atol=1e-6)
 
 
 @pytest.mark.parametrize("head", [FullyConnectedLayer, DuelingLayer])
