@@ -47,7 +47,7 @@ from ai.agent.n_step import Episodes, NStep
 from ai.agent.network import build_network, make_optimizer
 from ai.agent.normalizer import Normalizer
 from ai.agent.replay import MemoryCell, ReplayBuffer, make_replay
-from ai.agent.schedule import importance, learning_rate
+from ai.agent.schedule import importance, learning_rate, target_rate
 from ai.agent.storage import SavedAgent, read_agent, save_agent
 from ai.agent.symmetry import Symmetry
 from ai.common.decision import Decision, decide
@@ -231,7 +231,7 @@ class DeepQAgent:
     def _update_target(self) -> None:
         """Move the target network towards the online one by τ, where that is due."""
         if self.train_count % self.config.target_update_interval == 0:
-            tau = self.config.tau
+            tau = target_rate(self.config, self.decisions)
             if tau >= 1.0:
                 self.target.values = self.online.values
             else:

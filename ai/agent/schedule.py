@@ -21,6 +21,7 @@ _SCHEDULED: Final = {
     "learning_rate": "final_learning_rate",
     "final_learning_rate": "learning_rate",
     "schedule_decisions": "final_learning_rate",
+    "final_tau": "tau",
     "final_touchdown_limits": "schedule_decisions",
     "epsilon_start": "epsilon_end",
     "epsilon_end": "epsilon_start",
@@ -60,6 +61,12 @@ def geometric(start: float, end: float, factor: float, done: int) -> float:
 def learning_rate(config: Config, decisions: int) -> float:
     """Return the learning rate after so many decisions: it falls in a straight line over the schedule."""
     return linear(config.learning_rate, config.final_learning_rate, decisions, config.schedule_decisions)
+
+
+def target_rate(config: Config, decisions: int) -> float:
+    """Return the target network's update rate after so many decisions: τ falls in a straight line to a share of it."""
+    fallen = linear(0.0, 1.0 - config.final_tau, decisions, config.schedule_decisions)
+    return config.tau * (1.0 - fallen)  # a share of 1 leaves τ as it is, to the bit
 
 
 def importance(config: Config, decisions: int) -> float:
@@ -117,5 +124,6 @@ def _scheduled(config: Config, decisions: int, episodes: int) -> tuple[float, ..
     each = exploration_of_each(config, exploration(config, decisions, episodes))
     corrected = importance(config, decisions) if config.prioritised else 0.0
     limits = touchdown_limits(config, decisions)
-    decided = (learning_rate(config, decisions), limits, corrected, float(each[0]), float(each[-1]))
+    rates = (learning_rate(config, decisions), target_rate(config, decisions))
+    decided = (*rates, limits, corrected, float(each[0]), float(each[-1]))
     return tuple(round(value, 12) for value in decided)
