@@ -41,7 +41,7 @@ class Config(Knobs):
     cost: str = knob("huber", "Cost function: how an error is measured.", "learning", choices=("mse", "huber"))
     gradient_clip: float = knob(10.0, "Gradient clipping: the longest gradient allowed.",
                                 "learning", low=0.1, high=100.0, log=True, live=True)
-    schedule_decisions: int = knob(600_000, "Decisions in which the learning rate falls and touchdown limits tighten.",
+    schedule_decisions: int = knob(600_000, "Decisions in which learning rate and τ fall and touchdown limits tighten.",
                                    "learning", low=1_000, high=10_000_000, log=True, formerly="horizon")
 
     hidden: tuple[int, ...] = knob((64, 64), "Units in each hidden layer.", "network", low=1, high=1024,

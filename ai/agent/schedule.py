@@ -21,7 +21,6 @@ _SCHEDULED: Final = {
     "learning_rate": "final_learning_rate",
     "final_learning_rate": "learning_rate",
     "schedule_decisions": "final_learning_rate",
-    "final_tau": "tau",
     "final_touchdown_limits": "schedule_decisions",
     "epsilon_start": "epsilon_end",
     "epsilon_end": "epsilon_start",
@@ -99,6 +98,7 @@ def in_force(config: Config, decisions: int, episodes: int) -> InForce:
     """Return the scheduled values in force after so many decisions and episodes."""
     values = {
         "learning_rate": learning_rate(config, decisions),
+        "tau": target_rate(config, decisions),
         "epsilon_start": exploration(config, decisions, episodes),
     }
     return InForce(values, idle(config, decisions, episodes))
