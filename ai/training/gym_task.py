@@ -32,7 +32,7 @@ GYM: Final = Config(
 # discount pays. Written out, so that no change of our lander's own settings changes these.
 LUNAR_LANDER: Final = Config(
     env="LunarLander-v3", num_envs=16, frame_skip=3, normalise_inputs=True, mirror=True, steadiness=0.0,
-    learning_rate=2e-3, final_learning_rate=1e-5, schedule_decisions=400_000, discount=0.975, n_step=3,
+    learning_rate=2e-3, final_learning_rate=1e-5, schedule_decisions=300_000, discount=0.975, n_step=3,
     batch_size=128, gradient_steps=4, replay_size=1_000_000, learning_starts=5_000, epsilon_decisions=40_000,
     epsilon_end=0.02, epsilon_spread=0.6, hidden=(64, 64), dueling=True, tau=0.005, reward_scale=0.01,
     optimizer="adam", cost="huber", gradient_clip=10.0, activation="relu", layer_normalisation=True, output_scale=0.1,
