@@ -8,9 +8,10 @@ Mnih et al. 2015, Human-level control through deep reinforcement learning
   `gradient_steps` steps: NumPy pays per call. All their targets are computed beforehand, by the networks as they are
   before the first of them, in a few large passes.
 - The target network is copied every 10,000 steps, and the online one acts. Here it follows softly by `tau` after each
-  step (Lillicrap et al. 2016), more slowly as training goes on where `final_tau` is below 1, and acts itself, in training too (`fly_target`): it is steadier to watch. In `modern`
-  that is all it does: next states are judged by the online network (`target_judges`), as in Gallici et al. 2025, who
-  need no target network, thanks to layer normalisation. A decision's targets stay as they are for all its steps.
+  step (Lillicrap et al. 2016), at last more slowly (`final_tau`), and acts itself, in training too (`fly_target`): it
+  is steadier to watch. In `modern` that is all it does: next states are judged by the online network
+  (`target_judges`), as in Gallici et al. 2025, who need no target network, thanks to layer normalisation. A decision's
+  targets stay as they are for all its steps.
 - Rewards are clipped to ±1. Here they are only scaled (`reward_scale`): a landing must outweigh what leads to it.
 - RMSProp at a fixed rate. Here Adam, at a rate that falls in a straight line, and gradients are clipped by length.
   The paper's clipped error is the Huber cost.
