@@ -8,7 +8,8 @@ ours through Gymnasium, one decision at a time, from the same spawns. Every seco
 the network flies 500 random validation spawns greedily, one that is taught hard spawns 500 of those as well, and the
 best so far is kept. What is told of it are its flights from 2,000 other spawns, which had no say in the choice; a share
 counts as reached when the network then kept first lands it there. `--runs` measures what is kept after so many seconds
-instead, on random and on hard spawns. Seconds are processor time on one thread, of training alone.
+instead, on random and on hard spawns; networks of the first two thirds are not tried. Seconds are processor time on one
+thread, of training alone.
 """
 
 import os
@@ -101,9 +102,13 @@ def race(
 
 
 def kept_after(training: Iterator[Checkpoint], moments: list[float], task: LanderTask) -> Iterator[Kept]:
-    """Yield what is kept after so many seconds, for each of the moments, which rise."""
+    """Yield what is kept after so many seconds, for each of the moments, which rise.
+
+    Networks from before two thirds of the first moment are not tried.
+    """
     waiting = sorted(moments)
-    for seconds, decisions, pilot, _ in followed(training, partial(validated, task=task)):
+    tried = (each for each in training if each[0] >= 2 / 3 * min(moments))
+    for seconds, decisions, pilot, _ in followed(tried, partial(validated, task=task)):
         if seconds >= waiting[0]:
             test, hard = (evaluate(pilot, TEST_FLIGHTS, TEST_SEED, spawn) for spawn in ("random", "hard"))
             yield Kept(waiting.pop(0), decisions, test, hard)
