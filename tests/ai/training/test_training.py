@@ -94,11 +94,12 @@ def test_evaluation_shares_add_up_and_the_pilot_is_asked_for_living_slots_only()
 
 def test_who_is_taught_hard_starts_is_chosen_by_them_too():
     pilot = ScriptedPilot()
-    hard, random = (evaluate(pilot, 40, 3, spawn) for spawn in ("hard", "random"))
     taught, other = (LanderTask(Config(spawn=spawn)).evaluate(pilot, 40, 3) for spawn in ("widening", "thorough"))
-    assert other == random
-    assert taught == replace(random, hard=hard.success)
-    assert 0.0 < hard.success < random.success
+    assert other == evaluate(pilot, 40, 3, "random")
+    assert replace(taught, hard=None) == other, "what is told of random starts is of those alone"
+    nothing = LanderTask(Config(spawn="widening")).evaluate(NoPilot(), 4, 3)
+    assert taught.hard > 0.5
+    assert nothing.hard == nothing.success == 0.0
     assert LanderTask(Config()).read_score(taught.to_json()) == taught
 
 
