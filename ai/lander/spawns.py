@@ -74,12 +74,12 @@ def _away(rng: np.random.Generator) -> Doubles:
 
 
 def _far(rng: np.random.Generator) -> Doubles:
-    """Draw a start for one that lands already: half of the flights begin as hard as in the hardest tests.
+    """Draw a start for one that lands already: three flights in ten begin as hard as in the hardest tests.
 
     Half of those lead away from the pad, as nearly all do that such a network still loses: it leaves the area.
     """
     kind = rng.random()
-    return _away(rng) if kind < 0.25 else SPAWNS["hard" if kind < 0.5 else "thorough"](rng)
+    return _away(rng) if kind < 0.15 else SPAWNS["hard" if kind < 0.3 else "thorough"](rng)
 
 
 def _rung(share: float) -> Spawn:
