@@ -5,7 +5,7 @@
 
 Ours is the modern preset. The rival has the settings its authors tuned for Gymnasium's lunar lander and flies
 ours through Gymnasium, one decision at a time, from the same spawns. Every second of training (the rival: every ten)
-the network flies 500 random validation spawns greedily, one that is taught hard spawns 500 of those as well, and the
+the network flies 500 random validation spawns greedily, one that is taught hard spawns 250 of those as well, and the
 best so far is kept. What is told of it are its flights from 2,000 other spawns, which had no say in the choice; a share
 counts as reached when the network then kept first lands it there. `--runs` measures what is kept after so many seconds
 instead, on random and on hard spawns; networks of the first two thirds are not tried. Seconds are processor time on one
