@@ -46,7 +46,7 @@ def lander_run(config: Config, seed: int, lessons: list[Demonstration], pause: f
 
 def reached(training: Iterator[Checkpoint], limit: float) -> tuple[float, float, float]:
     """Seconds and decisions until the network kept lands the share, infinite if not within the limit; and its share."""
-    (kept,), landed = race(training, limit, (SHARE,))
+    (kept,), landed = race(training, limit, shares=(SHARE,))
     return (kept.seconds, float(kept.decisions), landed) if kept else (np.inf, np.inf, landed)
 
 

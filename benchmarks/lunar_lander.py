@@ -1,11 +1,11 @@
 """How long it takes to learn Gymnasium's LunarLander-v3, beside stable-baselines3's DQN.
 
-    python -m benchmarks.lunar_lander [--seeds 3] [--decisions 400000] [--rival-seeds 3] [--rival-seconds 300]
+    python -m benchmarks.lunar_lander [--seeds 3] [--decisions 300000] [--rival-seeds 3] [--rival-seconds 300]
 
-Ours has the settings `ai.training.gym_task.LUNAR_LANDER`; the rival those its authors tuned for this. Every ten seconds
-of training the network flies 100 validation episodes without random actions, and the best so far is kept; in the end
-that one flies 100 others, which had no say in the choice. Seconds are processor time on one thread, of training
-alone.
+Ours has the settings `ai.training.gym_task.LUNAR_LANDER`; the rival those its authors tuned for this. Every 20,000
+decisions (the rival: every ten seconds) the network flies 100 validation episodes without random actions, and the best
+so far is kept; in the end that one flies 100 others, which had no say in the choice. No clock chooses ours: the same
+seed and decisions give the same figures. Seconds are processor time on one thread, of training alone.
 """
 
 import os
@@ -28,18 +28,18 @@ from ai.training.loop import TEST_SEED, VALIDATION_SEED, Training
 from benchmarks.learning import Checkpoint, followed, sb3_dqn
 
 ENV = "LunarLander-v3"
-PAUSE = 10.0
+PAUSE = 20_000  # decisions
 VALIDATION_EPISODES, TEST_EPISODES = 100, 100
 RETURNS = (200.0, 250.0, 270.0)
 
 
 def ours(seed: int, decisions: int) -> Iterator[Checkpoint]:
-    """Train one of ours, pausing every ten seconds."""
+    """Train one of ours, pausing every 20,000 decisions."""
     training = Training(gym_config(ENV), seed, evaluate_every=0)
     spent = 0.0
-    while training.agent.decisions < decisions:
+    for pause in range(PAUSE, decisions + PAUSE, PAUSE):
         start = time.process_time()
-        while time.process_time() - start < PAUSE and training.agent.decisions < decisions:
+        while training.agent.decisions < min(pause, decisions):
             training.advance()
         spent += time.process_time() - start
         yield spent, training.agent.decisions, training.agent, training.best_agent
@@ -73,7 +73,7 @@ def row(name: str, runs: list[tuple[list[float], float, int, float]]) -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--seeds", type=int, default=3)
-    parser.add_argument("--decisions", type=int, default=400_000)
+    parser.add_argument("--decisions", type=int, default=300_000)
     parser.add_argument("--rival-seeds", type=int, default=3)
     parser.add_argument("--rival-seconds", type=float, default=300.0)
     arguments = parser.parse_args()

@@ -43,6 +43,7 @@ def assert_same_settings(config, expected, renamed):
     written = json.loads(json.dumps(config.to_json()))
     if isinstance(config, Config):
         assert written.pop("target_judges"), "as it was when there was no choice"
+        assert written.pop("final_tau") == 1.0, "as it was when τ did not fall"
     assert written == {renamed.get(name, name): value for name, value in expected.items()}
     assert written != expected
 

@@ -8,9 +8,10 @@ Mnih et al. 2015, Human-level control through deep reinforcement learning
   `gradient_steps` steps: NumPy pays per call. All their targets are computed beforehand, by the networks as they are
   before the first of them, in a few large passes.
 - The target network is copied every 10,000 steps, and the online one acts. Here it follows softly by `tau` after each
-  step (Lillicrap et al. 2016), and acts itself, in training too (`fly_target`): it is steadier to watch. In `modern`
-  that is all it does: next states are judged by the online network (`target_judges`), as in Gallici et al. 2025, who
-  need no target network, thanks to layer normalisation. A decision's targets stay as they are for all its steps.
+  step (Lillicrap et al. 2016), at last more slowly (`final_tau`), and acts itself, in training too (`fly_target`): it
+  is steadier to watch. In `modern` that is all it does: next states are judged by the online network
+  (`target_judges`), as in Gallici et al. 2025, who need no target network, thanks to layer normalisation. A decision's
+  targets stay as they are for all its steps.
 - Rewards are clipped to ±1. Here they are only scaled (`reward_scale`): a landing must outweigh what leads to it.
 - RMSProp at a fixed rate. Here Adam, at a rate that falls in a straight line, and gradients are clipped by length.
   The paper's clipped error is the Huber cost.
@@ -47,7 +48,7 @@ from ai.agent.n_step import Episodes, NStep
 from ai.agent.network import build_network, make_optimizer
 from ai.agent.normalizer import Normalizer
 from ai.agent.replay import MemoryCell, ReplayBuffer, make_replay
-from ai.agent.schedule import importance, learning_rate
+from ai.agent.schedule import importance, learning_rate, target_rate
 from ai.agent.storage import SavedAgent, read_agent, save_agent
 from ai.agent.symmetry import Symmetry
 from ai.common.decision import Decision, decide
@@ -231,7 +232,7 @@ class DeepQAgent:
     def _update_target(self) -> None:
         """Move the target network towards the online one by τ, where that is due."""
         if self.train_count % self.config.target_update_interval == 0:
-            tau = self.config.tau
+            tau = target_rate(self.config, self.decisions)
             if tau >= 1.0:
                 self.target.values = self.online.values
             else:

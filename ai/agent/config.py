@@ -41,7 +41,7 @@ class Config(Knobs):
     cost: str = knob("huber", "Cost function: how an error is measured.", "learning", choices=("mse", "huber"))
     gradient_clip: float = knob(10.0, "Gradient clipping: the longest gradient allowed.",
                                 "learning", low=0.1, high=100.0, log=True, live=True)
-    schedule_decisions: int = knob(600_000, "Decisions in which the learning rate falls and touchdown limits tighten.",
+    schedule_decisions: int = knob(600_000, "Decisions in which learning rate and τ fall and touchdown limits tighten.",
                                    "learning", low=1_000, high=10_000_000, log=True, formerly="horizon")
 
     hidden: tuple[int, ...] = knob((64, 64), "Units in each hidden layer.", "network", low=1, high=1024,
@@ -76,6 +76,8 @@ class Config(Knobs):
                                        "target", low=1, high=10_000, log=True, live=True, formerly="target_every")
     tau: float = knob(0.005, "Target update rate τ: 1 copies the network, less follows softly.",
                       "target", low=0.0001, high=1.0, log=True, live=True, formerly="target_rate")
+    final_tau: float = knob(1.0, "Target update rate after the schedule, as a share of τ.",
+                            "target", low=0.01, high=1.0, log=True, live=True)
     fly_target: bool = knob(True, "Fly with the target network, which is steadier.", "target", live=True)
 
     epsilon_start: float = knob(1.0, "Initial ε: share of random actions.", "exploration", low=0.0, high=1.0)
@@ -138,7 +140,8 @@ LANDS_ANYWHERE: Final = Config(
 PRESETS: Final[dict[str, Config]] = {
     "modern": Config(
         learning_rate=3e-3, schedule_decisions=100_000, n_step=8, batch_size=128, gradient_steps=16,
-        activation="leaky_relu", target_judges=False, double=False, epsilon_decisions=15_000, spawn="widening",
+        activation="leaky_relu", target_judges=False, double=False, final_tau=0.05, epsilon_decisions=15_000,
+        spawn="widening",
     ),
     "classic": Config(
         learning_rate=1e-3, final_learning_rate=1e-3, schedule_decisions=300_000, discount=0.99, n_step=1,

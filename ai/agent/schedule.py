@@ -62,6 +62,12 @@ def learning_rate(config: Config, decisions: int) -> float:
     return linear(config.learning_rate, config.final_learning_rate, decisions, config.schedule_decisions)
 
 
+def target_rate(config: Config, decisions: int) -> float:
+    """Return the target network's update rate after so many decisions: τ falls in a straight line to a share of it."""
+    fallen = linear(0.0, 1.0 - config.final_tau, decisions, config.schedule_decisions)
+    return config.tau * (1.0 - fallen)  # a share of 1 leaves τ as it is, to the bit
+
+
 def importance(config: Config, decisions: int) -> float:
     """Return the importance-sampling exponent β, which rises to 1 over the schedule (Schaul et al. 2016, 3.4)."""
     return linear(config.importance_exponent, 1.0, decisions, config.schedule_decisions)
@@ -92,6 +98,7 @@ def in_force(config: Config, decisions: int, episodes: int) -> InForce:
     """Return the scheduled values in force after so many decisions and episodes."""
     values = {
         "learning_rate": learning_rate(config, decisions),
+        "tau": target_rate(config, decisions),
         "epsilon_start": exploration(config, decisions, episodes),
     }
     return InForce(values, idle(config, decisions, episodes))
@@ -117,5 +124,6 @@ def _scheduled(config: Config, decisions: int, episodes: int) -> tuple[float, ..
     each = exploration_of_each(config, exploration(config, decisions, episodes))
     corrected = importance(config, decisions) if config.prioritised else 0.0
     limits = touchdown_limits(config, decisions)
-    decided = (learning_rate(config, decisions), limits, corrected, float(each[0]), float(each[-1]))
+    rates = (learning_rate(config, decisions), target_rate(config, decisions))
+    decided = (*rates, limits, corrected, float(each[0]), float(each[-1]))
     return tuple(round(value, 12) for value in decided)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Generator
 from typing import Final
 
 import numpy as np
@@ -15,7 +16,7 @@ from ai.lander.environment import MIRROR_ACTIONS, MIRROR_FEATURES, MIRROR_SIGNS,
 from ai.lander.pilots import Pilot
 from ai.lander.sensing import SURROUNDINGS, SURROUNDINGS_MIRROR
 from ai.lander.spawns import CURRICULA
-from ai.training.lander_task import Evaluation, LanderTask, evaluation_of, flown
+from ai.training.lander_task import Evaluation, LanderTask, flown
 
 ANYWHERE_SYMMETRY: Final = Symmetry(
     np.concatenate([MIRROR_SIGNS, SURROUNDINGS_MIRROR]),
@@ -45,7 +46,6 @@ class AnywhereTask(LanderTask):
         if isinstance(env, AnywhereEnv):
             env.strictness = touchdown_limits(self.config, decisions)
 
-    def evaluate(self, pilot: Pilot, episodes: int, seed: int) -> Evaluation:
-        """Fly so many flights at once from random spawns."""
-        env = AnywhereEnv(episodes, seed, "random", self.config.frame_skip, sites=tuple(SITES))
-        return evaluation_of(flown(pilot, env))
+    def trial(self, pilot: Pilot, episodes: int, seed: int) -> Generator[None, None, Evaluation]:
+        """Fly so many flights at once from random spawns, one decision at a time."""
+        return flown(pilot, AnywhereEnv(episodes, seed, "random", self.config.frame_skip, sites=tuple(SITES)))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -31,7 +32,7 @@ GYM: Final = Config(
 # discount pays. Written out, so that no change of our lander's own settings changes these.
 LUNAR_LANDER: Final = Config(
     env="LunarLander-v3", num_envs=16, frame_skip=3, normalise_inputs=True, mirror=True, steadiness=0.0,
-    learning_rate=2e-3, final_learning_rate=1e-5, schedule_decisions=400_000, discount=0.975, n_step=3,
+    learning_rate=2e-3, final_learning_rate=1e-5, schedule_decisions=300_000, discount=0.975, n_step=3,
     batch_size=128, gradient_steps=4, replay_size=1_000_000, learning_starts=5_000, epsilon_decisions=40_000,
     epsilon_end=0.02, epsilon_spread=0.6, hidden=(64, 64), dueling=True, tau=0.005, reward_scale=0.01,
     optimizer="adam", cost="huber", gradient_clip=10.0, activation="relu", layer_normalisation=True, output_scale=0.1,
@@ -39,6 +40,8 @@ LUNAR_LANDER: Final = Config(
     prioritised=False, success_pass=False, replay_prune=1,
 )  # fmt: skip
 _OWN: Final = {LUNAR_LANDER.env: LUNAR_LANDER}
+# Steps after which an episode of training is cut short: a lander that hovers teaches nothing new. Measuring cuts none.
+PATIENCE: Final = {"LunarLander-v3": 400}
 MIRRORS: Final = {  # of environments that look the same in a mirror
     "LunarLander-v3": Symmetry(
         np.array([-1, 1, -1, 1, -1, -1, 1, 1], np.float32), np.array([0, 1, 2, 3, 4, 5, 7, 6]), np.array([0, 3, 2, 1])
@@ -161,9 +164,11 @@ class GymTask:
         self.threshold = env.spec.reward_threshold if env.spec else None
         env.close()
 
-    def _make(self) -> gymnasium.Env[Any, Any]:
+    def _make(self, patience: int | None = None) -> gymnasium.Env[Any, Any]:
         try:
-            env: gymnasium.Env[Any, Any] = self._gymnasium.make(self.config.env, disable_env_checker=True)
+            env: gymnasium.Env[Any, Any] = self._gymnasium.make(
+                self.config.env, max_episode_steps=patience, disable_env_checker=True
+            )
         except (self._gymnasium.error.Error, ImportError, ValueError) as error:
             hint = ""
             if isinstance(error, self._gymnasium.error.DependencyNotInstalled):
@@ -174,7 +179,8 @@ class GymTask:
 
     def make_env(self, rng: np.random.Generator) -> GymEnv:
         """Make the environments to train with."""
-        return self._env(self.config.num_envs, rng, self.config.frame_skip)
+        make = partial(self._make, PATIENCE.get(self.config.env))
+        return GymEnv(make, self.config.num_envs, rng, self.threshold, self.config.frame_skip)
 
     def apply_live(self, config: Config, env: Env) -> None:  # noqa: ARG002 - nothing of an environment is live
         """Take over the live knobs of another configuration."""
@@ -183,16 +189,13 @@ class GymTask:
     def update_env(self, decisions: int, env: Env) -> None:
         """Do nothing: an environment of Gymnasium does not change with experience."""
 
-    def _env(self, num_envs: int, rng: np.random.Generator, frame_skip: int = 1) -> GymEnv:
-        return GymEnv(self._make, num_envs, rng, self.threshold, frame_skip)
-
     def evaluate(self, pilot: Pilot, episodes: int, seed: int) -> GymScore:
         """Play so many episodes side by side, without exploration.
 
         The pilot decides at every step of the environment: to hold an action for `frame_skip` of them makes learning
         faster, and the best one may change sooner.
         """
-        env = self._env(episodes, np.random.default_rng(seed))
+        env = GymEnv(self._make, episodes, np.random.default_rng(seed), self.threshold)
         observation, actions = env.reset(), np.zeros(episodes, dtype=np.intp)
         while (going_on := env.outcome == GOING_ON).any():
             actions = np.where(going_on, pilot.act(observation, held=actions), actions)

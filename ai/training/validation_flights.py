@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import repeat
 
 from ai.training.history import Validation
-from ai.training.lander_task import Evaluation, trial
+from ai.training.lander_task import Evaluation, LanderTask
 from ai.training.loop import Training, passed
 from ai.training.task import VALIDATION_SEED
 
@@ -51,9 +51,8 @@ class _Trial:
         assert training.validation_episodes is not None
         self.agent = training.last_agent()
         self.score: Evaluation | None = None
-        self._flights = trial(
-            self.agent, training.validation_episodes, VALIDATION_SEED, "random", training.config.frame_skip
-        )
+        assert isinstance(training.task, LanderTask)
+        self._flights = training.task.trial(self.agent, training.validation_episodes, VALIDATION_SEED)
 
     def go_on(self, decisions: int | None = None) -> bool:
         """Take so many decisions, or all that are left; return whether the trial is done."""

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ai.agent.config import PRESETS, Config
-from ai.agent.schedule import InForce, idle, in_force
+from ai.agent.schedule import InForce, idle, in_force, target_rate
 from ai.digits.config import DIGIT_PRESETS
 from ai.training.loop import Training
 from ai.training.messages import ChangeSetting, SwarmState
@@ -95,4 +95,12 @@ def test_what_a_run_says_is_in_force_is_what_it_learns_and_flies_with():
 def test_half_way_it_is_half_way():
     said = in_force(PRESETS["modern"], 7_500, 0)
     assert said.values["epsilon_start"] == pytest.approx(0.525)
-    assert in_force(PRESETS["modern"], 50_000, 0).values["learning_rate"] == pytest.approx((3e-3 + 3e-4) / 2)
+    said = in_force(PRESETS["modern"], 50_000, 0)
+    assert said.values["learning_rate"] == pytest.approx((3e-3 + 3e-4) / 2)
+    assert said.values["tau"] == pytest.approx((0.005 + 0.00025) / 2)
+
+
+@pytest.mark.parametrize("tau", [1.0, 0.1, 0.005, 0.0003])
+def test_without_a_last_share_the_target_s_rate_never_changes_by_a_bit(tau):
+    config = Config(tau=tau)
+    assert {target_rate(config, decisions) for decisions in range(0, 900_000, 12_347)} == {tau}

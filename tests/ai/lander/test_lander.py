@@ -260,6 +260,16 @@ def test_spawns_lie_where_they_should():
         assert np.degrees(np.abs(drawn[:, 4])).max() <= limit + 1e-9
 
 
+def test_once_it_lands_half_of_the_hard_starts_lead_away_from_the_pad():
+    rng = np.random.default_rng(0)
+    starts = np.array([SPAWNS["far"](rng) for _ in range(4000)])
+    x, _, vx, _, angle, spin = starts.T
+    tilted = np.abs(angle) > np.radians(50)  # beyond what any but hard starts are
+    away = tilted & (x * vx > 0) & (x * angle < 0) & (x * spin < 0)
+    assert tilted.mean() == pytest.approx(0.3 * 40 / 90, abs=0.02)
+    assert away.sum() / tilted.sum() == pytest.approx(0.5 + 0.5 / 8, abs=0.05)
+
+
 def test_the_curriculum_follows_landings():
     curriculum = Curriculum()
     assert [curriculum.spawn(n) for n in (0, 99, 100, 200, 299, 300)] == [

@@ -9,11 +9,18 @@ from ai.agent.agent import DeepQAgent
 from ai.agent.normalizer import Normalizer
 from ai.nn import ModelFormatError
 from ai.training.checkpoints import resume_run
-from ai.training.gym_task import GymTask, gym_config
+from ai.training.gym_task import PATIENCE, GymTask, gym_config
 from ai.training.loop import Training
 from main import main
 
 LANDER = "ai.gym.lander:tranquility/Lander-v0"
+
+
+class Rocking:
+    """Pushes to and fro, which keeps a pole up for a while."""
+
+    def act(self, observation, held=None):
+        return 1 - held
 
 
 def test_a_running_scale_is_the_scale_of_all_it_saw():
@@ -125,6 +132,18 @@ class TestLearningOthersEnvironments:
         assert np.array_equal(after[4:], result.observation[4:])
         assert not np.array_equal(after[:4], before[:4])
         assert (env.step(np.zeros(16, dtype=int)).reward == some).all()
+
+    def test_only_episodes_of_training_are_cut_short(self, monkeypatch):
+        monkeypatch.setitem(PATIENCE, "CartPole-v1", 8)
+        task = GymTask(gym_config("CartPole-v1"))
+        env = task.make_env(np.random.default_rng(0))
+        env.reset()
+        for turn in range(8):
+            assert not env.outcome.any()
+            result = env.step(np.full(16, turn % 2))
+        assert result.truncated.all(), "what comes next still has a value"
+        assert not result.terminated.any()
+        assert task.evaluate(Rocking(), 8, 0).mean_length > 8
 
     @pytest.mark.parametrize(
         ("env", "message"),

@@ -1,14 +1,16 @@
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from ai.agent.config import PRESETS
+from ai.agent.config import PRESETS, Config
 from ai.agent.schedule import geometric, linear
 from ai.lander.environment import LIMITS, LanderEnv, Outcome
 from ai.lander.pilots import NoPilot, ScriptedPilot
 from ai.nn import ModelFormatError
 from ai.training.checkpoints import TrainingClock, resume_run, save_run
+from ai.training.lander_task import LanderTask
 from ai.training.loop import Evaluation, Training, evaluate, run
 
 SMALL = PRESETS["modern"].changed(
@@ -88,6 +90,28 @@ def test_evaluation_shares_add_up_and_the_pilot_is_asked_for_living_slots_only()
     assert result.switches == 0.0
     assert result.mean_time is None
     assert evaluate(ScriptedPilot(), 6, 3, "near") == evaluate(ScriptedPilot(), 6, 3, "near")
+
+
+def test_who_is_taught_hard_starts_is_chosen_by_them_too():
+    pilot = ScriptedPilot()
+    taught, other = (LanderTask(Config(spawn=spawn)).evaluate(pilot, 40, 3) for spawn in ("widening", "thorough"))
+    assert other == evaluate(pilot, 40, 3, "random")
+    assert replace(taught, hard=None) == other, "what is told of random starts is of those alone"
+    nothing = LanderTask(Config(spawn="widening")).evaluate(NoPilot(), 4, 3)
+    assert taught.hard > 0.5
+    assert nothing.hard == nothing.success == 0.0
+    assert LanderTask(Config()).read_score(taught.to_json()) == taught
+
+
+def test_more_landings_count_before_quicker_ones_where_hard_starts_were_flown():
+    quick = Evaluation(500, 0.998, 0.002, 0.0, 0.0, 260.0, 7.0, 3.0, 8.0, hard=0.99)
+    sure = replace(quick, success=1.0, crash=0.0, mean_return=220.0, mean_time=9.0)
+    assert sure.better_than(quick)
+    assert not quick.better_than(sure)
+    assert replace(sure, mean_return=221.0).better_than(sure)
+    assert quick.better_than(replace(sure, hard=0.986))
+    assert quick.better_than(replace(sure, hard=None)), "as runs were compared that flew no hard starts"
+    assert not replace(sure, hard=None).better_than(quick)
 
 
 def test_the_best_checkpoint_is_kept():
