@@ -263,6 +263,13 @@ def _cut(string: str, pixels: float, weight: Weight) -> str:
     return string[: bisect_right(range(len(string)), most, key=lambda count: reach(string[:count], pixels, weight)) - 1]
 
 
+def open_letters(letters: str, size: float, weight: Weight, scale: float) -> None:
+    """Load letters of a size in points, as the first text with them would."""
+    font = _font(round(grown(size) * scale, 2), weight)
+    font.size(letters)
+    font.render(letters, True, _INK, (0, 0, 0))
+
+
 def forget() -> None:
     """Clear the cache of rendered strings, after a change of the window's size."""
     caches = _opened, grown, reach, extent, digit_width, render, _covered, fitting, span, digits, line

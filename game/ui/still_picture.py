@@ -28,8 +28,9 @@ class StillPicture:
         self._below.draw_on(canvas, 1.0)
         if not self._sharp:
             width, height = canvas.surface.get_size()
-            small = pygame.transform.smoothscale(canvas.surface, (max(1, width // 4), max(1, height // 4)))
-            soft = pygame.transform.gaussian_blur(small, max(1, canvas.px(3)))
+            # What a Gaussian takes grows with the fourth power of the resolution.
+            small = pygame.transform.smoothscale(canvas.surface, (max(1, width // 8), max(1, height // 8)))
+            soft = pygame.transform.gaussian_blur(small, max(1, canvas.px(1.5)))
             pygame.transform.smoothscale(soft, (width, height), canvas.surface)
         canvas.fill(canvas.surface.get_rect(), NIGHT0, self._dimmed)
         return canvas.surface.copy()
