@@ -13,8 +13,9 @@ from game.drawing.typeface import Weight
 _FONTS: Final[tuple[tuple[float, Weight], ...]] = (
     (12.5, "regular"), (15.0, "regular"), (12.5, "medium"), (11.5, "medium"), (15.0, "medium"), (11.5, "regular"),
     (34.0, "light"), (13.5, "regular"), (22.0, "regular"), (14.0, "regular"), (30.0, "light"), (18.0, "regular"),
+    (11.5, "code"),
 )  # fmt: skip
-_LETTERS: Final = ("eatoinsrhldcumfpgwybvkxjqz", "0123456789 .,:;-–'%()/=+·°", "TASDPCIWRMLNFEHBGOVUKYQJXZ")
+_LETTERS: Final = ("eatoinsrhldcumfpgwybvkxjqz", "0123456789 .,:;-–'%()[]/=+*_·°", "TASDPCIWRMLNFEHBGOVUKYQJXZ")
 _FEW: Final = 25_000  # pixels of a picture that could be painted in the time that a few letters take
 
 
