@@ -10,7 +10,7 @@ painted in pieces. CPU milliseconds of one core; the same frames are played seve
 counts, because a busy machine empties the processor's caches in some of them. Train starts a run, pauses it and goes
 on; the learning is a process of its own, and not counted.
 
-`enter` is all that is done from the choice in the menu to the first picture of the scene; `opening` rows begin with
+`enter` is all that is done from the choice to the first picture of the scene; `opening` rows begin with
 nothing painted, as in a window that has just got its size. In the first eleven frames of every row the menu fades away
 over the scene: they are among its dearest hundredth. `MB` is the most memory that the process has held since the scene
 before. Exit code 1 if the 99th percentile of a scene, or what it costs to enter one, reaches the limit.
@@ -34,7 +34,6 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import partial
 from itertools import count
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -51,32 +50,41 @@ from game.core.scene import Scene
 from game.core.settings import Settings
 from game.drawing.paint_cache import A_FRAME, idle, spread
 from game.exhibits import EXHIBITS
+from game.flight.skill import Skill
 from game.learn.path import PATH
 from game.play.challenge import FlownMission
 from game.play.descent import Descent
 from game.scenes import scene_of
+from game.scenes.ahead import load
 from game.scenes.chapter import ChapterScene
+from game.scenes.choices import ChoicesScene
 from game.scenes.dialog import ListDialog, NameDialog, QuestionDialog
 from game.scenes.digit_inside import DigitInsideScene
+from game.scenes.dream import DreamScene
 from game.scenes.error_screen import ErrorScene
+from game.scenes.lesson import LessonScene
 from game.scenes.menu import MenuScene
 from game.scenes.menu_background import LOADER
 from game.scenes.pause import PauseScene
 from game.scenes.physics import PhysicsScene
 from game.scenes.physics_step import PhysicsStepScene
 from game.scenes.play import PlayScene
+from game.scenes.quiz import QuizScene
 from game.scenes.train import TrainScene
 from game.scenes.watch import COUNTS, WatchScene
 from game.scenes.why_not import WhyNotScene
 from game.shell.app import App
 from game.ui.context import Context
 from game.world.landscape.backdrop import forget_land
+from tests.support.lessons import lesson_of
 from tests.support.tour import makers, scene_types, stock
 
 FRAMES = 1000
 RUNS = 3
 # Milliseconds: of the 99th percentile of frames, and of entering a scene.
 LIMITS = {"1280x720": (8.0, 50.0), "1920x1080": (8.0, 50.0), "2560x1440": (12.0, 80.0), "3840x2160": (16.0, 120.0)}
+SETTLED = 30  # frames for which a scene below another has been on the screen
+SEVEN = [np.array([(100.0, 100.0), (400.0, 100.0), (200.0, 450.0)])]
 FLOWN = (pygame.K_r, pygame.K_UP, pygame.K_LEFT, pygame.K_RIGHT)
 SHARED: dict[str, Any] = {"assist": 0.6}
 GUARDED: dict[str, Any] = {"assist": 0.4, "copilot": "guardian"}
@@ -88,29 +96,36 @@ EDGE: dict[str, Any] = {**GUARDED, "edge": True}  # with the edge of no return o
 class Row:
     """A scene and what is done in it: every 500 frames, keys are held in turn, 30 frames each.
 
-    `cold` is whether it begins with no land painted; `times` how many times as many frames it takes as others.
+    `make` gets what `before` returns, which is there before the scene is entered: the context alone, a network, or a
+    scene below it, which has been on the screen. `cold` is whether it begins with no land painted; `times` how many
+    times as many frames it takes as others.
     """
 
-    make: Callable[[Context], Scene | None]
+    make: Callable[..., Scene | None]
     keys: tuple[int, ...] = ()
     settings: dict[str, Any] = field(default_factory=dict)
     cold: bool = False
     times: int = 1
+    before: Callable[[Context], tuple[Any, ...]] = lambda context: (context,)
 
 
 def rows() -> dict[str, Row]:
     """Every scene of the game by name, those that fly in several ways."""
 
-    def over_play(make: Callable[[PlayScene], Scene]) -> Callable[[Context], Scene]:
-        def made(context: Context) -> Scene:
-            return make(PlayScene(context, seed=4))
+    def over_play(make: Callable[[PlayScene], Scene], keys: tuple[int, ...] = ()) -> Row:
+        return Row(make, keys, before=lambda context: (PlayScene(context, seed=4),))
 
-        return made
+    def of_tour(name: str, keys: tuple[int, ...]) -> Row:
+        return Row(lambda make: make(), keys, before=lambda context: (makers(context)[name],))
 
-    def of_tour(name: str) -> Callable[[Context], Scene | None]:
-        return lambda context: makers(context)[name]()
+    def of_seven(make: Callable[..., Scene], keys: tuple[int, ...], name: str = "modern") -> Row:
+        return Row(make, keys, before=lambda context: (*_read(context, name), preprocess_strokes(SEVEN)))
 
-    play, heap = Row(lambda context: PlayScene(context, seed=4), FLOWN), lambda context: PhysicsScene(context, "heap")
+    play = Row(lambda context: PlayScene(context, seed=4), FLOWN)
+
+    def heap(context: Context) -> Scene:
+        return PhysicsScene(context, "heap")
+
     with TemporaryDirectory() as folder:
         others = makers(Context(Path(folder), Settings())).keys() - {
             "PlayScene",
@@ -120,6 +135,11 @@ def rows() -> dict[str, Row]:
             "ChapterScene",
             "mission",
             "descent",
+            "LessonScene",
+            "QuizScene",
+            "DreamScene",
+            "DigitInsideScene",
+            "WhyNotScene",
         }
     return {
         "play, by hand": play,
@@ -137,11 +157,13 @@ def rows() -> dict[str, Row]:
             f"mission, {name}": Row(lambda context, m=m: PlayScene(context, 0, challenge=FlownMission(m)), FLOWN)
             for name, m in MISSIONS.items()
         },
-        "pause": Row(over_play(lambda below: PauseScene(below.context, below))),
-        "dialog": Row(over_play(lambda below: QuestionDialog(below, "?", "", [("a", print), ("b", print)]))),
-        "dialog, naming": Row(over_play(lambda below: NameDialog(below, "?", "name", lambda _: ""))),
-        "dialog, picking": Row(over_play(lambda below: ListDialog(below, "?", [("a",), ("b",)], print))),
-        "choices": Row(play.make, (pygame.K_c, pygame.K_DOWN)),
+        "pause": over_play(lambda below: PauseScene(below.context, below)),
+        "dialog": over_play(lambda below: QuestionDialog(below, "?", "", [("a", print), ("b", print)])),
+        "dialog, naming": over_play(lambda below: NameDialog(below, "?", "name", lambda _: "")),
+        "dialog, picking": over_play(lambda below: ListDialog(below, "?", [("a",), ("b",)], print)),
+        "choices": over_play(
+            lambda below: ChoicesScene(below.context, below, Skill(()), begun=False), (pygame.K_DOWN, pygame.K_RIGHT)
+        ),
         "fault": Row(lambda context: ErrorScene(context, ValueError(), Path("log"))),
         **{f"watch, {number}": Row(lambda context, n=number: WatchScene(context, n, seed=4)) for number in COUNTS},
         "watch, map of actions": Row(lambda context: WatchScene(context, 1, seed=4), (pygame.K_m,)),
@@ -159,19 +181,30 @@ def rows() -> dict[str, Row]:
         **{f"physics, {name}, plot": Row(lambda context, n=name: plotted(context, n)) for name in EXHIBITS},
         "physics, measuring": Row(lambda context: plotted(context, "heap", measuring=True)),
         "physics, one step": Row(
-            lambda context: PhysicsStepScene(context, PhysicsScene(context, "stack").exhibit), (pygame.K_PERIOD,)
+            lambda below: PhysicsStepScene(below.context, below.exhibit),
+            (pygame.K_PERIOD,),
+            before=lambda context: (PhysicsScene(context, "stack"),),
         ),
         **{
-            name.removesuffix("Scene").lower(): Row(of_tour(name), (pygame.K_DOWN, pygame.K_RETURN))
+            name.removesuffix("Scene").lower(): of_tour(name, (pygame.K_DOWN, pygame.K_RETURN))
             for name in sorted(others)
         },
-        "inside, modern": Row(partial(_of_seven, DigitInsideScene), (pygame.K_SPACE, pygame.K_n, pygame.K_c)),
-        "inside, classic": Row(partial(_of_seven, DigitInsideScene, name="classic"), (pygame.K_n,)),
-        "whynot, modern": Row(partial(_of_seven, WhyNotScene), (pygame.K_3, pygame.K_r)),
+        **{
+            f"lesson, {name}": Row(
+                LessonScene, (pygame.K_DOWN, pygame.K_RETURN), before=lambda context, n=name: (context, lesson_of(n))
+            )
+            for name in ("modern", "classic")
+        },
+        "quiz": Row(QuizScene, (pygame.K_DOWN, pygame.K_RETURN), before=_read),
+        "dream": Row(DreamScene, (pygame.K_DOWN, pygame.K_RETURN), before=_read),
+        "inside, modern": of_seven(DigitInsideScene, (pygame.K_SPACE, pygame.K_n, pygame.K_c)),
+        "inside, classic": of_seven(DigitInsideScene, (pygame.K_n,), "classic"),
+        "whynot, modern": of_seven(WhyNotScene, (pygame.K_3, pygame.K_r)),
+        "whynot, classic": of_seven(WhyNotScene, (pygame.K_3, pygame.K_r), "classic"),
         "menu": Row(MenuScene),
-        "train": Row(of_tour("TrainScene"), (pygame.K_RETURN,)),
+        "train": of_tour("TrainScene", (pygame.K_RETURN,)),
         "train, split": Row(_split),
-        "digittraining": Row(of_tour("DigitTrainingScene"), (pygame.K_RETURN,)),
+        "digittraining": of_tour("DigitTrainingScene", (pygame.K_RETURN,)),
     }
 
 
@@ -184,10 +217,9 @@ def plotted(context: Context, exhibit: str, *, measuring: bool = False) -> Physi
     return scene
 
 
-def _of_seven(make: Callable[..., Scene], context: Context, name: str = "modern") -> Scene:
-    """Make a scene about a seven and a shipped network."""
-    strokes = [np.array([(100.0, 100.0), (400.0, 100.0), (200.0, 450.0)])]
-    return make(context, DigitClassifier.load(context.models_dir / "digits" / name), preprocess_strokes(strokes))
+def _read(context: Context, name: str = "modern") -> tuple[Context, DigitClassifier]:
+    """Return the context and a shipped network, which the scene below has read."""
+    return context, DigitClassifier.load(context.models_dir / "digits" / name)
 
 
 def _split(context: Context) -> Scene:
@@ -214,6 +246,14 @@ def cost(row: Row, size: tuple[int, int], seen: set[type]) -> np.ndarray:
             app.tick()
         while not idle():
             app.tick()
+        given = row.before(context)
+        for below in given:
+            if isinstance(below, Scene):
+                app.show(lambda _, below=below: below)
+                for _ in range(SETTLED):
+                    app.tick()
+        while not idle():
+            app.tick()
         if row.cold:
             forget_land()
         for frame in range(-1, row.times * FRAMES):
@@ -221,7 +261,7 @@ def cost(row: Row, size: tuple[int, int], seen: set[type]) -> np.ndarray:
                 act(app.scenes.top, row.keys, frame, app)
             before = time.process_time()
             if frame < 0:
-                app.show(_made(row.make))
+                app.show(_made(row.make, given))
             app.tick()
             spent.append(1e3 * (time.process_time() - before))
             seen.add(type(app.scenes.top))
@@ -239,11 +279,11 @@ def most_memory() -> float:
     return next(int(line.split()[1]) / 1024 for line in told.splitlines() if line.startswith("VmHWM"))
 
 
-def _made(make: Callable[[Context], Scene | None]) -> Callable[[Context], Scene]:
+def _made(make: Callable[..., Scene | None], given: tuple[Any, ...]) -> Callable[[Context], Scene]:
     """Return what makes a scene for certain."""
 
-    def made(context: Context) -> Scene:
-        scene = make(context)
+    def made(_: Context) -> Scene:
+        scene = make(*given)
         assert scene is not None
         return scene
 
@@ -274,6 +314,8 @@ def main() -> int:
     spread(A_FRAME)
     gc.freeze()  # as the game does
     gc.set_threshold(20_000, 20, 50)
+    with TemporaryDirectory() as folder:
+        load(Context(Path(folder), Settings()))
     return max(_table(size, chosen.only, chosen.runs) for size in chosen.size)
 
 

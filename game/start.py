@@ -39,7 +39,7 @@ def play(folder: Path | None = None, full_screen: bool | None = None, begin: Rou
     from game.core.assets import user_dir
     from game.core.settings import SettingsFile
     from game.drawing.paint_cache import A_FRAME, spread
-    from game.scenes import scene_of
+    from game.scenes import ahead, scene_of
     from game.shell.app import App, log_to
     from game.shell.window import NoDisplayError
     from game.ui.context import Context
@@ -64,6 +64,7 @@ def play(folder: Path | None = None, full_screen: bool | None = None, begin: Rou
     # Exclude objects that live as long as the game from garbage collection, which took 20 ms each time.
     gc.freeze()
     gc.set_threshold(20_000, 20, 50)
+    ahead.begin(context)
     return app.run()
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Literal
 
@@ -9,12 +10,15 @@ import numpy as np
 import numpy.typing as npt
 
 from ai.digits.classifier import DIGITS
+from ai.digits.mnist import bright
 
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier, Image
+    from ai.digits.mnist import Pixels
 
 ROUNDS: Final = 10  # alternating: one drawn by the player, one read by the player
 _LOOKED_AT: Final = 300  # number of strangers' digits from which the hardest to read are chosen
+_AT_ONCE: Final = 4  # of them, in one frame
 
 
 @dataclass
@@ -23,8 +27,8 @@ class QuizRound:
 
     Attributes:
         kind: whether the player draws and the network reads, or the player reads.
-        digit: the digit to draw, or the one that a stranger meant.
-        image: (28, 28), the image to read; None until it is drawn.
+        digit: the digit to draw, or the one that a stranger meant, once their image is found.
+        image: (28, 28), the image to read; None until it is drawn, or found.
         answer: the digit read by the network or the player, whoever reads; None until then.
         probabilities: (10,), the network's output for the image.
 
@@ -43,7 +47,7 @@ class QuizRound:
 
 
 class QuizGame:
-    """A quiz of ten rounds. Strangers' digits come from `images` and `labels`; without them, all rounds are drawn.
+    """A quiz of ten rounds. Strangers' digits come from `images`, 0 to 255, and `labels`; without, all are drawn.
 
     Attributes:
         rounds: all of them.
@@ -54,21 +58,41 @@ class QuizGame:
     def __init__(
         self,
         classifier: DigitClassifier,
-        images: npt.NDArray[np.float32],
+        images: Pixels,
         labels: npt.NDArray[Any],
         rng: np.random.Generator,
     ) -> None:
         self.classifier = classifier
         self.place = 0
         wanted = rng.permutation(DIGITS)
-        strangers = _hardest(classifier, images, labels, rng, ROUNDS // 2)
-        self.rounds = []
-        for number in range(ROUNDS):
-            if number % 2 and strangers:
-                image, digit = strangers.pop()
-                self.rounds.append(QuizRound("read", digit, image, probabilities=classifier.predict(image)[0]))
-            else:
-                self.rounds.append(QuizRound("draw", int(wanted[number])))
+        self.rounds = [QuizRound("draw", int(digit)) for digit in wanted]
+        strangers = self.rounds[1::2][: len(images)]
+        for each in strangers:
+            each.kind = "read"
+        sample = rng.choice(len(images), _LOOKED_AT, replace=False) if len(images) > _LOOKED_AT else slice(None)
+        order = rng.permutation(len(strangers))
+        self._looking = self._find(strangers, images[sample], labels[sample], order)
+
+    def look(self) -> bool:
+        """Look for strangers' digits that are hard to read, a few at a time; return whether there are more to look at.
+
+        The first is read after the player has drawn one, and all together take longer than a frame may last.
+        """
+        return next(self._looking, False)
+
+    def _find(
+        self, rounds: Sequence[QuizRound], images: Pixels, labels: npt.NDArray[Any], order: npt.NDArray[np.intp]
+    ) -> Iterator[bool]:
+        """Give rounds the images of which the network is least sure, in that order; yield whether it goes on."""
+        parts = [slice(first, first + _AT_ONCE) for first in range(0, len(images), _AT_ONCE)]
+        surest = np.zeros(len(images), np.float32)
+        for part in parts:
+            surest[part] = self.classifier.predict(bright(images[part])).max(axis=1)
+            yield True
+        hardest = surest.argsort(kind="stable")[: len(order)]
+        for each, number in zip(rounds, hardest[order].tolist(), strict=True):
+            each.image, each.digit = bright(images[number]), int(labels[number])
+            each.probabilities = self.classifier.predict(each.image)[0]
 
     @property
     def round(self) -> QuizRound | None:
@@ -92,6 +116,8 @@ class QuizGame:
         """Advance to the next round, once this one is answered."""
         if self.round and self.round.answer is not None:
             self.place += 1
+            while self.round and self.round.image is None and self.round.kind == "read":
+                self.look()
 
     def score(self, kind: Literal["draw", "read"]) -> tuple[int, int]:
         """Return the numbers of right answers and of all answers in rounds of a kind."""
@@ -103,18 +129,3 @@ class QuizGame:
         """1 if the player reads better, -1 if the network does, 0 if they are even."""
         (you, asked), (net, drawn) = self.score("read"), self.score("draw")
         return int(np.sign(you * drawn - net * asked))
-
-
-def _hardest(
-    classifier: DigitClassifier,
-    images: npt.NDArray[np.float32],
-    labels: npt.NDArray[Any],
-    rng: np.random.Generator,
-    count: int,
-) -> list[tuple[Image, int]]:
-    """Return the images, out of a random sample, of which the network is least sure, and their labels."""
-    if not len(images):
-        return []
-    chosen = rng.choice(len(images), min(_LOOKED_AT, len(images)), replace=False)
-    hardest = chosen[classifier.predict(images[chosen]).max(axis=1).argsort(kind="stable")[:count]]
-    return [(images[number], int(labels[number])) for number in rng.permutation(hardest)]

@@ -15,6 +15,7 @@ import numpy.typing as npt
 from ai.digits.filters import MOST_FILTERS, first_filters
 from ai.digits.preprocessing import SIDE, Image, Stages, stages, stroke_stages
 from ai.nn.files import brief
+from game.digits.kept import classifier_in
 
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier
@@ -113,11 +114,10 @@ class Reader:
 
     def _load(self, name: str, folder: Path) -> str:
         """Load one network; return what is wrong with it, empty if nothing."""
-        from ai.digits.classifier import DigitClassifier
         from ai.nn import ModelFormatError
 
         try:
-            self.classifiers[name] = DigitClassifier.load(folder)
+            self.classifiers[name] = classifier_in(folder)
         except ModelFormatError as error:
             return brief(error.problems[0] if error.problems else error)
         except Exception as error:  # a damaged folder may fail in any way, and none may end the game

@@ -4,60 +4,77 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import lru_cache
+from functools import lru_cache, partial
 from itertools import product
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 import pygame
 
 from ai.common.environment import Bools, Doubles
-from game.drawing.canvas import Canvas
+from game.drawing.canvas import Canvas, Stamp
 from game.drawing.paint import PIECE, Sheet, blocks
+from game.drawing.paint_cache import InPieces, Steps
 from game.drawing.tokens import DUSK, EMBER, NIGHT0, NIGHT1, VIEW_SIZE
 
 _FINE: Final = 270  # lines in which the night is computed; each of their pixels fills a square of the window's
+_GLOW: Final = (150, 170, 220)  # of a bright star
 
 
 class NightSky:
-    """Still night sky, repainted only when the window's size changes, or when words appear or vanish over a star."""
+    """Still night sky, whose stars keep away from words.
+
+    Its picture without stars is shared by all screens with the same glow; the stars, an own surface each, are copied
+    anew in every frame, so that nothing is painted again when words hide some of them.
+    """
 
     def __init__(self, rng: np.random.Generator, ember: float = 1.0, stars: int = 260) -> None:
         self._page = rng.random((stars, 2)) * VIEW_SIZE
-        self._places = self._page  # and again beside or above and below the page, where the view reaches beyond it
         self._brightness = rng.random(stars) ** 4
         self._ember = ember
-        self._painted: pygame.Surface | None = None
-        self._shown: list[int] = []
-        self._words: list[pygame.Rect] = []  # that the painted stars avoid
+        self._size = (0, 0)  # of the window for which the stars were painted, in pixels
+        self._middles: Doubles  # of all stars, in pixels: on the page, and beside or above and below it
+        self._stars: list[_Star]
+        self._words: list[pygame.Rect] = []  # that the stars avoid
+        self._shown: list[_Star] = []
 
     def draw(self, canvas: Canvas, time: float = 0.0) -> None:  # noqa: ARG002
         """Draw the sky over the whole view. It does not change with time."""
         canvas = canvas.whole
-        size, shown = canvas.surface.get_size(), self._shown
-        fits = self._painted is not None and self._painted.get_size() == size
+        surface, size = canvas.surface, canvas.surface.get_size()
+        fits = size == self._size
         if not fits:
-            self._places = _spread(self._page, canvas.view)
+            self._size = size
+            places = _spread(self._page, canvas.view)
+            self._middles = places * canvas.scale + canvas.origin
+            self._stars = [self._star(canvas, number, place) for number, place in enumerate(places.tolist())]
         if not fits or canvas.words != self._words:
             self._words = canvas.words
-            pixels = self._places * canvas.scale + canvas.origin
-            shown = np.flatnonzero(beside(pixels, canvas.words)).tolist()
-        if self._painted is None or not fits or shown != self._shown:
-            self._painted, self._shown = _paint_night(size, self._ember).copy(), shown
-            canvas.surface.blit(self._painted, (0, 0))
-            self._add_stars(canvas)
-            self._painted.blit(canvas.surface, (0, 0))
-        canvas.surface.blit(self._painted, (0, 0))
+            free = np.flatnonzero(beside(self._middles, canvas.words)).tolist()
+            self._shown = [self._stars[number] for number in free]
+        surface.blit(_night(size, self._ember).picture, (0, 0))
+        surface.fblits([star.dot for star in self._shown])
+        surface.fblits([star.glow for star in self._shown if star.glow], pygame.BLEND_RGB_ADD)
 
-    def _add_stars(self, canvas: Canvas) -> None:
-        bright = self._brightness[np.array(self._shown, np.intp) % len(self._brightness)]
-        for (x, y), brightness in zip(self._places[self._shown], bright, strict=True):
-            fade = min(max(float(1 - (y - canvas.view.top) / canvas.view.height), 0.0), 1.0)
-            level = (0.25 + 0.75 * float(brightness)) * fade
-            shade = 120 + round(120 * float(brightness))
-            canvas.dot((x, y), 0.5 + 0.7 * float(brightness), (shade, shade, min(255, shade + 12)), level)
-            if brightness > 0.75:
-                canvas.glow((x, y), 9, (150, 170, 220), 0.35 * level)
+    def _star(self, canvas: Canvas, number: int, place: Sequence[float]) -> _Star:
+        """Paint the star of a number at a place in points; it fades towards the horizon."""
+        x, y = place
+        brightness = float(self._brightness[number % len(self._brightness)])
+        fade = min(max(1 - (y - canvas.view.top) / canvas.view.height, 0.0), 1.0)
+        level = (0.25 + 0.75 * brightness) * fade
+        shade = 120 + round(120 * brightness)
+        picture, corner = canvas.stamp("circle", (x, y), 0.5 + 0.7 * brightness, (shade, shade, min(255, shade + 12)))
+        dot = picture.copy()
+        dot.set_alpha(255)  # others may have drawn it faintly
+        dot.fill((255, 255, 255, round(255 * level)), special_flags=pygame.BLEND_RGBA_MULT)
+        return _Star((dot, corner), canvas.light((x, y), 9, _GLOW, 0.35 * level) if brightness > 0.75 else None)
+
+
+class _Star(NamedTuple):
+    """A star's dot, and if it is bright its glow, each with the corner where it is drawn, in pixels."""
+
+    dot: Stamp
+    glow: Stamp | None
 
 
 def _spread(places: Doubles, view: pygame.FRect) -> Doubles:
@@ -71,9 +88,14 @@ def _spread(places: Doubles, view: pygame.FRect) -> Doubles:
 
 
 @lru_cache(maxsize=4)
-def _paint_night(size: tuple[int, int], ember: float) -> pygame.Surface:
-    """Return a sky without stars, cached for all screens with the same one."""
-    times = max(2, size[1] // _FINE)  # too smooth to need every pixel
+def _night(size: tuple[int, int], ember: float) -> InPieces[pygame.Surface]:
+    """Return a sky without stars, kept for all screens with the same one."""
+    return InPieces(partial(_paint_night, size, ember))
+
+
+def _paint_night(size: tuple[int, int], ember: float, share: float) -> Steps[pygame.Surface]:
+    """Paint a sky without stars, of so many pixels, at a share of its resolution."""
+    times = max(2, size[1] // round(_FINE * share))  # too smooth to need every pixel
     width, height = -(-size[0] // times), -(-size[1] // times)
     across = np.linspace(0, 1, width, dtype=np.float32)[None, :]
     down = np.linspace(0, 1, height, dtype=np.float32)[:, None]
@@ -84,10 +106,15 @@ def _paint_night(size: tuple[int, int], ember: float) -> pygame.Surface:
     for night0, night1, dusk, glow in zip(NIGHT0, NIGHT1, DUSK, EMBER, strict=True):
         sky = night0 + (night1 - night0) * down
         sky = sky + (dusk - sky) * low
-        channels.append(sky + (glow - sky) * near - np.float32(0.5))
+        channels.append(sky + (glow - sky) * near)
+    yield width * height
+    if share < 1:  # without the noise that hides the borders of its shades
+        rough = pygame.surfarray.make_surface(np.stack(channels, axis=-1).swapaxes(0, 1).astype(np.uint8))
+        return pygame.transform.scale(rough.convert(32), size)
     sheet = Sheet(size[::-1], np.random.default_rng(0), clear=False)
     for rows in blocks((height, width), PIECE // times):
-        sheet.put_larger(rows.start, [channel[rows] for channel in channels], times)
+        sheet.put_larger(rows.start, [channel[rows] - np.float32(0.5) for channel in channels], times)
+        yield channels[0][rows].size * times
     return sheet.done()
 
 

@@ -6,7 +6,6 @@ import logging
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from threading import RLock
 from typing import Final, Protocol, runtime_checkable
 
 from ai.common.decision import Decision
@@ -16,6 +15,7 @@ from ai.lander.sensing import SURROUNDINGS
 from ai.nn.files import brief
 from game.core import texts
 from game.core.folders import looks_like_item
+from game.core.kept import Kept
 from game.flight.study_runs import best_runs
 
 DEFAULT: Final = "modern"
@@ -24,10 +24,6 @@ SCRIPTED: Final = "scripted"
 LANDER: Final = "lander"  # folder of the networks that come with the game
 PLAYERS: Final = "models"  # folder of the player's own networks
 PARTS: Final = ("config.json", "online", "target")  # a folder with none of these files is not a network
-_KEPT: Final = 3  # networks that are kept
-_Stamp = list[tuple[str, int, int]]
-_read: dict[tuple[Path, int], tuple[_Stamp, Network]] = {}  # by folder and number of inputs, the latest last
-reading: Final = RLock()  # held while a network is read, or made ready in a thread: nobody uses it before it is
 _log = logging.getLogger("tranquility")
 
 
@@ -76,6 +72,9 @@ class Network:
     stands_in: str = ""
 
 
+kept: Final = Kept[Network](most=3)
+
+
 def word(name: str) -> str:
     """Return a network's name for the player, and words for the scripted pilot and for the one that flies anywhere."""
     return {SCRIPTED: texts.NETWORK_SCRIPTED, ANYWHERE: texts.NETWORK_ANYWHERE}.get(name, name)
@@ -116,22 +115,10 @@ def load(name: str, folder: Path, features: int = NUM_FEATURES) -> Network:
 
     The last few are kept, as long as none of their files changes: every scene that flies begins with reading one.
     """
-    with reading:
-        stamp, kept = _stamp(folder), _read.pop((folder, features), None)
-        network = kept[1] if kept and kept[0] == stamp else _fresh(name, folder, features)
-        if network.policy is not None and stamp:
-            _read[folder, features] = stamp, network
-            if len(_read) > _KEPT:
-                del _read[next(iter(_read))]
+    network = kept.get(
+        folder, lambda: _fresh(name, folder, features), more=features, sound=lambda read: read.policy is not None
+    )
     return replace(network, name=name)
-
-
-def _stamp(folder: Path) -> _Stamp:
-    """Return what tells whether a file of a network has changed: names, sizes and times of all, the critic's too."""
-    try:
-        return sorted((str(path), (told := path.stat()).st_size, told.st_mtime_ns) for path in folder.rglob("*"))
-    except OSError:
-        return []
 
 
 def _fresh(name: str, folder: Path, features: int) -> Network:

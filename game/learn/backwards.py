@@ -10,11 +10,12 @@ import numpy as np
 import pygame
 
 from ai.digits.classifier import DIGITS, DigitClassifier
-from ai.digits.mnist import TEST, MnistError, load_part
+from ai.digits.mnist import MnistError, bright
 from ai.nn import SGD, Array, FullyConnectedLayer, ModelFormatError, NeuralNetwork
 from ai.nn.inspection import traces
 from game.core import texts
 from game.core.scene import Route
+from game.digits.kept import classifier_in, mnist_test
 from game.digits.pictures import GREY, SIGNED, picture
 from game.drawing.canvas import Canvas
 from game.drawing.figures import write_figures
@@ -66,12 +67,12 @@ class BackwardsChapter(Chapter):
         self._cache, self.problem, self._digit = PaintCache(most=6), "", 0
         self._pointed: tuple[int, int] | None = None
         try:
-            self._shipped = DigitClassifier.load(context.models_dir / "digits" / _MODEL)
-            self._images, self._labels = load_part(TEST, context.assets_dir / "mnist")
+            self._shipped = classifier_in(context.models_dir / "digits" / _MODEL)
+            self._pixels, self._labels = mnist_test(context.assets_dir)
         except (ModelFormatError, MnistError) as error:
             self.problem = str(error)
             return
-        read = self._shipped.predict(self._images[:SEARCHED]).argmax(axis=1)
+        read = self._shipped.predict(bright(self._pixels[:SEARCHED])).argmax(axis=1)
         self.misread = np.flatnonzero(read != self._labels[:SEARCHED]).tolist()
         self.restart()
 
@@ -85,7 +86,7 @@ class BackwardsChapter(Chapter):
         self.chosen = self.misread[self._digit % len(self.misread)]
         self.classifier = DigitClassifier(self._shipped.network.copy())
         self.label = int(self._labels[self.chosen])
-        self._image = self._images[self.chosen : self.chosen + 1]
+        self._image = bright(self._pixels[self.chosen : self.chosen + 1])
         self._target = np.zeros((1, DIGITS), np.float32)
         self._target[0, self.label] = 1.0
         self.reached = self.steps = self.moved = 0
@@ -141,7 +142,7 @@ class BackwardsChapter(Chapter):
 
     def _right(self) -> int:
         """Return how many of 500 other digits it reads right."""
-        read = self.classifier.predict(self._images[OTHERS]).argmax(axis=1)
+        read = self.classifier.predict(bright(self._pixels[OTHERS])).argmax(axis=1)
         return int((read == self._labels[OTHERS]).sum())
 
     # Pointing

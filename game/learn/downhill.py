@@ -16,7 +16,7 @@ from game.core import texts
 from game.core.scene import Route
 from game.drawing.canvas import Canvas, Point
 from game.drawing.figures import write_figures
-from game.drawing.paint_cache import PaintCache
+from game.drawing.paint_cache import InPieces, PaintCache, Steps
 from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, MUTE, NET, SMALL, Colour
 from game.learn.chapter import STAGE, Chapter, Code
 from game.learn.heat import paint_heat
@@ -43,6 +43,7 @@ _LINE: Final = pygame.FRect(STAGE.left, STAGE.top + 44, STAGE.width, STAGE.heigh
 _MAP: Final = pygame.FRect(STAGE.left, STAGE.top + 8, 424, 424)
 _REACH: Final = ((-2.0, 4.0), (-7.0, 5.0))  # of the two weights on the map
 _CELLS: Final = 40
+_A_CELL: Final = 500  # pixels of a picture that could be painted while the cost of one cell is measured
 _DEEP: Final[Colour] = (96, 128, 200)  # the valley's floor
 _LOST: Final = 50.0  # weight beyond which a descent has left for good
 
@@ -143,9 +144,17 @@ class DownhillChapter(Chapter):
         self.plain = Descent(*burning, SGD(_FIRST_RATE), VALLEY_START)
         self.adam = Descent(*burning, Adam(ADAM_RATE), VALLEY_START)
         self._curve = [(weight, self.line.cost((weight,))) for weight in np.linspace(*_LEFT, 121).tolist()]
-        across, up = (np.linspace(*reach, _CELLS).tolist() for reach in _REACH)
-        self._heights = np.array([[self.plain.cost((first, second)) for second in up] for first in across])
+        self._heights = InPieces(self._measured)
         self.restart()
+
+    def _measured(self, share: float) -> Steps[Array]:
+        """Measure the cost everywhere on the map, at a share of its cells."""
+        across, up = (np.linspace(*reach, round(share * _CELLS)).tolist() for reach in _REACH)
+        heights = np.zeros((len(across), len(up)))
+        for column, first in enumerate(across):
+            heights[column] = [self.plain.cost((first, second)) for second in up]
+            yield _A_CELL * len(up)
+        return heights
 
     def restart(self) -> None:
         """Forget all tries, and stand at the start with short steps."""
@@ -254,7 +263,7 @@ class DownhillChapter(Chapter):
         sheet.text(weight, (_LINE.width - 2, _LINE.height - 8), size=LABEL, colour=MUTE, align="right")
 
     def _draw_valley(self, canvas: Canvas) -> None:
-        self._cache.draw(canvas, _MAP, "map", self._paint_map)
+        self._cache.draw(canvas, _MAP, ("map", self._heights.whole), self._paint_map)
         rows = ((self.plain, HUMAN, texts.LEARN_DOWNHILL_PLAIN, self.rate),
                 (self.adam, NET, texts.LEARN_DOWNHILL_ADAM, ADAM_RATE))  # fmt: skip
         left, y = _MAP.right + 32, _MAP.top + 20
@@ -274,7 +283,7 @@ class DownhillChapter(Chapter):
             y += 72
 
     def _paint_map(self, sheet: Canvas) -> None:
-        bands = np.floor(2.0 * np.log2(self._heights + 0.05))
+        bands = np.floor(2.0 * np.log2(self._heights.picture + 0.05))
         levels = (bands - bands.min()) / (bands.max() - bands.min())
         paint_heat(sheet, 1.0 - levels, _DEEP, _DEEP)
         first, second = texts.LEARN_DOWNHILL_MAP

@@ -24,9 +24,9 @@ from game.input.controls import Command
 from game.panels.becoming_band import draw_curve
 from game.play.growth import said
 from game.ui.actions import Action, Table
-from game.ui.blurred_picture import BlurredPicture
 from game.ui.context import Context
 from game.ui.form_scene import FormScene
+from game.ui.still_picture import StillPicture
 from game.ui.widget import Widget
 from game.ui.widgets import Choice, Slider, TextButton, Toggle
 
@@ -55,7 +55,7 @@ class ChoicesScene(FormScene):
     ) -> None:
         super().__init__(context)
         self._skill, self._begun, self._challenge, self._curve = skill, begun, challenge, curve
-        self._behind = BlurredPicture(below, dimmed=0.7)
+        self._behind = StillPicture(below, dimmed=0.7)
         self._taught = count_demonstrations(context.user_dir)
         form = self.form
         self._rows: dict[Widget, Callable[[], str]] = {}

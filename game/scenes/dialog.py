@@ -13,12 +13,13 @@ from game.core.scene import Pop, Scene, Transition
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.prose import draw_wrapped
-from game.drawing.tokens import FAINT, MUTE, NIGHT0, TEXT
+from game.drawing.tokens import FAINT, MUTE, TEXT
 from game.ui.actions import Table, hints_of
 from game.ui.entry import Entry
 from game.ui.form_scene import FormScene
 from game.ui.hints import HintRow
 from game.ui.listing import Listing, Row
+from game.ui.still_picture import StillPicture
 from game.ui.widget import OnPress
 from game.ui.widgets import TextButton
 
@@ -41,14 +42,12 @@ class Dialog(FormScene):
     def __init__(self, below: Scene, question: str, more: str = "", height: int | None = None) -> None:
         super().__init__(below.context)
         height = height or self.height
-        self._below, self._question, self.more = below, question, more
+        self._behind, self._question, self.more = StillPicture(below, dimmed=0.8, sharp=True), question, more
         self.box = pygame.Rect(_LEFT, (720 - height) // 2 - 16, _WIDTH, height)
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the scene below, dimmed, and the question."""
-        whole = canvas.whole
-        self._below.draw_on(whole, 1.0)
-        whole.fill(whole.surface.get_rect(), NIGHT0, 0.8)
+        self._behind.draw(canvas)
         canvas.panel(self.box, 1.0)
         canvas.outline(self.box, 8, FAINT)
         left, top = self.box.left + _MARGIN, self.box.top

@@ -70,7 +70,7 @@ class MenuBackground:
         from game.flight.chances import critic_of
 
         context = self._context
-        with networks.reading:  # what is read and measured here is kept, and the next scene need not wait for it
+        with networks.kept.lock:  # what is read and measured here is kept, and the next scene need not wait for it
             policy = networks.chosen(context.models_dir, context.user_dir, context.settings.model).policy
             critic_of(policy)
             if isinstance(policy, networks.QPolicy):

@@ -11,10 +11,10 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import MARGIN
 from game.input.controls import Command
 from game.ui.actions import Action, Table
-from game.ui.blurred_picture import BlurredPicture
 from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.form_scene import FormScene
+from game.ui.still_picture import StillPicture
 from game.ui.widget import OnPress
 from game.ui.widgets import TextButton
 
@@ -42,7 +42,7 @@ class PauseScene(FormScene):
         more: Callable[[], list[tuple[str, OnPress]]] = list,
     ) -> None:
         super().__init__(context)
-        self._behind = BlurredPicture(below)
+        self._behind = StillPicture(below)
         self._retry, self._retry_word, self._more = retry, retry_word, more
         self._build()
 

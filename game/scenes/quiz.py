@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import pygame
 
-from ai.digits.mnist import TEST, MnistError, load_part
+from ai.digits.mnist import MnistError
 from ai.digits.preprocessing import preprocess_strokes
 from game.core import texts
 from game.core.scene import Transition
 from game.digits.answer import LEFT, percent
+from game.digits.kept import mnist_test
 from game.digits.pad import DrawingPad
 from game.digits.pen import make_pen
 from game.digits.pictures import picture
@@ -72,9 +73,9 @@ class QuizScene(FormScene):
         super().__init__(context)
         self._classifier = classifier
         self._sky = NightSky(np.random.default_rng(14), ember=0.2, stars=24)
-        self._strangers: tuple[np.ndarray, np.ndarray] = (np.zeros((0, 28, 28), np.float32), np.zeros(0, np.uint8))
+        self._strangers: tuple[np.ndarray, np.ndarray] = (np.zeros((0, 28, 28), np.uint8), np.zeros(0, np.uint8))
         try:
-            self._strangers = load_part(TEST)
+            self._strangers = mnist_test(context.assets_dir)
         except MnistError as error:
             context.note(texts.QUIZ_NO_STRANGERS.format(problem=error))
         self._laid = ""
@@ -89,6 +90,11 @@ class QuizScene(FormScene):
     def canvas_rect(self) -> pygame.Rect:
         """The drawing area, in the window's pixels."""
         return self.context.in_window(self.pad.rect)
+
+    def update(self) -> Transition | None:
+        """Look for digits of strangers, and animate the widgets."""
+        self.contest.look()
+        return super().update()
 
     def restart(self) -> None:
         """Start a new quiz."""

@@ -51,8 +51,13 @@ class PointsManager(UIManager):
         """Return the position unchanged, because it is in points already."""
         return int(position[0]), int(position[1])
 
-    def _update_mouse_position(self) -> None:
-        """Keep the position of the last event."""
+    def update(self, time_delta: float) -> None:
+        """Advance the elements, for a text line repeats a held key.
+
+        The rest of pygame_gui's update finds the element under the mouse in every frame, which our widgets ask when
+        they need it, and looks after a theme and a mouse cursor that we do not use.
+        """
+        self.ui_group.update(time_delta)
 
 
 class Widget(UIElement):

@@ -42,8 +42,9 @@ class SpriteShape:
     corners: tuple[tuple[float, float], ...]
     colour: Colour
 
+    @lru_cache(maxsize=256)  # noqa: B019  # there are as many pictures as rows below
     def outline(self, size: tuple[float, float]) -> Shape:
-        """Return the picture's outline at a sprite's size in metres."""
+        """Return the picture's outline at a sprite's size in metres; it is kept, as a pile has many of one size."""
         return Polygon(np.array(self.corners) * size) if self.corners else Circle(size[0] / 2)
 
 

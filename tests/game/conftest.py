@@ -19,6 +19,7 @@ import pytest
 from ai.lander.pilots import ScriptedPilot
 from game.core.scene import Scene
 from game.core.settings import TOP_RUNG, Settings, SettingsFile
+from game.digits import kept
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.flight import networks
@@ -34,7 +35,8 @@ pygame.font.init()  # as long as the tests run, in whatever order
 @pytest.fixture(autouse=True)
 def networks_unread() -> None:
     """Forget networks that were read: a test may have put other numbers into them."""
-    networks._read.clear()
+    networks.kept.clear()
+    kept.forget()
 
 
 @pytest.fixture(autouse=True)

@@ -1,6 +1,7 @@
 """The dream and the quiz, through real pygame events."""
 
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pygame
@@ -177,10 +178,10 @@ def test_ten_rounds_and_again(open_game: Callable[..., Driver], classifier):
 
 
 def test_without_the_test_images_everything_is_drawn(open_game: Callable[..., Driver], classifier, monkeypatch):
-    def damaged(part: str) -> None:
+    def damaged(_: Path) -> None:
         raise MnistError("MNIST: test.npz is damaged")
 
-    monkeypatch.setattr(quiz, "load_part", damaged)
+    monkeypatch.setattr(quiz, "mnist_test", damaged)
     game = open_game(QuizScene, classifier)
     game.frames(2)
     assert {each.kind for each in game.top.contest.rounds} == {"draw"}

@@ -1,0 +1,36 @@
+"""Letters that most screens use are loaded while nothing waits for them: the first text of a font takes long."""
+
+from __future__ import annotations
+
+from functools import lru_cache, partial
+from typing import Final
+
+from game.drawing import typeface
+from game.drawing.paint_cache import InPieces, Steps
+from game.drawing.typeface import Weight
+
+# Sizes in points that most screens use, and the letters of most words, a few at a time.
+_FONTS: Final[tuple[tuple[float, Weight], ...]] = (
+    (12.5, "regular"), (15.0, "regular"), (12.5, "medium"), (11.5, "medium"), (15.0, "medium"), (11.5, "regular"),
+    (34.0, "light"), (13.5, "regular"), (22.0, "regular"), (14.0, "regular"), (30.0, "light"), (18.0, "regular"),
+    (11.5, "code"),
+)  # fmt: skip
+_LETTERS: Final = ("eatoinsrhldcumfpgwybvkxjqz", "0123456789 .,:;-–'%()[]/=+*_·°", "TASDPCIWRMLNFEHBGOVUKYQJXZ")
+_FEW: Final = 25_000  # pixels of a picture that could be painted in the time that a few letters take
+
+
+def begin(scale: float) -> None:
+    """Load letters in pieces from now on, for a window of so many pixels a point and the present size of text."""
+    _loading(scale, typeface.growth())
+
+
+@lru_cache(maxsize=1)  # which keeps it until it is done
+def _loading(scale: float, growth: float) -> InPieces[None]:  # noqa: ARG001 - another size of text has other letters
+    return InPieces(partial(_load, scale))
+
+
+def _load(scale: float, share: float) -> Steps[None]:  # noqa: ARG001 - there are no rough letters
+    for size, weight in _FONTS:
+        for letters in _LETTERS:
+            typeface.open_letters(letters, size, weight, scale)
+            yield _FEW
