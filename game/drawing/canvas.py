@@ -336,11 +336,16 @@ class Canvas:
         track_alpha: float = 0.6,
     ) -> None:
         """Draw a thin rounded track, filled to a fraction from 0 to 1."""
-        box = pygame.FRect(rect)
-        filled = box.width * min(max(fraction, 0.0), 1.0)
-        self.pill((box.x, box.y, box.width, box.height), track, track_alpha)
-        if filled > 0:
-            self.pill((box.x, box.y, max(filled, box.height), box.height), colour)
+        x, y, width, height = rect if isinstance(rect, tuple) else pygame.FRect(rect)
+        self.pill((x, y, width, height), track, track_alpha)
+        if fraction <= 0:
+            return
+        area, length = self.rect(x, y, width, height), self.px(max(width * min(fraction, 1.0), height))
+        area.size = (max(1, area.width), max(1, area.height))
+        whole = shapes.rounded(area.size, min(width, height) / 2 * self.scale, colour)
+        end = min(length, area.height)  # cut from the whole bar, or each length would be painted anew
+        self.surface.blit(whole, area.topleft, (0, 0, length - end, area.height))
+        self.surface.blit(whole, (area.left + length - end, area.top), (area.width - end, 0, end, area.height))
 
     def pill(self, rect: pygame.typing.RectLike, colour: Colour, alpha: float = 1.0) -> None:
         """Fill a rectangle whose shorter sides are round."""
@@ -384,10 +389,9 @@ class Canvas:
         pixels = self.px(radius)
         level = round(32 * min(max(strength, 0.0), 4.0))
         if pixels > 0 and level > 0:
-            surface = shapes.glow(pixels if pixels < 24 else 4 * round(pixels / 4), colour, level)
-            half, (left, top), scale = surface.width // 2, self.origin, self.scale
-            corner = (round(centre[0] * scale) + left - half, round(centre[1] * scale) + top - half)
-            self.surface.blit(surface, corner, None, pygame.BLEND_RGB_ADD)
+            (left, top), scale = self.origin, self.scale
+            middle = round(centre[0] * scale) + left, round(centre[1] * scale) + top
+            shapes.add_glow(self.surface, middle, pixels, colour, level)
 
 
 def moved(view: pygame.FRect, across: int, down: int) -> Point:
