@@ -29,6 +29,7 @@ _SHIFT: Final[dict[Align, float]] = {"left": 0.0, "centre": 0.5, "right": 1.0}
 PAGE: Final = pygame.FRect((0, 0), VIEW_SIZE)  # in points
 
 Point = tuple[float, float]
+Stamp = tuple[pygame.Surface, tuple[int, int]]  # a picture, and the corner where it is drawn, in pixels
 Now = Callable[[], str]
 
 
@@ -320,12 +321,16 @@ class Canvas:
         self._shape(shape, centre, size / 2, colour, alpha)
 
     def _shape(self, shape: shapes.Shape, centre: Point, radius: float, colour: Colour, alpha: float) -> None:
+        self._blit(*self.stamp(shape, centre, radius, colour), alpha)
+
+    def stamp(self, shape: shapes.Shape, centre: Point, radius: float, colour: Colour) -> Stamp:
+        """Return a shape, positioned to a quarter of a pixel, and the corner where it is drawn on the surface."""
         x, y = self.pixels(centre)
         column, row = math.floor(x), math.floor(y)
         quarters = (int(4 * (x - column)), int(4 * (y - row)))
         surface = shapes.shape(shape, round(4 * radius * self.scale) / 4, colour, quarters)
         middle = surface.get_width() // 2
-        self._blit(surface, (column - middle, row - middle), alpha)
+        return surface, (column - middle, row - middle)
 
     def bar(
         self,
@@ -386,12 +391,21 @@ class Canvas:
 
     def glow(self, centre: Point, radius: float, colour: Colour, strength: float = 1.0) -> None:
         """Add light around a point, fading out towards the radius."""
+        if (pixels := self.px(radius)) >= shapes.HUGE_GLOW:
+            middle = round(centre[0] * self.scale) + self.origin[0], round(centre[1] * self.scale) + self.origin[1]
+            shapes.add_huge_glow(self.surface, middle, pixels, colour, min(strength, 4.0))
+        elif light := self.light(centre, radius, colour, strength):
+            self.surface.blit(*light, None, pygame.BLEND_RGB_ADD)
+
+    def light(self, centre: Point, radius: float, colour: Colour, strength: float) -> Stamp | None:
+        """Return the light that `glow` adds, and the corner where on the surface; None if there is none."""
         pixels = self.px(radius)
         level = round(32 * min(max(strength, 0.0), 4.0))
-        if pixels > 0 and level > 0:
-            (left, top), scale = self.origin, self.scale
-            middle = round(centre[0] * scale) + left, round(centre[1] * scale) + top
-            shapes.add_glow(self.surface, middle, pixels, colour, level)
+        if pixels <= 0 or level <= 0:
+            return None
+        surface = shapes.glow(pixels if pixels < 24 else 4 * round(pixels / 4), colour, level)
+        half, (left, top), scale = surface.width // 2, self.origin, self.scale
+        return surface, (round(centre[0] * scale) + left - half, round(centre[1] * scale) + top - half)
 
 
 def moved(view: pygame.FRect, across: int, down: int) -> Point:

@@ -17,7 +17,8 @@ Shape = Literal["circle", "ring", "triangle", "triangle_down", "diamond", "tick"
 
 _FACTOR: Final = 8
 _PLAIN_TO_SEE: Final = 3.0  # pixels: radius from which half of that is fine enough
-_FINE_GLOW, _LARGE_GLOW, _HUGE_GLOW = 24, 64, 256  # pixels
+_LARGE_GLOW, HUGE_GLOW = 64, 256  # pixels
+_APART: Final = 32  # pixels between radii of huge glows
 _BAND: Final = 32  # rows of a huge glow that are scaled at once
 _FALL: Final = 2.4  # how steeply a glow fades outwards
 # Corners on a circle of radius 1, y down.
@@ -111,21 +112,17 @@ def plain(size: tuple[int, int], colour: Colour) -> pygame.Surface:
     return surface
 
 
-def add_glow(surface: pygame.Surface, middle: tuple[int, int], radius: int, colour: Colour, level: int) -> None:
-    """Add a radial glow, about `radius` pixels to each side; `level` is its strength in 1/32.
+def add_huge_glow(
+    surface: pygame.Surface, middle: tuple[int, int], radius: int, colour: Colour, strength: float
+) -> None:
+    """Add a glow of at least `HUGE_GLOW` pixels, to within a sixteenth: an explosion needs new ones all the time.
 
-    Large ones come in few sizes: a craft that comes nearer, or an explosion, would need a new one in every frame.
+    It is scaled up in bands, for which the processor's cache has room: a whole one is ten megabytes of new memory.
     """
-    if radius >= _FINE_GLOW:
-        step = _FINE_GLOW // 6 if radius < _HUGE_GLOW else _HUGE_GLOW // 8
-        radius = step * round(radius / step)
-    if radius < _HUGE_GLOW:
-        glow = _glow(radius, colour, level)
-        half = glow.get_width() // 2
-        surface.blit(glow, (middle[0] - half, middle[1] - half), None, pygame.BLEND_RGB_ADD)
+    level = round(32 * strength)
+    if level <= 0:
         return
-    # Twice as large in bands, for which the processor's cache has room: a whole one is ten megabytes of new memory.
-    glow = _half_glow(radius, colour, level)
+    glow = _half_glow(_APART * round(radius / _APART), colour, level)
     side = glow.get_width()
     left, top = middle[0] - side, middle[1] - side
     for row in range(0, side, _BAND):
@@ -154,11 +151,12 @@ def _half_glow(radius: int, colour: Colour, level: int) -> pygame.Surface:
 
 
 @lru_cache(maxsize=256)
-def _glow(radius: int, colour: Colour, level: int) -> pygame.Surface:
+def glow(radius: int, colour: Colour, level: int) -> pygame.Surface:
+    """Return a radial glow for additive blending, in pixels; `level` is its strength in 1/32."""
     surface = _halo(radius).copy()
     surface.fill([round(part * min(level, 32) / 32) for part in colour], special_flags=pygame.BLEND_RGB_MULT)
     if level > 32:
-        surface.blit(_glow(radius, colour, level - 32), (0, 0), special_flags=pygame.BLEND_RGB_ADD)
+        surface.blit(glow(radius, colour, level - 32), (0, 0), special_flags=pygame.BLEND_RGB_ADD)
     return surface
 
 
@@ -182,7 +180,7 @@ def _fading(half: int, reach: float = 1.0) -> npt.NDArray[np.float32]:
 
 def forget() -> None:
     """Clear the cache of shapes, after a change of the window's size."""
-    for cache in (shape, rounded, _rounded, plain, _glow, _half_glow, _halo, _band):
+    for cache in (shape, rounded, _rounded, plain, glow, _half_glow, _halo, _band):
         cache.cache_clear()
 
 
