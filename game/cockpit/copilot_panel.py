@@ -120,7 +120,7 @@ class CopilotPanel:
         canvas.text(title, (left, top), colour=NET if self._override else INK, room=_WIDTH)
         canvas.explain((left, top - 16, _WIDTH, 62), texts.EXPLAIN_COPILOT_WHY)
         for number, line in enumerate(lines):
-            canvas.text(line, (left, top + 22 + 18 * number), size=SMALL, colour=MUTE, room=_WIDTH, tabular=True)
+            canvas.text(line, (left, top + 22 + 18 * number), size=SMALL, colour=MUTE, room=_WIDTH)
 
     def _draw_pads(self, canvas: Canvas, pads: Sequence[float]) -> None:
         left, top, surest = PANEL.left + _LEFT, PANEL.top + _PADS, max(pads)

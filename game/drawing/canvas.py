@@ -383,7 +383,10 @@ class Canvas:
         if shown >= 1:
             area = self.rect(*pygame.FRect(rect))
             area.size = (max(1, area.width), max(1, area.height))
-            self._blit(shapes.rounded(area.size, 8 * self.scale, PANEL, cover=alpha), area.topleft)
+            opaque = not self.surface.get_flags() & pygame.SRCALPHA
+            surface = shapes.rounded(area.size, 8 * self.scale, PANEL, cover=alpha, premultiplied=opaque)
+            flags = pygame.BLEND_PREMULTIPLIED if opaque else 0
+            self.surface.blit(surface, area.topleft, None, flags)
         else:
             self.rounded(rect, 8, PANEL, alpha * shown)
         if alpha * shown > _FAINT_WORDS:

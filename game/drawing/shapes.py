@@ -63,15 +63,24 @@ def _stroke(sheet: pygame.Surface, colour: Colour, strokes: list[list[tuple[floa
 
 
 @lru_cache(maxsize=512)
-def rounded(size: tuple[int, int], radius: float, colour: Colour, width: int = 0, cover: float = 1.0) -> pygame.Surface:
+def rounded(
+    size: tuple[int, int],
+    radius: float,
+    colour: Colour,
+    width: int = 0,
+    cover: float = 1.0,
+    *,
+    premultiplied: bool = False,
+) -> pygame.Surface:
     """Return a rectangle with round corners: filled, or as an outline `width` pixels wide; `cover` is its opacity.
 
-    A large one that is always as translucent is blended twice as fast with that in its pixels as with an alpha set.
+    A large one that is always as translucent is blended twice as fast with that in its pixels as with an alpha set,
+    and a quarter faster still `premultiplied`, where the surface below is opaque.
     """
     if cover < 1:
         pale = rounded(size, radius, colour, width).copy()
         pale.fill((255, 255, 255, round(255 * cover)), special_flags=pygame.BLEND_RGBA_MULT)
-        return pale
+        return pale.premul_alpha_ip() if premultiplied else pale
     reach = math.ceil(max(radius, width)) + 1  # pixels from an end, beyond which nothing changes
     small = _rounded((min(size[0], 2 * reach), min(size[1], 2 * reach)), radius, colour, width)
     if small.get_size() == size:
