@@ -17,6 +17,7 @@ from game.cockpit.ladder_mark import WIDTH as LADDER_WIDTH
 from game.cockpit.ladder_mark import draw_ladder
 from game.core import texts
 from game.drawing.canvas import Canvas, Point
+from game.drawing.paint import premultiplied
 from game.drawing.paint_cache import PaintCache
 from game.drawing.shapes import Shape
 from game.drawing.tokens import (
@@ -150,7 +151,8 @@ def draw_readouts(canvas: Canvas, readouts: Sequence[Readout], columns: Sequence
     """Draw read-outs side by side: the bar shows the distance from the limit, a mark by the label on which side."""
     if canvas.whole is canvas:  # a page has no world behind it
         width, height = canvas.surface.get_width(), canvas.size[1] - canvas.px(_SHADE_TOP)
-        canvas.surface.blit(_shade((width, height)), (0, canvas.surface.get_height() - height))
+        corner = 0, canvas.surface.get_height() - height
+        canvas.surface.blit(_shade((width, height)), corner, special_flags=pygame.BLEND_PREMULTIPLIED)
     for x, readout in zip(columns, readouts, strict=True):
         _draw_readout(column(canvas, x), x, readout)
 
@@ -178,12 +180,12 @@ def readout_box(x: float) -> tuple[float, float, float, float]:
 
 @lru_cache(maxsize=2)
 def _shade(size: tuple[int, int]) -> pygame.Surface:
-    """Return the dark gradient behind the figures, which makes them readable over craters and wrecks."""
+    """Return the dark gradient behind the figures, premultiplied: over craters and wrecks they stay readable."""
     shade = pygame.Surface(size, pygame.SRCALPHA)
     shade.fill(NIGHT0)
     rise = np.linspace(0.0, 1.0, size[1]) ** 0.7
     pygame.surfarray.pixels_alpha(shade)[:] = np.round(255 * _SHADE * rise).astype(np.uint8)
-    return shade
+    return premultiplied(shade)
 
 
 def _paint_readout(canvas: Canvas, readout: Readout, colour: Colour) -> None:
@@ -250,10 +252,10 @@ def draw_share(canvas: Canvas, left: float, top: float, width: float, human: flo
     """Draw the player's and the network's share of a flight; a share above zero never reads as 0 %."""
     you = round(100 * human) if human in (0.0, 1.0) else min(max(round(100 * human), 1), 99)
     if you:
-        canvas.text(texts.SHARE_YOU.format(percent=you), (left, top), size=SMALL, colour=HUMAN)
+        canvas.text(texts.SHARE_YOU.format(percent=you), (left, top), size=SMALL, colour=HUMAN, tabular=True)
     if you < 100:
         network = texts.SHARE_NETWORK.format(percent=100 - you)
-        canvas.text(network, (left + width, top), size=SMALL, colour=NET, align="right")
+        canvas.text(network, (left + width, top), size=SMALL, colour=NET, align="right", tabular=True)
     edge = width * human
     if human > 0:
         canvas.pill((left, top + 9, max(0.0, edge - 1), 3), HUMAN)

@@ -11,7 +11,7 @@ import pygame
 from game.drawing.canvas import Canvas, Point
 from game.drawing.tokens import Colour
 
-_FACTOR: Final = 6
+_FACTOR: Final = 4
 _PARTS: Final = 200  # of a whole turn: as fine as can be seen
 
 

@@ -341,11 +341,16 @@ class Canvas:
         track_alpha: float = 0.6,
     ) -> None:
         """Draw a thin rounded track, filled to a fraction from 0 to 1."""
-        box = pygame.FRect(rect)
-        filled = box.width * min(max(fraction, 0.0), 1.0)
-        self.pill((box.x, box.y, box.width, box.height), track, track_alpha)
-        if filled > 0:
-            self.pill((box.x, box.y, max(filled, box.height), box.height), colour)
+        x, y, width, height = rect if isinstance(rect, tuple) else pygame.FRect(rect)
+        self.pill((x, y, width, height), track, track_alpha)
+        if fraction <= 0:
+            return
+        area, length = self.rect(x, y, width, height), self.px(max(width * min(fraction, 1.0), height))
+        area.size = (max(1, area.width), max(1, area.height))
+        whole = shapes.rounded(area.size, min(width, height) / 2 * self.scale, colour)
+        end = min(length, area.height)  # cut from the whole bar, or each length would be painted anew
+        self.surface.blit(whole, area.topleft, (0, 0, length - end, area.height))
+        self.surface.blit(whole, (area.left + length - end, area.top), (area.width - end, 0, end, area.height))
 
     def pill(self, rect: pygame.typing.RectLike, colour: Colour, alpha: float = 1.0) -> None:
         """Fill a rectangle whose shorter sides are round."""
@@ -378,7 +383,10 @@ class Canvas:
         if shown >= 1:
             area = self.rect(*pygame.FRect(rect))
             area.size = (max(1, area.width), max(1, area.height))
-            self._blit(shapes.rounded(area.size, 8 * self.scale, PANEL, cover=alpha), area.topleft)
+            opaque = not self.surface.get_flags() & pygame.SRCALPHA
+            surface = shapes.rounded(area.size, 8 * self.scale, PANEL, cover=alpha, premultiplied=opaque)
+            flags = pygame.BLEND_PREMULTIPLIED if opaque else 0
+            self.surface.blit(surface, area.topleft, None, flags)
         else:
             self.rounded(rect, 8, PANEL, alpha * shown)
         if alpha * shown > _FAINT_WORDS:
@@ -386,7 +394,10 @@ class Canvas:
 
     def glow(self, centre: Point, radius: float, colour: Colour, strength: float = 1.0) -> None:
         """Add light around a point, fading out towards the radius."""
-        if light := self.light(centre, radius, colour, strength):
+        if (pixels := self.px(radius)) >= shapes.HUGE_GLOW:
+            middle = round(centre[0] * self.scale) + self.origin[0], round(centre[1] * self.scale) + self.origin[1]
+            shapes.add_huge_glow(self.surface, middle, pixels, colour, min(strength, 4.0))
+        elif light := self.light(centre, radius, colour, strength):
             self.surface.blit(*light, None, pygame.BLEND_RGB_ADD)
 
     def light(self, centre: Point, radius: float, colour: Colour, strength: float) -> Stamp | None:

@@ -69,6 +69,8 @@ def draw_craft(
 
 def draw_fires(canvas: Canvas, view: View, poses: Doubles, flicker: int, size: float) -> None:
     """Draw the main engines' flames of landers at poses (n, 3), small and in one call."""
+    if not len(poses):
+        return
     angle = poses[:, 2]
     nozzles = _middles(poses, size)
     nozzles += size * art.NOZZLE[1] * np.stack([-np.sin(angle), np.cos(angle)], axis=1)
@@ -78,6 +80,8 @@ def draw_fires(canvas: Canvas, view: View, poses: Doubles, flicker: int, size: f
 
 def draw_crowd(canvas: Canvas, view: View, poses: Doubles, size: float) -> None:
     """Draw landers at poses (n, 3), small and in one call, each standing on its feet."""
+    if not len(poses):  # beside a single lander, whose camera zooms: a new picture in every frame, for none
+        return
     middles = view.pixels(_middles(poses, size))
     canvas.surface.fblits(art.sprites(view.pixels_per_metre * size, poses[:, 2], middles))
 

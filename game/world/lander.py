@@ -30,7 +30,7 @@ NOZZLE: Final = (0.0, -0.66)
 JETS: Final = ((-0.56, 0.60), (0.56, 0.60))  # the left-hand and the right-hand one
 
 _FACTOR: Final = 4
-_LARGE: Final = 60.0  # pixels per metre from which half of that will do
+LARGE: Final = 60.0  # pixels per metre from which half of that will do
 _SUN: Final = np.array((0.84, 0.06, 0.54))
 _EARTH: Final = np.array((-0.62, 0.58, 0.53))
 _SUNLIGHT: Final = np.array((1.0, 0.86, 0.70))
@@ -211,7 +211,7 @@ def _packed(pixels_per_metre: float, degrees: int) -> pygame.Surface:
 
 def painted(pixels_per_metre: float, degrees: int, halves: tuple[int, int], image: str = LANDER) -> pygame.Surface:
     """Return a picture at a size and angle, its middle moved right and down by 0 or 1 `halves` of a pixel."""
-    paint = _paint if pixels_per_metre < _LARGE else _paint_large
+    paint = _paint if pixels_per_metre < LARGE else _paint_large
     return paint(pixels_per_metre, degrees, halves, image)
 
 
@@ -225,7 +225,7 @@ def _paint(pixels_per_metre: float, degrees: int, halves: tuple[int, int], image
     finish = PICTURES[image]
     half = math.ceil(REACH * pixels_per_metre) + 2
     side = 2 * half + 1
-    factor = _FACTOR if pixels_per_metre < _LARGE else _FACTOR // 2
+    factor = _FACTOR if pixels_per_metre < LARGE else _FACTOR // 2
     sheet = pygame.Surface((side * factor, side * factor), pygame.SRCALPHA)
     sheet.fill((60, 60, 78, 0))
     turn = math.radians(degrees)

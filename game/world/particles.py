@@ -19,7 +19,6 @@ from game.world.camera import View
 from game.world.landscape.relief import Relief
 
 _LEVELS: Final = 8
-_FINE: Final = 8  # pixels up to which there is a picture for every radius
 
 
 class ParticleKind(IntEnum):
@@ -49,6 +48,9 @@ _GRIP: Final = np.array([0.9, 0.5, 0.7, 0.75, 1.0, 1.0])  # share of the way alo
 _SPREAD: Final = np.array([1.0, 1.0, 1.0, 3.0, 3.0, 3.0])  # radius of the sprite, in radii of the particle
 _LEAST: Final = np.array([2, 1, 2, 2, 2, 2])  # pixels
 _MOST: Final = 64
+# By radius, how far apart the radii that have a picture are: a view that zooms would need all of them.
+_STEP: Final = np.repeat([1, 2, 4, 8], [5, 12, 16, _MOST - 32])
+_FADING: Final = np.array([_LEVELS, _LEVELS, _LEVELS // 2, _LEVELS, _LEVELS, _LEVELS])  # level from which it fades
 
 
 class Particles:
@@ -206,7 +208,9 @@ class Particles:
         level = np.ceil(_LEVELS * (1 - age / self._life[live])).astype(np.intp)
         radius = np.rint(self._size[live] * view.pixels_per_metre * _SPREAD[kind]).astype(np.intp)
         radius = radius.clip(_LEAST[kind], _MOST)
-        radius -= (radius > _FINE) & (radius % 2)  # every second one will do, where to paint one takes long
+        step = _STEP[radius]
+        radius = (radius + step // 2) // step * step
+        level = np.minimum(level, _FADING[kind])
         corner = np.rint(place).astype(np.intp) - radius[:, None]
         turn = np.where(
             kind == ParticleKind.SHARD, (look % 7) * 16 + (age * (3 + look % 5) * 4).astype(np.intp) % 16, 0
@@ -249,9 +253,13 @@ def _sprite(kind: int, radius: int, level: int, turn: int, dust: Colour) -> pyga
 
 
 def _puff(radius: int, level: int, colour: Colour) -> pygame.Surface:
+    if level < _LEVELS:
+        surface = _sprite(ParticleKind.DUST, radius, _LEVELS, 0, colour).copy()
+        surface.fill((255, 255, 255, round(255 * (level / _LEVELS) ** 1.4)), special_flags=pygame.BLEND_RGBA_MULT)
+        return surface
     axis = np.arange(-radius, radius + 1) / radius
     away = np.hypot(axis[:, None], axis[None, :])
-    cover = np.clip(1 - away, 0, 1) ** 1.5 * 82 * (level / _LEVELS) ** 1.4
+    cover = np.clip(1 - away, 0, 1) ** 1.5 * 82
     surface = pygame.Surface((2 * radius + 1, 2 * radius + 1), pygame.SRCALPHA)
     surface.fill((*colour, 0))
     pygame.surfarray.pixels_alpha(surface)[:] = cover.astype(np.uint8)
@@ -269,6 +277,10 @@ def _grain(radius: int, level: int, colour: Colour) -> pygame.Surface:
 
 def _glow(kind: int, radius: int, level: int) -> pygame.Surface:
     """Return a spark, small and hot, or a whiff of glowing gas, large and faint; to be added."""
+    if kind != ParticleKind.SPARK and level < _LEVELS:
+        surface = _sprite(kind, radius, _LEVELS, 0, DUST).copy()
+        surface.fill([round(255 * level / _LEVELS)] * 3, special_flags=pygame.BLEND_RGB_MULT)
+        return surface
     axis = np.arange(-radius, radius + 1) / radius
     away = np.hypot(axis[:, None], axis[None, :])[..., None]
     strength, colour = level / _LEVELS, np.array(_GLOWS[kind])
@@ -280,6 +292,10 @@ def _glow(kind: int, radius: int, level: int) -> pygame.Surface:
 
 def _shard(radius: int, shape: int, turn: int, level: int) -> pygame.Surface:
     """Return one of seven fragments of foil and frame, turned in sixteenths of a full turn."""
+    if 2 * level < _LEVELS:
+        surface = _sprite(ParticleKind.SHARD, radius, _LEVELS // 2, 16 * shape + turn, DUST).copy()
+        surface.set_alpha(round(2 * 255 * level / _LEVELS))
+        return surface
     side = 2 * radius + 1
     sheet = pygame.Surface((side * 4, side * 4), pygame.SRCALPHA)
     colour = _SHARDS[shape % len(_SHARDS)]
@@ -290,6 +306,4 @@ def _shard(radius: int, shape: int, turn: int, level: int) -> pygame.Surface:
         reach = 4 * radius * (0.45 + 0.5 * abs(math.sin(shape * 1.7 + 2.3 * corner)))
         corners.append((side * 2 + reach * math.cos(angle), side * 2 + reach * math.sin(angle) * 0.8))
     pygame.draw.polygon(sheet, colour, corners)
-    surface = pygame.transform.smoothscale(sheet, (side, side))
-    surface.set_alpha(min(255, round(2 * 255 * level / _LEVELS)))
-    return surface
+    return pygame.transform.smoothscale(sheet, (side, side))

@@ -20,6 +20,7 @@ from game.flight.surface import surface_height
 from game.world import lander as art
 from game.world.camera import View
 from game.world.craft import STAND, draw_craft, draw_crowd, draw_fires, foot_place, scaling, shaded, stand
+from game.world.flame import begin_flames
 from game.world.landscape.relief import Relief
 from game.world.landscape.wind import Wind
 from game.world.particles import DUST, Particles
@@ -31,6 +32,7 @@ _DUST_HEIGHT: Final = 6.0
 _LIGHT_HEIGHT: Final = 9.0
 _FLASH_STEPS: Final = 24
 _JOLT: Final = 11.0  # points, of the hardest blow
+_WRECK_DETAIL: Final = 0.6  # resolution of a wreck, of what the closest view would need
 
 
 def flames(env: LanderEnv) -> Doubles:
@@ -72,6 +74,7 @@ class Stage:
         self._lander = Sprite(env.lander, art.LANDER, art.SIZE)
         self._after: Wreck | Departure | None = None
         self._flicker = 0
+        begin_flames()
         self._down = np.zeros(2, bool)
         self._fall = 0.0
 
@@ -203,7 +206,10 @@ class Stage:
             y, angle = y - 0.16 * sag, angle + 0.16 * sag * (1 if angle >= 0 else -1)
         size = art.share(sprite)
         middle = view.pixel(*stand(x, y, angle, size))
-        craft = art.turned(sprite.image, view.painted_per_metre * size, angle, middle, scaling(view))
+        # A new picture for each degree that it tumbles, none of them seen from as near as a craft in flight.
+        most = view.painted_per_metre * size
+        detail = min(most, max(_WRECK_DETAIL * most, art.LARGE)) / most
+        craft = art.turned(sprite.image, detail * most, angle, middle, scaling(view) / detail)
         canvas.surface.blit(shaded(craft[0], self._light), craft[1])
 
     # A swarm, small and in one call, each standing on its feet; `shown` is a mask (n,)
@@ -283,7 +289,16 @@ def _shade(level: int) -> pygame.Surface:
 @lru_cache(maxsize=128)
 def light_pool(level: int, colour: tuple[int, int, int]) -> pygame.Surface:
     """Return a disc of light, to be squeezed flat and added; `level` is in 1/12."""
+    pool = _white_pool().copy()
+    pool.fill([round(part * min(level, 12) / 12) for part in colour], special_flags=pygame.BLEND_RGB_MULT)
+    if level > 12:
+        pool.blit(light_pool(level - 12, colour), (0, 0), special_flags=pygame.BLEND_RGB_ADD)
+    return pool
+
+
+@lru_cache(maxsize=1)
+def _white_pool() -> pygame.Surface:
     axis = np.linspace(-1, 1, 97)
     away = np.clip(1 - np.hypot(axis[None, :], axis[:, None]), 0, 1)
-    shine = (0.34 * away**2 + 0.42 * away**6) * level / 12
-    return light(shine[..., None] * np.array(colour, np.float32))
+    shine = 255 * (0.34 * away**2 + 0.42 * away**6)
+    return light(np.repeat(shine[..., None], 3, axis=2))

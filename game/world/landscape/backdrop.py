@@ -12,7 +12,7 @@ import numpy as np
 import pygame
 
 from game.drawing.canvas import Canvas
-from game.drawing.paint import PIECE
+from game.drawing.paint import PIECE, premultiplied
 from game.drawing.paint_cache import InPieces, Steps
 from game.drawing.tokens import NIGHT0, VIEW_SIZE
 from game.world.camera import MOST_LINES, POINTS_PER_METRE, Camera, View
@@ -108,7 +108,8 @@ class Backdrop:
             self._draw_earth(surface, (far.air, far.disc), earth, across, down)
         margin = MARGIN * self.size[0]
         for sheet, top, depth in far.ridges:
-            surface.blit(sheet, (round(across * depth - margin), self._above + top + down))
+            place = round(across * depth - margin), self._above + top + down
+            surface.blit(sheet, place, special_flags=pygame.BLEND_PREMULTIPLIED)
         surface.set_clip(seen)
         plain.draw(surface, view, corner)
 
@@ -137,7 +138,7 @@ class Backdrop:
 
 
 class _Far(NamedTuple):
-    """What keeps its size at any zoom; each ridge with the row of its top edge, and its depth."""
+    """What keeps its size at any zoom; each ridge, premultiplied, with the row of its top edge, and its depth."""
 
     sky: pygame.Surface
     stars: NearStars
@@ -170,7 +171,7 @@ def _paint_far(
         sheet, top = yield from paint_ridge(
             (round(fine * size[0]), round(fine * height)), ridge, own, look, 5 if share == 1 else 2
         )
-        ridges.append((_scaled(sheet, 1 / fine), round(top / fine), ridge.depth))
+        ridges.append((_scaled(premultiplied(sheet), 1 / fine), round(top / fine), ridge.depth))
         yield PIECE // 2
     night = yield from paint_sky(small, sky, look, stars=share == 1)
     if share != 1:  # smoothly as far as eyes see it, and on from there without
@@ -187,6 +188,7 @@ def _paint_plain(
     lines = round(detail * _lines(height, share))
     painted, rest, margin = round(lines * size[0] / height), View(lines / 720), WIDE_MARGIN if wide else MARGIN
     picture, top, foot = yield from paint_plain((painted, lines), deepcopy(chance), look, margin, stones=share == 1)
+    yield PIECE
     across = VIEW_SIZE[0] * size[0] / page_of(size)[0]  # points
     left = (VIEW_SIZE[0] - across) / 2 - margin * across
     corner, solid = rest.metres([(left, top / rest.scale), (0.0, foot / rest.scale)]).tolist()

@@ -99,6 +99,7 @@ def paint_hills(ground: Ground, pixels_per_metre: float) -> Steps[tuple[WorldPic
             sheet.put(rows.start, columns.start, light.on(columns, rise, below, lean), cover)
             yield below.size
         yield 1
+    yield PIECE
     return WorldPicture(sheet.done(), pixels_per_metre), (-_REACH, top)
 
 

@@ -8,6 +8,7 @@ from typing import Final
 
 import pygame
 
+from game.drawing.paint import premultiplied
 from game.drawing.paint_cache import busy, spend
 from game.world.camera import View
 
@@ -22,7 +23,8 @@ _RIM_LEFT: Final = (1, 0, 2)  # pixels of the rim that are left out on one side:
 class WorldPicture:
     """A picture painted at `per_metre` pixels per metre.
 
-    `soft` is the relative error that its width may have, half of it at either end.
+    `soft` is the relative error that its width may have, half of it at either end. The colours of a picture with clear
+    parts are multiplied by their alpha, here and for good: so it is blended a quarter faster, and scaled without rims.
 
     Scaling the part in view takes a millisecond; painting it anew takes a hundred times that. The last scaled part is
     reused until it does not fill the view any more, or its error would exceed `soft`; where several pictures are due
@@ -30,12 +32,15 @@ class WorldPicture:
     """
 
     def __init__(self, picture: pygame.Surface, per_metre: float, soft: float = 1 / 300) -> None:
-        self.picture, self.per_metre, self._soft = picture, per_metre, soft
+        self.per_metre, self._soft = per_metre, soft
+        clear = bool(picture.get_flags() & pygame.SRCALPHA)
+        self.picture, self._flags = (premultiplied(picture), pygame.BLEND_PREMULTIPLIED) if clear else (picture, 0)
         self._crop = (0, 0, 0)  # first and last column, and last row, of the scaled part
-        self._scaled = picture
+        self._scaled = self.picture
 
     def draw(self, surface: pygame.Surface, view: View, corner: tuple[float, float], flags: int = 0) -> None:
         """Draw the picture with its top left corner at a place in the world, in metres."""
+        flags = flags or self._flags
         ratio = view.pixels_per_metre / self.per_metre
         x, y = view.pixels(corner).tolist()
         width, height = self.picture.get_size()
@@ -74,8 +79,6 @@ class WorldPicture:
     def _scale(self, start: int, stop: int, rows: int, ratio: float) -> None:
         """Scale the part from one column to another, down to a row."""
         self._crop = (start, stop, rows)
-        if self.picture.get_flags() & pygame.RLEACCEL:  # scaling would decode and encode it again every time
-            self.picture.set_alpha(255)
         size = (max(1, round((stop - start) * ratio)), max(1, round(rows * ratio)))
         self._scaled = pygame.transform.smoothscale(self.picture.subsurface((start, 0, stop - start, rows)), size)
         spend(size[0] * size[1] // _PAINTED)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 import pygame
@@ -19,6 +19,7 @@ from game.world.landscape.themes import HORIZON, Theme
 # Where things stand, as shares of the page at the lower edge of the view, and across as shares of the view.
 SUN: Final = (0.77, 0.835)
 _BAND: Final = (0.30, -0.42, 0.085)  # the Milky Way: height at the left edge, slope, half width
+_TWINKLES: Final = 20  # times a second that stars may change
 _FINE: Final = 540  # lines in which gradients are computed; each of their pixels fills a square of the window's
 _GLOW: Final = (232, 142, 90)
 _CORE: Final = (255, 204, 138)
@@ -128,6 +129,7 @@ class NearStars:
         size_of *= np.clip((HORIZON - 0.05 - place[:, 1] / height) / 0.25, 0.15, 1)
         self._place = place + np.array((0, size[1] - height))
         self._depth = 0.01 + 0.025 * size_of
+        self._deepest = float(self._depth.max())
         self._phase = rng.uniform(0, 2 * np.pi, count)
         self._rate = rng.uniform(0.5, 1.6, count)
         unit = height / 720
@@ -137,8 +139,10 @@ class NearStars:
                    for star in stars]  # fmt: skip
         self._rows = [sprites[kind] for kind in kinds.tolist()]
         self._half = np.array([row[0].get_width() // 2 for row in self._rows])
-        self._seen: list[int] = []  # the stars that the last words left free,
-        self._seen_for: tuple[Sequence[pygame.Rect], tuple[int, int]] = [], (-1, 0)  # and where the view was then
+        self._seen: Ints = np.zeros(0, np.intp)  # the stars that the last words left free,
+        self._seen_for: Any = None  # and those words, and where the view was then
+        self._stamps: list[tuple[pygame.Surface, tuple[int, int]]] = []  # what was drawn last, and for which moment
+        self._stamped_for: Any = None
 
     def draw(
         self, surface: pygame.Surface, shift: tuple[float, float], time: float, words: Sequence[pygame.Rect] = ()
@@ -147,17 +151,29 @@ class NearStars:
 
         `shift` is how far the foreground has moved sideways and the horizon up, in pixels.
         """
+        tick = 0 if self._still else round(_TWINKLES * time)
+        moment = words, round(4 * self._deepest * shift[0]), round(shift[1]), tick
+        if moment != self._stamped_for:  # to a quarter of a pixel
+            self._stamped_for, self._stamps = moment, self._stamped(shift, tick / _TWINKLES, words)
+        surface.fblits(self._stamps, pygame.BLEND_RGB_ADD)
+
+    def _stamped(
+        self, shift: tuple[float, float], time: float, words: Sequence[pygame.Rect]
+    ) -> list[tuple[pygame.Surface, tuple[int, int]]]:
+        """Return the pictures of the stars that words leave free, each with its corner."""
         place = self._place + np.stack([self._depth * shift[0], np.full(len(self._depth), shift[1])], axis=1)
-        corners = np.rint(place - self._half[:, None]).astype(np.intp).tolist()
-        level = np.full(len(place), self.LEVELS - 2)
-        if not self._still:
-            level = np.round(self.LEVELS - 1.9 + 1.3 * np.sin(self._phase + self._rate * time)).astype(int)
-        sprites = [row[bright] for row, bright in zip(self._rows, level.tolist(), strict=True)]
-        whole = round(self._depth.max() * shift[0]), round(shift[1])
-        if (words, whole) != self._seen_for:  # in less than a pixel, no star comes behind a word
-            self._seen, self._seen_for = np.flatnonzero(beside(place, words)).tolist(), (words, whole)
+        seen_for = words, round(self._deepest * shift[0]), round(shift[1])
+        if seen_for != self._seen_for:  # in less than a pixel, no star comes behind a word
+            self._seen, self._seen_for = np.flatnonzero(beside(place, words)), seen_for
         seen = self._seen
-        surface.fblits([(sprites[star], corners[star]) for star in seen], pygame.BLEND_RGB_ADD)
+        corners = np.rint(place[seen] - self._half[seen, None]).astype(np.intp).tolist()
+        level = np.full(len(seen), self.LEVELS - 2)
+        if not self._still:
+            level = np.round(self.LEVELS - 1.9 + 1.3 * np.sin(self._phase[seen] + self._rate[seen] * time)).astype(int)
+        return [
+            (self._rows[star][bright], corner)
+            for star, bright, corner in zip(seen.tolist(), level.tolist(), corners, strict=True)
+        ]
 
 
 def _star(kind: int, unit: float) -> Picture:
