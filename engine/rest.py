@@ -24,6 +24,7 @@ from engine.vector import Array, Bools, Ints
 
 STILL: Final = 0.01  # m/s and rad/s below which a body is still
 DRIFT: Final = 0.0005  # metres and radians that it may creep meanwhile: what has only begun to slide creeps farther
+_FEW: Final = 2000  # numbers
 STEPS: Final = 30  # for which it has to be still, half a second
 
 
@@ -68,9 +69,9 @@ class Rest:
         if self._known is None:
             return False
         if (
-            not state.force.any()
-            and all(_same_bits(part, known) for part, known in zip(_parts(state), self._known, strict=True))
-            and np.array_equal(gravity, self._gravity)
+            not np.count_nonzero(state.force)
+            and all(map(_same_bits, _parts(state), self._known))
+            and _same_bits(np.asarray(gravity), self._gravity)
         ):
             return self._all_asleep
         self.wake(self._changed(state, np.asarray(gravity)))
@@ -201,7 +202,7 @@ class Rest:
         assert self._known is not None
         pose, velocity, active = (was != now for was, now in zip(self._known, _parts(state), strict=True))
         before, after = (np.broadcast_to(each, (len(active), 2)) for each in (self._gravity, gravity))
-        fall: Bools = (before != after).any(axis=1)
+        fall: Bools = np.any(before != after, axis=1)
         changed: Bools = np.any(pose | velocity | (state.force != 0.0), axis=2) | active
         changed |= fall[:, None] & self.asleep
         return changed
@@ -234,8 +235,9 @@ def _parts(state: BodyState) -> tuple[NDArray[Any], ...]:
 
 def _same_bits(a: NDArray[Any], b: NDArray[Any]) -> bool:
     """Whether two arrays are equal, NaN to NaN."""
-    kind = np.int8 if a.dtype == bool else np.int64
-    return bool(np.all(a.view(kind) == b.view(kind)))
+    if a.size < _FEW or a.dtype != float:
+        return a.tobytes() == b.tobytes()  # many times as fast for few numbers, but copies of many have to be made
+    return bool(np.all(a.view(np.int64) == b.view(np.int64)))
 
 
 def _watched(state: BodyState, gravity: Array) -> list[bytes]:
