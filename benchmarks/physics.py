@@ -118,7 +118,7 @@ def theirs(scene: Scene) -> Callable[[], None]:
 
 
 def microseconds(scene: Scene, step: Callable[[], None]) -> float:
-    for _ in range(round(scene.skip / DT)):
+    for _ in range(max(1, round(scene.skip / DT))):  # the first step also prepares what stays as it is
         step()
     steps = round(scene.seconds / DT)
     start = time.process_time()

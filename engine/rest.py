@@ -178,9 +178,8 @@ class Rest:
 
     def _sleep(self, contacts: Contacts) -> Bools:
         """Whether no body of each contact is awake, (m,)."""
-        asleep = self.asleep[contacts.world[:, None], contacts.body] | ~self._dynamic[contacts.body]
-        sleep: Bools = asleep.all(axis=1)
-        return sleep
+        asleep: Bools = self.asleep[contacts.world[:, None], contacts.body] | ~self._dynamic[contacts.body]
+        return asleep[:, 0] & asleep[:, 1]
 
     def _spread(self, chosen: Bools, world: Ints, body: Ints) -> Bools:
         """Return the chosen bodies (worlds, bodies), and all that pairs link to them: `world` (n,), `body` (n, 2).
@@ -200,10 +199,10 @@ class Rest:
     def _changed(self, state: BodyState, gravity: Array) -> Bools:
         """Return which bodies, (batch, bodies), are not as they were after the last step."""
         assert self._known is not None
-        pose, velocity, active = (was != now for was, now in zip(self._known, _parts(state), strict=True))
+        pose, velocity, active = (np.not_equal(*pair) for pair in zip(self._known, _parts(state), strict=True))
         before, after = (np.broadcast_to(each, (len(active), 2)) for each in (self._gravity, gravity))
         fall: Bools = np.any(before != after, axis=1)
-        changed: Bools = np.any(pose | velocity | (state.force != 0.0), axis=2) | active
+        changed: Bools = np.any(pose | velocity | np.not_equal(state.force, 0.0), axis=2) | active
         changed |= fall[:, None] & self.asleep
         return changed
 
