@@ -12,7 +12,8 @@ Reading order: `vector`, `shapes`, `state`, `integrate`, `collide`, `broad_phase
         world.step()
     print(ball.position)        # (batch, 2)
 
-`free_flight` flies one body of one world in plain floats, as long as it touches nothing.
+`free_flight` flies one body of one world in plain floats, as long as it touches nothing, and `lone_touch` and
+`lone_contacts` step it where it does.
 """
 
 from engine.body import Body

@@ -24,6 +24,7 @@ from engine.vector import Array, Bools, Ints
 
 STILL: Final = 0.01  # m/s and rad/s below which a body is still
 DRIFT: Final = 0.0005  # metres and radians that it may creep meanwhile: what has only begun to slide creeps farther
+_FEW: Final = 2000  # numbers
 STEPS: Final = 30  # for which it has to be still, half a second
 
 
@@ -68,9 +69,9 @@ class Rest:
         if self._known is None:
             return False
         if (
-            not state.force.any()
-            and all(_same_bits(part, known) for part, known in zip(_parts(state), self._known, strict=True))
-            and np.array_equal(gravity, self._gravity)
+            not np.count_nonzero(state.force)
+            and all(map(_same_bits, _parts(state), self._known))
+            and _same_bits(np.asarray(gravity), self._gravity)
         ):
             return self._all_asleep
         self.wake(self._changed(state, np.asarray(gravity)))
@@ -177,9 +178,8 @@ class Rest:
 
     def _sleep(self, contacts: Contacts) -> Bools:
         """Whether no body of each contact is awake, (m,)."""
-        asleep = self.asleep[contacts.world[:, None], contacts.body] | ~self._dynamic[contacts.body]
-        sleep: Bools = asleep.all(axis=1)
-        return sleep
+        asleep: Bools = self.asleep[contacts.world[:, None], contacts.body] | ~self._dynamic[contacts.body]
+        return asleep[:, 0] & asleep[:, 1]
 
     def _spread(self, chosen: Bools, world: Ints, body: Ints) -> Bools:
         """Return the chosen bodies (worlds, bodies), and all that pairs link to them: `world` (n,), `body` (n, 2).
@@ -199,10 +199,10 @@ class Rest:
     def _changed(self, state: BodyState, gravity: Array) -> Bools:
         """Return which bodies, (batch, bodies), are not as they were after the last step."""
         assert self._known is not None
-        pose, velocity, active = (was != now for was, now in zip(self._known, _parts(state), strict=True))
+        pose, velocity, active = (np.not_equal(*pair) for pair in zip(self._known, _parts(state), strict=True))
         before, after = (np.broadcast_to(each, (len(active), 2)) for each in (self._gravity, gravity))
-        fall: Bools = (before != after).any(axis=1)
-        changed: Bools = np.any(pose | velocity | (state.force != 0.0), axis=2) | active
+        fall: Bools = np.any(before != after, axis=1)
+        changed: Bools = np.any(pose | velocity | np.not_equal(state.force, 0.0), axis=2) | active
         changed |= fall[:, None] & self.asleep
         return changed
 
@@ -234,8 +234,9 @@ def _parts(state: BodyState) -> tuple[NDArray[Any], ...]:
 
 def _same_bits(a: NDArray[Any], b: NDArray[Any]) -> bool:
     """Whether two arrays are equal, NaN to NaN."""
-    kind = np.int8 if a.dtype == bool else np.int64
-    return bool(np.all(a.view(kind) == b.view(kind)))
+    if a.size < _FEW or a.dtype != float:
+        return a.tobytes() == b.tobytes()  # many times as fast for few numbers, but copies of many have to be made
+    return bool(np.all(a.view(np.int64) == b.view(np.int64)))
 
 
 def _watched(state: BodyState, gravity: Array) -> list[bytes]:
