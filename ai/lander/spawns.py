@@ -133,9 +133,5 @@ class Curriculum:
 
 # Ways to begin flights that change as a run lands; those of training, by name.
 CURRICULA: Final = {"curriculum": Curriculum(), "widening": Curriculum(((0, "mixed"), (1000, "far")))}
-TEACH_HARD: Final = (
-    "far",
-    "widening",
-    "hard",
-)  # of all ways to begin, those with starts as hard as in the hardest tests
+TEACH_HARD: Final = ("far", "widening")  # where a lander that lands already begins as in the hardest tests, too
 LADDER: Final = Curriculum(tuple(enumerate((*RUNGS, "random"))))
