@@ -47,7 +47,7 @@ class PaintCache:
 class InPieces(Generic[T]):
     """A picture that takes longer to paint than a frame may last: rough at once, and whole a few frames later.
 
-    Only where somebody goes on with it by `paint_on`, after `spread` said so: elsewhere it is painted at once, for
+    What it returns can be anything else that takes long, such as the numbers of a map. Only where somebody goes on with it by `paint_on`, after `spread` said so: elsewhere it is painted at once, for
     films and stills are no better with a rough picture.
 
     Args:
@@ -77,7 +77,7 @@ class InPieces(Generic[T]):
         return self._picture
 
     def paint_on(self, pixels: float = float("inf")) -> int:
-        """Paint at least so many pixels, as far as there are any, and return how many it was."""
+        """Paint at least so many pixels, as far as there are any, and return how many were painted."""
         done = 0
         while self._steps is not None and done < pixels:
             try:
@@ -141,7 +141,7 @@ def idle() -> bool:
 
 
 def paint_on() -> int:
-    """Paint what is left of a frame's share, of what was begun the latest first; return how many pixels it was."""
+    """Paint what is left of a frame's share, what was begun last first; return how many pixels were painted."""
     already = _Spread.painted - _Spread.before + min(_Spread.other, _Spread.pixels // 2)  # in this frame, rough
     done = 0
     while already + done < _Spread.pixels and not idle() and (latest := _unfinished[-1]()):

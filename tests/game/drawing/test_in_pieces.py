@@ -7,9 +7,11 @@ import pygame
 import pytest
 
 from ai.lander.descent import LegStart, leg_of
+from game.drawing import letters
 from game.drawing.canvas import Canvas
 from game.drawing.paint import PIECE
 from game.drawing.paint_cache import A_FRAME, idle, paint_on, painted, spread
+from game.drawing.sky import NightSky
 from game.play.descent import Descent
 from game.scenes.menu import MenuScene
 from game.scenes.play import PlayScene
@@ -170,3 +172,28 @@ def test_a_frame_that_has_painted_a_rough_picture_paints_no_more(in_pieces: None
     assert painted() - rough > A_FRAME
     assert paint_on() == 0  # later, in frames of their own
     assert paint_on() > 0
+
+
+def test_letters_are_loaded_a_few_at_a_time_and_anew_for_another_size(in_pieces: None):
+    for scale in (0.83, 0.91):
+        letters.begin(scale)
+        frames = finish()
+        assert len(frames) > 5
+        assert max(frames) <= MOST
+        letters.begin(scale)
+        assert idle(), "they are there"
+
+
+def test_the_night_is_rough_at_once_and_the_same_in_the_end(in_pieces: None):
+    canvas = Canvas(pygame.Surface((900, 500)))
+    night = NightSky(np.random.default_rng(3), ember=0.47, stars=20)
+
+    def picture() -> np.ndarray:
+        night.draw(canvas)
+        return pygame.surfarray.array3d(canvas.surface).astype(int)
+
+    rough = picture()
+    assert not idle()
+    finish()
+    whole = picture()
+    assert 0 < np.abs(rough - whole).mean() < 2  # of 255
