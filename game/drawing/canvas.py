@@ -345,10 +345,11 @@ class Canvas:
         self.pill((x, y, width, height), track, track_alpha)
         if fraction <= 0:
             return
-        area, length = self.rect(x, y, width, height), self.px(max(width * min(fraction, 1.0), height))
+        area = self.rect(x, y, width, height)
         area.size = (max(1, area.width), max(1, area.height))
         whole = shapes.rounded(area.size, min(width, height) / 2 * self.scale, colour)
-        end = min(length, area.height)  # cut from the whole bar, or each length would be painted anew
+        end = (area.height + 1) // 2  # cut from the whole bar, or each length would be painted anew
+        length = max(self.px(max(width * min(fraction, 1.0), height)), end)
         self.surface.blit(whole, area.topleft, (0, 0, length - end, area.height))
         self.surface.blit(whole, (area.left + length - end, area.top), (area.width - end, 0, end, area.height))
 

@@ -124,7 +124,7 @@ def plain(size: tuple[int, int], colour: Colour) -> pygame.Surface:
 def add_huge_glow(
     surface: pygame.Surface, middle: tuple[int, int], radius: int, colour: Colour, strength: float
 ) -> None:
-    """Add a glow of at least `HUGE_GLOW` pixels, to within a sixteenth: an explosion needs new ones all the time.
+    """Add a glow of at least `HUGE_GLOW` pixels, to within a sixteenth: explosions need new ones.
 
     It is scaled up in bands, for which the processor's cache has room: a whole one is ten megabytes of new memory.
     """
