@@ -29,7 +29,7 @@ class BroadPhase:
         far = np.sqrt(shapes.centre[:, 0] ** 2 + shapes.centre[:, 1] ** 2) + self._shape_reach
         self._reach = np.zeros(len(params.group))
         np.maximum.at(self._reach, shapes.body, far)
-        self.places = 0  # how often bodies that forces do not move were put elsewhere
+        self.version = 0  # of where fixed bodies are: one more each time any is put elsewhere
         self._boxes: Array | None = None  # (4, batch, bodies): low x and y, high x and y
         self._stale = self._is_fixed.copy()  # fixed bodies (bodies,) whose boxes are to be computed anew
         self._clear: tuple[Array, Array] | None = None  # where nothing was near, and how far all may go from there
@@ -44,7 +44,7 @@ class BroadPhase:
         """Discard the cached boxes of `bodies`: those that forces do not move were put elsewhere, or will be."""
         self._stale[bodies] = self._is_fixed[bodies]
         self._clear = None
-        self.places += 1
+        self.version += 1
 
     def near(self, state: BodyState, awake: Bools | None = None) -> tuple[Ints, Ints]:
         """Return world and row of `pairs`, each (n,), where boxes overlap; sorted by world, then by row.

@@ -113,7 +113,7 @@ class FreeFlight:
         """Return the fixed shapes whose boxes the body might touch, however it is turned."""
         world = self._world
         # What sways is everywhere at once, and is moved about all the time.
-        seen = (0 if self._sway else world.detector.broad.places, world.state.active.tobytes())
+        seen = (0 if self._sway else world.detector.broad.version, world.state.active.tobytes())
         if self._fixed is None or self._seen != seen:
             self._fixed, self._seen = self._look_around(), seen
         x, y, reach = self.x, self.y, self._reach

@@ -45,7 +45,7 @@ class LoneContacts:
         self._inverse = np.zeros(6)
         self._inverse[:3] = world.params.inverse_mass[body]
         self._faces: dict[int, list[Face]] = {}  # of fixed shapes, as far as any was near
-        self._places = -1  # how often fixed bodies had been put elsewhere when these were read
+        self._version = -1  # of where fixed bodies were when these were read
 
     def step(self, force: tuple[float, float, float], dt: float) -> Contacts | None:
         """Advance the body by `dt` seconds under this force and torque; return what touched."""
@@ -64,8 +64,8 @@ class LoneContacts:
     def _find(self) -> list[Touch]:
         """Return what touches, in the order of the world's pairs."""
         flight, detector = self.flight, self._world.detector
-        if self._places != detector.broad.places:
-            self._faces, self._places = {}, detector.broad.places
+        if self._version != detector.broad.version:
+            self._faces, self._version = {}, detector.broad.version
         x, y, cos, sin = flight.x, flight.y, flight.cos, flight.sin
         own: dict[int, list[Face]] = {}
         found = []
