@@ -47,9 +47,10 @@ class PaintCache:
 class InPieces(Generic[T]):
     """A picture that takes longer to paint than a frame may last: rough at once, and whole a few frames later.
 
-    What it returns can be anything else that takes long, such as the numbers of a map. Only where somebody goes on
-    with it by `paint_on`, after `spread` said so: elsewhere it is painted at once, for films and stills are no better
-    with a rough picture.
+    What it returns can be anything else that takes long, such as the numbers of a map.
+
+    Only where somebody goes on with it by `paint_on`, after `spread` said so: elsewhere it is painted at once, for
+    films and stills are no better with a rough picture.
 
     Args:
         paint: paints it, at a share of its resolution.
