@@ -48,6 +48,7 @@ from ai.lander.missions import MISSIONS
 from ai.training.experiments import experiments
 from game.core.scene import Scene
 from game.core.settings import Settings
+from game.digits.kept import classifier_in
 from game.drawing.paint_cache import A_FRAME, idle, spread
 from game.exhibits import EXHIBITS
 from game.flight.skill import Skill
@@ -219,7 +220,7 @@ def plotted(context: Context, exhibit: str, *, measuring: bool = False) -> Physi
 
 def _read(context: Context, name: str = "modern") -> tuple[Context, DigitClassifier]:
     """Return the context and a shipped network, which the scene below has read."""
-    return context, DigitClassifier.load(context.models_dir / "digits" / name)
+    return context, classifier_in(context.models_dir / "digits" / name)
 
 
 def _split(context: Context) -> Scene:

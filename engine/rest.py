@@ -24,8 +24,8 @@ from engine.vector import Array, Bools, Ints
 
 STILL: Final = 0.01  # m/s and rad/s below which a body is still
 DRIFT: Final = 0.0005  # metres and radians that it may creep meanwhile: what has only begun to slide creeps farther
-_FEW: Final = 2000  # numbers
 STEPS: Final = 30  # for which it has to be still, half a second
+_FEW: Final = 2000  # numbers of an array below which bytes are compared
 
 
 class Rest:

@@ -229,7 +229,7 @@ class LanderEnv(ObservedCraft):
             if self._alone and (flown := self._alone.fly(left)).steps:
                 left -= flown.steps
                 self.tilted_steps[0] += flown.tilted
-                self._up_in_the_air(flown.outcome)
+                self._judge_untouched(flown.outcome)
                 continue
             self._fly(flying)
             self.tilted_steps += flying & (self.tilt > TILT_ALLOWED)

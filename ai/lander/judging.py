@@ -86,7 +86,7 @@ class JudgedCraft(Craft):
         self.lander.active = self.outcome == Outcome.FLYING
         self.landings += int((flying & (verdict == Outcome.LANDED)).sum())
 
-    def _up_in_the_air(self, outcome: Outcome) -> None:
+    def _judge_untouched(self, outcome: Outcome) -> None:
         """Judge the only lander after steps in which nothing touched."""
         self.contacts, self._still[0] = np.zeros((1, 2), dtype=bool), 0
         if outcome:

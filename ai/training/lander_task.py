@@ -73,24 +73,17 @@ class Evaluation:
 
 def evaluate(pilot: Pilot, episodes: int, seed: int, spawn: str = "random", frame_skip: int = 4) -> Evaluation:
     """Fly `episodes` flights at once, without exploration, from spawns that follow from `seed`."""
-    return evaluation_of(trial(pilot, episodes, seed, spawn, frame_skip))
+    return evaluation_of(flown(pilot, LanderEnv(episodes, seed, spawn, frame_skip)))
 
 
 def evaluation_of(going: Generator[None, None, Evaluation]) -> Evaluation:
-    """Fly what `trial` or `flown` began to its end, and return the evaluation."""
+    """Fly what `flown` or `LanderTask.trial` began to its end, and return the evaluation."""
     while True:
         try:
             next(going)
         except StopIteration as done:
             evaluation: Evaluation = done.value
             return evaluation
-
-
-def trial(
-    pilot: Pilot, episodes: int, seed: int, spawn: str = "random", frame_skip: int = 4
-) -> Generator[None, None, Evaluation]:
-    """Evaluate as `evaluate` does, one decision at a time, so that the caller can do other work in between."""
-    return (yield from flown(pilot, LanderEnv(episodes, seed, spawn, frame_skip)))
 
 
 def flown(pilot: Pilot, env: LanderEnv) -> Generator[None, None, Evaluation]:
@@ -206,9 +199,9 @@ class LanderTask:
         """
         beside = (episodes + 1) // 2 if self.config.spawn in TEACH_HARD else 0
         env = LanderEnv(episodes + beside, seed, "random", self.config.frame_skip)
-        env.reset()
         if not beside:
-            return (yield from _counted(pilot, env, slice(None))).evaluation()
+            return (yield from flown(pilot, env))
+        env.reset()
         rng, hard = np.random.default_rng(seed), slice(episodes, None)
         starts = np.array([SPAWNS["hard"](rng) for _ in range(beside)])
         env.place(np.arange(env.num_envs) >= episodes, starts)

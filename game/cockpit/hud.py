@@ -17,7 +17,6 @@ from game.cockpit.ladder_mark import WIDTH as LADDER_WIDTH
 from game.cockpit.ladder_mark import draw_ladder
 from game.core import texts
 from game.drawing.canvas import Canvas, Point
-from game.drawing.paint import premultiplied
 from game.drawing.paint_cache import PaintCache
 from game.drawing.shapes import Shape
 from game.drawing.tokens import (
@@ -185,7 +184,7 @@ def _shade(size: tuple[int, int]) -> pygame.Surface:
     shade.fill(NIGHT0)
     rise = np.linspace(0.0, 1.0, size[1]) ** 0.7
     pygame.surfarray.pixels_alpha(shade)[:] = np.round(255 * _SHADE * rise).astype(np.uint8)
-    return premultiplied(shade)
+    return shade.premul_alpha_ip()
 
 
 def _paint_readout(canvas: Canvas, readout: Readout, colour: Colour) -> None:

@@ -100,11 +100,6 @@ def light(colour: Picture) -> pygame.Surface:
     return pygame.surfarray.make_surface(np.clip(colour, 0, 255).astype(np.uint8).swapaxes(0, 1))
 
 
-def premultiplied(picture: pygame.Surface) -> pygame.Surface:
-    """Return a picture with its colours multiplied by their alpha, for `BLEND_PREMULTIPLIED`; its memory is reused."""
-    return picture.premul_alpha_ip()
-
-
 def profile(length: int, rng: np.random.Generator, cells: float, octaves: int = 5, gain: float = 0.5) -> Picture:
     """Return smooth fractal noise (length,) in about -1 to 1; `cells` is the number of humps in the coarsest octave."""
     at = np.linspace(0, 1, length, dtype=np.float32)

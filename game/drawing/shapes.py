@@ -15,10 +15,10 @@ from game.drawing.tokens import Colour
 
 Shape = Literal["circle", "ring", "triangle", "triangle_down", "diamond", "tick", "cross", "check"]
 
-_FACTOR: Final = 8
-_PLAIN_TO_SEE: Final = 3.0  # pixels: radius from which half of that is fine enough
+_FACTOR: Final = 8  # how many times larger a shape is painted before it is scaled down
+_LARGE_SHAPE: Final = 3.0  # pixels of radius from which shapes are painted half as fine
 _LARGE_GLOW, HUGE_GLOW = 64, 256  # pixels
-_APART: Final = 32  # pixels between radii of huge glows
+_APART: Final = 32  # pixels by which radii of huge glows differ
 _BAND: Final = 32  # rows of a huge glow that are scaled at once
 _FALL: Final = 2.4  # how steeply a glow fades outwards
 # Corners on a circle of radius 1, y down.
@@ -37,7 +37,7 @@ _STROKES: Final[dict[str, list[list[tuple[float, float]]]]] = {
 @lru_cache(maxsize=2048)
 def shape(name: Shape, radius: float, colour: Colour, quarters: tuple[int, int] = (0, 0)) -> pygame.Surface:
     """Return a shape of a radius in pixels, shifted by `quarters` of a pixel in x and y."""
-    half, factor = math.ceil(radius) + 2, _FACTOR if radius < _PLAIN_TO_SEE else _FACTOR // 2
+    half, factor = math.ceil(radius) + 2, _FACTOR if radius < _LARGE_SHAPE else _FACTOR // 2
     side = 2 * half
     sheet = _sheet((side * factor, side * factor), colour)
     x, y = (factor * (half + quarter / 4) for quarter in quarters)

@@ -26,8 +26,8 @@ from game.world.paths import Trails
 _FIRE: Final = 0.5  # share of full thrust drawn, so that a ghost's flame is not mistaken for the player's
 _BODY: Final = 0.30  # opacity of a ghost's body, and of its rim
 _RIM: Final = 0.9
-_SHADE: Final = (102, 102, 102)  # two fifths of its own colours are left,
-_TINT: Final = tuple(round(0.6 * level) for level in NET)  # and three are blue
+_SHADE: Final = (102, 102, 102)  # two fifths of 255: a ghost keeps that share of the lander's colours
+_TINT: Final = tuple(round(0.6 * level) for level in NET)  # the other three fifths are the network's blue
 _FINEST: Final = 64.0  # pixels per metre of its picture, which is translucent and costs a new one at every angle
 _FADED: Final = 0.55  # factor on both, once it has crashed
 _EDGE: Final = 18.0  # points from the edge of the view to the mark of a ghost that is beyond it

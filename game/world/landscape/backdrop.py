@@ -12,7 +12,7 @@ import numpy as np
 import pygame
 
 from game.drawing.canvas import Canvas
-from game.drawing.paint import PIECE, premultiplied
+from game.drawing.paint import PIECE
 from game.drawing.paint_cache import InPieces, Steps
 from game.drawing.tokens import NIGHT0, VIEW_SIZE
 from game.world.camera import MOST_LINES, POINTS_PER_METRE, Camera, View
@@ -171,7 +171,7 @@ def _paint_far(
         sheet, top = yield from paint_ridge(
             (round(fine * size[0]), round(fine * height)), ridge, own, look, 5 if share == 1 else 2
         )
-        ridges.append((_scaled(premultiplied(sheet), 1 / fine), round(top / fine), ridge.depth))
+        ridges.append((_scaled(sheet.premul_alpha_ip(), 1 / fine), round(top / fine), ridge.depth))
         yield PIECE // 2
     night = yield from paint_sky(small, sky, look, stars=share == 1)
     if share != 1:  # smoothly as far as eyes see it, and on from there without

@@ -8,7 +8,6 @@ from typing import Final
 
 import pygame
 
-from game.drawing.paint import premultiplied
 from game.drawing.paint_cache import busy, spend
 from game.world.camera import View
 
@@ -34,7 +33,7 @@ class WorldPicture:
     def __init__(self, picture: pygame.Surface, per_metre: float, soft: float = 1 / 300) -> None:
         self.per_metre, self._soft = per_metre, soft
         clear = bool(picture.get_flags() & pygame.SRCALPHA)
-        self.picture, self._flags = (premultiplied(picture), pygame.BLEND_PREMULTIPLIED) if clear else (picture, 0)
+        self.picture, self._flags = (picture.premul_alpha_ip(), pygame.BLEND_PREMULTIPLIED) if clear else (picture, 0)
         self._crop = (0, 0, 0)  # first and last column, and last row, of the scaled part
         self._scaled = self.picture
 
