@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -56,8 +56,8 @@ class WarmStart:
         """All that a step takes over which does without ages, to be compared at once."""
         return [part.tobytes() for part in (self.key, self.feature, self.impulse)]
 
-    def where(self, kept: Bools) -> WarmStart:
-        """Return the memory of these manifolds alone."""
+    def where(self, kept: Bools | Ints) -> WarmStart:
+        """Return the memory of these manifolds alone, which are marked, or named by their rows."""
         return WarmStart(
             self.key[kept],
             self.feature[kept],
@@ -97,6 +97,19 @@ class Memory:
     impulses: WarmStart
     rest: Rest | None
     forgotten: list[tuple[int, Bools | None]]
+    pairs: int  # of shapes, in every world
+
+    def of_worlds(self, worlds: Ints) -> Memory:
+        """Return the memory of some worlds (m,), each as often as it is named; raises ValueError where bodies sleep."""
+        if self.rest:
+            raise ValueError("worlds in which bodies sleep are remembered as a whole")
+        last = self.impulses
+        first, behind = last.key.searchsorted([worlds * self.pairs, (worlds + 1) * self.pairs])
+        count = behind - first
+        ends = count.cumsum()
+        row = np.arange(count.sum()) + (first - ends + count).repeat(count)
+        key = last.key[row] + ((np.arange(len(worlds)) - worlds) * self.pairs).repeat(count)
+        return replace(self, impulses=replace(last.where(row), key=key))
 
 
 class Detector:
@@ -160,7 +173,8 @@ class Detector:
 
     def memory(self) -> Memory:
         """Return the impulses that `remember` has kept, and what sleeps, to be put back by `recall_memory`."""
-        return Memory(self.impulses, self.rest.copy() if self.rest else None, self._forgotten.copy())
+        return Memory(self.impulses, self.rest.copy() if self.rest else None, self._forgotten.copy(),
+                      len(self.pairs))  # fmt: skip
 
     def recall_memory(self, memory: Memory) -> None:
         """Put back what a call of `memory` returned."""

@@ -3,6 +3,7 @@
 May be imported by `digits`, `gym` and `cli`.
 """
 
-from ai.copilot.copilot import ActionSource, CoPilot, Mode, SharedDecision
+from ai.copilot.copilot import CoPilot, Mode, SharedDecision
+from ai.copilot.guardian import ActionSource
 
 __all__ = ["ActionSource", "CoPilot", "Mode", "SharedDecision"]

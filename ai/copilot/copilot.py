@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from enum import IntEnum, StrEnum
+from enum import StrEnum
 from functools import cached_property
-from typing import Any, Final, Literal, Protocol
+from typing import Any, Final, Protocol
 
 import numpy as np
 
@@ -13,16 +14,16 @@ from ai.agent.agent import DeepQAgent
 from ai.agent.config import Config
 from ai.common.decision import in_points
 from ai.common.environment import Bools, Doubles, Floats, Ints
-from ai.copilot.clock import FlightClock
-from ai.copilot.critic import SafetyCritic, critic_beside
-from ai.copilot.guardian import Guardian
+from ai.copilot.futures import DECISION_STEPS, KEYS, Future, Futures, Here, Lookahead, Moment, Push
+from ai.copilot.guardian import ActionSource, Choice, Guardian, decisions_of
 from ai.copilot.intent import Intent, in_question
-from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
+from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES, LanderEnv, Outcome
 from ai.lander.pilots import COAST
+from ai.lander.route import Route
+from ai.lander.rules import ACTION_SHARES
 
 # Points of reward by which the guardian's action must be better than the pilot's, at an assist of one half.
 GUARDIAN_MARGIN: Final = 3.0
-OUT_OF_REACH: Final = 0.6  # chance to be saved on a pad below which it counts as lost
 _STEERS: Final = 3  # action = 3 * main + steer
 
 
@@ -37,17 +38,7 @@ class Mode(StrEnum):
     """Condition on which the co-pilot steps in."""
 
     TOLERANCE = "tolerance"  # where the pilot's action is not nearly as good as the best
-    GUARDIAN = "guardian"  # only where the network might soon no longer save the flight
-
-
-class ActionSource(IntEnum):
-    """Source of the action that is flown, in the order in which the sources are tried."""
-
-    PILOT = 0  # the pilot's, untouched
-    PILOT_MAIN = 1  # the pilot's main engine with the co-pilot's steering
-    PILOT_STEER = 2  # the co-pilot's main engine with the pilot's steering
-    COPILOT = 3  # the co-pilot's
-    HANDS_OFF = 4  # the co-pilot's, because nothing is pressed
+    GUARDIAN = "guardian"  # only where the network would no longer land
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,13 +57,11 @@ class SharedDecision:
     assist: float  # how much the co-pilot helped, 0 to 1
     mode: Mode  # and when it stepped in
     reward_scale: float  # size of one point of reward in the unit of `values`
-    chances: Floats | None = None  # (n, 6) to be saved after each action, for the best pad that may be meant
-    required: Doubles | None = None  # (n,) chance that the dial asks for by now; None without a critic
-
-    @property
-    def chance(self) -> Floats | None:
-        """Chance to be saved after the pilot's own action, (n,); None without a critic."""
-        return None if self.chances is None else self.chances[np.arange(len(self.pilot)), self.pilot]
+    shares: Doubles  # (n, 2) of thrust that are flown, of main engine and jets
+    overridden: Bools  # (n,) whether anything else is flown than the pilot asked for
+    # A guardian's that goes by futures; None of any other.
+    known: tuple[Mapping[Push, Future], ...] | None = None  # (n) what comes of each push that was looked at
+    held: Bools | None = None  # (n,) whether a plan is held now, so that nobody can crash the flight
 
     @cached_property
     def points(self) -> Floats:
@@ -85,12 +74,6 @@ class SharedDecision:
         rows = np.arange(len(self.action))
         more: Floats = (self.meant[rows, :, self.best] - self.meant[rows, :, self.pilot]).min(axis=1)
         return in_points(more, self.reward_scale)
-
-    @property
-    def overridden(self) -> Bools:
-        """Whether another action is flown than the pilot asked for, (n,)."""
-        overridden: Bools = self.action != self.pilot
-        return overridden
 
 
 def _candidates(pilot: Ints, best: Ints) -> Ints:
@@ -112,20 +95,26 @@ class CoPilot:
     In tolerance mode an action is feasible if its value above the worst is at least `assist` times that of the
     best. A pilot who asks for nothing has their hands off the stick: then the co-pilot flies, whatever the assist.
 
-    In guardian mode with a safety `critic`, an action is feasible if the chance that the agent can still save the
-    flight after it is at least what `Guardian` asks for, which begins at `required_chance(assist)`. Asking for nothing
-    is an action as any other here. When the stick goes back to the pilot, `Guardian` says as well.
+    In guardian mode the co-pilot goes by futures of the `LanderEnv` that is flown, if that is handed over: an action
+    passes if a flight that begins with it and goes on as the network flies was seen to land, and nothing else is then
+    flown than such plans (`Guardian`). The dial says how far ahead: the network must land after one decision of the
+    action, and after `decisions_of(assist)` of it; at 0 nothing is ever changed. Asking for nothing is an action as any
+    other here. Where not a single action lands, the pilot flies.
 
-    A guardian without a critic (after McMahan et al. 2024) lets every action pass unless the co-pilot's own is worth
-    more on the way to every pad by a margin, which falls from infinity at assist 0 to 0 at assist 1; hands off are as
-    in tolerance mode. The critic is the one beside the agent's files unless another is given; `critic_problem` says
-    why there is none.
+    Without an environment, a guardian goes by values (after McMahan et al. 2024): every action passes unless the
+    co-pilot's own is worth more on the way to every pad by a margin, which falls from infinity at assist 0 to 0 at
+    assist 1; hands off are as in tolerance mode.
 
     Of several pads, only those count that may still be meant, by what the pilot has done so far
     (`ai.copilot.intent`); with `infers_intent` off, all do. Hands off, the co-pilot flies to the likeliest. So it
     remembers from one decision to the next, which should be some 1/15 s; `forget` makes it ready for another flight.
 
-    `reward_scale` is what a point of reward is in the agent's values; by default, what it was trained with.
+    `reward_scale` is what a point of reward is in the agent's values; by default, what it was trained with. `route` is
+    how the network is led around rock on a leg of a descent.
+
+    Attributes:
+        guardians: what it remembers of each flight, one for each slot: the plans.
+
     """
 
     def __init__(
@@ -136,7 +125,7 @@ class CoPilot:
         *,
         reward_scale: float | None = None,
         infers_intent: bool = True,
-        critic: SafetyCritic | Literal["beside"] | None = "beside",
+        route: Route | None = None,
     ) -> None:
         self.agent = agent
         self.assist = assist
@@ -145,8 +134,9 @@ class CoPilot:
         self.reward_scale = config.reward_scale if reward_scale is None else reward_scale
         self.infers_intent = infers_intent
         self._intent = Intent(self.reward_scale)
-        self.critic, self.critic_problem = critic_beside(agent) if critic == "beside" else (critic, "")
-        self.guardian, self._clock = Guardian(), FlightClock()
+        self.lookahead = Lookahead(agent, route)
+        self.guardians: list[Guardian] = []
+        self._rules: tuple[object, ...] = ()  # of the environment that the plans are for
 
     @property
     def assist(self) -> float:
@@ -162,21 +152,65 @@ class CoPilot:
     def forget(self, mask: Bools | None = None) -> None:
         """Begin a new flight in the slots of `mask` (n,), or in all, with no idea which pad is meant."""
         self._intent.forget(mask)
-        self.guardian.forget(mask)
-        self._clock.forget(mask)
+        self.guardians = [
+            guardian if mask is not None and not mask[slot] else Guardian()
+            for slot, guardian in enumerate(self.guardians)
+        ]
 
-    def share(self, observation: Floats, pilot_action: Any, surroundings: Floats | None = None) -> tuple[Ints, Bools]:
+    def futures(self, env: LanderEnv) -> Futures:
+        """Fly the network on from the present moment after each action, in every slot; return what comes of it."""
+        slots = np.flatnonzero(env.outcome == Outcome.FLYING)
+        asked = [(int(slot), push) for slot in slots for push in KEYS]
+        found = self.lookahead.futures(Moment.of(env), asked, decisions_of(self.assist))
+        return Futures.of(env.num_envs, asked, found)
+
+    def share(
+        self,
+        observation: Floats,
+        pilot_action: Any,
+        surroundings: Floats | None = None,
+        shares: Doubles | None = None,
+        env: LanderEnv | None = None,
+    ) -> tuple[Ints, Bools]:
         """Return the actions to fly (n,), and where they are not the pilot's, (n,).
 
         `observation` is (n, 9), or (n, pads, 9) relative to each pad that may be meant; `pilot_action` is (n,)
-        of 0 to 5. `surroundings` (n, k), or (n, pads, k), are those of `LanderEnv.around`, if they are known.
-        Raises ValueError for others.
+        of 0 to 5. `surroundings` (n, k), or (n, pads, k), are those of `LanderEnv.around`, for a network that reads
+        them. `shares` (n, 2) are the thrusts of main engine and jets that the pilot really pushes, all that is asked for
+        if left out. Where nothing is overridden, they are flown; what is overridden is flown with all thrust. With
+        `env`, guardian mode goes by futures: ask every four physics steps, at the same time as `env` flies what was
+        returned. Raises ValueError for others.
         """
-        decision = self.decide(observation, pilot_action, surroundings)
+        decision = self._decide(observation, pilot_action, surroundings, shares, env, None, whole=True)
         return decision.action, decision.overridden
 
-    def decide(self, observation: Floats, pilot_action: Any, surroundings: Floats | None = None) -> SharedDecision:
-        """Decide as `share` does, and return all that explains it; raises as `share` does."""
+    def decide(
+        self,
+        observation: Floats,
+        pilot_action: Any,
+        surroundings: Floats | None = None,
+        shares: Doubles | None = None,
+        env: LanderEnv | None = None,
+        known: Sequence[Mapping[Push, Future]] | None = None,
+    ) -> SharedDecision:
+        """Decide as `share` does, and return all that explains it; raises as `share` does.
+
+        Here, what is corrected keeps the pilot's share of thrust, so fly `SharedDecision.shares`. Futures that are
+        `known` (n) were flown beforehand: then none is flown now, and what is missing counts as lost.
+        """
+        return self._decide(observation, pilot_action, surroundings, shares, env, known, whole=False)
+
+    def _decide(
+        self,
+        observation: Floats,
+        pilot_action: Any,
+        surroundings: Floats | None,
+        shares: Doubles | None,
+        env: LanderEnv | None,
+        known: Sequence[Mapping[Push, Future]] | None,
+        *,
+        whole: bool,
+    ) -> SharedDecision:
         observation = np.atleast_2d(observation)
         if observation.ndim == 2:
             observation = observation[:, None]
@@ -186,10 +220,14 @@ class CoPilot:
             raise ValueError(f"pilot actions must be {slots} whole numbers, not {pilot.dtype} {pilot.shape}")
         if ((pilot < 0) | (pilot >= NUM_ACTIONS)).any():
             raise ValueError(f"actions run from 0 to {NUM_ACTIONS - 1}, not {pilot.min()} to {pilot.max()}")
-        values = self.agent.q_values(observation.reshape(-1, features)).reshape(slots, pads, NUM_ACTIONS)
+        pushed = ACTION_SHARES[pilot] if shares is None else np.asarray(shares, dtype=float)
+        if pushed.shape != (slots, 2):
+            raise ValueError(f"shares of thrust must be {slots} rows of two, not {pushed.shape}")
+        seen = self._seen(observation, surroundings)
+        values = self.agent.q_values(seen.reshape(slots * pads, -1)).reshape(slots, pads, NUM_ACTIONS)
         likely, meant = self._read(values, pilot, np.abs(observation[:, :, 0]))
-        if self.mode is Mode.GUARDIAN and self.critic is not None:
-            return self._save(observation, surroundings, values, meant, likely, pilot)
+        if self.mode is Mode.GUARDIAN and env is not None:
+            return self._save(observation, env, values, meant, likely, pilot, pushed, known, whole)
         assist = np.where(pilot == COAST, 1.0, self.assist)
         weigh = self._guard if self.mode is Mode.GUARDIAN else self._tolerate
         best, feasible = weigh(meant, pilot, assist)
@@ -197,9 +235,19 @@ class CoPilot:
         rows = np.arange(slots)
         source = feasible[rows, candidates].argmax(axis=0)
         action = candidates[source, rows]
-        source[(pilot == COAST) & (action != pilot)] = ActionSource.HANDS_OFF
+        overridden = action != pilot
+        source[(pilot == COAST) & overridden] = ActionSource.HANDS_OFF
+        flown = np.where(overridden[:, None], ACTION_SHARES[action], pushed)
         return SharedDecision(observation, action, pilot, best, source, values, meant, feasible, likely,
-                              self.assist, self.mode, self.reward_scale)  # fmt: skip
+                              self.assist, self.mode, self.reward_scale, flown, overridden)  # fmt: skip
+
+    def _seen(self, observation: Floats, surroundings: Floats | None) -> Floats:
+        """Return what the network reads, (n, pads, features): the surroundings, too, if it has inputs for them."""
+        features = getattr(self.agent, "num_features", NUM_FEATURES)
+        if features <= observation.shape[2] or surroundings is None:
+            return observation
+        around = surroundings.reshape(*observation.shape[:2], -1)[:, :, : features - NUM_FEATURES]
+        return np.concatenate([observation, around], axis=2)
 
     def _read(self, values: Floats, pilot: Ints, away: Floats) -> tuple[Doubles, Floats]:
         """Return how likely each pad is meant, (n, pads), and the values with the likeliest's where a pad is not."""
@@ -215,45 +263,87 @@ class CoPilot:
     def _save(
         self,
         observation: Floats,
-        surroundings: Floats | None,
+        env: LanderEnv,
         values: Floats,
         meant: Floats,
         likely: Doubles,
         pilot: Ints,
+        pushed: Doubles,
+        known: Sequence[Mapping[Push, Future]] | None,
+        whole: bool,
     ) -> SharedDecision:
-        """Let the pilot fly while the chance to be saved is what the dial asks for; else do the least that restores it.
+        """Let each pilot fly what a landing plan begins with; else do the least that such a plan begins with."""
+        slots, pads, _ = observation.shape
+        if env.num_envs != slots or DECISION_STEPS % env.frame_skip:
+            raise ValueError(f"{slots} observations are of as many landers, whose steps are 1, 2 or 4 physics steps long")
+        target = env.target
+        if pads > 1 and pads == env.ground.at_once and self.infers_intent:
+            target = (likely - 1e-6 * np.abs(observation[:, :, 0])).argmax(axis=1)
+        pad = target if pads == len(env.ground.pads) else np.zeros(slots, dtype=np.intp)
+        best = values[np.arange(slots), pad].argmax(axis=1)
+        self._void(env)
+        asks = [Push(*push) for push in zip(pilot.tolist(), *pushed.T.tolist(), strict=True)]
+        futures = [dict(each) for each in known or [{}] * slots]
+        if self.assist > 0:
+            choices = self._choose(env, target, asks, best, futures, flies=known is None, whole=whole)
+        else:
+            choices = [Choice(push, ActionSource.PILOT, held=False) for push in asks]
+        action = np.array([choice.push.action for choice in choices])
+        feasible = np.ones((slots, NUM_ACTIONS), dtype=bool)
+        for slot, each in enumerate(futures):
+            for push in KEYS:
+                feasible[slot, push.action] = push not in each or each[push].passes
+        return SharedDecision(observation, action, pilot, best, np.array([choice.source for choice in choices]), values,
+                              meant, feasible, likely, self.assist, self.mode, self.reward_scale,
+                              np.array([choice.push[1:] for choice in choices]),
+                              np.array([choice.source is not ActionSource.PILOT for choice in choices]),
+                              tuple(futures), np.array([choice.held for choice in choices]))  # fmt: skip
 
-        Of several pads that may be meant, one on which the flight can be saved is enough; where there is none left,
-        any pad is.
-        """
-        assert self.critic is not None
-        slots, pads, features = observation.shape
-        rows = np.arange(slots)
-        nine = observation[:, :, :NUM_FEATURES]
-        if surroundings is None and features > NUM_FEATURES:
-            surroundings = observation[:, :, NUM_FEATURES:]
-        elif surroundings is None:
-            surroundings, new = self._clock.read(nine)
-            self.guardian.forget(new)
-        chances = self.critic.chances(nine.reshape(-1, NUM_FEATURES), surroundings.reshape(slots * pads, -1))
-        chances = chances.reshape(slots, pads, NUM_ACTIONS)
-        required = self.guardian.required(self.assist, slots)
-        within, open_ = chances.max(axis=2), in_question(likely)
-        # Where the pads that may be meant can hardly be reached any more, any other will do.
-        open_ |= (np.where(open_, within, 0.0).max(axis=1) < OUT_OF_REACH)[:, None]
-        chances = np.where(open_[:, :, None], chances, -1.0)
-        # The likeliest of the pads that can still be reached, else the one that is nearest to it.
-        within = chances.max(axis=2)
-        pad = np.where(within >= required[:, None], 1.0 + likely, within).argmax(axis=1)
-        best = values[rows, pad].argmax(axis=1)
-        chance = chances.max(axis=1)
-        candidates = _candidates(pilot, best)
-        source, asked = self.guardian.choose(chance, candidates, required, among_hills=pads > 1)
-        action = candidates[source, rows]
-        feasible = chance >= asked[:, None]
-        feasible[rows, action] = True
-        return SharedDecision(observation, action, pilot, best, source, values, meant, feasible, likely,
-                              self.assist, self.mode, self.reward_scale, chance, asked)  # fmt: skip
+    def _choose(
+        self,
+        env: LanderEnv,
+        target: Ints,
+        asks: Sequence[Push],
+        best: Ints,
+        known: list[dict[Push, Future]],
+        *,
+        flies: bool,
+        whole: bool,
+    ) -> list[Choice]:
+        """Return every guardian's choice, after all futures that it needs have been flown, if it `flies`."""
+        flying = np.flatnonzero(env.outcome == Outcome.FLYING).tolist()
+        here = {slot: Here.of(env, slot) for slot in flying}
+        wishes = [KEYS[action] for action in best]
+        moment: Moment | None = None
+        while flies:
+            needed = [
+                (slot, push)
+                for slot in flying
+                for push in self.guardians[slot].needs(here[slot], asks[slot], wishes[slot], known[slot], whole=whole)
+            ]
+            if not needed:
+                break
+            if moment is None:
+                moment = Moment.of(env)
+                moment.target[:] = target
+            found = self.lookahead.futures(moment, needed, decisions_of(self.assist))
+            for (slot, push), future in zip(needed, found, strict=True):
+                known[slot][push] = future
+        return [
+            self.guardians[slot].choose(here[slot], push, wishes[slot], known[slot], whole=whole)
+            if slot in here
+            else Choice(push, ActionSource.PILOT, held=False)
+            for slot, push in enumerate(asks)
+        ]
+
+    def _void(self, env: LanderEnv) -> None:
+        """Drop all plans of another environment, or of one whose rules have changed since."""
+        rules = env.params, env.limits, env.conditions, env.ground
+        if len(rules) != len(self._rules) or any(a is not b for a, b in zip(rules, self._rules, strict=True)):
+            for guardian in self.guardians:
+                guardian.plan = None
+        self._rules = rules
+        self.guardians += [Guardian() for _ in range(env.num_envs - len(self.guardians))]
 
     def _tolerate(self, values: Floats, pilot: Ints, assist: Floats) -> tuple[Ints, Bools]:
         """Return the co-pilot's action (n,) and the feasible ones (n, 6): those as good as `assist` (n,) asks for."""

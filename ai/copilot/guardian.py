@@ -1,88 +1,100 @@
-"""Guardian: when to step in, how far, and when to hand back, given the chance to be saved after each action."""
+"""Guardian: it holds a plan that lands, and lets pass what another such plan begins with.
+
+Judging only: what comes of a push is flown by `ai.copilot.futures`, beforehand and perhaps elsewhere.
+"""
 
 from __future__ import annotations
 
-from typing import Any, Final
+from collections.abc import Mapping
+from enum import IntEnum
+from typing import Final, NamedTuple
 
-import numpy as np
+from ai.copilot.futures import KEYS, Future, Here, Plan, Push
 
-from ai.common.environment import Bools, Doubles, Floats, Ints
-
-RISK: Final = 0.02 / 3  # chance to be lost that it accepts, at an assist of one half
-SUREST: Final = 0.9995  # chance that it asks for at the most, after however many rescues
-HAND_BACK: Final = 0.5  # share of the risk at which it may give the stick back
-PATIENCE: Final = 0.1  # decisions for which the pilot's actions must have been safe before that: this · rescues²
-_LONGEST: Final = 60  # decisions
-LEEWAY: Final = 1.4  # among hills: how much oftener than after the best action a flight may be lost
+_FARTHEST: Final = 12  # decisions of an action after which there must be a landing, with the dial at 1
 
 
-def required_chance(assist: Any) -> Any:
-    """Return the chance to be saved below which a guardian steps in, for assist (n,), 0 to 1."""
-    with np.errstate(divide="ignore"):
-        return np.maximum(0.0, 1.0 - RISK * (1.0 - np.asarray(assist)) / assist)
+class ActionSource(IntEnum):
+    """Source of the action that is flown, in the order in which the sources are tried."""
+
+    PILOT = 0  # the pilot's, untouched
+    PILOT_MAIN = 1  # the pilot's main engine with the co-pilot's steering
+    PILOT_STEER = 2  # the co-pilot's main engine with the pilot's steering
+    COPILOT = 3  # the co-pilot's
+    HANDS_OFF = 4  # the co-pilot's, because nothing is pressed
+
+
+class Choice(NamedTuple):
+    """What a guardian flies.
+
+    Attributes:
+        push: what is pushed, for one decision.
+        source: whose that is.
+        held: whether a plan is held after it, so that the flight lands whatever is asked for from then on.
+
+    """
+
+    push: Push
+    source: ActionSource
+    held: bool
+
+
+def decisions_of(assist: float) -> int:
+    """Return after how many decisions of an action there must be a landing, 1 to 12, for the dial at 0 to 1."""
+    return 1 + round((_FARTHEST - 1) * assist)
 
 
 class Guardian:
-    """Guardian of n flights, with what it remembers of each.
-
-    Each rescue is a chance to fail, so it halves the risk it takes after every one; and the oftener it had to step
-    in, the longer the pilot's actions must be safe before it hands back.
-
-    Among hills the agent itself misses a pad now and then, so that what is asked for may be out of reach whatever the
-    pilot does. There it steps in only where another action is much better, and hands back at once.
+    """Guardian of one flight.
 
     Attributes:
-        saving: whether it has the stick, (n,).
-        rescues: how often it has stepped in, (n,).
+        plan: the plan that it holds; None before it has found one, and where there is none.
 
     """
 
     def __init__(self) -> None:
-        self.saving: Bools = np.zeros(0, dtype=bool)
-        self.rescues: Ints = np.zeros(0, dtype=np.intp)
-        self._safe_for: Ints = np.zeros(0, dtype=np.intp)  # decisions since the pilot's action was last unsafe
+        self.plan: Plan | None = None
 
-    def forget(self, mask: Bools | None = None) -> None:
-        """Begin a new flight in the slots of `mask` (n,), or in all."""
-        for memory in (self.saving, self.rescues, self._safe_for):
-            if memory.size:  # it has been asked before
-                memory[slice(None) if mask is None else mask] = 0
-
-    def required(self, assist: float, slots: int) -> Doubles:
-        """Return the chance below which it steps in by now, (n,), with the dial at `assist`."""
-        if self.saving.shape != (slots,):
-            self.saving = np.zeros(slots, dtype=bool)
-            self.rescues, self._safe_for = np.zeros((2, slots), dtype=np.intp)
-        required = required_chance(assist)
-        halved = 1.0 - (1.0 - required) * 0.5**self.rescues
-        now: Doubles = np.minimum(halved, np.maximum(required, SUREST))
-        return now
+    def needs(self, here: Here, asked: Push, network: Push, known: Mapping[Push, Future], *, whole: bool) -> list[Push]:
+        """Return the pushes whose futures `choose` would have to know, and does not yet."""
+        offers, head = self._offers(here, asked, network, whole)
+        if asked == head or (asked in known and known[asked].passes):
+            return []
+        if asked not in known:
+            return [asked]
+        return [push for push in offers if push not in known and push != head]
 
     def choose(
-        self, chance: Floats, candidates: Ints, required: Doubles, *, among_hills: bool = False
-    ) -> tuple[Ints, Doubles]:
-        """Return which candidate to fly, (n,), and the chance that was asked for, (n,).
+        self, here: Here, asked: Push, network: Push, known: Mapping[Push, Future], *, whole: bool = False
+    ) -> Choice:
+        """Return what to fly, where the pilot pushes `asked` and the network would push `network`.
 
-        `chance` (n, 6) is that to be saved after each action; `candidates` (k, n) are actions, the pilot's own first
-        and the least change first of the others. Where a chance is not a number, nobody can judge: the pilot flies.
+        What the pilot asks for passes if a landing plan begins with it, which is held from now on; else as little as
+        will do is corrected, with all thrust if `whole`; else the plan that is held flies on. Without any plan, the
+        pilot flies. What is not `known` in time counts as lost, which never is a risk while a plan is held.
         """
-        offered = chance[np.arange(len(required)), candidates]
-        back = 1.0 - HAND_BACK * (1.0 - required)
-        patience = np.minimum(PATIENCE * self.rescues**2, _LONGEST)
-        if among_hills:
-            lost = 1.0 - offered.max(axis=0)
-            required = np.minimum(required, 1.0 - LEEWAY * lost)
-            back = np.minimum(back, 1.0 - (1.0 + HAND_BACK * (LEEWAY - 1.0)) * lost)
-            patience = np.zeros_like(lost)
-        asked = np.where(self.saving, back, required)
-        enough = offered >= asked
-        known = np.isfinite(chance).all(axis=1)
-        self._safe_for = np.where(enough[0], self._safe_for + 1, 0)
-        enough[0] &= ~self.saving | (self._safe_for > patience)
-        none = ~enough.any(axis=0)
-        enough[:, none] = (offered == offered.max(axis=0))[:, none]
-        chosen = np.where(known, enough.argmax(axis=0), 0)
-        saving = chosen > 0
-        self.rescues += saving & ~self.saving
-        self.saving = saving
-        return chosen, asked
+        offers, head = self._offers(here, asked, network, whole)
+        futures = {push: Future(self.plan) if push == head else known.get(push, Future(None)) for push in offers}
+        landing = [push for push, future in futures.items() if future.plan]
+        lasting = [push for push in landing if futures[push].lasts]
+        if not landing:
+            return Choice(asked, ActionSource.PILOT, held=False)
+        push = (lasting or landing)[0]
+        self.plan = futures[push].plan
+        return Choice(push, offers[push], held=True)
+
+    def _offers(self, here: Here, asked: Push, network: Push, whole: bool) -> tuple[dict[Push, ActionSource], Push | None]:
+        """Return what may be flown, the least change first, and what the held plan begins with; drop a plan that is off.
+
+        Where no plan is held, the network's wish takes its place, and every other action may be flown as well.
+        """
+        head = self.plan.push(here) if self.plan else None
+        if head is None:
+            self.plan = None
+        best, own = head or network, KEYS[asked.action] if whole else asked
+        offers = {asked: ActionSource.PILOT}
+        offers.setdefault(Push.of(own.main, best.side), ActionSource.PILOT_MAIN)
+        offers.setdefault(Push.of(best.main, own.side), ActionSource.PILOT_STEER)
+        for push in (best,) if head else (best, *KEYS):
+            offers.setdefault(push, ActionSource.COPILOT)
+        return offers, head

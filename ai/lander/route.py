@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from ai.common.environment import Doubles, Floats
+from ai.common.environment import Bools, Doubles, Floats
 from ai.lander.environment import LanderEnv
 from ai.lander.pilots import Pilot
 from ai.lander.sensing import sensed
@@ -40,11 +40,11 @@ def sink_of(pilot: Pilot) -> float:
 
 
 def _over_flying_pad(env: LanderEnv, pad_velocity: Doubles) -> Floats:
-    """Return the observation (1, 9) of a pad in the air, just below a lander and moving in m/s."""
+    """Return the observations (n, 9) of a pad in the air just below each lander, moving at (2,) or (n, 2) m/s."""
     state, body = env.world.state, env.lander.index
     turned = state.sin[:, body], state.cos[:, body], env.angular_velocity
-    nothing = np.zeros((1, 2), dtype=bool)
-    return sensed(np.array([[0.0, _BELOW]]), env.velocity - pad_velocity, *turned, nothing)
+    below, nothing = np.tile([0.0, _BELOW], (env.num_envs, 1)), np.zeros((env.num_envs, 2), dtype=bool)
+    return sensed(below, env.velocity - pad_velocity, *turned, nothing)
 
 
 class Route:
@@ -61,37 +61,42 @@ class Route:
         """Metres from the first point to the last."""
         return float(self._start[-1])
 
-    def point(self, along: float) -> Doubles:
-        """Return the place (2,) so many metres along the route; beyond its ends, the end."""
-        along = min(max(along, 0.0), self.length)
-        part = min(int(np.searchsorted(self._start, along, side="right")) - 1, len(self._long) - 1)
-        place: Doubles = self._from[part] + (along - self._start[part]) / self._long[part] * self._way[part]
+    def point(self, along: npt.ArrayLike) -> Doubles:
+        """Return the places (..., 2) so many metres (...) along the route; beyond its ends, the end."""
+        along = np.clip(along, 0.0, self.length)
+        part = np.minimum(self._start.searchsorted(along, side="right") - 1, len(self._long) - 1)
+        share = (along - self._start[part]) / self._long[part]
+        place: Doubles = self._from[part] + share[..., None] * self._way[part]
         return place
 
-    def nearest(self, place: Doubles) -> float:
-        """Return how many metres along the route its nearest point to a place (2,) is."""
-        share = ((place - self._from) * self._way).sum(axis=1) / self._long**2
-        share = share.clip(0.0, 1.0)
-        away = np.hypot(*(self._from + share[:, None] * self._way - place).T)
-        part = int(away.argmin())
-        return float(self._start[part] + share[part] * self._long[part])
+    def nearest(self, place: Doubles) -> Doubles:
+        """Return how many metres along the route its nearest points to places (..., 2) are, (...)."""
+        offset = place[..., None, :] - self._from
+        share = ((offset * self._way).sum(axis=-1) / self._long**2).clip(0.0, 1.0)
+        away = self._from + share[..., None] * self._way - place[..., None, :]
+        part = np.hypot(away[..., 0], away[..., 1]).argmin(axis=-1)
+        along: Doubles = self._start[part] + np.take_along_axis(share, part[..., None], axis=-1)[..., 0] * self._long[part]
+        return along
 
-    def velocity(self, place: Doubles) -> Doubles | None:
-        """Return the velocity (2,) in m/s that leads from a place (2,) along the route; None over the goal."""
+    def lead(self, place: Doubles) -> tuple[Doubles, Bools]:
+        """Return the velocity (..., 2) in m/s that leads from places (..., 2) along the route, and where to the goal.
+
+        There, over the goal, (...), it means nothing.
+        """
         along = self.nearest(place)
         left = self.length - along
-        if left < _OVER_GOAL and abs(place[0] - self.point(self.length)[0]) < 2 * _OVER_GOAL:
-            return None
+        over = (left < _OVER_GOAL) & (np.abs(place[..., 0] - self.point(self.length)[0]) < 2 * _OVER_GOAL)
         way = self.point(along + _AHEAD) - place
         slowest, more = _SLOW
-        speed = min(_CRUISE, slowest + more * left)
-        wanted: Doubles = speed * way / max(float(np.hypot(*way)), 1e-6)
-        return wanted
+        speed = np.minimum(_CRUISE, slowest + more * left)
+        wanted: Doubles = (speed / np.maximum(np.hypot(way[..., 0], way[..., 1]), 1e-6))[..., None] * way
+        return wanted, over
 
     def observe(self, env: LanderEnv, pilot: Pilot) -> Floats:
-        """Return the observation (1, 9) that a pilot needs: of the goal, or on the way to it of the flying pad."""
-        wanted = self.velocity(env.position[0])
-        if wanted is None:
-            return env.observe(0)
+        """Return the observations (n, 9) that a pilot needs: of the goal, or on the way to it of the flying pad."""
+        wanted, over = self.lead(env.position)
+        goal = env.observe(0)
+        if over.all():
+            return goal
         sink = sink_of(pilot)  # type: ignore[arg-type]  # one network is one object, whatever it compares equal to
-        return _over_flying_pad(env, wanted + np.array([0.0, sink]))
+        return np.where(over[:, None], goal, _over_flying_pad(env, wanted + np.array([0.0, sink])))

@@ -1,0 +1,357 @@
+"""Futures: from a moment in flight, push something, let the network fly on, and see whether it lands.
+
+The game is the simulation, exact and repeatable, so a future that was seen to land is a plan: a list of what to push,
+decision by decision, that lands again, bit for bit. Values of a network alone and in a batch may differ in their last
+bits; so a plan is flown as it is written down, and never decided anew.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, is_dataclass, replace
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from ai.common.environment import Bools, Doubles, Ints
+from ai.lander.conditions import Conditions
+from ai.lander.environment import PARAMS, LanderEnv, LanderParams, Limits, Outcome
+from ai.lander.ground import Ground
+from ai.lander.pilots import Pilot
+from ai.lander.route import Route
+from ai.lander.rules import ACTION_SHARES, nearest_action
+from engine import DT
+
+DECISION_STEPS: Final = 4  # physics steps of a decision, whatever rate a network was trained with
+LONGEST: Final = 30.0  # seconds after which a future that has not landed counts as one that does not
+SPARE: Final = 1.5  # seconds before time is out, from which on a landing does not count
+_MOST: Final = round(LONGEST / DT) // DECISION_STEPS  # decisions
+_AT_ONCE: Final = 64  # futures of several pads that are flown in one batch; of more, those to other pads come later
+
+
+class Push(NamedTuple):
+    """What is pushed for one decision: an action, 0 to 5, and the shares of thrust of main engine and jets."""
+
+    action: int
+    main: float
+    side: float
+
+    @classmethod
+    def of(cls, main: float, side: float) -> Push:
+        """Return the push of these shares of thrust, with the action that is nearest to them."""
+        return cls(nearest_action(main, side), main, side)
+
+
+KEYS: Final = tuple(Push(action, *shares) for action, shares in enumerate(ACTION_SHARES.tolist()))
+Opening = tuple[Push, ...]  # what is pushed in the first decisions of a future, before the network has the stick
+
+
+@dataclass(frozen=True, eq=False)
+class Moment:
+    """Everything that the flights of n landers depend on; it can be pickled, for another process.
+
+    Numbers of `params`, `limits` and `conditions` may be arrays (n,), one for each lander.
+    """
+
+    params: LanderParams
+    limits: Limits
+    conditions: Conditions
+    ground: Ground
+    gravity: Doubles  # (2,) or (n, 2)
+    air: Doubles  # quadratic drag of the bodies, (bodies, 3) or (n, bodies, 3)
+    state: dict[str, Any]  # as `LanderEnv.snapshot` returns it: bodies, contacts, counters, target, actions held
+
+    @classmethod
+    def of(cls, env: LanderEnv) -> Moment:
+        """Return the present moment of an environment."""
+        world = env.world
+        return cls(env.params, env.limits, env.conditions, env.ground, world.gravity.copy(),
+                   world.params.quadratic_drag.copy(), env.snapshot())  # fmt: skip
+
+    def __len__(self) -> int:
+        return len(self.target)
+
+    @property
+    def target(self) -> Ints:
+        """Number of the pad that each flies to, (n,)."""
+        target: Ints = self.state["counters"]["target"]
+        return target
+
+    @property
+    def steps(self) -> Ints:
+        """Physics steps that each has flown, (n,)."""
+        steps: Ints = self.state["counters"]["steps"]
+        return steps
+
+    def fall(self, row: int) -> float:
+        """Return the gravity that pulls at one of them, m/s²."""
+        return -float(self.gravity[1] if self.gravity.ndim == 1 else self.gravity[row, 1])
+
+    def take(self, rows: Ints) -> Moment:
+        """Return the moment of the landers `rows` (m,), each of them as often as it is named."""
+        counters = {name: value[rows] for name, value in self.state["counters"].items()}
+        bodies = {name: value[rows] for name, value in self.state["bodies"].items()}
+        state = {"counters": counters, "bodies": bodies, "contacts": self.state["contacts"].of_worlds(rows)}
+        return Moment(
+            _taken(self.params, rows),
+            _taken(self.limits, rows),
+            _taken(self.conditions, rows),
+            self.ground,
+            self.gravity if self.gravity.ndim == 1 else self.gravity[rows],
+            self.air if self.air.ndim == 2 else self.air[rows],
+            state,
+        )
+
+    def put(self, env: LanderEnv) -> None:
+        """Put it into an environment of as many slots as it has landers, over the same ground."""
+        env.params, env.limits, env.conditions = self.params, self.limits, self.conditions
+        env.world.gravity = self.gravity.copy()
+        env.world.params.quadratic_drag[:] = self.air
+        env.restore(self.state)
+
+
+def _taken(rules: Any, rows: Ints) -> Any:
+    """Return rules with the rows (m,) of those of their numbers that are arrays; the same object if none is."""
+    if isinstance(rules, np.ndarray) and rules.ndim:
+        return rules[rows]
+    if isinstance(rules, tuple):
+        parts = tuple(_taken(part, rows) for part in rules)
+        return rules if all(map(_same, parts, rules)) else parts
+    if not is_dataclass(rules):
+        return rules
+    old = {field.name: getattr(rules, field.name) for field in fields(rules)}
+    new = {name: _taken(value, rows) for name, value in old.items()}
+    return rules if all(map(_same, new.values(), old.values())) else replace(rules, **new)  # type: ignore[type-var]
+
+
+def _same(a: object, b: object) -> bool:
+    return a is b
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """Future that was seen to land: what to push, decision by decision, and where that leads.
+
+    Attributes:
+        begin: physics steps flown when it begins.
+        gravity: of its world, m/s².
+        target: number of the pad that the network flew to in it.
+        actions, shares: what is pushed in its k decisions, (k,), and with which shares of thrust, (k, 2).
+        states: x, y, angle, and their changes each second, before every decision and at its end, (k + 1, 6).
+
+    """
+
+    begin: int
+    gravity: float
+    target: int
+    actions: Ints
+    shares: Doubles
+    states: Doubles
+
+    def push(self, here: Here) -> Push | None:
+        """Return what it pushes next for a lander that is `here`; None for one that is not on it."""
+        number, between = divmod(here.steps - self.begin, DECISION_STEPS)
+        if between or not 0 <= number < len(self.actions) or here.gravity != self.gravity:
+            return None
+        if tuple(self.states[number].tolist()) != here.state:
+            return None
+        return Push(int(self.actions[number]), *self.shares[number].tolist())
+
+
+class Here(NamedTuple):
+    """Where one lander is, as far as its plan has to know."""
+
+    steps: int
+    gravity: float
+    state: tuple[float, ...]  # x, y, angle, and their changes each second
+
+    @classmethod
+    def of(cls, env: LanderEnv, slot: int = 0) -> Here:
+        """Return where a lander of an environment is."""
+        gravity = env.world.gravity
+        fall = gravity[1] if gravity.ndim == 1 else gravity[slot, 1]
+        return cls(int(env.steps[slot]), -float(fall), tuple(_states(env)[slot].tolist()))
+
+
+def _states(env: LanderEnv) -> Doubles:
+    state, body = env.world.state, env.lander.index
+    return np.concatenate([state.pose[:, body], state.velocity[:, body]], axis=1)
+
+
+@dataclass(frozen=True)
+class Future:
+    """What comes of pushing something now."""
+
+    plan: Plan | None  # after one decision of it; None if the network does not land then
+    lasts: bool = True  # whether it lands after as many decisions of it as the dial asks for, too
+
+    @property
+    def passes(self) -> bool:
+        """Whether a pilot may push it."""
+        return self.plan is not None and self.lasts
+
+
+@dataclass(frozen=True, eq=False)
+class Futures:
+    """Futures of n landers after each action with all its thrust.
+
+    Attributes:
+        landed: whether the network lands after one decision of it, (n, 6); never for a flight that has ended.
+        lasts: whether it lands after as many decisions of it as the dial asks for, too, (n, 6).
+        plans: the plan of each landing, None for the others, n lists of 6.
+
+    """
+
+    landed: Bools
+    lasts: Bools
+    plans: list[list[Plan | None]]
+
+    @classmethod
+    def of(cls, slots: int, asked: Sequence[tuple[int, Push]], found: Sequence[Future]) -> Futures:
+        """Return the futures that were found for landers and keys."""
+        plans: list[list[Plan | None]] = [[None] * len(KEYS) for _ in range(slots)]
+        lasts = np.zeros((slots, len(KEYS)), dtype=bool)
+        for (slot, push), future in zip(asked, found, strict=True):
+            plans[slot][push.action], lasts[slot, push.action] = future.plan, future.passes
+        return cls(np.array([[plan is not None for plan in row] for row in plans]), lasts, plans)
+
+
+class Lookahead:
+    """Futures of a network, flown in batches. It keeps its environments for the next ones over the same ground.
+
+    Args:
+        pilot: the network that flies on, as it flies alone: to the pad that is its target, or along a `route`.
+        route: how it is led around rock on a leg of a descent; None in any other flight.
+
+    """
+
+    def __init__(self, pilot: Pilot, route: Route | None = None) -> None:
+        self.pilot, self.route = pilot, route
+        self._envs: dict[int, LanderEnv] = {}
+        self._world: object = None  # ground and craft of these
+
+    def futures(
+        self, moment: Moment, asked: Sequence[tuple[int, Push]], decisions: int = 1, before: Opening = ()
+    ) -> list[Future]:
+        """Return what comes of pushing something, for each lander (its row of `moment`) and push in `asked`.
+
+        It `lasts` if the network lands after so many `decisions` of it as well. What is pushed `before` comes first:
+        so futures of decisions to come are flown ahead.
+        """
+        once: list[tuple[int, Opening]] = [(row, (*before, push)) for row, push in asked]
+        if decisions == 1:
+            return [Future(plan) for plan in self.plans(moment, once)]
+        longer: list[tuple[int, Opening]] = [(row, (*before, *(push,) * decisions)) for row, push in asked]
+        plans = self.plans(moment, once + longer)
+        return [Future(plan, last is not None) for plan, last in zip(plans[: len(once)], plans[len(once) :], strict=True)]
+
+    def plans(self, moment: Moment, asked: Sequence[tuple[int, Opening]]) -> list[Plan | None]:
+        """Return for each lander and opening in `asked` a plan that lands, or None.
+
+        A landing on any pad counts; of several plans, that to the target is returned, else that to the nearest pad.
+        """
+        pads = [_pads_of(moment, row) for row in range(len(moment))]
+        each = len(pads[0])
+        plans: list[Plan | None] = [None] * len(asked)
+        # Most land where they were meant to: of many, the other pads are tried where that fails.
+        for tried in [range(each)] if each * len(asked) <= _AT_ONCE else [range(1), range(1, each)]:
+            left = [(index, pads[row][pad])
+                    for index, (row, _) in enumerate(asked) if plans[index] is None for pad in tried]  # fmt: skip
+            found = self._fly(moment, [(*asked[index], pad) for index, pad in left])
+            for (index, _), plan in zip(left, found, strict=True):
+                plans[index] = plans[index] or plan
+        return plans
+
+    def _fly(self, moment: Moment, asked: Sequence[tuple[int, Opening, int]]) -> list[Plan | None]:
+        """Fly landers with openings to pads; return the plans of those that land."""
+        if not asked:
+            return []
+        count, longest = len(asked), max(len(opening) for _, opening, _ in asked)
+        length = np.array([len(opening) for _, opening, _ in asked])
+        pushed = np.zeros((longest, count, 3))
+        for index, (_, opening, _) in enumerate(asked):
+            pushed[: len(opening), index] = opening
+        start = moment.take(np.array([row for row, _, _ in asked]))
+        start.target[:] = [pad for _, _, pad in asked]
+        actions, shares = np.zeros((_MOST, count), dtype=np.int8), np.zeros((_MOST, count, 2))
+        states = np.empty((_MOST + 1, count, 6))
+        ends, landed = np.zeros((2, count), dtype=np.intp)
+        env, future = self._begin(start, np.arange(count))  # future (n,) of every slot, fewer than there are slots
+        states[0] = _states(env)[:count]
+        flies = np.arange(env.num_envs) < count
+        for number in range(_MOST):
+            n = len(future)
+            action, share = self._choose(env)
+            if number < longest:
+                opens, given = number < length[future], pushed[number, future]
+                action[:n] = np.where(opens, given[:, 0], action[:n])
+                share[:n] = np.where(opens[:, None], given[:, 1:], share[:n])
+            actions[number, future], shares[number, future] = action[:n], share[:n]
+            env.fly(action, share)
+            states[number + 1, future] = _states(env)[:n]
+            late = env.time > env.limits.time - SPARE
+            over = np.flatnonzero(flies & (late | (env.outcome != Outcome.FLYING)))
+            landed[future[over]] = (env.outcome == Outcome.LANDED)[over] & ~late[over]
+            ends[future[over]] = number + 1
+            flies[over] = False
+            left = np.flatnonzero(flies)
+            if not len(left):
+                break
+            if _size(len(left)) <= env.num_envs // 2:
+                env, future = self._begin(Moment.of(env).take(left), future[left])
+                flies = np.arange(env.num_envs) < len(left)
+        return [
+            Plan(int(start.steps[index]), start.fall(index), pad, actions[:end, index].copy(), shares[:end, index].copy(),
+                 states[: end + 1, index].copy())
+            if landed[index]
+            else None
+            for index, ((_, _, pad), end) in enumerate(zip(asked, ends, strict=True))
+        ]  # fmt: skip
+
+    def _choose(self, env: LanderEnv) -> tuple[Ints, Doubles]:
+        """Return the network's actions (n,), and their shares of thrust, (n, 2)."""
+        seen = self.route.observe(env, self.pilot) if self.route else env.observe_for(self.pilot)
+        action = self.pilot.act(seen, held=env.actions).copy()
+        return action, ACTION_SHARES[action]
+
+    def _begin(self, moment: Moment, future: Ints) -> tuple[LanderEnv, Ints]:
+        """Put a moment into an environment, which may have more slots; return it, and the future of each slot in use."""
+        count, size = len(future), _size(len(future))
+        if self._world != (world := (moment.ground, _craft(moment.params))):
+            self._world, self._envs = world, {}
+        if size not in self._envs:
+            self._envs[size] = _roomy(size, *world)
+        env = self._envs[size]
+        moment.take(np.minimum(np.arange(size), count - 1)).put(env)
+        env.outcome[count:] = Outcome.TIMED_OUT
+        env.lander.active = env.outcome == Outcome.FLYING
+        return env, future
+
+
+def _roomy(slots: int, ground: Ground, craft: LanderParams) -> LanderEnv:
+    """Return an environment into which any moment over its ground can be put, with an air for each slot."""
+    env = LanderEnv(slots, 0, frame_skip=DECISION_STEPS, params=craft, ground=ground)
+    env.world.params.quadratic_drag = np.tile(env.world.params.quadratic_drag, (slots, 1, 1))
+    return env
+
+
+def _craft(params: LanderParams) -> LanderParams:
+    """Return the craft in plain numbers: where each lander has one of its own, the usual one."""
+    own = {field.name: getattr(PARAMS, field.name) for field in fields(params) if np.ndim(getattr(params, field.name))}
+    return replace(params, **own)
+
+
+def _size(count: int) -> int:
+    """Return how many slots so many futures are flown in: few different numbers, so that environments are kept."""
+    power = 1 << (count - 1).bit_length()
+    return power * 3 // 4 if count <= power * 3 // 4 and power >= 4 else power
+
+
+def _pads_of(moment: Moment, row: int) -> list[int]:
+    """Return the pads a lander may land on by their numbers, its target first, then the nearest first."""
+    ground, target = moment.ground, int(moment.target[row])
+    if ground.at_once == 1:
+        return [target]
+    away = np.abs(ground.middles[:, 0] - moment.state["bodies"]["pose"][row, 0, 0])
+    others = [int(pad) for pad in away.argsort() if ground.ends[pad] and pad != target]
+    return [target, *others]
