@@ -5,11 +5,13 @@ from __future__ import annotations
 import gc
 import os
 import sys
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
     from game.core.scene import Route
+    from game.flight.futures import FlownAhead
 
 _HINTS: Final[dict[str, str]] = {
     "PYGAME_HIDE_SUPPORT_PROMPT": "1",
@@ -48,7 +50,7 @@ def play(folder: Path | None = None, full_screen: bool | None = None, begin: Rou
     folder = folder or user_dir()
     log_to(folder)
     file = SettingsFile(folder)
-    context = Context(folder, file.load())
+    context = Context(folder, file.load(), ahead=_ahead)
     if full_screen is not None:
         context.settings.full_screen = full_screen
     try:
@@ -66,6 +68,13 @@ def play(folder: Path | None = None, full_screen: bool | None = None, begin: Rou
     gc.set_threshold(20_000, 20, 50)
     ahead.begin(context)
     return app.run()
+
+
+@cache
+def _ahead() -> FlownAhead:
+    from game.flight.futures import FuturesProcess
+
+    return FuturesProcess()
 
 
 def tell_sdl() -> None:

@@ -60,6 +60,7 @@ class SharedDecision:
     shares: Doubles  # (n, 2) of thrust that are flown, of main engine and jets
     overridden: Bools  # (n,) whether anything else is flown than the pilot asked for
     # A guardian's that goes by futures; None of any other.
+    asked: tuple[Push, ...] = ()  # (n) what the pilot pushes
     known: tuple[Mapping[Push, Future], ...] | None = None  # (n) what comes of each push that was looked at
     held: Bools | None = None  # (n,) whether a plan is held now, so that nobody can crash the flight
 
@@ -156,6 +157,10 @@ class CoPilot:
             guardian if mask is not None and not mask[slot] else Guardian()
             for slot, guardian in enumerate(self.guardians)
         ]
+
+    def hold_plans_of(self, other: CoPilot) -> None:
+        """Go on with the plans of another: one that lands does so whichever network it was found with."""
+        self.guardians, self._rules = other.guardians, other._rules
 
     def futures(self, env: LanderEnv) -> Futures:
         """Fly the network on from the present moment after each action, in every slot; return what comes of it."""
@@ -297,7 +302,7 @@ class CoPilot:
                               meant, feasible, likely, self.assist, self.mode, self.reward_scale,
                               np.array([choice.push[1:] for choice in choices]),
                               np.array([choice.source is not ActionSource.PILOT for choice in choices]),
-                              tuple(futures), np.array([choice.held for choice in choices]))  # fmt: skip
+                              tuple(asks), tuple(futures), np.array([choice.held for choice in choices]))  # fmt: skip
 
     def _choose(
         self,

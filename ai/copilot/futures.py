@@ -26,6 +26,7 @@ DECISION_STEPS: Final = 4  # physics steps of a decision, whatever rate a networ
 LONGEST: Final = 30.0  # seconds after which a future that has not landed counts as one that does not
 SPARE: Final = 1.5  # seconds before time is out, from which on a landing does not count
 _MOST: Final = round(LONGEST / DT) // DECISION_STEPS  # decisions
+_TOGETHER: Final = 4  # futures from which on a batch takes less time than one lander alone after another
 _AT_ONCE: Final = 64  # futures of several pads that are flown in one batch; of more, those to other pads come later
 
 
@@ -251,6 +252,9 @@ class Lookahead:
         A landing on any pad counts; of several plans, that to the target is returned, else that to the nearest pad.
         """
         pads = [_pads_of(moment, row) for row in range(len(moment))]
+        if len(asked) < _TOGETHER:
+            alone = ((self._fly(moment, [(row, opening, pad)])[0] for pad in pads[row]) for row, opening in asked)
+            return [next((plan for plan in tried if plan), None) for tried in alone]
         each = len(pads[0])
         plans: list[Plan | None] = [None] * len(asked)
         # Most land where they were meant to: of many, the other pads are tried where that fails.

@@ -1,4 +1,4 @@
-"""Words on a guardian: what its dial means, whose action it flies and why, by the chance to be saved."""
+"""Words on a guardian: what its dial means, whose action it flies and why, by the futures that were flown ahead."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from ai.lander.environment import ACTION_NAMES
 from game.core import texts
-from game.panels.chance_values import ChanceValues, of_hundred
+from game.panels.landings import Landing, Landings
 
 if TYPE_CHECKING:
     from ai.copilot.copilot import CoPilot, SharedDecision
@@ -14,62 +14,55 @@ if TYPE_CHECKING:
 Why = tuple[str, str, str]  # a title, and two lines
 
 
-def dial_words(assist: float, copilot: CoPilot | None, *, among_hills: bool = False) -> str:
+def dial_words(assist: float, copilot: CoPilot | None, problem: str = "") -> str:
     """Say when a guardian at that assist, 0 to 1, steps in; empty for a co-pilot of another kind.
 
-    `among_hills`, where there are several pads, it asks for no more than can be reached.
+    `problem` says why it goes by points of reward, if it does.
     """
     from ai.copilot.copilot import Mode, guardian_margin
-    from ai.copilot.guardian import required_chance
+    from ai.copilot.futures import DECISION_STEPS
+    from ai.copilot.guardian import decisions_of
+    from engine import DT
 
     if copilot is None or copilot.mode is not Mode.GUARDIAN:
         return ""
     if assist == 0:
         return texts.DIAL_NEVER
-    if copilot.critic is None:
+    if problem:
         by_points = texts.DIAL_BY_POINTS.format(margin=float(guardian_margin(assist)))
-        return f"{no_critic(copilot)} {by_points}"
-    percent, required = round(100 * assist), of_hundred(float(required_chance(assist)), digits=int(assist > 0.7))
-    means = texts.DIAL_MEANS_HILLS if among_hills else texts.DIAL_MEANS
-    return means.format(percent=percent, required=required)
+        return f"{by_values(problem)} {by_points}"
+    return texts.DIAL_LOOKS_AHEAD.format(seconds=f"{decisions_of(assist) * DECISION_STEPS * DT:.1f}")
 
 
-def no_critic(copilot: CoPilot) -> str:
-    """Say why a guardian has no safety critic."""
-    return texts.GUARDIAN_NO_CRITIC.format(problem=copilot.critic_problem)
+def by_values(problem: str) -> str:
+    """Say that a guardian goes by points of reward, and why."""
+    return texts.GUARDIAN_BY_VALUES.format(problem=problem)
 
 
-def shared_chances(decision: SharedDecision) -> ChanceValues:
-    """Return the chances to be saved of one lander's shared decision by a guardian with a safety critic."""
-    assert decision.chances is not None
-    assert decision.required is not None
-    chances = tuple(decision.chances[0].astype(float).tolist())
-    return ChanceValues(chances, int(decision.action[0]), int(decision.pilot[0]), float(decision.required[0]))
+def sentence(decision: SharedDecision) -> str:
+    """Say in one sentence what a guardian has just changed; empty where it has changed nothing."""
+    landings = Landings.of(decision)
+    if not decision.overridden[0]:
+        return texts.GUARDIAN_LOST if landings.lost and Landing.UNKNOWN not in landings.after else ""
+    action, after = landings.asked
+    name, seconds = texts.said(ACTION_NAMES[action]), f"{landings.seconds:.1f}"
+    return texts.GUARDIAN_SAVED[after.value].format(asked=name, seconds=seconds)
 
 
-def why_saved(decision: SharedDecision, values: ChanceValues) -> Why:
-    """Explain whose action a guardian with a safety critic flies, by the chances that decided it."""
+def why_saved(decision: SharedDecision, landings: Landings) -> Why:
+    """Explain whose action a guardian flies, by the futures that decided it."""
     from ai.copilot.copilot import ActionSource
 
     source = ActionSource(int(decision.source[0]))
     title = texts.COPILOT_PANEL_WHY[source.name][0]
-    if not values.readable:
-        return title, *texts.VALUES_DAMAGED
-    if source is not ActionSource.PILOT and values.flown == values.asked:  # it has the stick, and agrees
-        title = texts.GUARDIAN_AGREES[0]
-    asked, flown = (texts.said(ACTION_NAMES[action]) for action in (values.asked, values.flown))
-    chance, required, saved = values.told
-    if source is ActionSource.PILOT:
-        enough = values.chances[values.asked] >= values.required
-        lines = texts.GUARDIAN_YOURS if enough else texts.GUARDIAN_NO_BETTER
-    elif values.chances[values.asked] >= values.required:  # it has stepped in, and gives back a little later
-        lines = texts.GUARDIAN_NOT_YET
-    elif values.flown == values.asked:
-        lines = texts.GUARDIAN_AGREES[1:]
-    elif values.chances[values.flown] <= values.chances[values.asked]:
-        lines = texts.GUARDIAN_HOLDS
+    action, after = landings.asked
+    if source is not ActionSource.PILOT:
+        key = f"changed_{after.value}"
+    elif decision.held is not None and decision.held[0]:
+        key = "passes"
     else:
-        lines = texts.GUARDIAN_STEPS_IN
-    words = {"asked": asked.capitalize(), "flown": flown.capitalize()}
-    first, second = (line.format(chance=chance, required=required, saved=saved, **words) for line in lines)
+        key = "looking" if Landing.UNKNOWN in landings.after else "none"
+    asked, flown = (texts.said(ACTION_NAMES[each]) for each in (action, landings.flown))
+    words = {"asked": asked.capitalize(), "flown": flown.capitalize(), "seconds": f"{landings.seconds:.1f}"}
+    first, second = (line.format(**words) for line in texts.GUARDIAN_WHY[key])
     return title, first, second

@@ -28,7 +28,7 @@ _NICENESS: Final = 5  # the window goes first
 _LONGEST: Final = 300  # characters of a problem: an error's text can have any length
 
 Order = tuple[str, Any]
-Turns = Generator[Iterable[Any], Any, None]
+Turns = Generator[Iterable[Any] | None, Any, None]
 Function = Callable[..., Turns]
 
 
@@ -131,6 +131,7 @@ class _Service:
         self._steps = 0  # single turns requested during a pause
         self._taken = 0  # turns so far, besides those of commands
         self._limit: int | None = None  # of these turns: then it waits
+        self._idle = False  # whether the generator has nothing to do before the next command
         self._period = 0.0  # seconds between turns
         self._due = 0.0  # time of the next turn
         self._wanted = CREDIT  # bundles the window has requested
@@ -145,7 +146,7 @@ class _Service:
     def run(self, turns: Turns) -> None:
         """Advance the generator until it or the window ends the run."""
         try:
-            self.waiting.add(next(turns))  # a generator takes commands from its second turn on
+            self._keep(next(turns))  # a generator takes commands from its second turn on
             while not self._stopped:
                 self._follow_orders(turns)
                 self._answer()
@@ -154,14 +155,20 @@ class _Service:
                     self._due = max(self._due + self._period, now)
                     self._steps = max(0, self._steps - 1)
                     self._taken += 1
-                    self.waiting.add(next(turns))
+                    self._keep(next(turns))
         except StopIteration:
             pass
         finally:
             turns.close()
 
+    def _keep(self, messages: Iterable[Any] | None) -> None:
+        self._idle = messages is None
+        self.waiting.add(messages or ())
+
     def _seconds_to_turn(self, now: float) -> float | None:
-        """Seconds until the next turn is due, or None while paused or at the limit."""
+        """Seconds until the next turn is due, or None while paused, idle or at the limit."""
+        if self._idle:
+            return None
         if self._paused:
             return 0.0 if self._steps else None
         if self._limit is not None and self._taken >= self._limit:
@@ -192,7 +199,7 @@ class _Service:
                 self._wanted += bundles
                 self._since = time.monotonic()
             case "command", command:
-                self.waiting.add(turns.send(command))
+                self._keep(turns.send(command))
             case "pause", _:
                 self._paused = True
             case "resume", _:

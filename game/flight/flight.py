@@ -22,6 +22,7 @@ from game.flight.poses import Poses
 
 if TYPE_CHECKING:
     from ai.copilot.copilot import CoPilot, SharedDecision
+    from game.flight.guard import Guard
 
 __all__ = ["DECISION_STEPS", "Flight", "Recording", "StickHolder"]
 
@@ -46,6 +47,7 @@ class Flight:
         leg: where a flight of a descent begins, which sets the start and the conditions; None for any other.
 
     Attributes:
+        guard: what guards the flight by futures, where there is one; without it, a guardian goes by values.
         steered: whether the jets are fired for the person, who has the main engine alone: one switch is enough.
         copilot: shares the stick while its assist is above 0; None if the network has no Q-values.
         decision: the co-pilot's latest decision; None while it does not share the stick.
@@ -82,9 +84,10 @@ class Flight:
         self.alone: Decision | None = None
         self._hands = Handicap(hands, seed, DECISION_STEPS)
         self._held_for = self._yours = 0
+        self.guard: Guard | None = None
         self.copilot: CoPilot | None = None
         self.change_network(network)
-        self._aim()
+        self.aim()
 
     @property
     def outcome(self) -> Outcome:
@@ -123,8 +126,13 @@ class Flight:
 
     @property
     def guarded(self) -> bool:
-        """Whether the latest decision was a guardian's with a safety critic: coasting is then an action like others."""
-        return self.decision is not None and self.decision.chances is not None
+        """Whether the latest decision was a guardian's by futures: coasting is then an action like others."""
+        return self.decision is not None and self.decision.held is not None
+
+    @property
+    def safe(self) -> bool:
+        """Whether a guardian holds a plan that lands, so that nobody can crash the flight."""
+        return self.guard is not None and self.guard.safe
 
     def put(self, moment: dict[str, Any], source: Recording, step: int) -> None:
         """Restore a snapshot `moment` of the environment after `step` steps of a flight from the same start."""
@@ -168,6 +176,8 @@ class Flight:
             from ai.copilot.copilot import CoPilot, Mode
 
             self.copilot = CoPilot(network, before.assist if before else 0.0, before.mode if before else Mode.TOLERANCE)
+            if before:
+                self.copilot.hold_plans_of(before)
 
     def help(self, assist: float, mode: str) -> None:
         """Set the co-pilot's assist, 0 to 1, and its mode, from the next decision on."""
@@ -188,8 +198,7 @@ class Flight:
         if self.over:
             self.poses.take()
             return
-        action, by = self._choose(held)
-        shares = self._shares(action, by, held, shares)
+        action, by, shares = self._choose(held, shares)
         self.env.fly(np.array([action]), thrust(shares))
         self.observation = self.env.observe()
         if shares is not None:
@@ -201,31 +210,33 @@ class Flight:
         if self.outcome is Outcome.LANDED:
             self.env.target = self.env.landed_on
 
-    def _shares(self, action: int, by: StickHolder, held: int, shares: Shares | None) -> Shares | None:
-        """Return the shares of thrust of the next step: the person's, if their own action is flown as they asked."""
-        return shares if by is StickHolder.HUMAN and action == held else None
-
-    def _choose(self, held: int) -> tuple[int, StickHolder]:
-        """Return the action of the next step, and who chose it."""
-        if self.hand is StickHolder.NETWORK:
+    def _choose(self, held: int, shares: Shares | None) -> tuple[int, StickHolder, Shares | None]:
+        """Return the action of the next step, who chose it, and its shares of thrust, or None for all of it."""
+        by = self.hand
+        if by is StickHolder.HUMAN:
+            if self.steered:
+                held, shares = held - held % 3 + int(_STEERING.act(self.observation)[0]) % 3, None
+            self.asked = self._hands.ask(held, self.observation)
+            shares = shares if self.asked == held else None
+        if self.guard and self.guard.acts:
+            return self.guard.choose(by, shares)
+        if by is StickHolder.NETWORK:
             self.asked = COAST
-            return self._ask_network(), StickHolder.NETWORK
-        if self.steered:
-            held = held - held % 3 + int(_STEERING.act(self.observation)[0]) % 3
-        self.asked = self._hands.ask(held, self.observation)
+            return self.ask_network(), by, None
         if not self.shared:
             self.decision = None
             if self._held_for == 0:
-                self._aim()
+                self.aim()
             self._held_for = (self._held_for + 1) % DECISION_STEPS
-            return self.asked, StickHolder.HUMAN
+            return self.asked, by, shares
         action = self._ask_copilot()
-        # With nothing pressed the co-pilot flies; only a guardian that looks at the chance to be saved lets it coast.
-        asks = self.asked != COAST or self.guarded
-        self.overridden = asks and action != self.asked
-        return action, StickHolder.HUMAN if asks and not self.overridden else StickHolder.NETWORK
+        self.overridden = action != self.asked != COAST  # with nothing pressed the co-pilot flies
+        if self.overridden or self.asked == COAST:
+            return action, StickHolder.NETWORK, None
+        return action, by, shares
 
-    def _ask_network(self) -> int:
+    def ask_network(self) -> int:
+        """Return the network's own action, decided every few steps, as `alone` shows it."""
         if self.alone is None or self._held_for == 0:
             assert self.network is not None
             env, network = self.env, self.network
@@ -242,11 +253,11 @@ class Flight:
             seen, around = self.env.observe_pads(self.network), self.env.around_pads()
             self.decision = decision = self.copilot.decide(seen, np.array([self.asked]), around)
             self._held_for = 0
-            self._aim(decision.likely[0])
+            self.aim(decision.likely[0])
         self._held_for = (self._held_for + 1) % DECISION_STEPS
         return int(decision.action[0])
 
-    def _aim(self, likely: Doubles | float = 0.0) -> None:
+    def aim(self, likely: Doubles | float = 0.0) -> None:
         """Aim read-outs and network at the most `likely` (pads,) intended pad; among equals, at the nearest."""
         if self.route:  # to the goal, whatever is nearer
             self.env.target[:] = 0

@@ -106,6 +106,14 @@ class FlownFlight:
             challenge.easing = easing
         return challenge.flight(seed, self._policy)
 
+    def _guard(self) -> None:
+        """Let futures be flown ahead, once the flight is shared with a guardian."""
+        flight = self.flight
+        if flight.guard is None and flight.shared and (ahead := self._context.ahead()):
+            from game.flight.guard import Guard
+
+            flight.guard = Guard(flight, ahead)
+
     @property
     def _guide(self) -> Policy | None:
         """The network whose path is previewed; None where none is."""
@@ -145,6 +153,9 @@ class FlownFlight:
         self.pace.rate = self._settings.pace
         if self._waits(action):
             self.cockpit.help()
+            self._guard()
+            if self.flight.guard:
+                self.flight.guard.hang(action)
             self.path_preview.follow(waiting=True)
             return False
         return bool(self.pace.steps())
@@ -174,6 +185,7 @@ class FlownFlight:
             self._readouts, self._thrust = hud.flight_readouts(self.flight.env), hud.thrust_readout(self.flight.env)
             self.difficulty.heed()
         self.cockpit.help()
+        self._guard()
 
     def follow(self) -> None:
         """Follow the flight's step."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pygame
@@ -15,6 +16,9 @@ from game.core.assets import ASSETS_DIR, MODELS_DIR
 from game.core.settings import Settings, SettingsFile
 from game.drawing.tokens import VIEW_SIZE
 from game.input.controls import Controls
+
+if TYPE_CHECKING:
+    from game.flight.futures import FlownAhead
 
 
 def _ignore(text: str) -> None:
@@ -31,6 +35,7 @@ class Context:
         assets_dir: the shipped data.
         rng: random generator for every random choice.
         note: shows a short message near the top of the window for a few seconds.
+        ahead: returns what flies a guardian's futures ahead; None where nothing does.
         apply_settings: applies the settings to the window and the sound, and saves them.
         in_window: converts a rectangle from points to the window's pixels.
         view: all that the window shows, in points; the same rectangle as the canvas's, which changes with the window.
@@ -45,6 +50,7 @@ class Context:
     controls: Controls = field(default_factory=Controls)
     sound: Sound = field(default_factory=Sound)
     note: Callable[[str], None] = _ignore
+    ahead: Callable[[], FlownAhead | None] = lambda: None
     apply_settings: Callable[[], None] = lambda: None
     in_window: Callable[[pygame.typing.RectLike], pygame.Rect] = pygame.Rect
     view: pygame.FRect = field(default_factory=lambda: pygame.FRect((0, 0), VIEW_SIZE))

@@ -1,0 +1,174 @@
+"""Futures of the flight on the screen, flown ahead in a process of their own while the present decision is flown.
+
+A guardian needs to know what comes of a push at the moment at which it decides, and a future takes some ten
+milliseconds. So while one decision is flown, the futures after it are: first of what the stick asks for now, then of
+the keys. Each moment is a request with a number; what comes late is of an older number and is left out.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping
+from typing import Final, NamedTuple, Protocol
+
+from ai.agent.agent import DeepQAgent
+from ai.agent.config import Config
+from ai.agent.normalizer import Normalizer
+from ai.common.environment import Floats
+from ai.copilot.futures import KEYS, Future, Lookahead, Moment, Opening, Push
+from ai.lander.route import Route
+from game.core import texts
+from game.core.worker import Worker, WorkerState
+from game.core.worker_process import Turns
+from game.flight.networks import Policy
+
+_CORES: Final = 2  # with fewer, the futures would take the time that the window needs
+
+
+class Flyer(NamedTuple):
+    """All that a network flies by, for another process."""
+
+    num_features: int
+    num_actions: int
+    config: Config
+    values: Floats  # (parameters,)
+    normalizer: Normalizer | None
+
+    @classmethod
+    def of(cls, agent: DeepQAgent) -> Flyer:
+        """Return that of an agent."""
+        return cls(agent.num_features, agent.num_actions, agent.config, agent.network.values.copy(), agent.normalizer)
+
+    def agent(self) -> DeepQAgent:
+        """Return an agent that flies alike."""
+        agent = DeepQAgent(self.num_features, self.num_actions, self.config)
+        agent.restore(self.values, self.normalizer)
+        return agent
+
+
+class Request(NamedTuple):
+    """Request for the futures of the `moment` of one lander, after what is pushed `before`.
+
+    `asked` is what the stick asks for now. After so many `decisions` of a push there must be a landing as well. `flyer`
+    is None if the network and its route are those of the request before.
+    """
+
+    number: int
+    moment: Moment
+    before: Opening
+    asked: Push
+    decisions: int
+    flyer: tuple[Flyer, Route | None] | None
+
+
+class Found(NamedTuple):
+    """What comes of a push at the moment of a request."""
+
+    number: int
+    push: Push
+    future: Future
+
+
+class FlownAhead(Protocol):
+    """Protocol of what flies futures ahead of a flight's decisions."""
+
+    @property
+    def problem(self) -> str:
+        """Text that says why there are none; empty while there are."""
+
+    def ask(
+        self, moment: Moment, before: Opening, asked: Push, decisions: int, policy: Policy, route: Route | None
+    ) -> None:
+        """Ask for the futures of a moment of one lander, after what is pushed `before`, and forget the older ones."""
+
+    def hint(self, asked: Push) -> None:
+        """Say what the stick asks for now."""
+
+    def known(self) -> Mapping[Push, Future]:
+        """Return what is known by now of the moment asked for; never waits."""
+
+
+class FuturesProcess:
+    """A process that flies futures ahead; it begins with the first request, and is kept from flight to flight."""
+
+    def __init__(self, cores: int | None = None) -> None:
+        self.problem = texts.FUTURES_ONE_CORE if (cores or os.cpu_count() or 1) < _CORES else ""
+        self._worker: Worker | None = None
+        self._number = 0
+        self._known: dict[Push, Future] = {}
+        self._asked: Push | None = None
+        self._flies: tuple[Policy, Route | None] | None = None  # the network and the route that the process has
+
+    def ask(
+        self, moment: Moment, before: Opening, asked: Push, decisions: int, policy: Policy, route: Route | None
+    ) -> None:
+        """Ask for the futures of a moment of one lander, after what is pushed `before`, and forget the older ones."""
+        if self.problem or not isinstance(policy, DeepQAgent):
+            return
+        if self._worker is None:
+            self._worker = Worker(fly_ahead)
+        self._number += 1
+        self._known, self._asked = {}, asked
+        same = self._flies is not None and self._flies[0] is policy and self._flies[1] is route
+        self._flies = policy, route
+        flyer = None if same else (Flyer.of(policy), route)
+        self._worker.send(Request(self._number, moment, before, asked, decisions, flyer))
+        self._poll()
+
+    def hint(self, asked: Push) -> None:
+        """Say what the stick asks for now."""
+        if self._worker and asked != self._asked and asked not in self._known:
+            self._asked = asked
+            self._worker.send(asked)
+
+    def known(self) -> Mapping[Push, Future]:
+        """Return what is known by now of the moment asked for; never waits."""
+        self._poll()
+        return self._known
+
+    def close(self) -> None:
+        """End the process; another begins with the next request."""
+        if self._worker:
+            self._worker.close(grace=0.0)
+            self._worker = self._flies = None
+
+    def _poll(self) -> None:
+        worker = self._worker
+        if worker is None:
+            return
+        for found in worker.poll():
+            if found.number == self._number:
+                self._known[found.push] = found.future
+        if worker.state is WorkerState.FAILED:
+            self.problem = worker.problem
+            self.close()
+
+
+def fly_ahead() -> Turns:
+    """Fly futures in the order in which they are likely to be needed; for a `Worker`."""
+    request: Request | None = None
+    lookahead = Lookahead(DeepQAgent())
+    done: set[Push] = set()
+    urgent: Push | None = None
+    told: Iterable[Found] | None = None
+    while True:
+        command = yield told
+        told = ()
+        if isinstance(command, Request):
+            request, urgent = command, command.asked
+            done.clear()
+            if request.flyer:
+                flyer, route = request.flyer
+                lookahead = Lookahead(flyer.agent(), route)
+        elif isinstance(command, Push):
+            urgent = command
+        else:
+            push = next((push for push in (urgent, *KEYS) if push and push not in done), None)
+            if request is None or push is None:
+                told = None
+                continue
+            done.add(push)
+            (future,) = lookahead.futures(request.moment, [(0, push)], request.decisions, request.before)
+            told = (Found(request.number, push, future),)
+
+

@@ -1,0 +1,168 @@
+"""Guard of one flight by futures: it decides at every fourth step, by what was flown ahead in the meantime."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import hypot
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from ai.copilot.copilot import Mode, SharedDecision
+from ai.copilot.futures import DECISION_STEPS, KEYS, Future, Moment, Opening, Push
+from ai.copilot.guardian import decisions_of
+from ai.flights.recording import StickHolder
+from ai.flights.stick import STEPS, Shares, full
+from ai.lander.pilots import COAST
+from ai.lander.route import Route
+from ai.lander.rules import ACTION_SHARES
+from game.flight.futures import FlownAhead
+from game.flight.networks import Policy
+
+if TYPE_CHECKING:
+    from game.flight.flight import Flight
+
+_NEAR: Final = 0.25  # shares of thrust between a position of the stick and one that is flown in its place
+
+
+def push_of(action: int, shares: Shares | None = None) -> Push:
+    """Return what a step pushes, by its action and its shares of thrust, or all that the action asks for."""
+    main, side = ACTION_SHARES[action].tolist() if shares is None else (shares[0] / STEPS, shares[1] / STEPS)
+    return Push(action, main, side)
+
+
+def shares_of(push: Push) -> Shares | None:
+    """Return the shares of thrust of a push as a flight records them; None for all that its action asks for."""
+    shares = round(STEPS * push.main), round(STEPS * push.side)
+    return None if shares == full(push.action) else shares
+
+
+class Taps:
+    """What was pressed since the last decision: an engine that was tapped between two decisions counts in the next."""
+
+    def __init__(self) -> None:
+        self._before = self._tapped = (0.0, 0.0)
+
+    def follow(self, push: Push) -> None:
+        """Follow one step's stick."""
+        now = push.main, push.side
+        self._tapped = tuple(
+            share if share and not before else tapped
+            for share, before, tapped in zip(now, self._before, self._tapped, strict=True)
+        )
+        self._before = now
+
+    def take(self) -> Push:
+        """Return what the stick asks for in the decision that begins, and forget the taps."""
+        main, side = (share or tapped for share, tapped in zip(self._before, self._tapped, strict=True))
+        self._tapped = (0.0, 0.0)
+        return Push.of(main, side)
+
+
+class Guard:
+    """Guard of one flight by futures, whoever has the stick.
+
+    Attributes:
+        ahead: what flies the futures.
+        push: what is pushed in the decision that is flown now; None while nothing is guarded.
+        decisions: decisions so far.
+        late: those in which something else was flown only because what was asked for was not flown ahead in time.
+
+    """
+
+    def __init__(self, flight: Flight, ahead: FlownAhead) -> None:
+        self._flight, self.ahead = flight, ahead
+        self._taps = Taps()
+        self.push: Push | None = None
+        self.decisions = self.late = 0
+        self._decision: SharedDecision | None = None
+        self._moment: tuple[object, ...] = ()  # that the futures asked for last belong to
+        self._flown_by: tuple[object, ...] = ()  # and what they are flown by
+
+    @property
+    def acts(self) -> bool:
+        """Whether a guardian goes by futures now; it begins with a decision, every fourth step."""
+        copilot = self._flight.copilot
+        if copilot is None or copilot.assist == 0 or copilot.mode is not Mode.GUARDIAN or self.ahead.problem:
+            self.push, self._moment = None, ()
+            return False
+        return self.push is not None or self._begins
+
+    @property
+    def safe(self) -> bool:
+        """Whether a plan that lands is held, so that nobody can crash the flight."""
+        return self.push is not None and self._decision is not None and bool(np.all(self._decision.held))
+
+    @property
+    def _begins(self) -> bool:
+        return len(self._flight.recording.actions) % DECISION_STEPS == 0
+
+    def hang(self, held: int) -> None:
+        """Let the futures of the present moment be flown while the craft hangs, and `held` is the action asked for."""
+        if not self.acts or not self._begins or self._flight.over:
+            return
+        if self._moment != self._here() or self._flown_by != self._flyer:
+            self._ask((), push_of(held))
+        else:
+            self.ahead.hint(push_of(held))
+
+    def choose(self, by: StickHolder, shares: Shares | None) -> tuple[int, StickHolder, Shares | None]:
+        """Return the next step's action, who chose it, and its shares of thrust, or None for all of it."""
+        flight = self._flight
+        if by is StickHolder.HUMAN:
+            self._taps.follow(push_of(flight.asked, shares))
+        if self._begins:
+            self._decide(by)
+        elif by is StickHolder.HUMAN:
+            self.ahead.hint(push_of(flight.asked, shares))
+        flight.decision = decision = self._decision
+        assert self.push is not None
+        assert decision is not None
+        if by is StickHolder.NETWORK:
+            flight.asked = COAST
+            return self.push.action, by, shares_of(self.push)
+        flight.asked, flight.overridden = int(decision.pilot[0]), bool(decision.overridden[0])
+        return self.push.action, StickHolder.NETWORK if flight.overridden else by, shares_of(self.push)
+
+    def _decide(self, by: StickHolder) -> None:
+        """Decide what is flown in the next four steps, and let the futures after them be flown meanwhile."""
+        flight, flight.alone = self._flight, None
+        wish = self._taps.take() if by is StickHolder.HUMAN else push_of(flight.ask_network())
+        assert flight.copilot is not None
+        known: Mapping[Push, Future] = self.ahead.known() if self._moment == self._here() else {}
+        wish, held = nearest(wish, known), self.safe
+        seen, around = flight.env.observe_pads(flight.network), flight.env.around_pads()
+        pilot, pushed = np.array([wish.action]), np.array([wish[1:]])
+        self._decision = decision = flight.copilot.decide(seen, pilot, around, pushed, flight.env, [known])
+        self.push = Push(int(decision.action[0]), *decision.shares[0].tolist())
+        self.decisions += 1
+        self.late += held and bool(decision.overridden[0]) and wish not in known
+        if by is StickHolder.HUMAN:
+            flight.aim(decision.likely[0])
+        self._ask((self.push,), wish)
+
+    def _ask(self, before: Opening, wish: Push) -> None:
+        flight = self._flight
+        self._moment, self._flown_by = self._here(DECISION_STEPS * len(before)), self._flyer
+        self.ahead.ask(Moment.of(flight.env), before, wish, *self._flyer)
+
+    @property
+    def _flyer(self) -> tuple[int, Policy, Route | None]:
+        flight = self._flight
+        assert flight.copilot is not None
+        assert flight.network is not None
+        return decisions_of(flight.copilot.assist), flight.network, flight.route
+
+    def _here(self, later: int = 0) -> tuple[object, ...]:
+        """Return what tells one moment of the flight from another, so many steps later."""
+        env = self._flight.env
+        rules = (id(part) for part in (env.params, env.limits, env.conditions, env.ground))
+        return int(env.steps[0]) + later, float(env.gravity), *rules
+
+
+def nearest(wish: Push, known: Mapping[Push, Future]) -> Push:
+    """Return a position of the stick, or the nearest that was flown ahead, if that is near; keys stay as they are."""
+    if wish in known or wish in KEYS or not known:
+        return wish
+    away, best = min((hypot(push.main - wish.main, push.side - wish.side), push) for push in known)
+    return best if away <= _NEAR else wish
