@@ -1,7 +1,7 @@
 """How honest is the estimate of how often a pilot would land alone? Simulated pilots whose true share is known say.
 
     python -m benchmarks.becoming               coverage of the 80 % interval, by number of flights
-    python -m benchmarks.becoming --calibrate   the constants of ai/copilot/alone.py, for the shipped safety critic
+    python -m benchmarks.becoming --calibrate   the constants of ai/copilot/alone.py, for the shipped network
 
 Pilots are hands with faults drawn at random (`ai.copilot.hands.any_hands`) that each keeps for life. As most of them
 land never or always, more are drawn than are needed, and as many kept of every skill as there are.
@@ -20,7 +20,6 @@ from ai.common.environment import Bools, Doubles, Ints
 from ai.common.intervals import wilson
 from ai.copilot.alone import ASSISTS, CALM_SECONDS, LandingAlone
 from ai.copilot.copilot import CoPilot, Mode
-from ai.copilot.critic import SafetyCritic
 from ai.copilot.hands import ClumsyHands, Faults, OneOrOther, any_hands
 from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.pilots import Gains, ScriptedPilot
@@ -51,18 +50,18 @@ def fly(hands: ClumsyHands, seed: int, copilot: CoPilot | None = None) -> tuple[
     while (flying := env.outcome == Outcome.FLYING).any():
         action = hands.act(env.observe(), held=env.actions)
         if copilot:
-            decision = copilot.decide(env.observe_pads(), action)
+            decision = copilot.decide(env.observe_pads(), action, env=env)
             changed += _SECONDS * (flying & decision.overridden)
             action = decision.action
-        env.step(action)
+        env.fly(action)
     return env.outcome == Outcome.LANDED, changed
 
 
 class Population:
     """Pilots of every skill, each of whom can fly many times."""
 
-    def __init__(self, pilots: int, seed: int, agent: DeepQAgent, critic: SafetyCritic | None) -> None:
-        self._agent, self._critic, self._seed = agent, critic, seed
+    def __init__(self, pilots: int, seed: int, agent: DeepQAgent) -> None:
+        self._agent, self._seed = agent, seed
         drawn = _SCREENED * pilots
         self._drawn = any_hands(drawn, np.random.default_rng(seed), agent)
         self._kept = np.arange(drawn)
@@ -79,10 +78,7 @@ class Population:
 
     def helped(self, flights: int, assist: float) -> tuple[Bools, Doubles]:
         """Return whether flights with a guardian landed, and the seconds it changed, (pilots, flights) each."""
-        copilot = CoPilot(self._agent, assist, Mode.GUARDIAN, critic=self._critic or "beside")
-        if copilot.critic is None:
-            raise SystemExit(f"{MODEL} has no safety critic: {copilot.critic_problem}")
-        return self._fly(flights, copilot)
+        return self._fly(flights, CoPilot(self._agent, assist, Mode.GUARDIAN))
 
     def _fly(self, flights: int, copilot: CoPilot | None) -> tuple[Bools, Doubles]:
         self._seed += 1
@@ -165,13 +161,13 @@ def report(share: Doubles, alone: Bools, landed: Bools, changed: Doubles, assist
 def main() -> None:
     """Measure, or calibrate."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--calibrate", action="store_true", help="print the constants for the shipped safety critic")
+    parser.add_argument("--calibrate", action="store_true", help="print the constants for the shipped network")
     parser.add_argument("--pilots", type=int, default=100)
     parser.add_argument("--truth", type=int, default=100, help="flights alone that each pilot's true share is from")
     parser.add_argument("--assist", type=float, default=0.4)
     parser.add_argument("--seed", type=int, default=0)
     arguments = parser.parse_args()
-    population = Population(arguments.pilots, arguments.seed, DeepQAgent.load(MODEL), None)
+    population = Population(arguments.pilots, arguments.seed, DeepQAgent.load(MODEL))
     if arguments.calibrate:
         calibrate(population, flights=16)
     else:

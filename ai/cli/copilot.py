@@ -1,4 +1,4 @@
-"""The commands of the co-pilot: train a guardian, measure it. Nothing heavy is imported until one runs."""
+"""The command that measures the co-pilot. Nothing heavy is imported until it runs."""
 
 from __future__ import annotations
 
@@ -14,34 +14,36 @@ from ai.cli.command_line import (
     SEEDS,
     WORKERS,
     add_where,
-    exit_code,
     fail,
     folder,
     out_of_range,
     reason,
-    stoppable,
 )
 
 if TYPE_CHECKING:
     from ai.agent.agent import DeepQAgent
     from ai.copilot.measurement import AssistedFlights
 
-ROUNDS: Final = 80
-ROUNDS_ALLOWED: Final = (7, 1000)
-MODEL: Final = Path(__file__).parents[2] / "models" / "lander" / "modern"
+ROW: Final = 6  # flights: all the tables in five minutes
+_MODELS: Final = Path(__file__).parents[2] / "models" / "lander"
+MODEL: Final = _MODELS / "modern"
+ANYWHERE_MODEL: Final = _MODELS / "anywhere"
+_TITLES: Final = {
+    "one_pad": "One pad",
+    "three_pads": "Three pads, one of them meant",
+    "other_worlds": "In other worlds",
+}
 
 
 def add_commands(commands: Any) -> None:
-    """Add `train-guardian` and `copilot-table` to a parser's sub-commands."""
-    guardian = commands.add_parser("train-guardian", help="train the safety critic of a lander's network")
-    guardian.add_argument("--model", type=folder, default=MODEL, metavar="DIR",
-                          help="the network, which gets its guardian in a folder within (default: modern)")  # fmt: skip
-    guardian.add_argument("--rounds", type=int, default=ROUNDS, help=f"rounds of flights (default: {ROUNDS})")
-    guardian.add_argument("--seed", type=int, default=0)
-    guardian.set_defaults(run=_train_guardian)
+    """Add `copilot-table` to a parser's sub-commands."""
     table = commands.add_parser("copilot-table", help="measure how much the co-pilot helps good and bad pilots")
     table.add_argument("--model", type=folder, default=MODEL, metavar="DIR", help="the co-pilot (default: modern)")
-    table.add_argument("--episodes", type=int, default=1000, help="flights for each row (default: 1000)")
+    table.add_argument("--anywhere", type=folder, default=ANYWHERE_MODEL, metavar="DIR",
+                       help="the co-pilot of the table in other worlds (default: anywhere)")  # fmt: skip
+    table.add_argument("--episodes", type=int, default=ROW, help=f"flights for each row (default: {ROW})")
+    table.add_argument("--assist", type=float, nargs="*", default=[], metavar="DIAL",
+                       help="more settings of the guardian's dial, 0 to 1")  # fmt: skip
     table.add_argument("--seed", type=int, default=0)
     table.add_argument(
         "--good",
@@ -52,40 +54,6 @@ def add_commands(commands: Any) -> None:
     table.add_argument("--json", action="store_true", help="print one JSON object")
     add_where(table, "processes at once (default: this one alone)")
     table.set_defaults(run=_table)
-
-
-def _train_guardian(arguments: argparse.Namespace) -> int:
-    import numpy as np
-    from tqdm import tqdm
-
-    from ai.agent.config import ANYWHERE, LANDER
-    from ai.agent.storage import GUARDIAN
-    from ai.copilot.critic_training import CriticTraining
-
-    if problem := out_of_range(arguments, rounds=ROUNDS_ALLOWED, seed=SEEDS):
-        return fail(problem)
-    try:
-        training = CriticTraining(
-            _lander(arguments.model, (LANDER, ANYWHERE)), np.random.default_rng(arguments.seed), arguments.rounds
-        )
-        with (
-            stoppable() as stop,
-            tqdm(total=arguments.rounds, desc="training", unit="round", disable=None) as bar,
-        ):
-            for progress in training.run():
-                bar.update(progress.round - bar.n)
-                bar.set_postfix_str(f"{progress.moments:,} moments, {progress.right:.1%} right", refresh=False)
-                if stop:
-                    return exit_code(stop)
-        training.critic.save(arguments.model / GUARDIAN)
-    except REFUSED as error:
-        return fail(reason(error))
-    facts = training.critic.facts
-    print(f"kept in {arguments.model / GUARDIAN}, learnt from {facts.moments:,} moments; of moments not learnt from")
-    print(f"{'chance it gave':>16}{'saved':>9}{'moments':>10}")
-    for row in facts.reliability:
-        print(f"{row.said:16.1%}{row.saved:9.1%}{row.moments:10,}")
-    return 0
 
 
 def _lander(model: Path, envs: tuple[str, ...]) -> DeepQAgent:
@@ -101,16 +69,26 @@ def _lander(model: Path, envs: tuple[str, ...]) -> DeepQAgent:
 def _table(arguments: argparse.Namespace) -> int:
     from tqdm import tqdm
 
-    from ai.agent.config import LANDER
+    from ai.agent.config import ANYWHERE, LANDER
+    from ai.copilot.copilot import Mode
+    from ai.copilot.measurement import HELPS, seconds
     from ai.sweep.cluster import each
     from ai.sweep.copilot_table import fly, parts, tables_of
 
     if problem := out_of_range(arguments, episodes=EPISODES, seed=SEEDS, workers=WORKERS):
         return fail(problem)
+    if not all(0 <= assist <= 1 for assist in arguments.assist):
+        return fail("the dial goes from 0 to 1")
+    helps = [*HELPS, *((Mode.GUARDIAN, assist) for assist in arguments.assist)]
+    models = {"one_pad": arguments.model, "three_pads": arguments.model, "other_worlds": arguments.anywhere}
     done: dict[int, list[AssistedFlights]] = {}
     try:
-        _lander(arguments.model, (LANDER,))
-        asked = parts(arguments.model, arguments.good == "scripted", arguments.episodes, arguments.seed)
+        agent = _lander(arguments.model, (LANDER,))
+        _lander(arguments.anywhere, (ANYWHERE,))
+        asked = parts(models, arguments.good == "scripted", helps, arguments.episodes, arguments.seed)
+        guarded = sum(len(part.names) for part in asked) * (1 + len(arguments.assist)) * arguments.episodes
+        minutes = seconds(agent, guarded) / 60 / (arguments.workers or 1)
+        print(f"this takes about {minutes:.0f} minutes" if minutes > 1 else "this takes about a minute", file=sys.stderr)
         with tqdm(total=len(asked), desc="flying", unit="part", disable=None) as bar:
             for index, rows in each(fly, asked, arguments.address, arguments.workers or 1):
                 done[index] = rows
@@ -123,22 +101,23 @@ def _table(arguments: argparse.Namespace) -> int:
         settings = {"good": arguments.good, "seed": arguments.seed, "episodes": arguments.episodes}
         print(json.dumps(settings | told, indent=2))
     else:
-        _show("One pad", tables["one_pad"])
-        _show("Three pads, one of them meant", tables["three_pads"], own=True)
+        for name, table in tables.items():
+            _show(_TITLES[name], table, own=name == "three_pads")
     return 0
 
 
 def _show(title: str, rows: list[AssistedFlights], own: bool = False) -> None:
-    print(
-        f"\n{title}\n{'pilot':18}{'help':25}{'success':>8}{'95% interval':>16}{'crash':>8}{'gone':>8}{'time out':>9}"
-        f"{'return':>8}{'overridden':>12}{'own pad':>9}"[: None if own else -9]
+    head = (
+        f"{'pilot':22}{'help':20}{'landed':>8}{'95% interval':>18}{'crash':>8}{'gone':>8}{'time out':>10}"
+        f"{'overridden':>12}{'plan held':>11}{'and lost':>10}"
     )
+    print(f"\n{title}\n{head}" + (f"{'own pad':>9}" if own else ""))
     for row in rows:
-        help_ = row.mode if row.assist == 0.0 else f"{row.mode} {row.assist:.1f}"
+        help_ = row.mode if row.assist == 0.0 else f"{row.mode} {row.assist:.2f}"
         low, high = row.success_interval
         line = (
-            f"{row.pilot:18}{help_:25}{row.success:8.1%}{f'{low:.1%} to {high:.1%}':>16}{row.crash:8.1%}"
-            f"{row.out_of_bounds:8.1%}{row.time_out:9.1%}{row.mean_return:8.1f}{row.overridden:12.1%}"
+            f"{row.pilot:22}{help_:20}{row.success:8.1%}{f'{low:.1%} to {high:.1%}':>18}{row.crash:8.1%}"
+            f"{row.out_of_bounds:8.1%}{row.time_out:10.1%}{row.overridden:12.1%}{row.held:11.1%}{row.lost_held:10.1%}"
         )
         print(line + (f"{row.own_pad:9.1%}" if own else ""))
     sys.stdout.flush()

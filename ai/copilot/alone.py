@@ -75,7 +75,7 @@ class LandingAlone:
         self.alone += 1
 
     def add_helped(self, *, landed: bool, changed: float, assist: float) -> None:
-        """Learn from a flight that a guardian with a safety critic watched over from its beginning to its end.
+        """Learn from a flight that a guardian by futures watched over from its beginning to its end.
 
         `changed` is for how many seconds something else was flown than the pilot asked for. A guardian at an assist
         beyond those measured says nothing of what would be without it, and is left out.

@@ -1,4 +1,4 @@
-"""Clumsy hands: pilots with faults drawn anew for every flight, to learn to save and to be measured with."""
+"""Clumsy hands: pilots with faults drawn anew for every flight, stuck keys and adversaries, to be measured with."""
 
 from __future__ import annotations
 
@@ -10,11 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ai.common.environment import Bools, Doubles, Floats, Ints
-from ai.lander.environment import OBSERVATION_SCALE
+from ai.lander.environment import ACTION_NAMES, NUM_ACTIONS, OBSERVATION_SCALE
 from ai.lander.pilots import COAST, GAINS, Gains, LaggyPilot, NoisyPilot, Pilot, ScriptedPilot, SensorPilot
+from ai.lander.rules import ACTION_SHARES
 
 _LATEST: Final = 11  # decisions that hands can be late
 _STEERS: Final = 3  # action = 3 * main + steer
+_SECOND: Final = 15  # decisions
 
 
 @dataclass(frozen=True)
@@ -89,7 +91,7 @@ class OneOrOther:
 
 
 def any_hands(slots: int, rng: np.random.Generator, good: Pilot) -> Pilot:
-    """Return hands with faults of all kinds, mixed anew in every slot: what a critic learns from."""
+    """Return hands with faults of all kinds, mixed anew in every slot: people as they may be."""
 
     def sometimes(chance: float, fault: ArrayLike) -> Doubles:
         return np.where(rng.random(slots) < chance, fault, 0.0)
@@ -123,7 +125,7 @@ def _scripted(**faults: Any) -> MakePilot:
     return make
 
 
-# Families of pilots that the rule was chosen with.
+# Families of clumsy pilots; those below are of other kinds.
 FAMILIES: Final[dict[str, MakePilot]] = {
     "good": lambda slots, rng, good: good,  # noqa: ARG005
     "gains drawn anew": lambda slots, rng, good: ScriptedPilot(drawn_gains(slots, rng, 0.6)),  # noqa: ARG005
@@ -199,7 +201,7 @@ def _gained(spread: float = 0.3, **factors: float) -> MakePilot:
 
 _controller = _gained()
 
-# Families that neither the critic nor the rule was chosen with: what the co-pilot does for people nobody thought of.
+# What people do whom nobody thought of.
 UNSEEN: Final[dict[str, MakePilot]] = {
     "aims beside": lambda slots, rng, good: Misjudging(_controller(slots, rng, good), slots, rng),
     "over-corrects": _gained(turn=2.5, calm=0.2),
@@ -207,4 +209,68 @@ UNSEEN: Final[dict[str, MakePilot]] = {
     "panics": lambda slots, rng, good: Panicking(_controller(slots, rng, good), slots, rng),
     "steers or brakes": lambda slots, rng, good: InTurns(_controller(slots, rng, good), slots, rng, (7, 7), "keys"),
     "dozes": lambda slots, rng, good: InTurns(_controller(slots, rng, good), slots, rng, (12, 20), "all"),
+}
+
+
+class HeldKeys:
+    """Pilot who holds the same keys all the time, or others from each second to the next."""
+
+    def __init__(self, action: int | None, slots: int, rng: np.random.Generator) -> None:
+        self.action, self.slots, self.rng = action, slots, rng
+        self._asked = 0
+        self._last: Ints = np.full(slots, action or COAST, dtype=np.intp)
+
+    def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:  # noqa: ARG002
+        """Actions (n,) for observations (n, 9)."""
+        if self.action is None and self._asked % _SECOND == 0:
+            self._last = self.rng.integers(NUM_ACTIONS, size=self.slots)
+        self._asked += 1
+        return self._last
+
+
+class PartThrust:
+    """Pilot whose main engine never gives more than a share of its thrust, 0 to 1."""
+
+    def __init__(self, pilot: Pilot, most: float) -> None:
+        self.pilot, self.most = pilot, most
+
+    def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:
+        """Actions (n,) for observations (n, 9)."""
+        return self.pilot.act(observation, held=held)
+
+    def shares(self, action: Ints) -> Doubles:
+        """Return the shares of thrust of main engine and jets, (n, 2), that are pushed with actions (n,)."""
+        return ACTION_SHARES[action] * (self.most, 1.0)
+
+
+class Adversary:
+    """Pilot who wants to crash: of the actions that pass, one at random, or the one that the network values least."""
+
+    def __init__(self, agent: Any, rng: np.random.Generator, *, least: bool) -> None:
+        self.agent, self.rng, self.least = agent, rng, least
+
+    def pick(self, observation: Floats, passes: Bools) -> Ints:
+        """Return actions (n,) for observations (n, features), of those that pass (n, 6); of all where none does."""
+        passes = passes | ~passes.any(axis=1, keepdims=True)
+        rank = self.agent.q_values(observation) if self.least else self.rng.random(passes.shape)
+        action: Ints = np.where(passes, rank, np.inf).argmin(axis=1)
+        return action
+
+    def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:  # noqa: ARG002
+        """Actions (n,) for observations (n, features), where everything passes."""
+        return self.pick(observation, np.ones((len(observation), NUM_ACTIONS), dtype=bool))
+
+
+def _holding(action: int | None) -> MakePilot:
+    return lambda slots, rng, good: HeldKeys(action, slots, rng)  # noqa: ARG005
+
+
+# Hands that no help could be made for beforehand: stuck keys, a weak stick, and somebody who wants to crash.
+STUBBORN: Final[dict[str, MakePilot]] = {
+    **{f"holds {name}": _holding(action) for action, name in enumerate(ACTION_NAMES)},
+    "a key each second": _holding(None),
+    "slow": _scripted(late=_LATEST, sticky=0.75),
+    **{f"thrust {most}": lambda slots, rng, good, most=most: PartThrust(ScriptedPilot(), most) for most in (0.45, 0.3)},
+    "adversary, random": lambda slots, rng, good: Adversary(good, rng, least=False),  # noqa: ARG005
+    "adversary, least": lambda slots, rng, good: Adversary(good, rng, least=True),  # noqa: ARG005
 }

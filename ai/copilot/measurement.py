@@ -1,65 +1,55 @@
-"""Measurement of the co-pilot: pilots good and bad, alone and with help, over many flights each."""
+"""Measurement of the co-pilot: hands good, bad and hostile, alone and with help, over many flights each."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass, fields, replace
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
 from typing import Any, Final
 
 import numpy as np
 
 from ai.agent.agent import DeepQAgent
-from ai.common.environment import Doubles
+from ai.common.environment import Bools, Doubles
 from ai.common.intervals import wilson
 from ai.copilot.copilot import CoPilot, Mode
-from ai.copilot.hands import FAMILIES, UNSEEN, MakePilot
-from ai.copilot.oracle import Oracle
+from ai.copilot.futures import KEYS, Lookahead, Moment
+from ai.copilot.guardian import decisions_of
+from ai.copilot.hands import FAMILIES, STUBBORN, UNSEEN, Adversary, MakePilot
+from ai.lander.anywhere import AnywhereEnv
 from ai.lander.environment import LanderEnv, Outcome
-from ai.lander.ground import Ground, hilly
-from ai.lander.pilots import NoPilot, Pilot
+from ai.lander.ground import hilly
+from ai.lander.pilots import Pilot
+from ai.lander.rules import ACTION_SHARES
 
-PILOTS: Final[dict[str, MakePilot]] = {**FAMILIES, **UNSEEN, "none": lambda slots, rng, good: NoPilot()}  # noqa: ARG005
-INTENT_PILOTS: Final = ("good", "laggy", "noisy", "noisier")  # pilots that have a pad in mind
-GROUNDS: Final = 5  # different hills for the flights with a hidden intent
+PILOTS: Final[dict[str, MakePilot]] = {**FAMILIES, **UNSEEN, **STUBBORN}
+SOME: Final = ("good", "late", "inverted", "laggy", "holds right", "holds main", "a key each second", "thrust 0.3")
 ALONE: Final = "alone"
-COPILOT: Final = "co-pilot"  # the pilot of the row in which the network flies alone
-OPEN: Final = "guardian, all pads open"  # the same rule, with nothing read into what the pilot does
-ORACLE: Final = "oracle"  # the limit: it flies ahead in the exact simulation
-VALUES: Final = "guardian by values"  # without a critic
-ORACLE_FLIGHTS: Final = 60  # of a row: each takes as long as a hundred others
-
+VALUES: Final = "guardian by values"  # without futures
 Help = tuple[str, float]  # alone, or how the co-pilot helps; and how much
-ONE_PAD: Final[tuple[Help, ...]] = (
-    (ALONE, 0.0),
-    (Mode.TOLERANCE, 0.4),
-    *((Mode.GUARDIAN, assist) for assist in (0.2, 0.4, 0.6)),
-    (VALUES, 0.4),
-    (ORACLE, 0.0),
-)
-THREE_PADS: Final[tuple[Help, ...]] = (
-    (ALONE, 0.0),
-    (Mode.TOLERANCE, 0.4),
-    *((Mode.GUARDIAN, assist) for assist in (0.2, 0.4, 0.6, 0.8)),
-    (VALUES, 0.4),
-    (OPEN, 0.4),
-)
+GUARD: Final[Help] = (Mode.GUARDIAN, 0.04)  # there must be a landing after one decision of an action
+HELPS: Final[tuple[Help, ...]] = ((ALONE, 0.0), (Mode.TOLERANCE, 0.4), (VALUES, 0.4), GUARD)
+_STARTS: Final = 0x5AFE7AB1E  # beside the seed, so that no start is one that anything was trained with
+_SAMPLE: Final = 24  # futures by which the machine's speed is told
+_FUTURES: Final = 320.0  # that a guarded flight takes: the shares of a batch, measured
 
 
 @dataclass(frozen=True)
 class AssistedFlights:
-    """Results of a number of flights of one pilot with one kind of help."""
+    """Results of a number of flights of one pilot with one kind of help; shares of the flights, unless it says others."""
 
     pilot: str
     mode: str
     assist: float
     episodes: int
-    success: float  # shares of the flights
+    success: float
     crash: float
     out_of_bounds: float
     time_out: float
-    mean_return: float
     overridden: float  # share of the decisions in which something else was flown than the pilot asked for
-    own_pad: float  # share of the flights that ended on the pad the pilot had in mind
+    own_pad: float  # that ended on the pad the pilot had in mind
+    held: float  # in which the guardian held a plan
+    lost_held: float  # that did not land although it did
 
     @property
     def success_interval(self) -> tuple[float, float]:
@@ -71,132 +61,112 @@ class AssistedFlights:
         return asdict(self) | {"success_interval": self.success_interval}
 
 
-@dataclass(frozen=True)
-class AssistedPilot:
-    """Pilot with the kind of help it gets."""
-
-    name: str
-    pilot: Pilot
-    mode: str = ALONE
-    assist: float = 0.0
-    copilot: CoPilot | Oracle | None = None
+MakeEnv = Callable[[int, np.random.Generator], LanderEnv]
 
 
-def one_pad(agent: DeepQAgent, good: Pilot, episodes: int, seed: int = 0) -> Iterator[AssistedFlights]:
-    """Fly every pilot of the table with every help to a single pad; yield the rows as they are done.
+def _hills(slots: int, rng: np.random.Generator) -> LanderEnv:
+    return LanderEnv(slots, rng, ground=hilly(rng))
 
-    `agent` is the co-pilot, `good` the pilot that some of the imperfect ones are made of. All fly from the same
-    starts, and with the same mishaps, which follow from `seed`; the oracle's flights are fewer.
+
+# Tables by name: in which world they are flown, and by which pilots.
+TABLES: Final[dict[str, tuple[MakeEnv, tuple[str, ...]]]] = {
+    "one_pad": (LanderEnv, tuple(PILOTS)),
+    "three_pads": (_hills, SOME),
+    "other_worlds": (AnywhereEnv, SOME),
+}
+
+
+def seconds(agent: DeepQAgent, flights: int) -> float:
+    """Return about how long so many flights take with a guardian, in seconds on this machine: a few are timed."""
+    env = LanderEnv(_SAMPLE, 0)
+    env.reset()
+    lookahead, asked = Lookahead(agent), [(slot, KEYS[0]) for slot in range(_SAMPLE)]
+    lookahead.futures(Moment.of(env), asked)
+    begun = time.perf_counter()
+    lookahead.futures(Moment.of(env), asked)
+    return flights * _FUTURES / _SAMPLE * (time.perf_counter() - begun)
+
+
+def rows(
+    agent: DeepQAgent, good: Pilot, table: str, names: Sequence[str], helps: Sequence[Help], episodes: int, seed: int
+) -> list[AssistedFlights]:
+    """Return the rows of pilots by name with every help, in a table of `TABLES`; all fly from the same starts.
+
+    `agent` is the co-pilot, `good` the pilot that some of the imperfect ones are made of.
     """
-    for name in (*PILOTS, COPILOT):
-        yield from one_pad_rows(agent, good, name, episodes, seed)
-
-
-def one_pad_rows(agent: DeepQAgent, good: Pilot, name: str, episodes: int, seed: int) -> list[AssistedFlights]:
-    """Return the rows of one pilot of the table, or of COPILOT; they do not depend on the other pilots."""
-    if name == COPILOT:
-        return _measure([AssistedPilot(COPILOT, agent)], episodes, seed)
-    fast = [help_ for help_ in ONE_PAD if help_[0] != ORACLE]
-    rows = _measure(_assisted_pilots(agent, good, [name], fast, episodes, seed), episodes, seed)
-    if len(fast) < len(ONE_PAD):
-        few = min(episodes, ORACLE_FLIGHTS)
-        rows += _measure(_assisted_pilots(agent, good, [name], [(ORACLE, 0.0)], few, seed), few, seed)
-    return rows
-
-
-def three_pads(agent: DeepQAgent, good: Pilot, episodes: int, seed: int = 0) -> Iterator[AssistedFlights]:
-    """Fly pilots with one of three pads in mind, which the co-pilot isn't told; yield the rows.
-
-    The flights are spread over several grounds, so `episodes` is rounded to a multiple of their number.
-    """
-    yield from mean_rows([three_pads_rows(agent, good, ground, episodes, seed) for ground in range(GROUNDS)])
-
-
-def three_pads_rows(agent: DeepQAgent, good: Pilot, ground: int, episodes: int, seed: int) -> list[AssistedFlights]:
-    """Return the rows of one of the grounds, with its part of the flights; they do not depend on the others."""
-    rng = np.random.default_rng([seed, ground])
-    start, each = int(rng.integers(2**31)), max(1, round(episodes / GROUNDS))
-    assisted = _assisted_pilots(agent, good, INTENT_PILOTS, THREE_PADS, each, start)
-    return _measure(assisted, each, start, hilly(rng))
-
-
-def mean_rows(parts: Sequence[Sequence[AssistedFlights]]) -> list[AssistedFlights]:
-    """Return the means of tables of the same rows and as many flights."""
-    return [_mean(rows) for rows in zip(*parts, strict=True)]
-
-
-def _assisted_pilots(
-    agent: DeepQAgent, good: Pilot, names: Sequence[str], helps: Sequence[Help], episodes: int, seed: int
-) -> list[AssistedPilot]:
-    return [
-        AssistedPilot(name, PILOTS[name](episodes, np.random.default_rng(seed), good), str(mode), assist,
-                      _help(agent, mode, assist))
-        for name in names
-        for mode, assist in helps
-    ]  # fmt: skip
-
-
-def _help(agent: DeepQAgent, mode: str, assist: float) -> CoPilot | Oracle | None:
-    if mode == ALONE:
-        return None
-    if mode == ORACLE:
-        return Oracle(agent)
-    guardian = mode in (OPEN, VALUES)
-    copilot = CoPilot(agent, assist, Mode.GUARDIAN if guardian else mode, infers_intent=mode != OPEN)
-    if mode == VALUES:
-        copilot.critic = None
-    return copilot
+    found = [_measure(agent, good, table, names, help_, episodes, seed) for help_ in helps]
+    return [row for pilot in zip(*found, strict=True) for row in pilot]
 
 
 def _measure(
-    assisted: Sequence[AssistedPilot], episodes: int, seed: int, ground: Ground | None = None
+    agent: DeepQAgent, good: Pilot, table: str, names: Sequence[str], help_: Help, episodes: int, seed: int
 ) -> list[AssistedFlights]:
-    """Fly `episodes` flights of every assisted pilot, all at once and from the same starts."""
-    env = LanderEnv(len(assisted) * episodes, seed, ground=ground)
+    """Fly `episodes` flights of every pilot with one help, all at once."""
+    env = TABLES[table][0](len(names) * episodes, np.random.default_rng([_STARTS, seed]))
     for first in range(0, env.num_envs, episodes):
-        for slot, rng in enumerate(np.random.default_rng(seed).spawn(episodes), first):
+        for slot, rng in enumerate(np.random.default_rng([_STARTS, seed, 1]).spawn(episodes), first):
             env.draw_from(slot, rng)
-    intended = np.random.default_rng(seed).integers(len(env.ground.pads), size=episodes)
-    env.target = np.tile(intended, len(assisted))
     env.reset()
-    returns, overridden, decisions = _fly(env, assisted)
-    rows = []
-    for number, each in enumerate(assisted):
+    if env.ground.at_once > 1:
+        intended = np.random.default_rng([_STARTS, seed, 2]).integers(env.ground.at_once, size=episodes)
+        env.target = np.tile(intended, len(names))
+    pilots = [PILOTS[name](episodes, np.random.default_rng([_STARTS, seed, 3]), good) for name in names]
+    mode, assist = help_
+    copilot = None
+    if mode != ALONE:
+        copilot = CoPilot(agent, assist, Mode.GUARDIAN if mode == VALUES else Mode(mode))
+    overridden, decisions, held = fly(env, agent, pilots, copilot, by_values=mode == VALUES)
+    landed, own = env.outcome == Outcome.LANDED, env.landed_on == env.target
+    found = []
+    for number, name in enumerate(names):
         mine = slice(number * episodes, (number + 1) * episodes)
-        _, landed, crashed, gone, late = (float((env.outcome[mine] == outcome).mean()) for outcome in Outcome)
+        _, *shares = (float((env.outcome[mine] == outcome).mean()) for outcome in Outcome)
         changed = float(overridden[mine].sum() / decisions[mine].sum())
-        own = float((env.landed_on[mine] == intended).mean())
-        rows.append(AssistedFlights(each.name, each.mode, each.assist, episodes, landed, crashed, gone, late,
-                        float(returns[mine].mean()), changed, own))  # fmt: skip
-    return rows
+        more = (float(each[mine].mean()) for each in (own, held, held & ~landed))
+        found.append(AssistedFlights(name, str(mode), assist, episodes, *shares, changed, *more))
+    return found
 
 
-def _fly(env: LanderEnv, assisted: Sequence[AssistedPilot]) -> tuple[Doubles, Doubles, Doubles]:
-    """Fly until all have ended; return every flight's return, overridden decisions, and decisions, (n,) each."""
-    returns, overridden, decisions = np.zeros((3, env.num_envs))
-    episodes = env.num_envs // len(assisted)
+def fly(
+    env: LanderEnv, agent: DeepQAgent, pilots: Sequence[Pilot], copilot: CoPilot | None, *, by_values: bool = False
+) -> tuple[Doubles, Doubles, Bools]:
+    """Fly until all have ended, with as many slots for every pilot.
+
+    Returns each flight's overridden decisions, its decisions, and whether a plan was ever held, (n,) each.
+    """
+    overridden, decisions = np.zeros((2, env.num_envs))
+    held = np.zeros(env.num_envs, dtype=bool)
+    each = env.num_envs // len(pilots)
+    foresees = copilot is not None and copilot.mode is Mode.GUARDIAN and not by_values
     while (flying := env.outcome == Outcome.FLYING).any():
-        seen, wished, around, actions = env.observe_pads(), env.observe(), env.around_pads(), env.actions.copy()
-        for row, each in enumerate(assisted):
-            mine = slice(row * episodes, (row + 1) * episodes)
-            if flying[mine].any():
-                asked = each.pilot.act(wished[mine], held=env.actions[mine])
-                if isinstance(each.copilot, Oracle):
-                    actions[mine] = each.copilot.share(env, asked)
-                elif each.copilot is not None:
-                    actions[mine] = each.copilot.share(seen[mine], asked, around[mine])[0]
-                else:
-                    actions[mine] = asked
-                overridden[mine] += flying[mine] & (actions[mine] != asked)
+        wished, action, shares = env.observe(), env.actions.copy(), env.shares.copy()
+        for number, pilot in enumerate(pilots):
+            mine = slice(number * each, (number + 1) * each)
+            if not flying[mine].any():
+                continue
+            if copilot and foresees and isinstance(pilot, Adversary):
+                action[mine] = pilot.pick(wished[mine], _passing(env, copilot, mine))
+            else:
+                action[mine] = pilot.act(wished[mine], held=env.actions[mine])
+            pushes = getattr(pilot, "shares", ACTION_SHARES.__getitem__)
+            shares[mine] = pushes(action[mine])
+        if copilot:
+            seen = env.observe_pads(agent) if env.ground.at_once > 1 else env.observe_for(agent)
+            decision = copilot.decide(seen, action, shares=shares, env=env if foresees else None)
+            action, shares = decision.action, decision.shares
+            overridden += flying & decision.overridden
+            held |= flying & (decision.held if decision.held is not None else False)
         decisions += flying
-        returns += env.step(actions).reward
-    return returns, overridden, decisions
+        env.fly(action, shares)
+    return overridden, decisions, held
 
 
-def _mean(rows: Sequence[AssistedFlights]) -> AssistedFlights:
-    """Return the mean of rows of as many flights each."""
-    figures = {
-        figure.name: float(np.mean([getattr(row, figure.name) for row in rows]))
-        for figure in fields(AssistedFlights)[4:]
-    }
-    return replace(rows[0], episodes=sum(row.episodes for row in rows), **figures)  # type: ignore[arg-type]
+def _passing(env: LanderEnv, copilot: CoPilot, mine: slice) -> Bools:
+    """Return which actions of some slots a guardian lets pass, (m, 6)."""
+    slots = np.arange(env.num_envs)[mine]
+    asked = [(int(slot), push) for slot in slots[env.outcome[mine] == Outcome.FLYING] for push in KEYS]
+    found = copilot.lookahead.futures(Moment.of(env), asked, decisions_of(copilot.assist))
+    passes = np.zeros((env.num_envs, len(KEYS)), dtype=bool)
+    for (slot, push), future in zip(asked, found, strict=True):
+        passes[slot, push.action] = future.passes
+    return passes[mine]

@@ -1,4 +1,4 @@
-"""The co-pilot's table in parts, which may be flown on many cores: one for each pilot, one for each ground."""
+"""The co-pilot's tables in parts, which may be flown on many cores: some pilots of one table each."""
 
 from __future__ import annotations
 
@@ -8,53 +8,48 @@ from pathlib import Path
 from typing import Final
 
 from ai.copilot import measurement
-from ai.copilot.measurement import COPILOT, AssistedFlights, mean_rows, one_pad_rows, three_pads_rows
+from ai.copilot.measurement import AssistedFlights, Help
 from ai.lander.pilots import Pilot, ScriptedPilot
 from ai.sweep.shards import packed_agent
 from ai.sweep.trial import archive
 
-ONE_PAD: Final = "one_pad"
-THREE_PADS: Final = "three_pads"
+_PILOTS: Final = 8  # of a part: the more fly at once, the less time each takes
 
 
 @dataclass(frozen=True)
 class Part:
-    """Part of the table: the rows of a pilot by name, or those of a ground by number."""
+    """Part of a table: the rows of some of its pilots."""
 
     agent: bytes  # the co-pilot's folder, packed
     scripted: bool  # whether the imperfect pilots are made of the scripted one, not of the network
-    of: str | int
+    table: str
+    names: tuple[str, ...]
+    helps: tuple[Help, ...]
     episodes: int
     seed: int
 
-    @property
-    def table(self) -> str:
-        """Name of the table that it belongs to."""
-        return ONE_PAD if isinstance(self.of, str) else THREE_PADS
 
-
-def parts(model: Path, scripted: bool, episodes: int, seed: int) -> list[Part]:
-    """Return all parts of the table of the network in a folder."""
-    agent = archive(model)
-    return [Part(agent, scripted, of, episodes, seed) for of in _all()]
-
-
-def _all() -> list[str | int]:
-    return [*measurement.PILOTS, COPILOT, *range(measurement.GROUNDS)]
+def parts(models: Mapping[str, Path], scripted: bool, helps: Sequence[Help], episodes: int, seed: int) -> list[Part]:
+    """Return all parts of the tables that have a network: `models` are the folders of these by the table's name."""
+    packed = {table: archive(model) for table, model in models.items()}
+    return [
+        Part(agent, scripted, table, names[first : first + _PILOTS], tuple(helps), episodes, seed)
+        for table, agent in packed.items()
+        for names in [measurement.TABLES[table][1]]
+        for first in range(0, len(names), _PILOTS)
+    ]
 
 
 def fly(part: Part) -> list[AssistedFlights]:
     """Fly a part; what comes of it does not depend on the others."""
     agent = packed_agent(part.agent)
     good: Pilot = ScriptedPilot() if part.scripted else agent
-    if isinstance(part.of, str):
-        return one_pad_rows(agent, good, part.of, part.episodes, part.seed)
-    return three_pads_rows(agent, good, part.of, part.episodes, part.seed)
+    return measurement.rows(agent, good, part.table, part.names, part.helps, part.episodes, part.seed)
 
 
 def tables_of(asked: Sequence[Part], done: Mapping[int, list[AssistedFlights]]) -> dict[str, list[AssistedFlights]]:
-    """Return the rows of both tables from those of all parts."""
-    rows = {
-        name: [done[index] for index, part in enumerate(asked) if part.table == name] for name in (ONE_PAD, THREE_PADS)
-    }
-    return {ONE_PAD: [row for each in rows[ONE_PAD] for row in each], THREE_PADS: mean_rows(rows[THREE_PADS])}
+    """Return the rows of all tables from those of all parts."""
+    tables: dict[str, list[AssistedFlights]] = {}
+    for index, part in enumerate(asked):
+        tables.setdefault(part.table, []).extend(done[index])
+    return tables

@@ -72,11 +72,11 @@ def flown_shards(parts: list[Shard], address: str | None, workers: int | None) -
     yield reduce(FlightSums.plus, (done[index] for index in range(len(parts))))
 
 
-@lru_cache(maxsize=1)
+@lru_cache(maxsize=2)
 def packed_agent(packed: bytes) -> DeepQAgent:
     """Return the agent of an archive; a worker flies one part after another with the same.
 
-    Its folder stays until the process ends: a guardian is read from there when it is first needed.
+    Its folder stays until the process ends.
     """
     folder = tempfile.mkdtemp(prefix="tranquility-agent-")
     atexit.register(shutil.rmtree, folder, ignore_errors=True)

@@ -1,182 +1,238 @@
-"""The guardian's rule, given what a safety critic says."""
+"""The guardian's rule: what passes, what is corrected, and that nobody can crash a flight while a plan is held."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from ai.copilot.copilot import ActionSource, CoPilot, Mode
-from ai.copilot.guardian import HAND_BACK, SUREST, required_chance
+from ai.agent.agent import DeepQAgent
+from ai.cli.copilot import MODEL
+from ai.copilot.copilot import CoPilot, Mode
+from ai.copilot.futures import KEYS, Future, Here, Lookahead, Plan, Push
+from ai.copilot.guardian import Guardian, decisions_of
+from ai.lander.conditions import Conditions
+from ai.lander.environment import LIMITS, LanderEnv, Outcome
 
-DIAL = 0.4
-REQUIRED = float(required_chance(DIAL))
-SAFE, LOST = 0.9999, 0.2
-
-
-def flying(best=4):
-    """An agent to whom one action is worth the most."""
-    values = np.zeros(6, np.float32)
-    values[best] = 1.0
-    return SimpleNamespace(q_values=lambda observation: np.tile(values, (len(observation), 1)))
-
-
-def foretelling(*rows):
-    """A critic that gives these chances of the observations, in turn, until it is told others."""
-    critic = SimpleNamespace(rows=rows)
-    critic.chances = lambda observation, surroundings=None: np.array(critic.rows, np.float32).reshape(-1, 6)
-    return critic
-
-
-def row(**chances):
-    """Chances of the six actions: safe, unless said otherwise by a0 to a5."""
-    said = np.full(6, SAFE)
-    for name, chance in chances.items():
-        said[int(name[1])] = chance
-    return said
-
-
-def guardian(*rows, assist=DIAL, best=4):
-    return CoPilot(flying(best), assist, Mode.GUARDIAN, critic=foretelling(*rows))
-
-
-def seen(slots=1, pads=1):
-    return np.zeros((slots, pads, 9), np.float32)
-
-
-@pytest.mark.parametrize(
-    ("chances", "pilot", "action", "source"),
-    [
-        (row(), 2, 2, ActionSource.PILOT),
-        (row(a2=REQUIRED), 2, 2, ActionSource.PILOT),
-        (row(), 0, 0, ActionSource.PILOT),  # who asks for nothing gets it, while that is safe
-        (row(a3=LOST), 3, 4, ActionSource.PILOT_MAIN),  # steering alone
-        (row(a2=LOST, a1=LOST), 2, 5, ActionSource.PILOT_STEER),  # engine alone
-        (row(a2=LOST, a1=LOST, a5=LOST), 2, 4, ActionSource.COPILOT),
-        (row(a0=LOST, a1=LOST, a3=LOST), 0, 4, ActionSource.COPILOT),
-    ],
+HERE = Here(0, 1.62, (0.0,) * 6)
+COAST, LEFT, RIGHT, MAIN, MAIN_LEFT, MAIN_RIGHT = KEYS
+GUARD, GUIDE = 0.04, 0.64
+STARTS = (
+    (0.4, 3.6, 0.2, -0.5, 0.1, 0.0),
+    (-0.8, 3.9, 0.0, -0.4, -0.1, 0.1),
+    (1.0, 3.5, -0.3, -0.6, 0.0, 0.0),
+    (0.0, 4.2, 0.0, -0.9, 0.0, 0.0),
 )
-def test_the_stick_is_the_pilots_while_the_flight_can_be_saved_and_then_as_little_as_helps_is_changed(
-    chances, pilot, action, source
-):
-    decision = guardian(chances).decide(seen(), [pilot])
-    assert (decision.action[0], decision.source[0]) == (action, source)
-    assert decision.chance[0] == pytest.approx(chances[pilot])
-    assert decision.chances[0, decision.action[0]] == pytest.approx(chances[action])
-    assert decision.feasible[0, action]
-    assert decision.required[0] == pytest.approx(REQUIRED)
 
 
-def test_where_nothing_is_safe_enough_the_best_of_the_four_is_flown():
-    decision = guardian(np.array([0.1, 0.2, 0.1, 0.3, 0.5, 0.4])).decide(seen(), [2])
-    assert decision.action[0] == 4
-    decision = guardian(np.array([0.1, 0.2, 0.1, 0.3, 0.5, 0.6])).decide(seen(), [2])
-    assert decision.action[0] == 5  # the pilot's steering with the engine is better still
+@pytest.fixture(scope="module")
+def agent():
+    return DeepQAgent.load(MODEL)
 
 
-@pytest.mark.parametrize("assist", [0.0, 0.1, 0.4, 0.8, 1.0])
-def test_the_dial_says_what_is_asked_for(assist):
-    required = required_chance(assist)
-    assert 0.0 <= required <= 1.0
-    just, less = (
-        guardian(row(a2=chance), assist=assist).share(seen(), [2])[1][0]
-        for chance in (required + 1e-6, max(0.0, required - 0.01))
+def plan(*pushes):
+    """A plan that begins here with these pushes."""
+    actions, shares = np.array([push.action for push in pushes]), np.array([push[1:] for push in pushes])
+    return Plan(0, 1.62, 0, actions, shares, np.zeros((len(pushes) + 1, 6)))
+
+
+def lands(*pushes, lasts=True):
+    return {push: Future(plan(push), lasts) for push in pushes}
+
+
+def choice(asked, known, held=None, network=COAST, **options):
+    """What is chosen, whose that is, and what the plan that is held then begins with."""
+    guardian = Guardian()
+    guardian.plan = held
+    chosen = guardian.choose(HERE, asked, network, known, **options)
+    assert chosen.held == (guardian.plan is not None)
+    assert not chosen.held or guardian.plan.push(HERE) == chosen.push
+    return chosen.push, chosen.source.name
+
+
+def test_the_least_is_corrected_that_lands():
+    main_held, stick = plan(MAIN_LEFT), Push.of(0.5, 1.0)
+    cases = (
+        ("what lands passes", RIGHT, lands(RIGHT), main_held, (RIGHT, "PILOT")),
+        ("what the held plan begins with needs no future", MAIN_LEFT, {}, main_held, (MAIN_LEFT, "PILOT")),
+        ("steering first", RIGHT, lands(LEFT, MAIN_RIGHT), main_held, (LEFT, "PILOT_MAIN")),
+        ("then the main engine", RIGHT, lands(MAIN_RIGHT), main_held, (MAIN_RIGHT, "PILOT_STEER")),
+        ("else the plan flies on", RIGHT, lands(COAST, MAIN), main_held, (MAIN_LEFT, "COPILOT")),
+        ("nothing known in time", RIGHT, {}, main_held, (MAIN_LEFT, "COPILOT")),
+        ("landing once is not enough", RIGHT, lands(RIGHT, lasts=False), main_held, (MAIN_LEFT, "COPILOT")),
+        ("shares are kept", stick, lands(Push.of(0.5, -1.0)), main_held, (Push.of(0.5, -1.0), "PILOT_MAIN")),
+        ("without a plan, any that lands", RIGHT, lands(MAIN), None, (MAIN, "COPILOT")),
+        ("and rather one that lasts", RIGHT, lands(RIGHT, lasts=False) | lands(MAIN), None, (MAIN, "COPILOT")),
+        ("but one that does not will do", RIGHT, lands(RIGHT, MAIN, lasts=False), None, (RIGHT, "PILOT")),
+        ("nothing lands: the pilot flies", RIGHT, {}, None, (RIGHT, "PILOT")),
+    )  # fmt: skip
+    for what, asked, known, held, (push, source) in cases:
+        assert choice(asked, known, held) == (push, source), what
+    asked = choice(stick, lands(MAIN_LEFT), plan(LEFT), whole=True)
+    assert asked == (MAIN_LEFT, "PILOT_MAIN")
+
+
+def test_it_asks_for_no_more_futures_than_it_needs():
+    guardian = Guardian()
+    guardian.plan = plan(MAIN_LEFT)
+    cases = (
+        (MAIN_LEFT, {}, []),
+        (RIGHT, {}, [RIGHT]),
+        (RIGHT, lands(RIGHT), []),
+        (RIGHT, {RIGHT: Future(None)}, [LEFT, MAIN_RIGHT]),
+        (MAIN, {MAIN: Future(None)}, []),  # corrected, either way it is one of these two
     )
-    assert not just
-    assert less == (assist > 0.02)
+    for asked, known, needed in cases:
+        assert guardian.needs(HERE, asked, COAST, known, whole=False) == needed, asked
+    guardian.plan = None
+    assert set(guardian.needs(HERE, RIGHT, COAST, {RIGHT: Future(None)}, whole=False)) == {*KEYS} - {RIGHT}
 
 
-def test_more_help_asks_for_more():
-    assert (np.diff(required_chance(np.linspace(0.0, 1.0, 21))) >= 0).all()
-    assert required_chance(0.0) == 0.0
-    assert required_chance(0.4) == pytest.approx(0.99)
+def test_the_dial_goes_from_one_decision_to_twelve():
+    assert [decisions_of(assist) for assist in (0.0, GUARD, GUIDE, 1.0)] == [1, 1, 8, 12]
 
 
-def test_a_guardian_that_has_stepped_in_gives_the_stick_back_when_that_is_safer():
-    copilot = guardian(row(a3=LOST))
-    assert copilot.share(seen(), [3])[1][0]
-    halved = 1.0 - 0.5 * (1.0 - REQUIRED)  # after one rescue it accepts half the risk
-    back = 1.0 - HAND_BACK * (1.0 - halved)
-    for chance, kept in (
-        (REQUIRED + 0.001, True),
-        (back - 0.001, True),
-        (back + 0.001, False),
-        (halved + 0.001, False),
-    ):
-        copilot.critic.rows = (row(a3=chance),)
-        assert copilot.share(seen(), [3])[1][0] == kept
+def flights(count, **rules):
+    """Landers just above the pad, with little time, so that flights and their futures are short."""
+    env = LanderEnv(count, 0, limits=replace(LIMITS, time=6.0), **rules)
+    env.reset()
+    env.place(np.ones(count, bool), np.array(STARTS[:count]))
+    return env
 
 
-def test_with_every_rescue_it_accepts_half_the_risk_but_never_asks_for_more_than_can_be_known():
-    copilot = guardian(row())
-    for rescues in range(12):
-        copilot.critic.rows = (row(),)
-        for _ in range(80):  # gives the stick back
-            copilot.share(seen(), [3])
-        asked = copilot.decide(seen(), [3]).required[0]
-        assert asked == pytest.approx(min(1.0 - (1.0 - REQUIRED) * 0.5**rescues, SUREST))
-        copilot.critic.rows = (row(a3=LOST),)
-        assert copilot.share(seen(), [3])[1][0]
-    copilot.forget()
-    copilot.critic.rows = (row(),)
-    assert copilot.decide(seen(), [3]).required[0] == pytest.approx(REQUIRED)
+def guarded(agent, env, ask, assist=GUARD, shares=None):
+    """Fly guarded; return overridden decisions, and whether a plan was ever held, (n,)."""
+    copilot = CoPilot(agent, assist, Mode.GUARDIAN)
+    overridden, held = np.zeros(env.num_envs, int), np.zeros(env.num_envs, bool)
+    while (flying := env.outcome == Outcome.FLYING).any():
+        decision = copilot.decide(env.observe(), ask(env, copilot), None, shares, env)
+        overridden += decision.overridden & flying
+        held |= decision.held & flying
+        env.fly(decision.action, decision.shares)
+    return overridden, held
 
 
-def test_flights_are_remembered_apart():
-    copilot = guardian(row(a3=LOST), row())
-    assert copilot.share(seen(2), [3, 3])[1].tolist() == [True, False]
-    asked = copilot.decide(seen(2), [3, 3]).required
-    assert asked[0] > asked[1]
+def test_no_hand_can_crash_a_flight_while_a_plan_is_held(agent):
+    rng = np.random.default_rng(0)
+
+    def adversary(env, copilot):
+        passes = copilot.futures(env).lasts
+        rank = np.where(passes | ~passes.any(axis=1, keepdims=True), rng.random(passes.shape), np.inf)
+        return rank.argmin(axis=1)
+
+    weak = np.tile([0.3, 1.0], (3, 1))
+    cases = (
+        ("held right", lambda env, _: np.full(3, 2), GUARD, None),
+        ("held main", lambda env, _: np.full(3, 3), GUIDE, None),
+        ("coasting", lambda env, _: np.zeros(3, int), 1.0, None),
+        ("an adversary", adversary, GUARD, None),
+        ("a weak stick", lambda env, _: np.full(3, 5), GUARD, weak),
+    )
+    for what, ask, assist, shares in cases:
+        env = flights(3)
+        _, held = guarded(agent, env, ask, assist, shares)
+        assert held.all(), what
+        assert (env.outcome == Outcome.LANDED).all(), what
+
+
+def test_whoever_flies_by_share_alone_is_as_safe(agent):
+    env, copilot = flights(3), CoPilot(agent, GUARD, "guardian")
+    weak = np.tile([0.4, -1.0], (3, 1))
+    while (env.outcome == Outcome.FLYING).any():
+        action, overridden = copilot.share(env.observe(), np.full(3, 4), None, weak, env)
+        flown = np.array([KEYS[a][1:] for a in action])
+        env.fly(action, np.where(overridden[:, None], flown, weak))
+    assert (env.outcome == Outcome.LANDED).all()
+
+
+def test_what_is_asked_for_where_all_lands_is_flown_and_what_the_network_asks_for_never_changed(agent):
+    env = flights(4)
+    overridden, _ = guarded(agent, env, lambda env, _: agent.act(env.observe(), held=env.actions))
+    assert overridden.sum() == 0
+
+
+def test_the_dial_at_nothing_never_acts(agent, monkeypatch):
+    monkeypatch.setattr(Lookahead, "plans", lambda *_: pytest.fail("a future was flown"))
+    env = flights(3)
+    overridden, held = guarded(agent, env, lambda env, _: np.full(3, 1), 0.0)
+    assert overridden.sum() == held.sum() == 0
+
+
+def test_a_network_that_does_not_land_never_seizes_the_stick():
+    upwards = SimpleNamespace(
+        q_values=lambda seen: np.tile(np.arange(6.0), (len(seen), 1)),
+        act=lambda seen, *, held=None: np.full(len(seen), 3),  # noqa: ARG005
+    )
+    env = flights(3)
+    overridden, held = guarded(upwards, env, lambda env, _: np.full(3, 1))
+    assert overridden.sum() == held.sum() == 0
+
+
+def test_a_plan_is_void_under_other_rules(agent):
+    def change_gravity(env):
+        env.gravity *= 1.05
+
+    def change_wind(env):
+        env.conditions = Conditions(wind=0.05)
+
+    for change in (change_gravity, change_wind):
+        env, copilot = flights(1), CoPilot(agent, GUARD, Mode.GUARDIAN)
+        copilot.decide(env.observe(), [3], env=env)
+        before = copilot.guardians[0].plan
+        env.fly(np.array([3]))
+        change(env)
+        # The same answer must not come of the old plan: nothing is known, so there is none.
+        decision = copilot.decide(env.observe(), [1], env=env, known=[{}])
+        assert before is not None
+        assert not decision.held[0]
+        assert decision.action[0] == 1
+        assert copilot.decide(env.observe(), [1], env=env).held[0]
+
+
+def test_late_answers_do_not_touch_the_plan(agent):
+    env, copilot = flights(2), CoPilot(agent, GUARD, Mode.GUARDIAN)
+    known = None
+    while (env.outcome == Outcome.FLYING).any():
+        decision = copilot.decide(env.observe(), [2, 2], env=env, known=known)
+        known = [{}, {}]  # none ever comes again
+        env.fly(decision.action, decision.shares)
+    assert (env.outcome == Outcome.LANDED).all()
+
+
+def test_left_and_right_are_alike(agent):
+    start = np.array([[0.8, 3.8, -0.2, -0.5, 0.1, 0.1]])
+    counts = []
+    for side, key in ((1.0, 1), (-1.0, 2)):
+        env = flights(1)
+        env.place(np.ones(1, bool), start * (side, 1.0, side, 1.0, side, side))
+        overridden, _ = guarded(agent, env, lambda env, _, key=key: np.full(1, key))
+        assert env.outcome[0] == Outcome.LANDED, side
+        counts.append(overridden[0] / env.steps[0])
+    assert abs(counts[0] - counts[1]) < 0.1
+
+
+def test_all_six_are_told_and_what_ended_has_no_future(agent):
+    env = flights(2)
+    env.outcome[1] = Outcome.CRASHED
+    futures = CoPilot(agent, GUIDE, Mode.GUARDIAN).futures(env)
+    assert futures.landed.shape == futures.lasts.shape == (2, 6)
+    assert futures.landed[0].any()
+    assert not futures.landed[1].any()
+    assert not (futures.lasts & ~futures.landed).any()
+    assert [[each is not None for each in row] for row in futures.plans] == futures.landed.tolist()
+
+
+def test_an_environment_of_another_size_or_rhythm_is_refused(agent):
+    copilot = CoPilot(agent, GUARD, Mode.GUARDIAN)
+    for env in (flights(2), flights(1, frame_skip=3)):
+        with pytest.raises(ValueError, match="physics steps"):
+            copilot.decide(env.observe()[:1], [1], env=env)
+    with pytest.raises(ValueError, match="shares"):
+        copilot.share(flights(1).observe(), [1], shares=np.zeros((1, 3)))
+
+
+def test_forgetting_a_slot_drops_its_plan(agent):
+    env, copilot = flights(2), CoPilot(agent, GUARD, Mode.GUARDIAN)
+    copilot.decide(env.observe(), [3, 3], env=env)
     copilot.forget(np.array([True, False]))
-    assert copilot.decide(seen(2), [3, 3]).required.tolist() == pytest.approx([REQUIRED, REQUIRED])
-
-
-def test_of_several_pads_one_where_the_flight_can_be_saved_is_enough():
-    lost = np.full(6, LOST)
-    assert not guardian(lost, row()).share(seen(1, 2), [3])[1][0]
-    assert not guardian(row(), lost).share(seen(1, 2), [3])[1][0]
-    assert guardian(row(a3=LOST), lost).share(seen(1, 2), [3])[0][0] == 4
-
-
-def test_among_hills_it_steps_in_only_where_another_action_is_much_better():
-    """The network itself may miss a narrow pad: what the dial asks for is then out of reach, whatever is done."""
-    best = 0.96
-    for chance, kept in ((1.0 - 1.4 * (1.0 - best), False), (1.0 - 1.6 * (1.0 - best), True)):
-        rows = np.full(6, best)
-        rows[3] = chance
-        assert guardian(rows, rows).share(seen(1, 2), [3])[1][0] == kept
-        assert guardian(rows).share(seen(), [3])[1][0]  # over a plain, what is asked for can be reached
-
-
-def test_where_no_pad_that_is_meant_can_be_reached_another_will_do():
-    """A pilot who heads for the first pad until it is lost; the second lies below."""
-    copilot = guardian(row(), row(), best=4)
-    copilot.agent = SimpleNamespace(q_values=lambda _: np.array([[0, 0, 9, 0, 0, 0], [9, 0, 0, 0, 0, 0.0]], np.float32))
-    for _ in range(40):
-        decision = copilot.decide(seen(1, 2), [2])
-    assert decision.likely[0, 0] > 0.9
-    copilot.critic.rows = (np.full(6, LOST), row(a2=LOST))
-    decision = copilot.decide(seen(1, 2), [2])
-    assert decision.action[0] == 0  # the way to the second pad
-    assert decision.chances[0, 0] == pytest.approx(SAFE)
-
-
-def test_what_the_critic_cannot_judge_stays_the_pilots():
-    decision = guardian(np.full(6, np.nan)).decide(seen(), [2])
-    assert decision.action[0] == 2
-    assert not decision.overridden[0]
-
-
-def test_without_a_critic_the_values_guard_and_the_reason_is_said():
-    copilot = CoPilot(flying(), DIAL, Mode.GUARDIAN)
-    decision = copilot.decide(seen(), [2])
-    assert copilot.critic is None
-    assert copilot.critic_problem
-    assert decision.chances is None
-    assert decision.chance is None
-
-
-def test_tolerance_asks_no_critic():
-    copilot = CoPilot(flying(), 0.9, Mode.TOLERANCE, critic=foretelling(row()))
-    decision = copilot.decide(seen(), [2])
-    assert decision.action[0] == 4
-    assert decision.chances is None
+    assert [guardian.plan is None for guardian in copilot.guardians] == [True, False]
