@@ -123,8 +123,8 @@ class Flight:
 
     @property
     def guarded(self) -> bool:
-        """Whether the latest decision was a guardian's with a safety critic: coasting is then an action like others."""
-        return self.decision is not None and self.decision.chances is not None
+        """Whether the latest decision was a guardian's that goes by futures: coasting is then an action like others."""
+        return self.decision is not None and self.decision.held is not None
 
     def put(self, moment: dict[str, Any], source: Recording, step: int) -> None:
         """Restore a snapshot `moment` of the environment after `step` steps of a flight from the same start."""
@@ -220,7 +220,7 @@ class Flight:
             self._held_for = (self._held_for + 1) % DECISION_STEPS
             return self.asked, StickHolder.HUMAN
         action = self._ask_copilot()
-        # With nothing pressed the co-pilot flies; only a guardian that looks at the chance to be saved lets it coast.
+        # With nothing pressed the co-pilot flies; only a guardian that goes by futures lets it coast.
         asks = self.asked != COAST or self.guarded
         self.overridden = asks and action != self.asked
         return action, StickHolder.HUMAN if asks and not self.overridden else StickHolder.NETWORK
