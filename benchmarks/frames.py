@@ -90,7 +90,6 @@ FLOWN = (pygame.K_r, pygame.K_UP, pygame.K_LEFT, pygame.K_RIGHT)
 SHARED: dict[str, Any] = {"assist": 0.6}
 GUARDED: dict[str, Any] = {"assist": 0.4, "copilot": "guardian"}
 PADS: dict[str, Any] = {**SHARED, "copilot": "guardian", "three_pads": True}
-EDGE: dict[str, Any] = {**GUARDED, "edge": True}  # with the edge of no return over the sky
 
 
 @dataclass(frozen=True)
@@ -148,8 +147,6 @@ def rows() -> dict[str, Row]:
         "play, shared": Row(play.make, FLOWN, SHARED),
         "play, guarded": Row(play.make, FLOWN, GUARDED),
         "play, three pads": Row(play.make, FLOWN, PADS),
-        "play, edge": Row(play.make, FLOWN, EDGE),
-        "play, edge, three pads": Row(play.make, FLOWN, {**PADS, "edge": True}),
         "opening, play": Row(play.make, FLOWN, cold=True),
         "opening, menu": Row(MenuScene, cold=True),
         # The network takes over, and lands leg after leg.
@@ -171,7 +168,6 @@ def rows() -> dict[str, Row]:
         "watch, map of scores": Row(
             lambda context: WatchScene(context, 16, seed=4), (pygame.K_m, pygame.K_LSHIFT, pygame.K_m)
         ),
-        "watch, map of chances": Row(lambda context: WatchScene(context, 1, seed=4), (pygame.K_m,) * 3),
         "watch, touched": Row(lambda context: WatchScene(context, 1, seed=4), (pygame.K_m, pygame.K_g, pygame.K_LEFT)),
         **{f"physics, {name}": Row(lambda context, n=name: PhysicsScene(context, n)) for name in EXHIBITS},
         **{

@@ -80,7 +80,9 @@ def costs(agent: DeepQAgent, rounds: int) -> None:
 def promises(agent: DeepQAgent, names: list[str], dials: list[float], flights: int, seed: int) -> None:
     """Print how many flights of each family land, alone and guarded, and what that takes."""
     helps = [(ALONE, 0.0), *((str(Mode.GUARDIAN), dial) for dial in dials)]
-    print("| hands | decisions | landed | crashed | overridden | plan held | lost though held |\n|---|---|---|---|---|---|---|")
+    print(
+        "| hands | decisions | landed | crashed | overridden | held | lost though held |\n|---|---|---|---|---|---|---|"
+    )
     (network,) = rows(agent, agent, "one_pad", ["good"], helps[:1], flights, seed)
     print(f"| the network alone | | {network.success:.1%} | {network.crash:.1%} | | | |")
     for name in names:

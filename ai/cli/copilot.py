@@ -88,7 +88,9 @@ def _table(arguments: argparse.Namespace) -> int:
         asked = parts(models, arguments.good == "scripted", helps, arguments.episodes, arguments.seed)
         guarded = sum(len(part.names) for part in asked) * (1 + len(arguments.assist)) * arguments.episodes
         minutes = seconds(agent, guarded) / 60 / (arguments.workers or 1)
-        print(f"this takes about {minutes:.0f} minutes" if minutes > 1 else "this takes about a minute", file=sys.stderr)
+        print(
+            f"this takes about {minutes:.0f} minutes" if minutes > 1 else "this takes about a minute", file=sys.stderr
+        )
         with tqdm(total=len(asked), desc="flying", unit="part", disable=None) as bar:
             for index, rows in each(fly, asked, arguments.address, arguments.workers or 1):
                 done[index] = rows

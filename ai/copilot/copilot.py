@@ -181,9 +181,9 @@ class CoPilot:
 
         `observation` is (n, 9), or (n, pads, 9) relative to each pad that may be meant; `pilot_action` is (n,)
         of 0 to 5. `surroundings` (n, k), or (n, pads, k), are those of `LanderEnv.around`, for a network that reads
-        them. `shares` (n, 2) are the thrusts of main engine and jets that the pilot really pushes, all that is asked for
-        if left out. Where nothing is overridden, they are flown; what is overridden is flown with all thrust. With
-        `env`, guardian mode goes by futures: ask every four physics steps, at the same time as `env` flies what was
+        them. `shares` (n, 2) are the thrusts of main engine and jets that the pilot really pushes, full if left out.
+        Where nothing is overridden, they are flown; what is overridden is flown with all thrust. With `env`, guardian
+        mode goes by futures: ask every four physics steps, at the same time as `env` flies what was
         returned. Raises ValueError for others.
         """
         decision = self._decide(observation, pilot_action, surroundings, shares, env, None, whole=True)
@@ -219,7 +219,7 @@ class CoPilot:
         observation = np.atleast_2d(observation)
         if observation.ndim == 2:
             observation = observation[:, None]
-        slots, pads, features = observation.shape
+        slots, pads, _ = observation.shape
         pilot = np.atleast_1d(pilot_action)
         if pilot.shape != (slots,) or pilot.dtype.kind not in "iu":
             raise ValueError(f"pilot actions must be {slots} whole numbers, not {pilot.dtype} {pilot.shape}")
@@ -280,7 +280,9 @@ class CoPilot:
         """Let each pilot fly what a landing plan begins with; else do the least that such a plan begins with."""
         slots, pads, _ = observation.shape
         if env.num_envs != slots or DECISION_STEPS % env.frame_skip:
-            raise ValueError(f"{slots} observations are of as many landers, whose steps are 1, 2 or 4 physics steps long")
+            raise ValueError(
+                f"{slots} observations are of as many landers, whose steps are 1, 2 or 4 physics steps long"
+            )
         target = env.target
         if pads > 1 and pads == env.ground.at_once and self.infers_intent:
             target = (likely - 1e-6 * np.abs(observation[:, :, 0])).argmax(axis=1)

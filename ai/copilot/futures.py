@@ -244,7 +244,9 @@ class Lookahead:
             return [Future(plan) for plan in self.plans(moment, once)]
         longer: list[tuple[int, Opening]] = [(row, (*before, *(push,) * decisions)) for row, push in asked]
         plans = self.plans(moment, once + longer)
-        return [Future(plan, last is not None) for plan, last in zip(plans[: len(once)], plans[len(once) :], strict=True)]
+        return [
+            Future(plan, last is not None) for plan, last in zip(plans[: len(once)], plans[len(once) :], strict=True)
+        ]
 
     def plans(self, moment: Moment, asked: Sequence[tuple[int, Opening]]) -> list[Plan | None]:
         """Return for each lander and opening in `asked` a plan that lands, or None.
@@ -304,13 +306,13 @@ class Lookahead:
             if _size(len(left)) <= env.num_envs // 2:
                 env, future = self._begin(Moment.of(env).take(left), future[left])
                 flies = np.arange(env.num_envs) < len(left)
-        return [
-            Plan(int(start.steps[index]), start.fall(index), pad, actions[:end, index].copy(), shares[:end, index].copy(),
-                 states[: end + 1, index].copy())
-            if landed[index]
-            else None
-            for index, ((_, _, pad), end) in enumerate(zip(asked, ends, strict=True))
-        ]  # fmt: skip
+        plans: list[Plan | None] = [None] * count
+        for index in np.flatnonzero(landed):
+            flown, pad = slice(ends[index]), asked[index][2]
+            kept = (part[flown, index].copy() for part in (actions, shares))
+            path = states[: ends[index] + 1, index].copy()
+            plans[index] = Plan(int(start.steps[index]), start.fall(index), pad, *kept, path)
+        return plans
 
     def _choose(self, env: LanderEnv) -> tuple[Ints, Doubles]:
         """Return the network's actions (n,), and their shares of thrust, (n, 2)."""
@@ -319,7 +321,7 @@ class Lookahead:
         return action, ACTION_SHARES[action]
 
     def _begin(self, moment: Moment, future: Ints) -> tuple[LanderEnv, Ints]:
-        """Put a moment into an environment, which may have more slots; return it, and the future of each slot in use."""
+        """Put a moment into an environment, which may have more slots; return it, and what each slot in use flies."""
         count, size = len(future), _size(len(future))
         if self._world != (world := (moment.ground, _craft(moment.params))):
             self._world, self._envs = world, {}

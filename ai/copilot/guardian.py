@@ -83,8 +83,10 @@ class Guardian:
         self.plan = futures[push].plan
         return Choice(push, offers[push], held=True)
 
-    def _offers(self, here: Here, asked: Push, network: Push, whole: bool) -> tuple[dict[Push, ActionSource], Push | None]:
-        """Return what may be flown, the least change first, and what the held plan begins with; drop a plan that is off.
+    def _offers(
+        self, here: Here, asked: Push, network: Push, whole: bool
+    ) -> tuple[dict[Push, ActionSource], Push | None]:
+        """Return what may be flown, the least change first, and what the held plan begins with; drop one that is off.
 
         Where no plan is held, the network's wish takes its place, and every other action may be flown as well.
         """

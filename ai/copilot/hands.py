@@ -270,7 +270,8 @@ STUBBORN: Final[dict[str, MakePilot]] = {
     **{f"holds {name}": _holding(action) for action, name in enumerate(ACTION_NAMES)},
     "a key each second": _holding(None),
     "slow": _scripted(late=_LATEST, sticky=0.75),
-    **{f"thrust {most}": lambda slots, rng, good, most=most: PartThrust(ScriptedPilot(), most) for most in (0.45, 0.3)},
+    "thrust 0.45": lambda slots, rng, good: PartThrust(ScriptedPilot(), 0.45),  # noqa: ARG005
+    "thrust 0.3": lambda slots, rng, good: PartThrust(ScriptedPilot(), 0.3),  # noqa: ARG005
     "adversary, random": lambda slots, rng, good: Adversary(good, rng, least=False),  # noqa: ARG005
     "adversary, least": lambda slots, rng, good: Adversary(good, rng, least=True),  # noqa: ARG005
 }

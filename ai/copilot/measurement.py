@@ -36,7 +36,7 @@ _FUTURES: Final = 320.0  # that a guarded flight takes: the shares of a batch, m
 
 @dataclass(frozen=True)
 class AssistedFlights:
-    """Results of a number of flights of one pilot with one kind of help; shares of the flights, unless it says others."""
+    """Results of a number of flights of one pilot with one kind of help, as shares of these flights."""
 
     pilot: str
     mode: str

@@ -11,7 +11,7 @@ from ai.lander.alone import Alone
 from ai.lander.judging import JudgedCraft
 from ai.lander.rewards import FEET_STEPS_PAID, Moment, Situation, situated
 from ai.lander.rules import NUM_FEATURES
-from ai.lander.sensing import SURROUNDINGS, sensed, surroundings, terrain
+from ai.lander.sensing import sensed, surroundings, terrain
 
 
 class ObservedCraft(JudgedCraft):
@@ -65,15 +65,6 @@ class ObservedCraft(JudgedCraft):
     def around_pads(self) -> Floats:
         """Return what is around every lander on its way to each pad, (n, pads, k)."""
         return np.stack([self.around(pad) for pad in range(len(self.ground.pads))], axis=1)
-
-    def observe_around(self) -> Floats:
-        """Return every lander's observation of each pad and what is around it, side by side, (n, pads, 9 + k)."""
-        return np.concatenate([self.observe_pads(), self.around_pads()], axis=2)
-
-    def around_at(self, slot: int, places: Doubles, pad: int) -> Floats:
-        """Return what would be around lander `slot` now at other places (m, 2), on its way to `pad`, (m, k)."""
-        same = np.broadcast_to(self.surroundings(pad)[slot], (len(places), len(SURROUNDINGS)))
-        return np.concatenate([same, terrain(self, pad, places[:, 0])], axis=1)
 
     def observe_wide(self, pad: Any = None) -> Floats:
         """Return every lander's observation and what is around it, side by side, (n, 9 + k)."""

@@ -75,7 +75,9 @@ class Route:
         share = ((offset * self._way).sum(axis=-1) / self._long**2).clip(0.0, 1.0)
         away = self._from + share[..., None] * self._way - place[..., None, :]
         part = np.hypot(away[..., 0], away[..., 1]).argmin(axis=-1)
-        along: Doubles = self._start[part] + np.take_along_axis(share, part[..., None], axis=-1)[..., 0] * self._long[part]
+        along: Doubles = (
+            self._start[part] + np.take_along_axis(share, part[..., None], axis=-1)[..., 0] * self._long[part]
+        )
         return along
 
     def lead(self, place: Doubles) -> tuple[Doubles, Bools]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ai.common.environment import Doubles, Floats
 from ai.lander.craft import Craft
-from ai.lander.rules import NUM_FEATURES, OBSERVATION_SCALE, PARAMS, Limits
+from ai.lander.rules import NUM_FEATURES, OBSERVATION_SCALE, Limits
 
 # Metres sideways beyond which networks were never trained: with several pads, farther ones are shown at this.
 _FAR: Final = 16.0
@@ -40,16 +40,12 @@ SURROUNDINGS_MIRROR: Final = np.array(
 # The ground's height at places beside a lander, above the pad's top in metres times the factor below.
 _BESIDE: Final = (-5.0, -2.5, 0.0, 2.5, 5.0)  # metres
 _HEIGHT: Final = 0.3
-_WIDTH: Final = SURROUNDINGS.index("pad width")
 _BEYOND: Final = np.linspace(5.0, 15.0, 11)  # metres: the highest of these is a crest that may be in the way
 _PLACES: Final = np.concatenate([-_BEYOND[::-1], _BESIDE, _BEYOND])
 TERRAIN: Final = (
     "crest left", "ground far left", "ground left", "ground below", "ground right", "ground far right", "crest right"
 )  # fmt: skip
 AROUND: Final = (*SURROUNDINGS, *TERRAIN)
-# Swaps left and right: multiply what is around by the signs, and take its columns in this order.
-AROUND_SIGNS: Final = np.concatenate([SURROUNDINGS_MIRROR, np.ones(len(TERRAIN), np.float32)])
-AROUND_ORDER: Final = np.array([*range(len(SURROUNDINGS)), *reversed(range(len(SURROUNDINGS), len(AROUND)))])
 LONG, _AHEAD, _SOON = 20.0, 8.0, 2.0  # seconds: what is farther off than the first two is shown as they are
 
 
@@ -117,23 +113,11 @@ def surroundings(craft: Craft, limits: Limits, pad: Any) -> Floats:
     return numbers.astype(np.float32)
 
 
-def terrain(craft: Craft, pad: Any, x: Doubles | None = None) -> Floats:
-    """Return the ground's height beside each lander, (n, 7), or beside places x (n,) in metres.
-
-    `TERRAIN` names the places. Pads count where they rest.
-    """
-    middle = craft.position[:, :1] if x is None else x[:, None]
-    heights = _in_order(craft.ground.height_near(middle + _PLACES))
+def terrain(craft: Craft, pad: Any) -> Floats:
+    """Return the ground's height beside each lander, (n, 7): `TERRAIN` names the places. Pads count where they rest."""
+    heights = _in_order(craft.ground.height_near(craft.position[:, :1] + _PLACES))
     above = heights - np.reshape(craft.ground.middles[pad, 1], (-1, 1))
     return (_HEIGHT * above).astype(np.float32)
-
-
-def plain(observation: Floats, surroundings: Floats) -> Floats:
-    """Return the ground's height beside landers over a plain with one pad, (n, 7), given (n, 9) and (n, k) of them."""
-    x = observation[:, :1] / OBSERVATION_SCALE[0] + _PLACES
-    half = surroundings[:, [_WIDTH]] / (2 * SURROUNDINGS_SCALE[_WIDTH])
-    heights = np.where(np.abs(x) <= half, 0.0, _HEIGHT * (PARAMS.ground - PARAMS.pad_top))
-    return _in_order(heights).astype(np.float32)
 
 
 def _in_order(heights: Doubles) -> Doubles:

@@ -11,10 +11,9 @@ import pygame
 from ai.common.environment import Doubles
 from ai.lander.environment import Outcome
 from game.cockpit.assist_dial import AssistDial
-from game.cockpit.chance_meter import ChanceMeter
 from game.cockpit.copilot_panel import PADS_HIGH, PANEL, CopilotPanel
-from game.cockpit.guardian_words import dial_words, no_critic
-from game.cockpit.hud import CARD, draw_title, lamp_spot
+from game.cockpit.guardian_words import dial_words
+from game.cockpit.hud import CARD, draw_title
 from game.cockpit.overrides import Overrides
 from game.cockpit.recent_line import RecentLine
 from game.cockpit.track import FlownPath
@@ -22,12 +21,12 @@ from game.core import texts
 from game.core.settings import Settings
 from game.drawing.canvas import PAGE, Canvas, moved
 from game.drawing.tokens import MARGIN, VIEW_SIZE
-from game.flight.chances import Rescues
 from game.flight.credit import Credit
 from game.flight.demonstrations import add_demonstration
 from game.flight.flight import Flight
 from game.flight.handicap import OWN
 from game.flight.outcomes import OutcomeCard, outcome_card
+from game.flight.rescues import Rescues
 from game.input.controls import Command, translate
 from game.world.camera import ClearArea, View
 
@@ -46,7 +45,6 @@ class Cockpit:
         track: the path that was flown.
         overrides: the marks beside a craft whose action was changed.
         copilot_panel: what the co-pilot weighs.
-        chance_meter: the chance to be saved, while it is known.
         rescues: how often a guardian has saved the person.
 
     """
@@ -55,7 +53,6 @@ class Cockpit:
         self._flight, self._settings, self.credit, self._view = flight, settings, credit, view
         self._dial = AssistDial(settings, view)
         self.overrides, self.rescues, self._recent = Overrides(), Rescues(), RecentLine()
-        self.chance_meter = ChanceMeter(flight, settings, wishes=not credit.alone)
         self.track = FlownPath(flight)
         self.copilot_panel = CopilotPanel(flight.env.ground)
         if settings.copilot not in MODES:
@@ -71,16 +68,6 @@ class Cockpit:
             return True
         return self._dial.take(event)
 
-    @property
-    def lacks(self) -> str:
-        """Text that says why a guardian goes by points of reward; empty where it does not, or does not help."""
-        copilot, settings = self._flight.copilot, self._settings
-        if self.credit.alone or not self._flight.shares or copilot is None:
-            return ""
-        if copilot.critic is not None or settings.copilot != MODES[1] or settings.assist == 0:
-            return ""
-        return no_critic(copilot)
-
     def help(self) -> None:
         """Set the co-pilot's assist for the next step from the dial."""
         self._flight.help(0.0 if self.credit.alone else self._settings.assist, self._settings.copilot)
@@ -91,8 +78,7 @@ class Cockpit:
         self.track.follow(self._flight, stepped_in)
         self.copilot_panel.follow(self._flight)
         self.rescues.follow(self._flight)
-        self.chance_meter.follow()
-        self._recent.follow(self._flight, self.chance_meter.chance)
+        self._recent.follow(self._flight)
         self.credit.follow()
 
     def add_demonstration(self, folder: Path, hands: str) -> str:
@@ -117,7 +103,6 @@ class Cockpit:
     def ease(self) -> None:
         """Advance animations by 1/60 s, whether or not anything flies."""
         self._dial.follow(self.credit.stick)
-        self.chance_meter.ease()
 
     @property
     def clear(self) -> ClearArea:
@@ -155,18 +140,15 @@ class Cockpit:
 
     def draw_top(self, canvas: Canvas) -> None:
         """Draw who flies, and the line of who flew in the last seconds."""
-        flight, credit, meter, canvas = self._flight, self.credit, self.chance_meter, canvas.at(0, -1)
+        flight, credit, canvas = self._flight, self.credit, canvas.at(0, -1)
         lamp = self.overrides.lamp(flight)
         if flight.shares and not credit.alone:
-            width = self._dial.draw(canvas, credit.header, credit.stick, lamp, self._dial_means)
+            self._dial.draw(canvas, credit.header, credit.stick, lamp, self._dial_means)
         else:
-            width = draw_title(canvas, credit.header, lamp)
-        if not flight.over:
-            meter.draw(canvas, lamp_spot(width))
-        if credit.helped or meter.chance is not None:
-            self._recent.draw(canvas, meter.required)
+            draw_title(canvas, credit.header, lamp)
+        if credit.helped:
+            self._recent.draw(canvas)
 
     def _dial_means(self) -> str:
         """Say what the dial means now."""
-        several = self._flight.env.ground.at_once > 1
-        return dial_words(self._settings.assist, self._flight.copilot, among_hills=several)
+        return dial_words(self._settings.assist, self._flight.copilot)

@@ -8,17 +8,13 @@ import numpy as np
 import pygame
 
 from ai.lander.environment import ACTION_NAMES
-from ai.nn.files import brief
 from game.cockpit.watched import Watched
 from game.core import texts
-from game.drawing.canvas import Canvas, Point
+from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
-from game.drawing.prose import wrapped
-from game.drawing.tokens import INK, LABEL, MARGIN, MUTE, NET, SMALL
-from game.panels.chance_values import of_hundred
+from game.drawing.tokens import INK, LABEL, MARGIN, MUTE, SMALL
 from game.panels.q_values import signed
-from game.world.chance_map import EDGE, SAFE, ChanceMap, veil_colours
-from game.world.policy_map import ACTION, CHANCE, COLOURS, OFF, score_colours
+from game.world.policy_map import ACTION, COLOURS, OFF, score_colours
 
 _LEFT, _TOP, _ROW = float(MARGIN), 226.0, 17.0
 _SWATCH: Final = (14.0, 8.0)
@@ -37,10 +33,7 @@ def draw_legend(canvas: Canvas, world: Watched, flown: int) -> None:
     title, what = texts.MAP_TITLES[policy_map.kind - 1], texts.EXPLAIN_MAP[policy_map.kind - 1]
     canvas.text(title, (_LEFT, _TOP), size=SMALL, room=_ROOM)
     canvas.text(texts.MAP_SAME, (_LEFT, _TOP + _ROW), size=LABEL, colour=MUTE, room=_ROOM)
-    if policy_map.kind == CHANCE:
-        bottom = _draw_chances(canvas, world)
-    else:
-        bottom = _draw_actions(canvas, flown) if actions else _draw_scale(canvas, policy_map.scale)
+    bottom = _draw_actions(canvas, flown) if actions else _draw_scale(canvas, policy_map.scale)
     box = (_LEFT - 4, _TOP - 14, _ROOM, bottom - _TOP + 20)
     canvas.explain(box, what, lambda: texts.EXPLAIN_MAP_NOW)
 
@@ -65,54 +58,6 @@ def _draw_scale(canvas: Canvas, scale: tuple[float, float] | None) -> float:
             canvas.text(signed(points).removesuffix(".0"), place, size=LABEL, colour=MUTE, align=align, tabular=True)  # type: ignore[arg-type]
     canvas.text(texts.Q_UNIT, (_LEFT + _BAR[0] + 14, y + 21), size=LABEL, colour=MUTE)
     return y + 21
-
-
-def _draw_chances(canvas: Canvas, world: Watched) -> float:
-    """Draw the scale of chances with its two lines, and what there is to see; or why there is nothing."""
-    y = _TOP + 2.2 * _ROW
-    if world.critic_problem:
-        lines = wrapped(canvas, texts.MAP_NO_CRITIC.format(problem=brief(world.critic_problem, 80)), SMALL, _ROOM)
-        for line in lines:
-            canvas.text(line, (_LEFT, y + 4), size=SMALL, colour=MUTE)
-            y += _ROW
-        return y
-    _BARS.draw(canvas, (_LEFT, y, *_BAR), "chances", _paint_chances)
-    for chance, align in ((0.0, "left"), (EDGE, "centre"), (1.0, "right")):
-        place = (_LEFT + chance * _BAR[0], y + 21)
-        canvas.text(of_hundred(chance), place, size=LABEL, colour=MUTE, align=align, tabular=True)  # type: ignore[arg-type]
-    canvas.text(texts.CHANCE_UNIT, (_LEFT + _BAR[0] + 14, y + 21), size=LABEL, colour=MUTE)
-    x = _LEFT + EDGE * _BAR[0]
-    canvas.line((x, y - 3), (x, y + _BAR[1] + 3), INK)
-    y += 21 + 1.5 * _ROW
-    draw_edge_sign(canvas, (_LEFT, y - 4))
-    canvas.text(world.chance_map.said, (_LEFT + 34, y), size=SMALL, room=_ROOM - 34)
-    canvas.line((_LEFT, y + _ROW - 4), (_LEFT + 24, y + _ROW - 4), NET, alpha=0.6)
-    canvas.text(texts.MAP_SAFE.format(chance=of_hundred(SAFE)), (_LEFT + 34, y + _ROW), size=SMALL, colour=MUTE)
-    return y + _ROW
-
-
-def draw_edge_line(canvas: Canvas, chance_map: ChanceMap) -> None:
-    """Draw the sign of the edge of no return and the words on it, below the title of a flight."""
-    if not chance_map.said:
-        return
-    x, y = _LEFT, 102.0
-    draw_edge_sign(canvas, (x, y - 5))
-    words = canvas.text(chance_map.said, (x + 34, y), size=SMALL, colour=MUTE)
-    canvas.explain((x - 4, y - 14, words.right - x + 8, 20), texts.EXPLAIN_MAP[CHANCE - 1], lambda: texts.MAP_SAME)
-
-
-def draw_edge_sign(canvas: Canvas, left: Point) -> None:
-    """Draw a piece of the edge of no return, as a sign before the words on it."""
-    x, y = left
-    canvas.line((x, y), (x + 24, y), INK, alpha=0.8)
-    for number in range(3):
-        canvas.line((x + 4 + 8 * number, y), (x + 4 + 8 * number, y + 5), INK, alpha=0.6)
-
-
-def _paint_chances(sheet: Canvas) -> None:
-    width, height = sheet.size
-    row = np.round(veil_colours(np.linspace(0.0, 1.0, width))).astype(np.uint8)
-    sheet.surface.blit(pygame.surfarray.make_surface(np.repeat(row[:, None], height, axis=1)), (0, 0))
 
 
 def _paint_scale(sheet: Canvas) -> None:

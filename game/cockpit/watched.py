@@ -14,7 +14,6 @@ from game.cockpit.decision_panel import PANEL
 from game.core.clock import STEP, TimeScale
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK
-from game.flight.chances import critic_of
 from game.flight.flight import DECISION_STEPS
 from game.flight.networks import Policy
 from game.flight.swarm import REST_STEPS, Swarm
@@ -22,11 +21,10 @@ from game.ui.context import Context
 from game.ui.playback import Playback
 from game.world import framing
 from game.world.camera import Camera, CameraTarget, ClearArea, View
-from game.world.chance_map import ChanceMap
 from game.world.landscape.backdrop import landscape
 from game.world.landscape.pad import draw_pad
 from game.world.paths import Trails
-from game.world.policy_map import CHANCE, OFF, PolicyMap
+from game.world.policy_map import OFF, PolicyMap
 from game.world.scenery import mark_lost
 from game.world.stage import Stage
 
@@ -48,14 +46,12 @@ class Watched:
         shown: number of the lander whose decisions are shown.
         playback: the clock; while it is stopped, the shown lander can be touched.
         policy_map: colours of the sky.
-        chance_map: where one could still be saved, drawn in place of those while that is its kind.
-        critic_problem: why the network has no safety critic for that; empty if it has one.
 
     """
 
     def __init__(self, context: Context) -> None:
         self._context = context
-        self.policy_map, self.chance_map = PolicyMap(), ChanceMap()
+        self.policy_map = PolicyMap()
         self._clock = TimeScale()
         self.playback = Playback(self._clock, SPEEDS, self.fly_to_the_next_decision)
         self.shown, self._time = 0, 0.0
@@ -70,8 +66,6 @@ class Watched:
         self.shown = min(self.shown, count - 1)
         self._before: dict[str, Any] | None = None
         self.policy_map.forget()
-        self.chance_map.forget()
-        self._critic, self.critic_problem = critic_of(policy)
         self.set_up_camera()
         self._clock.begin()
 
@@ -113,8 +107,6 @@ class Watched:
         if not self._context.settings.reduced_motion:
             self._time += STEP
         self.policy_map.follow(self.env, self.shown, self.swarm.policy)
-        if self._maps_chances and self._critic is not None:
-            self.chance_map.follow(self.env, self.shown, self._critic)
 
     def fly(self) -> None:
         """Advance by 1/60 s."""
@@ -197,9 +189,6 @@ class Watched:
         view, size = self.camera.view(canvas.scale, between).filling(canvas), SIZES[self.env.num_envs]
         landscape(canvas.surface.get_size(), calm).draw(canvas, self.camera, self._time, between)
         self.policy_map.draw(canvas, view)
-        if self._maps_chances:
-            self.chance_map.draw_veil(canvas, view)
-            self.chance_map.draw_edge(canvas, view, _CLEAR.head)
         env, poses = self.env, self.swarm.poses.at(between)
         others = self._others()
         self.stage.draw_fires(canvas, view, poses, others, size)  # the pad hides what reaches below it
@@ -208,10 +197,6 @@ class Watched:
         self.stage.draw_swarm(canvas, view, poses, others, size)
         self._draw_shown(canvas, view, poses[self.shown])
         self.stage.draw_dust(canvas, view, between)
-
-    @property
-    def _maps_chances(self) -> bool:
-        return self.policy_map.kind == CHANCE
 
     def _others(self) -> Bools:
         """Which landers are drawn beside the one that is shown, (n,): all but those long wrecked."""

@@ -48,7 +48,6 @@ class Settings:
     faded_to: float = 0.0  # assist at which fading has left the dial; at another one, it was turned by hand
     teach: bool = False  # whether good landings are kept for a network to learn from
     explain: bool = True  # whether the co-pilot's panel is shown
-    edge: bool = False  # whether the chance to be saved is shown, over the sky and while flying alone
     gravity: Annotated[float, Within(*GRAVITY_SHARES)] = 1.0  # share of normal gravity in free flights
     pace: Annotated[float, Within(*PACES)] = 1.0  # time scale of a flight
     analogue: bool = True  # whether sticks and triggers give a share of thrust, and not all or none

@@ -66,7 +66,7 @@ class Entry:
         rules: version of its mission's rules at the time, from `rules_of`.
         barred: why it does not count as the person's own, a key of `texts.NOT_COUNTED`; empty if it does, or was flown
             before this field existed.
-        guarded: assist of the guardian with a safety critic that watched over all of it, 0 to 1; 0 for none.
+        guarded: assist of the guardian by futures that watched over all of it, 0 to 1; 0 for none.
         course: name of a mission; empty for a free flight.
         medal: 3 for gold, 2, 1, and 0 for none.
         file: name of the flight's file, for a replay.

@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from ai.common.environment import Doubles, Floats
+from ai.common.environment import Doubles
 from ai.flights.stick import Shares
 from ai.flights.verification import Earned, earned
 from ai.lander.pilots import COAST
@@ -62,8 +62,6 @@ class FlightReplay:
         flight: the flight at the step that is shown.
         length: physics steps of the whole flight.
         path: positions (steps + 1, 2) up to the scout's step.
-        observations: what is known on the way to each pad, (pads, 9 + k) of `LanderEnv.observe_around`, before every
-            decision of the scout in the air.
 
     """
 
@@ -74,8 +72,6 @@ class FlightReplay:
         self._moments = [self._scout.env.snapshot()]
         self._places = np.empty((self.length + 1, 2))
         self._places[0] = self._scout.env.position[0]
-        self.observations: list[Floats] = []
-        self._touched = False
 
     @property
     def at(self) -> int:
@@ -121,17 +117,10 @@ class FlightReplay:
         for _ in range(steps):
             if self.complete:
                 return
-            self._observe()
             self._scout.step(COAST)
             self._places[self.reached] = self._scout.env.position[0]
             if self.reached % _EVERY == 0:
                 self._moments.append(self._scout.env.snapshot())
-
-    def _observe(self) -> None:
-        """Keep what a pilot could observe before the scout's next decision, up to the first touch."""
-        self._touched = self._touched or self.touching
-        if self.reached % DECISION_STEPS == 0 and not self._touched:
-            self.observations.append(self._scout.env.observe_around()[0])
 
     def step(self) -> None:
         """Show the next step."""

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from game.audio.flight_sounds import FlightSound
 from game.cockpit import hud
 from game.cockpit.cockpit import Cockpit
-from game.cockpit.map_legend import draw_edge_line
 from game.cockpit.readouts_explained import explain_readouts
 from game.core.pace import SlowMotion
 from game.drawing.canvas import Canvas
@@ -25,7 +24,6 @@ from game.play import captions
 from game.play.challenge import Challenge, DrawnFlight
 from game.play.ending import FlightEnding
 from game.play.ghost import Ghost
-from game.world.chance_map import LINES_GRID, ChanceMap
 from game.world.landscape.ground import begin_hills
 from game.world.path_preview import PathPreview
 from game.world.scenery import Scenery
@@ -54,7 +52,6 @@ class FlownFlight:
         pace: the clock that slows down after a crash.
         ending: the ending, with slow motion and outcome card.
         record: the record of the flight once it is over; None before, and where none is kept.
-        chance_map: where one could still be saved, while the player wishes to see it.
         waiting: whether the craft hangs until the pilot touches a control.
         begun: whether it has flown a step.
 
@@ -95,7 +92,6 @@ class FlownFlight:
         self.ending = FlightEnding(self.flight, self.pace, calm)
         self._readouts, self._thrust = hud.flight_readouts(self.flight.env), hud.thrust_readout(self.flight.env)
         self.path_preview = PathPreview(self.flight, self._guide)
-        self.chance_map = ChanceMap(LINES_GRID)
 
     def _begin(self, seed: int, spawn: str, pads: int) -> Flight:
         """Return the flight at its start, eased as the player has chosen, where that may be."""
@@ -144,9 +140,6 @@ class FlownFlight:
         self._age += 1
         self.scenery.breathe()
         self.cockpit.ease()
-        meter = self.cockpit.chance_meter
-        if meter.wished and meter.critic is not None and not self.flight.over:
-            self.chance_map.follow(self.flight.env, 0, meter.critic)
 
     def due(self, action: int) -> bool:
         """Count 1/60 s; return whether a step is due: the craft may wait, or slowed time make none due."""
@@ -259,9 +252,6 @@ class FlownFlight:
             self.ghost.draw_way(canvas, view)
         if flight.over:
             self.cockpit.track.draw(canvas, view)
-        edge = self.cockpit.chance_meter.wished and not flight.over
-        if edge:
-            self.chance_map.draw_edge(canvas, view, self.scenery.clear.head, safe=False)
         self.path_preview.draw(canvas, view, self.scenery.clear.head)
         if self.ghost:
             self.ghost.draw(canvas, view, alpha)
@@ -273,8 +263,6 @@ class FlownFlight:
             self.challenge.draw(canvas, view, flight, self.moment(alpha))
         self.cockpit.draw_top(canvas)
         captions.draw_title(canvas, flight, self.challenge, network, self.hands, self.credit.notice)
-        if edge:
-            draw_edge_line(canvas, self.chance_map)
         if flight.recording.shares:
             hud.draw_readouts(canvas, [*self._readouts, self._thrust], (*hud.COLUMNS, hud.THRUST_COLUMN))
         else:

@@ -67,10 +67,9 @@ class ChoicesScene(FormScene):
         toggles = {
             "teach": texts.CHOICES_TEACH,
             "explain": texts.CHOICES_EXPLAIN,
-            "edge": texts.CHOICES_EDGE,
         }
         if self._challenge:
-            toggles = {name: toggles[name] for name in ("explain", "edge")}
+            del toggles["teach"]
         top = _FIRST + len(self._rows) * _ROW + _TOGGLES
         for row, (name, (label, hint)) in enumerate(toggles.items()):
             box = (MARGIN, top + row * _TOGGLE_ROW, _WIDTH, 48)

@@ -67,12 +67,10 @@ class MenuBackground:
         from ai.lander.pilots import ScriptedPilot
         from ai.lander.route import sink_of
         from game.flight import networks
-        from game.flight.chances import critic_of
 
         context = self._context
         with networks.kept.lock:  # what is read and measured here is kept, and the next scene need not wait for it
             policy = networks.chosen(context.models_dir, context.user_dir, context.settings.model).policy
-            critic_of(policy)
             if isinstance(policy, networks.QPolicy):
                 sink_of(policy)  # type: ignore[arg-type]  # one network is one object
         self.pilot = policy or ScriptedPilot()

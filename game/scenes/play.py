@@ -137,8 +137,7 @@ class PlayScene(Scene):
         """What each key does at this moment: those of the card, once it is seen, and those of the flight."""
         explain = self.explained.action()
         if self.ending.shown == 0:
-            edge = Action(pygame.K_m, self._show_edge)  # by mouse and gamepad it is one of the choices
-            return [*self._flight_actions(), Action(Command.CONFIRM, self.ending.hurry), edge, explain]
+            return [*self._flight_actions(), Action(Command.CONFIRM, self.ending.hurry), explain]
         space = [Action(pygame.K_SPACE, self._go_on)] if self.ending.shown >= 1 else []
         return [*self._card_actions(), *self._flight_actions(), Action(Command.CONFIRM, self._go_on), *space, explain]
 
@@ -352,20 +351,12 @@ class PlayScene(Scene):
             problem = texts.NO_NETWORK.format(problem=self.network.problem)
             self.context.note(texts.FLOWN_ALONE if self.credit.alone else problem)
 
-    def _show_edge(self) -> None:
-        """Show the chance to be saved or hide it, over the sky too; tell why it can't be shown."""
-        self._settings.edge = not self._settings.edge
-        if problem := self.flown.cockpit.chance_meter.problem:
-            self.context.note(problem)
-
     def _name_what_lacks(self) -> None:
         """Tell the player why the dial has no effect, where it has none."""
         if self._settings.assist > 0 and self.flight.shares and self.flight.copilot is None:
             network = self.network
             text = texts.DIAL_NEEDS if network.policy else texts.NO_NETWORK
             self.context.note(text.format(name=network.name, problem=network.problem))
-        elif problem := self.flown.cockpit.lacks:
-            self.context.note(problem)
 
     def _copy(self) -> None:
         """Copy what tells a friend of the flight that is over."""

@@ -28,16 +28,14 @@ from game.drawing.shapes import Shape
 from game.drawing.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, VIEW_SIZE
 from game.export.export import Export
 from game.export.kinds import KINDS
-from game.flight import networks, sharing
+from game.flight import sharing
 from game.flight.flight import StickHolder
 from game.flight.flight_file import Record
 from game.flight.outcomes import ending_word
 from game.flight.replay import FlightReplay
 from game.input.controls import Command
-from game.panels import falls
 from game.panels.explained import Explained
 from game.panels.timeline import Timeline, runs
-from game.play.challenge import flown_elsewhere
 from game.play.friend import BELOW_CLAIM, Claimed
 from game.play.race import fly_on, race
 from game.ui.actions import Action, Table
@@ -57,11 +55,10 @@ SPEEDS: Final = (0.25, 0.5, 1.0, 2.0)
 _EARTH: Final = (208.0, 306.0)  # points; clear of the words
 _EARTH_BELOW_CLAIM: Final = (208.0, 336.0)
 _SCOUT: Final = 10  # steps looked ahead in every frame: a few milliseconds
-_STRIP: Final = (MARGIN, 78.0, VIEW_SIZE[0] - 2 * MARGIN, 60.0 + falls.HEIGHT)
+_STRIP: Final = (MARGIN, 78.0, VIEW_SIZE[0] - 2 * MARGIN, 60.0)
 _FIGURE: Final = 88.0  # half of what the seconds take, and who flies
-_VERBS: Final = 149.0 + falls.HEIGHT
-_FALL: Final = _VERBS + 24.0  # the sentence on the fall
-_CLEAR: Final = ClearArea(head=_FALL + 30.0)  # below it
+_VERBS: Final = 149.0
+_CLEAR: Final = ClearArea(head=_VERBS + 34.0)  # below it
 _VERB: Final = 20.0
 _FIRST_HINTS: Final = 4  # hints in the first row
 
@@ -72,7 +69,6 @@ class ReplayScene(FormScene):
     Attributes:
         claimed: a friend's claim, checked by flying it again; None for a flight of the player's own.
         export: the film that is being made of it; None while there is none.
-        falls: where the chance to be saved fell, and by what key.
 
     """
 
@@ -94,9 +90,6 @@ class ReplayScene(FormScene):
         self._scenery = Scenery(self.flight_replay.flight, context.settings.reduced_motion, self._clear)
         self._heard = FlightSound(context.sound, self.flight_replay.flight.env, self._pace, warns=False)
         self._build()
-        elsewhere = flown_elsewhere(record.recording)
-        network = networks.chosen(context.models_dir, context.user_dir, context.settings.model, elsewhere)
-        self.falls.judge(network.policy)
         self._readouts: list[hud.Readout] = []
         self._look()
 
@@ -127,7 +120,6 @@ class ReplayScene(FormScene):
             step,
             Action(Command.RETRY, self._replay, texts.REPLAY_FROM_START),
             Action(Command.HANDOVER, self._take_over, texts.REPLAY_HINT_TAKE),
-            *([Action(pygame.K_f, self.falls.jump, texts.HINT_FALL)] if self.falls.any else []),
             self.form.goes_back(texts.HINT_BACK),
             *speeds,
             Action(pygame.K_HOME, lambda: self.seek(0)),
@@ -148,7 +140,6 @@ class ReplayScene(FormScene):
         """Advance by as many steps as the chosen speed makes due, and simulate a little further ahead."""
         self.flight_replay.scout(1 if self.flight_replay.touching else _SCOUT)
         self._reward_bar.reached = self.flight_replay.reached
-        self.falls.follow()
         self.explained.update()
         if self.export:
             self._follow_export(self.export)
@@ -235,7 +226,6 @@ class ReplayScene(FormScene):
             self.form.add(words[-1])
             x += wide + 28
         self._export_word = words[3]
-        self.falls = falls.Falls(self.form, self._reward_bar, self.flight_replay, (MARGIN, _FALL), self.seek)
 
     def _take_over(self) -> Transition | None:
         """Fly on from the moment that is shown."""
@@ -302,8 +292,6 @@ class ReplayScene(FormScene):
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the moment that is shown, and the strip of time."""
         self.draw_world(canvas, alpha)
-        view = self._scenery.view(canvas.scale, self.playback.between(alpha))
-        self.falls.draw_way(canvas, view, self.flight_replay.path, self._clear.head)
         self._draw_words(canvas)
 
     def draw_world(self, canvas: Canvas, alpha: float) -> None:
@@ -320,7 +308,6 @@ class ReplayScene(FormScene):
         self._draw_title(canvas)
         self._draw_moment(canvas)
         self.form.draw(canvas)
-        self.falls.draw(canvas)
         self.draw_hints(canvas)
         self.explained.draw(canvas)
 

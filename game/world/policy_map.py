@@ -22,7 +22,7 @@ from game.drawing.tokens import Colour
 from game.flight.networks import Policy, decide, work_of
 from game.world.camera import GROUND_LINE, View
 
-OFF, ACTION, SCORE, CHANCE = range(4)  # chances are drawn by `game.world.chance_map`
+OFF, ACTION, SCORE = range(3)
 # Of the six actions, in their order: a hue says which jet fires, and a light one that the main engine burns as well.
 # Blue to yellow stays apart for eyes without the red or the green cones.
 COLOURS: Final[tuple[Colour, ...]] = (
@@ -70,7 +70,7 @@ class PolicyMap:
     """Policy map of the sky, computed in pieces; call `follow` once per update.
 
     Attributes:
-        kind: OFF, ACTION or SCORE; CHANCE while another map is drawn instead.
+        kind: OFF, ACTION or SCORE.
         cells: the latest whole map; None before the first.
         scale: lowest and highest score of the colours, in points; None before any.
 
@@ -95,7 +95,7 @@ class PolicyMap:
 
         How much is done in one update follows from the network's size alone.
         """
-        if self.kind in (OFF, CHANCE):
+        if self.kind == OFF:
             return
         work = max(work_of(policy), 1)
         if self._observations is None:
@@ -114,7 +114,7 @@ class PolicyMap:
 
     def draw(self, canvas: Canvas, view: View) -> None:
         """Draw the map over the sky."""
-        if self.kind in (OFF, CHANCE) or self.cells is None:
+        if self.kind == OFF or self.cells is None:
             return
         (left, top), (right, bottom) = view.points(self.cells.places[[0, -1], [0, -1]]).tolist()
         with canvas.unnoted():  # stars shine through it

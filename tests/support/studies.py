@@ -72,7 +72,7 @@ def shown_study(folder, trials=9):
         trials + 3,
     )  # fmt: skip
     study = Study.create(folder, plan)
-    shutil.copytree(MODELS_DIR / "lander" / "modern", folder / "seed-0", ignore=shutil.ignore_patterns("guardian"))
+    shutil.copytree(MODELS_DIR / "lander" / "modern", folder / "seed-0")
     shutil.move(folder / "seed-0", folder / "run" / "seed-0")
     runs = archive(folder / "run")
     shutil.rmtree(folder / "run")

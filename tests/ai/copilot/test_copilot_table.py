@@ -23,7 +23,7 @@ def near(slots, rng):
 
 @pytest.fixture
 def few(monkeypatch):
-    monkeypatch.setattr(measurement, "TABLES", {name: (near, ("holds right", "thrust 0.3")) for name in TABLES})
+    monkeypatch.setattr(measurement, "TABLES", dict.fromkeys(TABLES, (near, ("holds right", "thrust 0.3"))))
 
 
 def test_the_co_pilot_helps(agent, few):

@@ -83,12 +83,16 @@ def test_landers_of_many_worlds_are_flown_as_each_would_be_alone():
     plans = Lookahead(anywhere).plans(Moment.of(env), [(slot, (KEYS[3],)) for slot in range(6)])
     assert sum(plan is not None for plan in plans) >= 4
     while (env.outcome == Outcome.FLYING).any():
-        pushes = [plan.push(Here.of(env, slot)) if plan and not env.outcome[slot] else None for slot, plan in enumerate(plans)]
+        pushes = [
+            plan.push(Here.of(env, slot)) if plan and not env.outcome[slot] else None for slot, plan in enumerate(plans)
+        ]
         given = [push or KEYS[0] for push in pushes]
         for _ in range(DECISION_STEPS):
             env.fly(np.array([push.action for push in given]), np.array([push[1:] for push in given]))
     for slot, plan in enumerate(plans):
-        assert plan is None or (env.outcome[slot] == Outcome.LANDED and tuple(plan.states[-1]) == Here.of(env, slot).state)
+        assert plan is None or (
+            env.outcome[slot] == Outcome.LANDED and tuple(plan.states[-1]) == Here.of(env, slot).state
+        )
 
 
 def test_a_landing_counts_only_with_time_to_spare(agent):
@@ -107,7 +111,7 @@ def test_any_pad_will_do_and_the_one_that_is_meant_comes_first(agent):
     for target in (1, 0):
         env.target[:] = target
         (plan,) = Lookahead(agent).plans(Moment.of(env), [(0, (KEYS[3],))])
-        assert plan.target == target or target == 0
+        assert target in (plan.target, 0)
     env = low(ground=ground, start=(6.0, 2.9, 0.0, -0.5, 0.0, 0.0))
     env.target[:] = 0  # no network gets there from here without a touch
     assert Lookahead(agent).plans(Moment.of(env), [(0, (KEYS[0],))])[0].target == 1
@@ -158,7 +162,9 @@ def test_left_and_right_are_alike():
     for side in (1, -1):
         env = low(start=(side * 2.0, 7.0, -side * 0.5, -1.0, side * 0.2, 0.0))
         left, right = (KEYS[action] for action in ((1, 2) if side > 0 else (2, 1)))
-        ends.append([bool(plan) for plan in Lookahead(pilot).plans(Moment.of(env), [(0, (left,) * 8), (0, (right,) * 8)])])
+        ends.append(
+            [bool(plan) for plan in Lookahead(pilot).plans(Moment.of(env), [(0, (left,) * 8), (0, (right,) * 8)])]
+        )
     assert ends[0] == ends[1]
 
 

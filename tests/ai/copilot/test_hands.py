@@ -81,7 +81,9 @@ def test_an_adversary_asks_for_the_worst_that_passes(agent):
     passes = np.array([[1, 0, 1, 0, 1, 0], [0, 0, 0, 0, 0, 1], [0] * 6, [1] * 6], dtype=bool)
     values = agent.q_values(seen)
     least = Adversary(agent, np.random.default_rng(0), least=True).pick(seen, passes)
-    expected = [np.where(row, of, np.inf).argmin() if row.any() else of.argmin() for row, of in zip(passes, values, strict=True)]
+    expected = [
+        np.where(row, of, np.inf).argmin() if row.any() else of.argmin() for row, of in zip(passes, values, strict=True)
+    ]
     assert least.tolist() == expected
     random = Adversary(agent, np.random.default_rng(0), least=False)
     assert {int(random.pick(seen, passes)[0]) for _ in range(40)} == {0, 2, 4}

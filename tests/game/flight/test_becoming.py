@@ -42,7 +42,7 @@ def test_kinds_of_starts_have_estimates_of_their_own():
 
 
 @pytest.mark.parametrize("entry", [
-    flown(barred="helped"),  # by tolerance, or by a guardian without a critic
+    flown(barred="helped"),  # by tolerance, or by a guardian that goes by values
     flown(barred="handed_over", guarded=0.4),
     flown(barred="hands"),
     guarded(course="night"),

@@ -10,7 +10,6 @@ import pytest
 from ai.lander.environment import NUM_FEATURES
 from game.core.assets import MODELS_DIR
 from game.flight import networks
-from game.flight.chances import critic_of
 
 
 @pytest.fixture
@@ -24,7 +23,6 @@ def test_a_network_is_read_once_whatever_it_is_called(folder: Path):
     assert first.policy is not None
     assert first.policy is second.policy
     assert (first.name, second.name) == ("mine", "best")
-    assert critic_of(first.policy)[0] is critic_of(second.policy)[0]
 
 
 def test_it_is_read_again_once_a_file_has_changed_and_not_kept_once_it_is_damaged(folder: Path):

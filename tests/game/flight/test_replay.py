@@ -1,25 +1,17 @@
-import shutil
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pygame
 import pytest
 
-from ai.lander.environment import ACTION_NAMES, Outcome
+from ai.lander.environment import Outcome
 from ai.lander.pilots import ScriptedPilot
 from game.core import texts
-from game.core.assets import MODELS_DIR
-from game.core.settings import Settings
-from game.drawing.canvas import Canvas
 from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Record
 from game.flight.logbook import Records
-from game.flight.networks import PLAYERS
 from game.flight.replay import FlightReplay, ReplayedFlight
-from game.panels.chance_values import of_hundred
-from game.panels.falls import fall_words
 from game.scenes.logbook import LogbookScene
 from game.scenes.replay import ReplayScene
 from game.ui.context import Context
@@ -289,72 +281,3 @@ def test_a_damaged_flight_is_named_and_left_alone(book: Driver):
     assert book.top_name == "LogbookScene"
     assert "damaged" in book.said
     assert path.read_text() == "{"
-
-
-# Where the chance to be saved fell
-
-
-def test_a_replay_says_by_what_key_the_chance_fell_and_goes_there_by_key_and_click(open_game: Open, context: Context):
-    flight = Flight(2)
-    while not flight.over:  # falls without a brake
-        flight.step(1 if len(flight.recording.actions) < 60 else 0)
-    record = kept(context, flight)
-    driver = open_game(ReplayScene, record)
-    scene = driver.top
-    assert isinstance(scene, ReplayScene)
-    for _ in range(40):
-        driver.frames(10)
-        if scene.falls.words:
-            break
-    (fall,) = scene.falls.chances.falls if scene.falls.chances else ()
-    assert scene.falls.words == fall_words(fall)
-    assert fall.high - fall.low >= 0.4
-    assert fall.action == 0 or texts.said(ACTION_NAMES[fall.action]).capitalize() in scene.falls.words
-    scene.playback.stopped = True
-    driver.key(pygame.K_f)
-    assert scene.flight_replay.at == fall.begins
-    driver.key(pygame.K_HOME)
-    driver.frames(2)
-    driver.press_on(scene.falls.words)
-    assert scene.flight_replay.at == fall.begins
-    assert texts.HINT_FALL in [hint.meaning for row in scene.hint_rows(driver.app.canvas) for hint in row.hints]
-
-
-def test_a_landing_says_how_low_the_chance_was_and_a_mission_elsewhere_is_judged_for_every_world(
-    open_game: Open, context: Context, record: Record
-):
-    driver = open_game(ReplayScene, record)
-    scene = driver.top
-    assert isinstance(scene, ReplayScene)
-    driver.frames(120)
-    chances = scene.falls.chances
-    assert chances is not None
-    assert chances.complete
-    if not chances.falls:
-        assert of_hundred(min(chances.chances)) in scene.falls.words
-    elsewhere = ReplayScene(context, kept(context, scripted(mission="mars")))
-    for _ in range(2000):
-        elsewhere.update()
-        if elsewhere.falls.chances is not None and elsewhere.falls.chances.complete:
-            break
-    assert elsewhere.falls.words
-    assert texts.CHANCE_MOON_ONLY not in elsewhere.falls.words
-
-
-def test_under_a_network_of_ones_own_a_mission_elsewhere_is_not_judged(context: Context):
-    own = context.user_dir / PLAYERS / "mine"
-    shutil.copytree(MODELS_DIR / "lander" / "modern", own)
-    context.settings.model = "mine"
-    scene = ReplayScene(context, kept(context, scripted(mission="mars")))
-    assert scene.falls.words == texts.CHANCE_MOON_ONLY
-    scene.falls.jump()
-    scene.update()
-
-
-def test_a_replay_under_a_network_without_a_critic_says_so(tmp_path: Path, record: Record):
-    context = Context(tmp_path / "user", Settings(), models_dir=tmp_path / "nothing")
-    scene = ReplayScene(context, record)
-    assert "safety critic" in scene.falls.words
-    for _ in range(3):
-        scene.update()
-    scene.draw(Canvas(pygame.Surface((1280, 720))), 0.5)

@@ -15,9 +15,9 @@ from game.core import texts
 from game.core.settings import Settings
 from game.flight import fading
 from game.flight.becoming import KINDS, Change
-from game.flight.chances import Rescues
 from game.flight.flight_file import Entry
 from game.flight.logbook import LOGBOOK, Records
+from game.flight.rescues import Rescues
 from game.input.controls import Command
 from game.play import growth
 from game.play.challenge import Challenge, FlownMission
@@ -186,10 +186,10 @@ def test_the_curve_is_shown_for_flights_of_its_kind_alone(
 
 
 def test_a_rescue_is_counted_only_where_the_pilots_action_was_changed():
-    decision = SimpleNamespace(assist=0.4, chance=np.array([0.5]), required=np.array([0.97]))
+    decision = SimpleNamespace(assist=0.4)
     rescues = Rescues()
     for changed in [False] * 90 + [True] * 4 + [False] * 90 + [True] * 4 + [False] * 20 + [True] * 4:
-        rescues.follow(SimpleNamespace(decision=decision, shared=True, overridden=changed))  # type: ignore[arg-type]
+        rescues.follow(SimpleNamespace(decision=decision, shared=True, guarded=True, overridden=changed))  # type: ignore[arg-type]
     assert rescues.times == 2  # within a second of each other they are the same one
 
 
@@ -216,6 +216,6 @@ def test_a_guardian_counts_only_if_it_watched_over_the_whole_flight_alike(
 ):
     rescues = Rescues()
     for assist in assists:
-        decision = SimpleNamespace(assist=assist, chance=np.array([0.99]), required=np.array([0.9]))
-        rescues.follow(SimpleNamespace(decision=decision, shared=assist is not None, overridden=False))  # type: ignore[arg-type]
+        decision, guarded = SimpleNamespace(assist=assist), assist is not None
+        rescues.follow(SimpleNamespace(decision=decision, shared=guarded, guarded=guarded, overridden=False))  # type: ignore[arg-type]
     assert rescues.throughout == throughout
