@@ -12,7 +12,7 @@ from ai.common.environment import Doubles
 from ai.lander.environment import Outcome
 from game.cockpit.assist_dial import AssistDial
 from game.cockpit.copilot_panel import PADS_HIGH, PANEL, CopilotPanel
-from game.cockpit.guardian_words import dial_words
+from game.cockpit.guardian_words import by_values, dial_words
 from game.cockpit.hud import CARD, draw_title
 from game.cockpit.overrides import Overrides
 from game.cockpit.recent_line import RecentLine
@@ -67,6 +67,14 @@ class Cockpit:
             self._settings.copilot = MODES[1 - MODES.index(self._settings.copilot)]
             return True
         return self._dial.take(event)
+
+    @property
+    def lacks(self) -> str:
+        """Text that says why a guardian goes by points of reward; empty where it does not, or does not help."""
+        guard, settings = self._flight.guard, self._settings
+        if guard is None or not guard.ahead.problem or settings.copilot != MODES[1] or settings.assist == 0:
+            return ""
+        return by_values(guard.ahead.problem)
 
     def help(self) -> None:
         """Set the co-pilot's assist for the next step from the dial."""
@@ -151,4 +159,6 @@ class Cockpit:
 
     def _dial_means(self) -> str:
         """Say what the dial means now."""
-        return dial_words(self._settings.assist, self._flight.copilot)
+        guard = self._flight.guard
+        problem = guard.ahead.problem if guard else texts.FUTURES_NOT_YET
+        return dial_words(self._settings.assist, self._flight.copilot, problem)

@@ -1,4 +1,4 @@
-"""Co-pilot panel: the Q-values that a shared decision weighs, and whose action is flown."""
+"""Co-pilot panel: what a shared decision weighs, Q-values or where the network still lands, and whose action is flown."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from ai.lander.environment import ACTION_NAMES, NUM_ACTIONS
 from ai.lander.ground import Ground
 from ai.lander.pilots import COAST
 from game.cockpit import hud
+from game.cockpit.guardian_words import Why, why_saved
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
 from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL, VIEW_SIZE
 from game.flight.flight import Flight, StickHolder
 from game.flight.networks import QPolicy
+from game.panels.landings import Landings, draw_landings
 from game.panels.q_values import HEIGHT, QValues, decision_words, draw_q_values
 
 if TYPE_CHECKING:
     from ai.copilot.copilot import SharedDecision
-
-Why = tuple[str, str, str]  # a title, and two lines
 
 PANEL: Final = pygame.Rect(VIEW_SIZE[0] - 36 - 280, 84, 280, 388)
 PADS_HIGH: Final = 102  # extra height for the rows of three pads
@@ -40,14 +40,15 @@ class CopilotPanel:
     """Co-pilot panel of a flight that is shared or flown by a network; `shown` while it has something to explain.
 
     Attributes:
-        values: the Q-values that the decision that is flown weighs; None before the first.
+        values: what the decision that is flown weighs: where the network lands if a guardian has looked ahead, else the
+            Q-values; None before the first.
         why: whose action is flown, and why: a title and two lines.
 
     """
 
     def __init__(self, ground: Ground) -> None:
         self.shown = False
-        self.values: QValues | None = None
+        self.values: QValues | Landings | None = None
         self.why: Why = ("", "", "")
         self._names = [texts.PAD_NAMES.get(pad.factor, "") for pad in ground.pads]
         self._likely: list[float] = []
@@ -80,8 +81,12 @@ class CopilotPanel:
         from ai.copilot.copilot import ActionSource
 
         self._likely = decision.likely[0].tolist()
-        self.values = values = shared_values(decision, pad)
-        self.why = why(decision, values)
+        if decision.held is not None:
+            self.values = landings = Landings.of(decision)
+            self.why = why_saved(decision, landings)
+        else:
+            self.values = values = shared_values(decision, pad)
+            self.why = why(decision, values)
         if self.values.asked is None:
             self._override = None
         elif int(decision.source[0]) != ActionSource.PILOT:
@@ -92,8 +97,11 @@ class CopilotPanel:
         pads = self._likely if len(self._likely) > 1 else []
         lower, left, top = PADS_HIGH if pads else 0, PANEL.left + _LEFT, PANEL.top
         canvas.panel((PANEL.left, top, PANEL.width, PANEL.height + lower))
-        canvas.text(texts.DECISION_TITLE, (left, top + 34), room=_WIDTH)
-        if self.values is not None:
+        looks = isinstance(self.values, Landings)
+        canvas.text(texts.LANDINGS_TITLE if looks else texts.DECISION_TITLE, (left, top + 34), room=_WIDTH)
+        if isinstance(self.values, Landings):
+            draw_landings(canvas, self.values, left, top + _VALUES, _WIDTH)
+        elif self.values is not None:
             draw_q_values(canvas, self.values, left, top + _VALUES, _WIDTH)
         canvas.line((left, top + _WHY), (left + _WIDTH, top + _WHY), LINE)
         self._draw_why(canvas, left, top + _WHY + 26)

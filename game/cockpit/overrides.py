@@ -7,6 +7,7 @@ from typing import Final
 
 from ai.common.environment import Doubles
 from ai.lander.pilots import COAST
+from game.cockpit.guardian_words import sentence
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.shapes import Shape
@@ -43,6 +44,8 @@ class Overrides:
         if flight.overridden:
             self._asked, self._flown = flight.asked, flight.recording.actions[-1]
             self._word = difference(self._asked, self._flown)
+        if flight.shared and flight.guarded and flight.decision is not None and (said := sentence(flight.decision)):
+            self._word, self._since = said, min(self._since, _FADES + 1)
         self.times += begins
         return begins
 

@@ -65,6 +65,7 @@ class Guard:
     Attributes:
         ahead: what flies the futures.
         push: what is pushed in the decision that is flown now; None while nothing is guarded.
+        saves: whether something else is flown now because what was asked for was seen not to land.
         decisions: decisions so far.
         late: those in which something else was flown only because what was asked for was not flown ahead in time.
 
@@ -74,6 +75,7 @@ class Guard:
         self._flight, self.ahead = flight, ahead
         self._taps = Taps()
         self.push: Push | None = None
+        self.saves = False
         self.decisions = self.late = 0
         self._decision: SharedDecision | None = None
         self._moment: tuple[object, ...] = ()  # that the futures asked for last belong to
@@ -136,7 +138,8 @@ class Guard:
         self._decision = decision = flight.copilot.decide(seen, pilot, around, pushed, flight.env, [known])
         self.push = Push(int(decision.action[0]), *decision.shares[0].tolist())
         self.decisions += 1
-        self.late += held and bool(decision.overridden[0]) and wish not in known
+        missing = held and bool(decision.overridden[0]) and wish not in known
+        self.saves, self.late = bool(decision.overridden[0]) and not missing, self.late + missing
         if by is StickHolder.HUMAN:
             flight.aim(decision.likely[0])
         self._ask((self.push,), wish)

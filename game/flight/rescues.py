@@ -35,7 +35,7 @@ class Rescues:
         assist = flight.decision.assist if guards and flight.decision is not None else 0.0
         self.throughout = assist if self.throughout in (-1.0, assist) else 0.0
         self.guarded |= guards
-        if guards and flight.overridden:
+        if guards and flight.overridden and (flight.guard is None or flight.guard.saves):
             self.times += self._since >= _CALM
             self._since = 0
 
