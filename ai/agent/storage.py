@@ -91,7 +91,7 @@ def read_agent(folder: str | Path, *, env: str | None = None) -> SavedAgent:
     described = _read_description(folder)
     try:
         config = Config.from_json(described["config"])
-        _check_env(config.env, env)
+        check_env(config.env, env)
         features, actions = (count_of(described[name], 1, WIDEST) for name in ("features", "actions"))
         network = build_network(features, actions, config, np.random.default_rng(0))
         decisions, train_count = count_of(described["decisions"]), count_of(described["train_count"])
@@ -125,8 +125,8 @@ def _read_description(folder: Path) -> dict[str, Any]:
         raise ModelFormatError(folder, [f"{AGENT_FILE}: {error}"]) from error
 
 
-def _check_env(env: str, named: str | None) -> None:
-    """Raise ValueError for an environment whose name would import code, unless the user has named it."""
+def check_env(env: object, named: str | None) -> None:
+    """Raise ValueError for a file's environment whose name would import code, unless the user has named it."""
     if not isinstance(env, str) or (":" in env and env != named):
         raise ValueError(
             f"it is for the environment {brief(repr(env), 100)}, which is code that a file may not start; "

@@ -51,9 +51,9 @@ def fail(message: str) -> int:
     return FAILED
 
 
-def readable(line: str) -> str:
+def readable(line: str, longest: int = LONGEST) -> str:
     """Return a line without its middle, if it is too long, and with control characters escaped."""
-    short = line if len(line) <= LONGEST else f"{line[: LONGEST - 100]} ... {line[-90:]}"
+    short = line if len(line) <= longest else f"{line[: LONGEST - 100]} ... {line[-90:]}"
     return "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in short)
 
 

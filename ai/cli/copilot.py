@@ -109,8 +109,8 @@ def _table(arguments: argparse.Namespace) -> int:
         return fail(problem)
     done: dict[int, list[AssistedFlights]] = {}
     try:
-        _lander(arguments.model, (LANDER,))
-        asked = parts(arguments.model, arguments.good == "scripted", arguments.episodes, arguments.seed)
+        agent = _lander(arguments.model, (LANDER,))
+        asked = parts(agent, arguments.good == "scripted", arguments.episodes, arguments.seed)
         with tqdm(total=len(asked), desc="flying", unit="part", disable=None) as bar:
             for index, rows in each(fly, asked, arguments.address, arguments.workers or 1):
                 done[index] = rows

@@ -28,6 +28,7 @@ from ai.cli.command_line import (
 from ai.cli.training_run import RunCommand, add_run_options, show_progress, train
 
 if TYPE_CHECKING:
+    from ai.agent.agent import DeepQAgent
     from ai.agent.config import Config
     from ai.training.checkpoints import TrainingClock
     from ai.training.loop import Progress, Training
@@ -150,7 +151,7 @@ def _evaluate(arguments: argparse.Namespace) -> int:
     spread = arguments.address is not None or arguments.workers is not None
     if agent.config.env == LANDER:
         try:
-            score: Score = _flown(arguments, episodes, spawn, agent.config.frame_skip)
+            score: Score = _flown(arguments, agent, episodes, spawn)
         except REFUSED as error:
             return fail(reason(error))
     elif spread or episodes > EPISODES[1]:
@@ -172,13 +173,13 @@ def _evaluate(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _flown(arguments: argparse.Namespace, episodes: int, spawn: str, frame_skip: int) -> Score:
+def _flown(arguments: argparse.Namespace, agent: DeepQAgent, episodes: int, spawn: str) -> Score:
     """Fly the flights, in shards; on several processes if that is asked for. Raises what `ai.sweep.cluster` raises."""
     from tqdm import tqdm
 
     from ai.sweep.shards import flown_shards, shards
 
-    parts = shards(arguments.model, episodes, arguments.seed, spawn, frame_skip)
+    parts = shards(agent, episodes, arguments.seed, spawn)
     with tqdm(total=episodes, desc="flying", unit="flight", disable=True if len(parts) == 1 else None) as bar:
         for sums in flown_shards(parts, arguments.address, arguments.workers or 1):
             if sums is not None:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Final
 
+from ai.agent.agent import DeepQAgent
 from ai.copilot import measurement
 from ai.copilot.measurement import COPILOT, AssistedFlights, mean_rows, one_pad_rows, three_pads_rows
 from ai.lander.pilots import Pilot, ScriptedPilot
-from ai.sweep.shards import packed_agent
-from ai.sweep.trial import archive
+from ai.sweep.shards import pack_agent, packed_agent
 
 ONE_PAD: Final = "one_pad"
 THREE_PADS: Final = "three_pads"
@@ -21,7 +20,7 @@ THREE_PADS: Final = "three_pads"
 class Part:
     """Part of the table: the rows of a pilot by name, or those of a ground by number."""
 
-    agent: bytes  # the co-pilot's folder, packed
+    agent: bytes  # the co-pilot, packed
     scripted: bool  # whether the imperfect pilots are made of the scripted one, not of the network
     of: str | int
     episodes: int
@@ -33,10 +32,10 @@ class Part:
         return ONE_PAD if isinstance(self.of, str) else THREE_PADS
 
 
-def parts(model: Path, scripted: bool, episodes: int, seed: int) -> list[Part]:
-    """Return all parts of the table of the network in a folder."""
-    agent = archive(model)
-    return [Part(agent, scripted, of, episodes, seed) for of in _all()]
+def parts(agent: DeepQAgent, scripted: bool, episodes: int, seed: int) -> list[Part]:
+    """Return all parts of the table of an agent."""
+    packed = pack_agent(agent)
+    return [Part(packed, scripted, of, episodes, seed) for of in _all()]
 
 
 def _all() -> list[str | int]:
