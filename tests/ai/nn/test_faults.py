@@ -96,7 +96,8 @@ def test_a_damaged_file_can_be_damaged_once_more(tmp_path):
     np.savez(tmp_path / "whole.npz", x=np.ones(3), y=np.arange(4))
     whole = {"json": b'{"a": [1, {"b": 2}]}', "npz": (tmp_path / "whole.npz").read_bytes()}
     for suffix, first, again, seed in product(whole, dict.fromkeys(DAMAGES), (mutate, repack), range(2)):
-        path, rng = tmp_path / f"{suffix} {first.__name__} {again.__name__} {seed}.{suffix}", np.random.default_rng(seed)
+        rng = np.random.default_rng(seed)
+        path = tmp_path / f"{first.__name__} {again.__name__} {seed}.{suffix}"
         path.write_bytes(whole[suffix])
         first(path, rng)
         if path.is_file() and not path.is_symlink() and path.stat().st_size < HOLES:
