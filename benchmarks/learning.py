@@ -37,6 +37,7 @@ from ai.agent.config import PRESETS, Config
 from ai.cli.lander import configured
 from ai.common.environment import Floats, Ints
 from ai.lander.pilots import Pilot
+from ai.lander.spawns import CURRICULA
 from ai.sweep.cluster import MISSING, each, installed
 from ai.training.lander_task import Evaluation, LanderTask
 from ai.training.loop import TEST_SEED, VALIDATION_SEED, Training, evaluate
@@ -208,7 +209,8 @@ def compare(arguments: argparse.Namespace, config: Config) -> None:
         print('\nto compare with stable-baselines3: pip install -e ".[bench]"')
         return
     limit = arguments.rival_seconds
-    runs = [race(sb3_dqn(LANDER, seed, spawn=config.spawn), limit) for seed in range(arguments.rival_seeds)]
+    spawn = CURRICULA.get(config.spawn, config.spawn)
+    runs = [race(sb3_dqn(LANDER, seed, spawn=spawn), limit) for seed in range(arguments.rival_seeds)]
     other = row("stable-baselines3's DQN, tuned for Gymnasium's lander", runs, limit)
     ratios = [
         f"over {limit / us:.0f}" if np.isinf(them) else f"{them / us:.0f}" for us, them in zip(mine, other, strict=True)
