@@ -158,6 +158,7 @@ def test_licences_are_collected_and_a_strange_library_is_noticed(tmp_path: Path)
         "libSDL2-2-50d19f93.0.so.0.3200.10": "Zlib", "libpng16-fefdc88d.so.16.58.0": "libpng-2.0",
         "libstranger.so.1": "", "libz.so.1": "Zlib",
     }  # fmt: skip
+    assert "licenses/by-sa/3.0" in (folder / "MNIST.txt").read_text(encoding="utf-8")
     assert "SIL OPEN FONT LICENSE" in (folder / "font_manrope-OFL.txt").read_text(encoding="utf-8").upper()
 
 

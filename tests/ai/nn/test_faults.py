@@ -9,6 +9,7 @@ import sys
 import tracemalloc
 import zipfile
 from contextlib import contextmanager
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -38,6 +39,7 @@ from ai.training.history import History
 from ai.training.lander_task import LanderTask
 from ai.training.loop import Training
 from main import main
+from tests.support.damage import DAMAGES, HOLES, mutate, repack
 from tests.support.faults import damaged, killed, limited
 from tests.support.saved import SUBJECTS
 
@@ -88,6 +90,20 @@ def test_damage_of_any_kind_is_read_or_refused(subject, tmp_path):
     found = list(damaged(subject, 60, 1, tmp_path))
     assert set(found) <= {"read", "refused"}
     assert "refused" in found or not subject.refusals
+
+
+def test_a_damaged_file_can_be_damaged_once_more(tmp_path):
+    np.savez(tmp_path / "whole.npz", x=np.ones(3), y=np.arange(4))
+    whole = {"json": b'{"a": [1, {"b": 2}]}', "npz": (tmp_path / "whole.npz").read_bytes()}
+    for suffix, first, again, seed in product(whole, dict.fromkeys(DAMAGES), (mutate, repack), range(2)):
+        rng = np.random.default_rng(seed)
+        path = tmp_path / f"{first.__name__} {again.__name__} {seed}.{suffix}"
+        path.write_bytes(whole[suffix])
+        first(path, rng)
+        if path.is_file() and not path.is_symlink() and path.stat().st_size < HOLES:
+            again(path, rng)  # the file's name says what failed
+        if path.is_file() and not path.is_symlink():
+            path.unlink()
 
 
 @pytest.mark.parametrize("name", ["config.json", "online/config.json", "online/layer-0-bias.npy", "optimizer.npz",

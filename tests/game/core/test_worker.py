@@ -186,7 +186,7 @@ def test_what_cannot_be_sent_fails_and_says_so(start):
     failed = start(chores.unsendable)
     over(failed)
     assert failed.state is WorkerState.FAILED
-    assert "pickle" in failed.problem
+    assert "unsendable.<locals>" in failed.problem  # in whatever words this Python has for it
 
 
 @pytest.mark.parametrize(
