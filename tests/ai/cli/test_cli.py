@@ -125,6 +125,7 @@ sys.exit(main(sys.argv[1:]))
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
 def test_a_request_to_end_reaches_a_process_and_its_work_is_kept(tmp_path):
     arguments = ["train", "--seconds", "600", "--output", str(tmp_path / "run"), "--validation", "4", *SMALL]

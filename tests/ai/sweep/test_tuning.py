@@ -20,6 +20,7 @@ from ai.sweep.trial import Asked, unpack
 from tests.support.studies import TINY, networks_in, run_alone
 
 pytestmark = [
+    pytest.mark.slow,
     pytest.mark.skipif(find_spec("ray") is None or find_spec("optuna") is None, reason="needs the extra: sweep"),
     pytest.mark.skipif(not Path("/proc/net/tcp").exists(), reason="finds processes and sockets in /proc"),
 ]

@@ -16,6 +16,7 @@ def folder() -> Iterator[Path]:
         yield place
 
 
+@pytest.mark.slow
 def test_a_monkey_finds_no_fault_and_leaves_nothing_behind(folder: Path):
     monkey = Monkey(folder, seed=7, open_sound=False)
     monkey.play(1000)

@@ -79,6 +79,7 @@ def test_start_pause_step_and_go_on(beside: Driver) -> None:
     beside.wait(lambda: scene.lander_run.swarm_state.decisions > stood + 8)
 
 
+@pytest.mark.slow
 def test_it_learns_as_it_would_without_a_window(beside: Driver) -> None:
     beside.unseen = True
     start(beside)
@@ -309,6 +310,7 @@ def test_a_run_is_started_named_and_left_without_a_mouse(train: Driver, device: 
     assert not train.app.scenes.running, "the scene was left, and nothing was below it"
 
 
+@pytest.mark.slow
 def test_a_dead_worker_is_told_and_its_run_can_still_be_saved(beside: Driver, tmp_path: Path) -> None:
     beside.unseen = True
     start(beside)
@@ -334,6 +336,7 @@ def test_numbers_that_run_away_are_told(train: Driver) -> None:
     assert isinstance(train.top, TrainScene)
 
 
+@pytest.mark.slow
 def test_killed_again_and_again_it_goes_on_and_what_was_saved_loads(beside: Driver) -> None:
     scene = beside.top
     for number in range(2):
@@ -353,6 +356,7 @@ def _kept() -> list[object]:
     return [each for each in gc.get_objects() if isinstance(each, TrainScene | LanderRun | NetworkView)]
 
 
+@pytest.mark.slow
 def test_visits_leave_no_process_no_thread_and_no_scene(game: Driver) -> None:
     threads, others = threading.active_count(), set(map(id, _kept()))
     for visit in range(4):
@@ -374,6 +378,7 @@ def test_visits_leave_no_process_no_thread_and_no_scene(game: Driver) -> None:
     assert not [each for each in _kept() if id(each) not in others]
 
 
+@pytest.mark.slow
 def test_closing_the_game_ends_the_worker(beside: Driver) -> None:
     start(beside)
     beside.app.close()
