@@ -80,6 +80,8 @@ def test_the_command_prints_both_tables_which_follow_from_the_seed(few, monkeypa
     assert told[0] == told[1]
     assert [len(told[0]["one_pad"]), len(told[0]["three_pads"])] == [5, 3]
     assert np.isfinite([row["mean_return"] for row in told[0]["one_pad"]]).all()
+    monkeypatch.setattr(copilot_table, "ONE_PAD", copilot_table.ONE_PAD[:1])
+    monkeypatch.setattr(copilot_table, "THREE_PADS", copilot_table.THREE_PADS[:1])
     assert main.main(["copilot-table", "--episodes", "2"]) == 0
     assert "own pad" in capsys.readouterr().out
 
