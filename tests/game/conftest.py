@@ -16,11 +16,11 @@ from ai.lander.pilots import ScriptedPilot
 from game.core.settings import TOP_RUNG, Settings
 from game.digits import kept
 from game.drawing import typeface
-from game.drawing.canvas import Canvas
 from game.flight import networks
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.games import OpenGame, games
+from tests.support.written import words_written
 
 pytest.register_assert_rewrite("tests.game.tour.checkers", "tests.game.tour.walks")
 pygame.font.init()  # as long as the tests run, in whatever order
@@ -48,15 +48,7 @@ def context(tmp_path: Path) -> Context:
 @pytest.fixture
 def written(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """All texts that are written from now on."""
-    strings: list[str] = []
-    text = Canvas.text
-
-    def note(self: Canvas, string: str, *args: object, **words: object) -> pygame.FRect:
-        strings.append(string)
-        return text(self, string, *args, **words)  # type: ignore[arg-type]
-
-    monkeypatch.setattr(Canvas, "text", note)
-    return strings
+    return words_written(monkeypatch)
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import pytest
 
 from game.core.settings import TOP_RUNG, Settings
 from game.ui.context import Context
-from tests.game.tour.checkers import CHECKERS, Visit
+from tests.game.tour.checkers import Visit, checkers_at
 from tests.game.tour.stops import STOPS, Stop
 from tests.game.tour.walks import every_widget_is_reached_and_there_is_a_way_out, the_mouse_alone_finds_a_way_out
 from tests.support.games import games
@@ -31,7 +31,7 @@ def visit(subtests: pytest.Subtests, stop: Stop, folder: Path) -> None:
         with subtests.test(stop=str(stop)):
             visit = Visit(stop, stop.open(open_game, context), written)
             scene = visit.driver.top
-            for checker in CHECKERS:
+            for checker in checkers_at(stop):
                 with subtests.test(stop=str(stop), checker=checker.__name__):
                     checker(visit)
                     assert visit.driver.top is scene, f"{visit.driver.top_name} stands there now"
