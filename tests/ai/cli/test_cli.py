@@ -141,6 +141,7 @@ def test_a_request_to_end_reaches_a_process_and_its_work_is_kept(tmp_path):
     assert (tmp_path / "run" / "last" / "config.json").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("preset", ["modern", "classic"])
 def test_a_pause_past_a_checkpoint_changes_nothing_that_is_kept(tmp_path, monkeypatch, preset):
     """Same seed, same network: when the clock asks for a checkpoint, that saves, and chooses nothing."""

@@ -129,6 +129,7 @@ def test_a_folder_that_cannot_be_written_is_named_before_anything_is_learnt(tmp_
     assert [path.name for path in tmp_path.iterdir()] == ["letters"]
 
 
+@pytest.mark.slow
 def test_the_recipe_as_described_saves_reloads_and_reads(tmp_path, capsys):
     run = str(tmp_path / "run")
     assert main(["train-digits", "--preset", "as-described", "--seed", "3", "--output", run]) == 0

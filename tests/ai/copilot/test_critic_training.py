@@ -148,6 +148,7 @@ def learnt(agent):
     return training.critic
 
 
+@pytest.mark.slow
 def test_a_critic_learns_to_tell_moments_apart(agent, small):
     critic = learnt(agent)
     assert sum(row.moments for row in critic.facts.reliability) == 200
@@ -161,6 +162,7 @@ def test_a_critic_learns_to_tell_moments_apart(agent, small):
     assert chance[landed].mean() > chance[~landed].mean() + 0.2
 
 
+@pytest.mark.slow
 def test_the_command_trains_the_one_that_follows_from_its_seed_and_the_co_pilot_finds_it(
     agent, small, tmp_path, capsys
 ):

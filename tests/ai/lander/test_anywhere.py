@@ -87,6 +87,7 @@ def test_stricter_limits_are_not_told():
     assert env.surroundings()[0, -1] / SURROUNDINGS_SCALE[-1] == pytest.approx(LIMITS.touch_speed)
 
 
+@pytest.mark.slow
 def test_sites_of_every_kind_can_be_flown(subtests: pytest.Subtests):
     for kind in SITES:
         with subtests.test(kind=kind):

@@ -59,6 +59,7 @@ def test_a_run_that_only_crashes_is_never_praised_for_landing(name: str):
     assert not {"rises", "high"} & set(seen(name)["success"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", [name for name in names() if "sabotage" in name or "healthy" in name or "back" in name]
 )

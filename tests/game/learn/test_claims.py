@@ -38,6 +38,7 @@ def test_daring_finds_the_landing_that_is_only_paid_at_the_end():
     assert sometimes.state.landed > 0.6
 
 
+@pytest.mark.slow
 def test_learning_from_the_latest_alone_forgets_yesterday():
     latest = SmallRun(SMALL_RUN, 0, MemoryChapter.PLAN._replace(keep=LATEST))
     for _ in range(YESTERDAY):

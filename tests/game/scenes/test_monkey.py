@@ -35,6 +35,7 @@ def test_it_does_find_faults(folder: Path, monkeypatch: pytest.MonkeyPatch):
     assert "a fault on purpose" in monkey.faults.found[0]
 
 
+@pytest.mark.slow
 def test_it_does_find_scenes_that_stay_in_memory(folder: Path, monkeypatch: pytest.MonkeyPatch):
     kept: list[MenuScene] = []
     leave = MenuScene.exit

@@ -174,6 +174,7 @@ def test_a_name_that_is_taken_is_told_and_can_be_changed(train: Driver) -> None:
     train.wait(scene.lander_run.library.runs)
 
 
+@pytest.mark.slow
 def test_a_run_is_begun_that_learns_from_the_players_landings(train: Driver, tmp_path: Path) -> None:
     scene, notes = train.top, list[str]()
     train.app.context.note = notes.append
