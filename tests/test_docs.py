@@ -31,13 +31,14 @@ def exists(name: str) -> bool:
     return False
 
 
-@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.relative_to(ROOT).as_posix())
-def test_what_a_document_names_exists(document: Path):
-    text = document.read_text(encoding="utf-8")
-    names = {name for name in _DOTTED.findall(text) if not exists(name)}
-    files = {name for name in _FILE.findall(text) if not (ROOT / name).exists()}
-    links = {link for link in _LINK.findall(text) if not (document.parent / link).exists()}
-    assert not names | files | links
+def test_what_a_document_names_exists(subtests: pytest.Subtests):
+    for document in DOCUMENTS:
+        with subtests.test(document=document):
+            text = document.read_text(encoding="utf-8")
+            names = {name for name in _DOTTED.findall(text) if not exists(name)}
+            files = {name for name in _FILE.findall(text) if not (ROOT / name).exists()}
+            links = {link for link in _LINK.findall(text) if not (document.parent / link).exists()}
+            assert not names | files | links
 
 
 def test_what_a_source_names_exists():

@@ -89,6 +89,7 @@ def test_data_lies_in_the_app_as_in_a_checkout(files):
     assert {"mnist", "models", "files"} <= {part for _, folder in files for part in folder.parts}
 
 
+@pytest.mark.slow
 def test_the_game_opens_nothing_that_is_left_out(files, tmp_path: Path):
     script = tmp_path / "session.py"
     script.write_text(SESSION, encoding="utf-8")

@@ -108,20 +108,21 @@ DISTURBANCES = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("disturb", DISTURBANCES)
-def test_a_sleeping_stack_wakes_by(disturb):
-    world, awake = sleeping_tower(), tower(sleeping=False)
-    top = world.bodies[3].position.copy()
-    disturb(world)
-    world.step()
-    assert not asleep(world)[0, world.state.active[0]].any()
-    advance(world, 30)
-    assert abs(world.bodies[3].position - top).max() > 0.002
-    # It goes on as a stack does that has never slept.
-    advance(awake, 120)
-    disturb(awake)
-    advance(awake, 31)
-    assert world.state.pose == pytest.approx(awake.state.pose, abs=0.01)
+def test_a_sleeping_stack_wakes_by(subtests):
+    for disturb in DISTURBANCES:
+        with subtests.test(disturb=disturb):
+            world, awake = sleeping_tower(), tower(sleeping=False)
+            top = world.bodies[3].position.copy()
+            disturb(world)
+            world.step()
+            assert not asleep(world)[0, world.state.active[0]].any()
+            advance(world, 30)
+            assert abs(world.bodies[3].position - top).max() > 0.002
+            # It goes on as a stack does that has never slept.
+            advance(awake, 120)
+            disturb(awake)
+            advance(awake, 31)
+            assert world.state.pose == pytest.approx(awake.state.pose, abs=0.01)
 
 
 def test_a_sleeping_stack_wakes_by_a_hit():

@@ -153,9 +153,8 @@ def test_a_world_gone_to_nan_harms_no_other():
     assert np.isnan(three.state.pose[[0, 2]]).any(axis=(1, 2)).all()
 
 
-@pytest.mark.parametrize(
-    ("settings", "reason"),
-    [
+def test_what_makes_no_sense_is_refused(subtests):
+    for settings, reason in [
         ({"mass": 0.0}, "positive, finite mass"),
         ({"mass": np.nan}, "positive, finite mass"),
         ({"mass": -1.0}, "positive, finite mass"),
@@ -165,14 +164,13 @@ def test_a_world_gone_to_nan_harms_no_other():
         ({"friction": -0.1}, "friction"),
         ({"restitution": 1.5}, "restitution"),
         ({"position": (0.0, np.nan)}, "position"),
-    ],
-)
-def test_what_makes_no_sense_is_refused(settings, reason):
-    world = World()
-    with pytest.raises(ValueError, match=reason):
-        world.add(BOX, **{"position": (0, 0), **settings})
-    assert world.bodies == []
-    assert world.state.pose.shape == (1, 0, 3)
+    ]:
+        with subtests.test(settings=settings, reason=reason):
+            world = World()
+            with pytest.raises(ValueError, match=reason):
+                world.add(BOX, **{"position": (0, 0), **settings})
+            assert world.bodies == []
+            assert world.state.pose.shape == (1, 0, 3)
 
 
 def test_no_shapes_and_no_worlds_are_refused():

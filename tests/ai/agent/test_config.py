@@ -36,9 +36,8 @@ def test_classic_is_the_agent_first_described():
     assert classic.spawn == "curriculum"
 
 
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
+def test_a_setting_out_of_range_is_named(subtests):
+    for changes, message in [
         ({"learning_rate": -1.0}, "learning_rate lies between"),
         ({"replay_size": 500, "replay_prune": 501}, "replay_prune is at most replay_size"),
         ({"learning_rate": float("nan")}, "learning_rate lies between"),
@@ -65,11 +64,9 @@ def test_classic_is_the_agent_first_described():
         ({"spawn": "x" * 100_000}, "spawn is one of .*x{20}…$"),
         ({"reward_weights": RewardWeights(time=True)}, "reward_weights are finite numbers"),
         ({"reward_weights": RewardWeights(time=10**400)}, "reward_weights are finite numbers"),
-    ],
-)
-def test_a_setting_out_of_range_is_named(changes, message):
-    with pytest.raises(ValueError, match=message):
-        Config().changed(**changes)
+    ]:
+        with subtests.test(changes=changes, message=message), pytest.raises(ValueError, match=message):
+            Config().changed(**changes)
 
 
 def test_numbers_of_numpy_are_plain_numbers():

@@ -125,6 +125,7 @@ sys.exit(main(sys.argv[1:]))
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
 def test_a_request_to_end_reaches_a_process_and_its_work_is_kept(tmp_path):
     arguments = ["train", "--seconds", "600", "--output", str(tmp_path / "run"), "--validation", "4", *SMALL]
@@ -140,6 +141,7 @@ def test_a_request_to_end_reaches_a_process_and_its_work_is_kept(tmp_path):
     assert (tmp_path / "run" / "last" / "config.json").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("preset", ["modern", "classic"])
 def test_a_pause_past_a_checkpoint_changes_nothing_that_is_kept(tmp_path, monkeypatch, preset):
     """Same seed, same network: when the clock asks for a checkpoint, that saves, and chooses nothing."""

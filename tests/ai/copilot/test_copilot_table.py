@@ -30,6 +30,7 @@ def few(monkeypatch):
     monkeypatch.setattr(copilot_table, "THREE_PADS", ((ALONE, 0.0), (Mode.GUARDIAN, 0.4), (OPEN, 0.4)))
 
 
+@pytest.mark.slow
 def test_the_co_pilot_helps_on_one_pad(agent, few, monkeypatch):
     rows = list(one_pad(agent, agent, 24))
     modes = ["alone", "tolerance", "guardian", VALUES]
@@ -58,6 +59,7 @@ def test_the_co_pilot_helps_on_one_pad(agent, few, monkeypatch):
     assert network.success > 0.95
 
 
+@pytest.mark.slow
 def test_the_co_pilot_brings_a_pilot_to_the_pad_they_have_in_mind(agent, few):
     alone, guarded, all_open = three_pads(agent, agent, 40)
     assert guarded.own_pad > alone.own_pad + 0.3
@@ -71,6 +73,7 @@ def test_an_interval_holds_the_share_and_shrinks_with_the_number_of_trials():
     assert wilson(0.5, 100) == pytest.approx((0.4038, 0.5962), abs=1e-4)
 
 
+@pytest.mark.slow
 def test_the_command_prints_both_tables_which_follow_from_the_seed(few, monkeypatch, capsys):
     monkeypatch.setattr(copilot_table, "PILOTS", {"laggy": copilot_table.PILOTS["laggy"]})
     told = []
@@ -80,6 +83,8 @@ def test_the_command_prints_both_tables_which_follow_from_the_seed(few, monkeypa
     assert told[0] == told[1]
     assert [len(told[0]["one_pad"]), len(told[0]["three_pads"])] == [5, 3]
     assert np.isfinite([row["mean_return"] for row in told[0]["one_pad"]]).all()
+    monkeypatch.setattr(copilot_table, "ONE_PAD", copilot_table.ONE_PAD[:1])
+    monkeypatch.setattr(copilot_table, "THREE_PADS", copilot_table.THREE_PADS[:1])
     assert main.main(["copilot-table", "--episodes", "2"]) == 0
     assert "own pad" in capsys.readouterr().out
 

@@ -38,9 +38,8 @@ def doing(*actions):
     return Always()
 
 
-@pytest.mark.parametrize(
-    ("faults", "wish", "does"),
-    [
+def test_hands_have_the_faults_they_are_given(subtests):
+    for faults, wish, does in [
         (Faults(), 4, {4}),
         (Faults(inverted=True), 4, {5}),
         (Faults(one_key=True), 4, {1, 3}),
@@ -50,11 +49,10 @@ def doing(*actions):
         (Faults(change=1.0), 1, {0, 2}),
         (Faults(sticky=1.0), 4, {0}),
         (Faults(late=99), 4, {4}),  # nothing is later than what was first wished
-    ],
-)
-def test_hands_have_the_faults_they_are_given(faults, wish, does):
-    hands = ClumsyHands(doing(*[wish] * 40), 40, np.random.default_rng(0), faults)
-    assert {int(action) for _ in range(3) for action in hands.act(np.zeros((40, 9)))} == does
+    ]:
+        with subtests.test(faults=faults, wish=wish, does=does):
+            hands = ClumsyHands(doing(*[wish] * 40), 40, np.random.default_rng(0), faults)
+            assert {int(action) for _ in range(3) for action in hands.act(np.zeros((40, 9)))} == does
 
 
 def test_late_hands_do_what_was_wished_before():
@@ -150,6 +148,7 @@ def learnt(agent):
     return training.critic
 
 
+@pytest.mark.slow
 def test_a_critic_learns_to_tell_moments_apart(agent, small):
     critic = learnt(agent)
     assert sum(row.moments for row in critic.facts.reliability) == 200
@@ -163,6 +162,7 @@ def test_a_critic_learns_to_tell_moments_apart(agent, small):
     assert chance[landed].mean() > chance[~landed].mean() + 0.2
 
 
+@pytest.mark.slow
 def test_the_command_trains_the_one_that_follows_from_its_seed_and_the_co_pilot_finds_it(
     agent, small, tmp_path, capsys
 ):

@@ -43,9 +43,8 @@ def seen(slots=1, pads=1):
     return np.zeros((slots, pads, 9), np.float32)
 
 
-@pytest.mark.parametrize(
-    ("chances", "pilot", "action", "source"),
-    [
+def test_the_stick_is_the_pilots_while_the_flight_can_be_saved_and_then_as_little_as_helps_is_changed(subtests):
+    for chances, pilot, action, source in [
         (row(), 2, 2, ActionSource.PILOT),
         (row(a2=REQUIRED), 2, 2, ActionSource.PILOT),
         (row(), 0, 0, ActionSource.PILOT),  # who asks for nothing gets it, while that is safe
@@ -53,17 +52,14 @@ def seen(slots=1, pads=1):
         (row(a2=LOST, a1=LOST), 2, 5, ActionSource.PILOT_STEER),  # engine alone
         (row(a2=LOST, a1=LOST, a5=LOST), 2, 4, ActionSource.COPILOT),
         (row(a0=LOST, a1=LOST, a3=LOST), 0, 4, ActionSource.COPILOT),
-    ],
-)
-def test_the_stick_is_the_pilots_while_the_flight_can_be_saved_and_then_as_little_as_helps_is_changed(
-    chances, pilot, action, source
-):
-    decision = guardian(chances).decide(seen(), [pilot])
-    assert (decision.action[0], decision.source[0]) == (action, source)
-    assert decision.chance[0] == pytest.approx(chances[pilot])
-    assert decision.chances[0, decision.action[0]] == pytest.approx(chances[action])
-    assert decision.feasible[0, action]
-    assert decision.required[0] == pytest.approx(REQUIRED)
+    ]:
+        with subtests.test(chances=chances, pilot=pilot, action=action, source=source):
+            decision = guardian(chances).decide(seen(), [pilot])
+            assert (decision.action[0], decision.source[0]) == (action, source)
+            assert decision.chance[0] == pytest.approx(chances[pilot])
+            assert decision.chances[0, decision.action[0]] == pytest.approx(chances[action])
+            assert decision.feasible[0, action]
+            assert decision.required[0] == pytest.approx(REQUIRED)
 
 
 def test_where_nothing_is_safe_enough_the_best_of_the_four_is_flown():

@@ -343,6 +343,7 @@ def test_a_file_never_starts_code(tmp_path, monkeypatch, capsys):
 # Writers
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("subject", SUBJECTS, ids=lambda subject: subject.name)
 def test_a_writer_that_is_killed_leaves_the_old_or_the_new(subject, tmp_path):
     found = list(killed(subject, tmp_path, every=29 if subject.name == "run" else 7 if subject.name == "digits" else 1))

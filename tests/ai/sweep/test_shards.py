@@ -75,6 +75,7 @@ def test_a_worker_flies_one_shard_after_another_with_the_same_network(monkeypatc
     assert fly(parts[0]) == fly(parts[0])
 
 
+@pytest.mark.slow
 def test_the_copilots_table_is_the_same_in_parts(monkeypatch):
     monkeypatch.setattr(measurement, "ONE_PAD", measurement.ONE_PAD[:2])  # the rest takes long
     monkeypatch.setattr(measurement, "THREE_PADS", measurement.THREE_PADS[:2])

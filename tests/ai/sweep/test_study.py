@@ -52,6 +52,7 @@ def optimizer_of(folder):
     return kept
 
 
+@pytest.mark.slow
 def test_a_trials_run_is_that_of_train_bit_for_bit(made, tmp_path):
     changes = [f"{name}={list(value) if isinstance(value, tuple) else value}" for name, value in TINY.items()]
     changes += ["learning_rate=0.002", "tau=0.02"]
@@ -276,6 +277,7 @@ def test_a_name_is_found_among_the_users_studies_and_a_path_where_it_leads(tmp_p
     assert str(find("./mine", tmp_path)) == "mine"
 
 
+@pytest.mark.slow
 def test_a_trial_of_digits_is_that_of_train_digits(tmp_path):
     config = DIGIT_PRESETS["classic"].changed(hidden=(8,), batch_size=5000, epochs=1, augmentation=0.0)
     plan = digits_plan(config, 1)

@@ -213,21 +213,26 @@ def test_bars_are_said_to_have_been_pushed_only_after_it_and_not_if_a_hand_was_t
     assert "pushed" not in words(taken)[-1]
 
 
-@pytest.mark.parametrize("name", EXHIBITS)
-def test_every_sentence_of_an_exhibit_can_be_said(name: str):
-    states = set()
-    for hands, seconds in ((0, 3.0), (6, 1.0)):
-        exhibit = EXHIBITS[name](EARTH)
-        for _ in life(exhibit, seconds, hands):
-            states.add(exhibit.state)
-    if name in ("bounce", "drag"):
-        hold(exhibit := EXHIBITS[name](EARTH), exhibit.balls[3] if name == "bounce" else exhibit.discs[1], (1.0, 8.0))
-        states.add(exhibit.state)
-    if name == "impacts":
-        states.add(EXHIBITS[name](EARTH, {"restitution": 0.8}).state)
-    if name == "stack":
-        states.add("fallen")  # has a test of its own
-    assert states == set(texts.EXHIBITS[name][2])
+def test_every_sentence_of_an_exhibit_can_be_said(subtests: pytest.Subtests):
+    for name in EXHIBITS:
+        with subtests.test(name=name):
+            states = set()
+            for hands, seconds in ((0, 3.0), (6, 1.0)):
+                exhibit = EXHIBITS[name](EARTH)
+                for _ in life(exhibit, seconds, hands):
+                    states.add(exhibit.state)
+            if name in ("bounce", "drag"):
+                hold(
+                    exhibit := EXHIBITS[name](EARTH),
+                    exhibit.balls[3] if name == "bounce" else exhibit.discs[1],
+                    (1.0, 8.0),
+                )
+                states.add(exhibit.state)
+            if name == "impacts":
+                states.add(EXHIBITS[name](EARTH, {"restitution": 0.8}).state)
+            if name == "stack":
+                states.add("fallen")  # has a test of its own
+            assert states == set(texts.EXHIBITS[name][2])
 
 
 def test_gravity_is_offered_only_where_there_is_any_and_has_its_unit(open_game: Callable[..., Driver]):

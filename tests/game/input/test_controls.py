@@ -20,9 +20,8 @@ def hold(controls: Controls, *keys: int) -> None:
         send(controls, pygame.KEYDOWN, key=key, mod=0)
 
 
-@pytest.mark.parametrize(
-    ("keys", "action"),
-    [
+def test_held_keys_make_the_action(subtests):
+    for keys, action in [
         ((), 0),
         ((pygame.K_LEFT,), 1),
         ((pygame.K_d,), 2),
@@ -30,15 +29,14 @@ def hold(controls: Controls, *keys: int) -> None:
         ((pygame.K_w, pygame.K_a), 4),
         ((pygame.K_UP, pygame.K_RIGHT), 5),
         ((pygame.K_a, pygame.K_d), 0),
-    ],
-)
-def test_held_keys_make_the_action(keys, action):
-    controls = Controls()
-    hold(controls, *keys)
-    assert controls.action == action
-    for key in keys:
-        send(controls, pygame.KEYUP, key=key, mod=0)
-    assert controls.action == 0
+    ]:
+        with subtests.test(keys=keys, action=action):
+            controls = Controls()
+            hold(controls, *keys)
+            assert controls.action == action
+            for key in keys:
+                send(controls, pygame.KEYUP, key=key, mod=0)
+            assert controls.action == 0
 
 
 def test_losing_focus_lets_go_of_everything():
