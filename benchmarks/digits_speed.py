@@ -148,7 +148,7 @@ def main() -> None:
         ours, *theirs = (microseconds / 1000 for microseconds in medians(*tasks, calls=calls, rounds=rounds))
         print(f"{name:44}{ours:8.2f}" + "".join(f"{time:10.2f}{ours / time:8.2f}" for time in theirs))
     if torch is None:
-        print('\nPyTorch is not installed; to compare with it: pip install "tranquility[bench]"')
+        print('\nPyTorch is not installed; to compare with it: pip install -e ".[bench]"')
 
 
 if __name__ == "__main__":

@@ -153,7 +153,7 @@ def main() -> None:
     four, one = speeds([landings(4), landings(1)], arguments.rounds)
     print(f"\nOne lander in flights that land: {four:,.0f} with 4 steps a decision, {one:,.0f} with 1")
     if len(rivals) < 2:
-        print('\nNot all rivals are installed; to compare with them: pip install "tranquility[bench]"')
+        print('\nNot all rivals are installed; to compare with them: pip install -e ".[bench]"')
 
 
 if __name__ == "__main__":

@@ -196,7 +196,7 @@ def compare(arguments: argparse.Namespace, config: Config) -> None:
     runs = [done[seed] for seed in range(arguments.seeds)]
     mine = row(f"ours, {arguments.preset}", runs, arguments.seconds)
     if not rival:
-        print('\nto compare with stable-baselines3: pip install "tranquility[bench]"')
+        print('\nto compare with stable-baselines3: pip install -e ".[bench]"')
         return
     limit = arguments.rival_seconds
     runs = [race(sb3_dqn(LANDER, seed, spawn=config.spawn), limit) for seed in range(arguments.rival_seeds)]

@@ -85,7 +85,7 @@ def main() -> None:
     print("|---|---|---|---|---|---|")
     row("ours", [measured(ours(seed, arguments.decisions)) for seed in range(arguments.seeds)])
     if "stable-baselines3" not in rivals:
-        print('\nto compare with stable-baselines3: pip install "tranquility[bench]"')
+        print('\nto compare with stable-baselines3: pip install -e ".[bench]"')
     elif arguments.rival_seeds > 0:
         limit = arguments.rival_seconds
         row(

@@ -151,7 +151,7 @@ def main() -> None:
             line += f" {rival_time:8.1f} {one / rival_time:8.2f} {many / rival_time:8.2f}"
         print(line, flush=True)
     if not pymunk:
-        print('\nFor the other side: pip install "tranquility[bench]"')
+        print('\nFor the other side: pip install -e ".[bench]"')
 
 
 if __name__ == "__main__":

@@ -164,7 +164,7 @@ def main() -> None:
     report("decision 9-128-128-6 tanh", our_decision(), theirs, 100)
 
     if torch is None:
-        print('\nPyTorch is not installed; to compare with it: pip install "tranquility[bench]"')
+        print('\nPyTorch is not installed; to compare with it: pip install -e ".[bench]"')
 
 
 def report(name: str, ours: Callable[[], object], theirs: Callable[[], object] | None, calls: int) -> None:

@@ -13,7 +13,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
-MISSING: Final = 'this needs Ray and Optuna: pip install "tranquility[sweep]"'
+MISSING: Final = 'this needs Ray and Optuna: pip install -e ".[sweep]"'
 LOOPBACK: Final = "127.0.0.1"
 _ROOT: Final = Path(__file__).parents[2]
 _STORE: Final = 256 << 20  # bytes of Ray's object store on one machine; results are some hundred KB each
