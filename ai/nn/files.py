@@ -66,9 +66,20 @@ def open_file(path: str | Path, most: int | None = None) -> BinaryIO:
 def read_bytes(path: str | Path, most: int = SMALL) -> bytes:
     """Return what a file of at most so many bytes holds; raises OSError."""
     with open_file(path, most) as file:
-        held = file.read(most + 1)
+        return _all_of(file, path, most)
+
+
+def read_standard_input(most: int = SMALL) -> str:
+    """Return the text that is piped in, of at most so many bytes; raises OSError, or ValueError if it is no UTF-8."""
+    if sys.stdin is None:
+        raise OSError(errno.EBADF, "standard input is closed")
+    return _all_of(sys.stdin.buffer, "standard input", most).decode("utf-8")
+
+
+def _all_of(file: BinaryIO, name: str | Path, most: int) -> bytes:
+    held = file.read(most + 1)
     if len(held) > most:  # it has grown, or lies about its size as the system's own files do
-        raise _too_large(path, most)
+        raise _too_large(name, most)
     return held
 
 

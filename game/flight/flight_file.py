@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Annotated, Any, Final
 
 from ai.flights.easing import AS_IT_IS, Easing
+from ai.flights.places import COURSES
 from ai.flights.recording import LONGEST, Recording, StickHolder
 from ai.flights.stick import STEPS, Shares
 from ai.lander.descent import MOST_LEGS, TANK, LegStart
@@ -207,8 +208,9 @@ def from_text(text: str) -> Record:
     except ValueError as error:
         raise ValueError(texts.FLIGHT_FORMAT.format(format=FORMAT, version=VERSION)) from error
     file = read_as(_FlightFile, values, strict=True)
-    if file.mission and file.mission not in MISSIONS:
-        raise ValueError(texts.FLIGHT_MISSION.format(name=brief(file.mission, 40)))
+    for name, known in ((file.mission, ("", *MISSIONS)), (file.entry.course, COURSES)):
+        if name not in known:
+            raise ValueError(texts.FLIGHT_MISSION.format(name=brief(name, 40)))
     actions = [int(word) for word in _unpacked(file.actions)]
     hands = [StickHolder(word) for word in _unpacked(file.hands)]
     if len(actions) != len(hands) or not all(0 <= action < NUM_ACTIONS for action in actions):

@@ -14,6 +14,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any, Final
 
+from ai.flights.places import DESCENT
 from ai.flights.score import landing_score
 from ai.nn.files import parse_json, read_end
 from ai.nn.schema import read_as
@@ -26,7 +27,6 @@ from game.flight.flight_file import Entry, Record
 
 FOLDER: Final = "flights"
 LOGBOOK: Final = "logbook.jsonl"
-DESCENT: Final = "descent"  # the course of its legs
 RECENT: Final = 100  # latest flights, whose files are kept whatever their outcome
 BEST: Final = 5  # best landings of each mission, whose files are kept too, as are those of the longest descent
 _LARGEST: Final = 16_000_000  # last bytes of the logbook that are read: 50,000 flights
