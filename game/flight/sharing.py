@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from ai.flights.code import CodeError, code_of, codes_in, flight_of
-from ai.flights.places import DAILY, day_of, in_its_place
+from ai.flights.places import DAILY, DESCENT, day_of, in_its_place
 from ai.flights.recording import StickHolder
 from ai.flights.shared import Claim, SharedFlight
 from ai.flights.verification import Earned
@@ -124,6 +124,8 @@ def course_name(course: str, leg: int, spawn: str, pads: int) -> str:
         return texts.DESCENT_COURSE.format(number=leg)
     if course == DAILY:
         return texts.DAILY
+    if course == DESCENT:  # and no leg of one
+        return texts.DESCENT_TITLE
     if course in texts.MISSIONS:
         return texts.MISSIONS[course][0]
     if spawn in RUNGS:
