@@ -5,6 +5,7 @@ from typing import Final
 from game.core.catalogue import Plural
 
 LANGUAGE: Final[str]
+damaged: Final[str]  # the path of a catalogue that cannot be read
 
 def said(sentence: str, /) -> str: ...
 
@@ -570,6 +571,7 @@ LADDER_STAYS: Final[str]
 LADDER_TITLE: Final[str]
 LADDER_TOP: Final[str]
 LADDER_UP: Final[str]
+LANGUAGE_DAMAGED: Final[str]
 LAWS: Final[dict[str, tuple[str, str, str, str, str]]]
 LAW_ALL: Final[Plural]
 LAW_AXIS: Final[str]
