@@ -35,6 +35,7 @@ def play(folder: Path | None = None, full_screen: bool | None = None, begin: Rou
 
     """
     tell_sdl()
+    from ai.cli.command_line import stoppable
     from game.core import texts
     from game.core.assets import user_dir
     from game.core.settings import SettingsFile
@@ -65,7 +66,8 @@ def play(folder: Path | None = None, full_screen: bool | None = None, begin: Rou
     gc.freeze()
     gc.set_threshold(20_000, 20, 50)
     ahead.begin(context)
-    return app.run()
+    with stoppable("SIGHUP") as stop:
+        return app.run(stop)
 
 
 def tell_sdl() -> None:

@@ -20,6 +20,7 @@ from ai.cli.command_line import (
     folder,
     out_of_range,
     reason,
+    say,
     stoppable,
 )
 
@@ -97,7 +98,7 @@ def _sweep(arguments: argparse.Namespace) -> int:
         return fail(reason(error))
     _tell(study)
     if len(study.trials) < study.plan.trials:
-        print(_again(arguments, study))
+        say(_again(arguments, study))
     return exit_code(stop) or code
 
 

@@ -10,13 +10,14 @@ import errno
 import json
 import math
 import os
+import re
 import secrets
 import stat
 import sys
 import zipfile
 import zlib
 from collections.abc import Callable, Iterable
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from pathlib import Path
 from typing import IO, Any, BinaryIO, Final
 
@@ -32,6 +33,9 @@ _DIRECTORY: Final = 1 << 16  # bytes that a zip archive's list of its members ma
 _END: Final = 22  # bytes at the end of a zip archive that say where that list is
 _FLAGS: Final = sum(getattr(os, name, 0) for name in ("O_RDONLY", "O_NONBLOCK", "O_CLOEXEC", "O_NOCTTY", "O_BINARY"))
 _BROKEN: Final = (EOFError, MemoryError, NotImplementedError, RuntimeError, zipfile.BadZipFile, zlib.error)
+
+# Characters that end a line, move the cursor or turn the order of writing around, and show nothing themselves.
+CONTROLS: Final = re.compile("[\x00-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]")
 
 Expect = Callable[[str, tuple[int, ...], np.dtype[Any]], None]  # raises ValueError for an array not expected
 
@@ -289,17 +293,29 @@ def write_bytes(path: Path, content: bytes, *, flush: bool = True, new: bool = F
     try:
         with temporary.open("xb") as file:
             file.write(content)
-            if flush:
-                file.flush()
-                os.fsync(file.fileno())
+        if flush:
+            synchronise(temporary)
         if new and _linked(temporary, path):
             temporary.unlink()
         else:
             temporary.replace(path)
+        if flush:
+            synchronise(path.parent)  # which holds the name
     except BaseException:
         with suppress(OSError):
             temporary.unlink(missing_ok=True)
         raise
+
+
+def synchronise(path: Path) -> None:
+    """Wait until a file or folder has reached the disk; not every system can promise that of a folder."""
+    folder = path.is_dir()
+    with suppress(OSError) if folder else nullcontext():
+        descriptor = os.open(path, os.O_RDONLY if folder else os.O_RDWR)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)
 
 
 def _linked(temporary: Path, path: Path) -> bool:

@@ -35,12 +35,12 @@ VERSION: Final = 5
 # of thrust, no easing, no descents and no version of the area: it was the first.
 _READS: Final = (1, 2, 3, 4, 5)
 _LARGEST: Final = 2_000_000  # bytes
-_LONGEST_NAME: Final = 255  # characters, as in the name of a file
+LONGEST_NAME: Final = 255  # characters, as in the name of a file
 _MOST: Final = 32_503_680_000 - 1  # limit of any figure; as a date the year 2999, the last on some systems
 
 _Figure = Annotated[float, Within(0, _MOST)]
 _Number = Annotated[int, Within(0, _MOST)]
-_Name = Annotated[str, Sized(_LONGEST_NAME)]
+_Name = Annotated[str, Sized(LONGEST_NAME)]
 
 
 def _plain_name(name: str) -> None:
@@ -90,7 +90,7 @@ class Entry:
     score: _Number = 0
     course: _Name = ""
     medal: _Number = 0
-    file: Annotated[str, Sized(_LONGEST_NAME), _plain_name] = ""
+    file: Annotated[str, Sized(LONGEST_NAME), _plain_name] = ""
     gravity: _Figure = 1.0
     pace: _Figure = 1.0
     rules: _Number = 0

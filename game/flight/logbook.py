@@ -16,7 +16,7 @@ from typing import Any, Final
 
 from ai.flights.places import DESCENT
 from ai.flights.score import landing_score
-from ai.nn.files import parse_json, read_end
+from ai.nn.files import brief, parse_json, read_end
 from ai.nn.schema import read_as
 from game.core import texts
 from game.core.names import LibraryError, free_path
@@ -38,6 +38,7 @@ RECENT_OWN: Final = 10  # number of last flights by the person alone that measur
 def describe(flight: Flight, when: float, **more: Any) -> Entry:
     """Return the logbook's line for a flight that has ended; `more` are the fields that the flight does not know."""
     env = flight.env
+    more["network"] = brief(more.get("network", ""), flight_file.LONGEST_NAME)  # a folder's name, and maybe words on it
     return Entry(
         when=round(when, 3),
         outcome=flight.outcome.name,

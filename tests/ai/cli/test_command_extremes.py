@@ -42,7 +42,7 @@ LONG = "x" * 100_000
 NUMBERS = ["-1", "nan", "inf", "-inf", "1e999", "", " ", "1" * 400, "9" * 5_000, "one", "-0x1", "1\N{EN DASH}2"]
 COUNTS = ["0", "1.5", *NUMBERS]
 PATHS = ["", " ", "/", "file", "file/x", "loop", "loop/x", "full", "/dev/null", "/dev/null/x", "/proc/nowhere",
-         "x" * 300, "y/" * 3_000, "a\0b", "\ud800"]  # fmt: skip
+         "x" * 300, "y/" * 3_000, "a\0b", "\ud800", "a\nb", "\x1b[2J", "a\u202eb"]  # fmt: skip
 UNREADABLE = [*PATHS, "nowhere", "deep", "list", "\n\n", "\x1b[2J", "empty"]
 WORDS = ["", "x", LONG, "classic\0", "\N{EN DASH}", "\ud800", "null", "\x1b[2J"]
 ENVS = [
