@@ -101,19 +101,21 @@ def out_of_range(arguments: argparse.Namespace, **ranges: tuple[float, float]) -
 
 def configured(preset: Settings, given: list[str]) -> Settings:
     """Return the preset with some settings changed, each as NAME=VALUE; raises ValueError for nonsense."""
-    changes = {}
+    values = preset.to_json()
     for change in given:
         name, equals, text = change.partition("=")
         name = preset.name_now(name)
-        if not equals or name not in preset.to_json():
+        if not equals or name not in values:
             raise ValueError(f"--set takes NAME=VALUE with the name of a setting, not {change!r}")
         try:
-            changes[name] = json.loads(text)
+            value = json.loads(text)
         except RecursionError:
             raise ValueError(f"--set {name}: that is nested too deeply") from None
         except ValueError:
-            changes[name] = text
-    return preset.from_json(preset.to_json() | changes)
+            value = text
+        parts = isinstance(value, dict) and isinstance(values[name], dict)  # those not named stay as they are
+        values[name] = values[name] | value if parts else value
+    return preset.from_json(values)
 
 
 def refuse_fixed(begun: Settings, wanted: Settings, begun_seed: int, seed: int | None) -> None:
@@ -160,7 +162,8 @@ def fail_diverged(stopped: str, output: Path, *, measured: bool) -> int:
 def stoppable(*names: str) -> Iterator[list[int]]:
     """Collect Ctrl-C and termination signals in the list, so that they never cut short a step or its save.
 
-    An entry is the number of a signal; `names` are of other signals to collect in place of these. Meant for the main thread; afterwards, signals do what they did before.
+    An entry is the number of a signal; `names` are of other signals to collect in place of these. Meant for the main
+    thread; afterwards, signals do what they did before.
     """
     stop: list[int] = []
     terminals = [number for number in (1, 2) if os.isatty(number)]

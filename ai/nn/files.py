@@ -46,6 +46,26 @@ def brief(text: object, most: int = 200) -> str:
     return said if len(said) <= most else said[: most - 1] + "…"
 
 
+def shown(value: object, most: int = 40) -> str:
+    """Return a value as a message quotes it: in JSON's words, not Python's, and shortened, whatever a file may hold."""
+    try:
+        text = repr(value) if isinstance(value, str) else json.dumps(value, ensure_ascii=False, default=vars)
+    except TypeError:  # an object of the program's own
+        text = repr(value)
+    except ValueError:  # an int of more than some 4,000 digits
+        return "a number of very many digits"
+    return brief(text, most)
+
+
+def problem_in(error: Exception) -> str:
+    """Return what is wrong with values that a file holds, for which reading them failed: not in Python's words."""
+    if isinstance(error, KeyError):
+        return f"{brief(error.args[0], 60)} is missing"
+    if isinstance(error, TypeError):
+        return "what it holds is of another kind than it should be"
+    return brief((isinstance(error, OSError) and error.strerror) or error, 400)
+
+
 # Bytes and text
 
 
@@ -161,16 +181,16 @@ _DECODER: Final = json.JSONDecoder(parse_int=_whole, parse_float=_finite, parse_
 def count_of(value: Any, least: int = 0, most: int = MOST) -> int:
     """Return a whole number that a file has given; raises ValueError if it is none, or out of range."""
     if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
-        raise ValueError(f"{brief(repr(value), 40)} is no whole number from {least:,} to {most:,}")
+        raise ValueError(f"{shown(value)} is no whole number from {least:,} to {most:,}")
     return value
 
 
 def number_of(value: Any, least: float = -math.inf) -> float:
     """Return a finite number that a file has given, as it is; raises ValueError if it is none, or too small."""
     if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= sys.float_info.max:
-        raise ValueError(f"{brief(repr(value), 40)} is no finite number")
+        raise ValueError(f"{shown(value)} is no finite number")
     if value < least:
-        raise ValueError(f"{brief(repr(value), 40)} is below {least:g}")
+        raise ValueError(f"{shown(value)} is below {least:g}")
     return value
 
 

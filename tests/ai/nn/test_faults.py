@@ -245,7 +245,8 @@ def test_a_written_file_waits_for_its_content_and_then_for_its_name(tmp_path, mo
     flushed, fsync = [], os.fsync
 
     def note(descriptor):
-        flushed.append(sorted(os.listdir(descriptor)) if stat.S_ISDIR(os.fstat(descriptor).st_mode) else "content")
+        folder = stat.S_ISDIR(os.fstat(descriptor).st_mode)
+        flushed.append([path.name for path in tmp_path.iterdir()] if folder else "content")
         fsync(descriptor)
 
     monkeypatch.setattr(os, "fsync", note)
