@@ -48,7 +48,7 @@ def session(run):
     from game.drawing import typeface
     from game.scenes import ROUTES
 
-    def play(app):
+    def play(app, stop):
         for name in ("play", "missions", "watch", "train", "runs", "digits", "learn", "physics", "logbook", "settings"):
             app.show(Route(name))
             app.tick()

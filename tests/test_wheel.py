@@ -28,7 +28,7 @@ def session():
     from game.shell.app import App
     from game.core.worker import Worker
     run, worker = App.run, Worker(places)
-    App.run = lambda app: run(app, max_frames=20)
+    App.run = lambda app, stop: run(app, stop, max_frames=20)
     assert main(["--user-dir", "player"]) == 0
     told = []
     while not told:

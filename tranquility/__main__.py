@@ -93,7 +93,7 @@ def _parser() -> argparse.ArgumentParser:
 
 def _version() -> str:
     try:
-        return f"Tranquility {version('tranquility')}"
+        return f"Tranquility {version('tranquility-lander')}"
     except PackageNotFoundError:
         return "Tranquility, from a checkout"
 

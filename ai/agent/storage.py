@@ -18,7 +18,7 @@ from ai.agent.normalizer import Normalizer
 from ai.common.environment import Floats
 from ai.nn import ModelFormatError, NeuralNetwork, atomic_folder, recover_folder
 from ai.nn.budget import WIDEST
-from ai.nn.files import brief, count_of, inside, read_arrays, read_json
+from ai.nn.files import brief, count_of, inside, problem_in, read_arrays, read_json
 from ai.nn.folder import NETWORK, FolderKind
 from ai.nn.optimizers import Optimizer
 from ai.nn.schema import check_header
@@ -99,8 +99,7 @@ def read_agent(folder: str | Path, *, env: str | None = None) -> SavedAgent:
         if normalizer:
             normalizer.load(described["scale"])
     except (KeyError, TypeError, ValueError, ArithmeticError) as error:
-        said = f"{error.args[0]} is missing" if isinstance(error, KeyError) else brief(error)
-        raise ModelFormatError(folder, [f"{AGENT_FILE}: {said}"]) from error
+        raise ModelFormatError(folder, [f"{AGENT_FILE}: {problem_in(error)}"]) from error
     problems: list[str] = []
     online, target = (_read_network(folder, name, network, problems) for name in ("online", "target"))
     optimizer = make_optimizer(config)
@@ -109,7 +108,7 @@ def read_agent(folder: str | Path, *, env: str | None = None) -> SavedAgent:
     except OSError as error:
         problems.append(f"{OPTIMIZER_FILE}: {error.strerror or error}")
     except (ValueError, KeyError) as error:
-        problems.append(f"{OPTIMIZER_FILE}: {error}")
+        problems.append(f"{OPTIMIZER_FILE}: {problem_in(error)}")
     if problems:
         raise ModelFormatError(folder, problems)
     return SavedAgent(features, actions, config, decisions, train_count, online, target, optimizer, normalizer)

@@ -19,6 +19,7 @@ from ai.cli.command_line import (
     folder,
     out_of_range,
     reason,
+    say,
     stoppable,
 )
 
@@ -81,7 +82,7 @@ def _train_guardian(arguments: argparse.Namespace) -> int:
     except REFUSED as error:
         return fail(reason(error))
     facts = training.critic.facts
-    print(f"kept in {arguments.model / GUARDIAN}, learnt from {facts.moments:,} moments; of moments not learnt from")
+    say(f"kept in {arguments.model / GUARDIAN}, learnt from {facts.moments:,} moments; of moments not learnt from")
     print(f"{'chance it gave':>16}{'saved':>9}{'moments':>10}")
     for row in facts.reliability:
         print(f"{row.said:16.1%}{row.saved:9.1%}{row.moments:10,}")

@@ -21,6 +21,7 @@ from ai.cli.command_line import (
     out_of_range,
     readable,
     reason,
+    say,
     stoppable,
 )
 
@@ -101,7 +102,7 @@ def _sweep(arguments: argparse.Namespace) -> int:
         return fail(reason(error))
     _tell(study)
     if not _complete(study):
-        print(_again(arguments, study))
+        say(_again(arguments, study))
     return exit_code(stop) or code
 
 

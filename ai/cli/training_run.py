@@ -22,8 +22,10 @@ from ai.cli.command_line import (
     folder,
     keep,
     keep_checkpoint,
+    readable,
     reason,
     refuse_fixed,
+    say,
     stoppable,
 )
 
@@ -142,7 +144,7 @@ def _train_and_keep(training: Run, output: Path, command: RunCommand[Run]) -> in
         return fail(f"{stopped}{'' if saved else f'Nothing new is kept in {output}: '}{error}")
     if stopped:
         return fail_diverged(stopped, output, measured=training.best is not None)
-    print(f"kept in {output}: {command.verdict(training, described)}")
+    say(f"kept in {output}: {command.verdict(training, described)}")
     return exit_code(stop)
 
 
@@ -173,5 +175,5 @@ def show_progress(
             if save := checkpoint(progress):
                 new = keep_checkpoint(save, output)
                 if new and new != trouble:
-                    bar.write(new, file=sys.stderr)
+                    bar.write(readable(new), file=sys.stderr)
                 trouble = new

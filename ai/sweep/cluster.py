@@ -20,7 +20,7 @@ from typing import Any, Final, TypeVar
 
 from ai.nn.files import brief
 
-MISSING: Final = 'this needs Ray and Optuna: pip install "tranquility[sweep]"'
+MISSING: Final = 'this needs Ray and Optuna: pip install -e ".[sweep]"'
 LOOPBACK: Final = "127.0.0.1"
 _ROOT: Final = Path(__file__).parents[2]
 _STORE: Final = 256 << 20  # bytes of Ray's object store on one machine; results are some hundred KB each

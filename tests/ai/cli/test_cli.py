@@ -2,6 +2,7 @@ import json
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -10,6 +11,8 @@ import pytest
 
 import ai.training.checkpoints
 from ai.agent.agent import DeepQAgent
+from ai.agent.config import PRESETS
+from ai.cli.command_line import configured
 from ai.training.checkpoints import save_run
 from ai.training.lander_task import Evaluation, LanderTask
 from ai.training.loop import Training
@@ -303,3 +306,20 @@ def test_a_gradient_that_is_not_finite_ends_the_run_with_the_reason_and_keeps_th
     assert "learning step 21" in told
     assert "learning rate" in told
     assert DeepQAgent.load(tmp_path / "run").train_count == 20
+
+
+def test_weights_of_the_reward_that_are_not_named_stay_the_presets():
+    for preset in PRESETS.values():
+        changed = configured(preset, ['reward_weights={"time": -0.3}', 'weights={"feet": 2.0}'])
+        assert changed.reward_weights == replace(preset.reward_weights, time=-0.3, feet=2.0)
+
+
+def test_an_unknown_part_of_the_reward_is_named_with_those_there_are(tmp_path, capsys):
+    where = ["--output", str(tmp_path / "run"), "--decisions", "1"]
+    for given, told in (
+        ('{"tim": 1}', "reward_weights has no 'tim', only distance, speed, alignment, tilt, feet, engine, switch"),
+        ('{"time": null}', "reward_weights.time is a finite number, not null"),
+        ("3", "reward_weights are numbers by name, of distance, "),
+    ):
+        assert main(["train", *where, "--set", f"reward_weights={given}"]) == 1
+        assert capsys.readouterr().err.startswith(told), given

@@ -8,6 +8,7 @@ from __future__ import annotations
 import io
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -41,7 +42,7 @@ LONG = "x" * 100_000
 NUMBERS = ["-1", "nan", "inf", "-inf", "1e999", "", " ", "1" * 400, "9" * 5_000, "one", "-0x1", "1\N{EN DASH}2"]
 COUNTS = ["0", "1.5", *NUMBERS]
 PATHS = ["", " ", "/", "file", "file/x", "loop", "loop/x", "full", "/dev/null", "/dev/null/x", "/proc/nowhere",
-         "x" * 300, "y/" * 3_000, "a\0b", "\ud800"]  # fmt: skip
+         "x" * 300, "y/" * 3_000, "a\0b", "\ud800", "a\nb", "\x1b[2J", "a\u202eb"]  # fmt: skip
 UNREADABLE = [*PATHS, "nowhere", "deep", "list", "\n\n", "\x1b[2J", "empty"]
 WORDS = ["", "x", LONG, "classic\0", "\N{EN DASH}", "\ud800", "null", "\x1b[2J"]
 ENVS = [
@@ -63,6 +64,7 @@ SETTINGS = [
     "reward_weights=3", "weights=null", "weights=[]", 'weights={"time": 1e999}', f'weights={{"time": 1{"0" * 400}}}',
     'weights={"time": null}', 'weights={"x": 1}', 'weights={"time": "x"}', 'weights={"time": NaN}', "optimizer=[]",
     "optimizer={}", "optimizer=null", "spawn=null", "spawn={}", "batch_size=true", "double=1", "double=null",
+    'weights={"time": -1, "": 2}',
     "replay_size=0", "num_envs=0", "num_envs=1e9", "frame_skip=-1", "discount=1.1", "epsilon_start=2",
 ]  # fmt: skip
 DIGIT_SETTINGS = [
@@ -73,6 +75,7 @@ DIGIT_SETTINGS = [
     "final_learning_rate=0",
 ]  # fmt: skip
 
+_PYTHONS_WORDS = re.compile(r"__|\b(None|True|False|NoneType|argument after|keyword)\b|[{(]'")
 CASES: list[list[str]] = [
     *([*TRAIN, option, value] for option in ("--decisions", "--validation") for value in COUNTS),
     *([*command, "--seconds", value] for command in (TRAIN, TRAIN_DIGITS) for value in ("0", *NUMBERS)),
@@ -138,6 +141,7 @@ def refused(tmp_path, monkeypatch, capsys):
         assert told.count("\n") <= 4
         assert told.replace("\n", "").isprintable()
         assert "Traceback" not in told
+        assert not _PYTHONS_WORDS.search(told)
         assert sorted(map(str, tmp_path.rglob("*"))) == before
         return told
 

@@ -137,7 +137,7 @@ def test_what_is_no_flight_is_refused_with_the_reason(subtests):
 
 
 def test_a_claim_and_a_name_out_of_all_bounds_have_a_code_too():
-    flight = replace(shared([0, 3]), course="ü" * 99, claim=Claim(Outcome.CRASHED, 0, (1e300, -1e306, 0.0)))
+    flight = replace(shared([0, 3]), barred="ü" * 99, claim=Claim(Outcome.CRASHED, 0, (1e300, -1e306, 0.0)))
     assert flight_of(code_of(flight)).recording == flight.recording
 
 

@@ -1,9 +1,11 @@
 """What lies on disk and what comes from strangers: read within bounds, replaced only if it is ours, lost never."""
 
+import errno
 import io
 import json
 import os
 import shutil
+import stat
 import subprocess
 import sys
 import tracemalloc
@@ -252,6 +254,33 @@ def test_a_score_is_made_of_numbers(run, success):
     edit(run / "training.json", best=best | {"success": success})
     with pytest.raises(ModelFormatError, match="no finite number"):
         resume_run(run)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a folder cannot be opened")
+def test_a_written_file_waits_for_its_content_and_then_for_its_name(tmp_path, monkeypatch):
+    flushed, fsync = [], os.fsync
+
+    def note(descriptor):
+        folder = stat.S_ISDIR(os.fstat(descriptor).st_mode)
+        flushed.append([path.name for path in tmp_path.iterdir()] if folder else "content")
+        fsync(descriptor)
+
+    monkeypatch.setattr(os, "fsync", note)
+    for new in (True, False):
+        write_text(tmp_path / "settings.json", "{}", new=new)
+    assert flushed == ["content", ["settings.json"]] * 2
+    write_text(tmp_path / "settings.json", "{}", flush=False)
+    assert len(flushed) == 4
+
+
+def test_a_folder_that_cannot_wait_for_the_disk_is_no_failure(tmp_path, monkeypatch):
+    def refuse(descriptor):
+        if stat.S_ISDIR(os.fstat(descriptor).st_mode):
+            raise OSError(errno.EINVAL, "not here")
+
+    monkeypatch.setattr(os, "fsync", refuse)
+    write_text(tmp_path / "settings.json", "{}")
+    assert (tmp_path / "settings.json").read_text() == "{}"
 
 
 def test_json_is_nested_so_deep_and_no_deeper():

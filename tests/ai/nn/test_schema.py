@@ -103,8 +103,8 @@ def test_sound_fields_are_told_from_the_others():
     [
         ([], "does not say that this is a 'cart'"),
         ({"format": "car", "version": 1}, "'cart'"),
-        ({"format": "cart"}, "format version None; this program reads version 1 and 2"),
-        ({"format": "cart", "version": True}, "version True"),
+        ({"format": "cart"}, "format version null; this program reads version 1 and 2"),
+        ({"format": "cart", "version": True}, "version true"),
         ({"format": "cart", "version": "x" * 1000}, "version 'xxx"),
     ],
 )

@@ -41,6 +41,8 @@ def test_text_grows_no_further_than_its_room_and_never_shrinks():
 def test_names_that_no_font_can_write_are_written_all_the_same():
     canvas = Canvas(pygame.Surface(VIEW_SIZE))  # a folder's name can be any bytes
     assert canvas.text("a\udcff\0", (0, 100)).width == canvas.text("a??", (0, 100)).width
+    for letter in "\n\r\t\x07\x1b\x85\u2028\u202e\u2066":  # nor do they begin a line, or turn the order around
+        assert canvas.text(f"a{letter}b", (0, 100)) == canvas.text("a?b", (0, 100)), ascii(letter)
 
 
 def test_the_size_is_changed_at_once_and_kept(open_game, context: Context):
