@@ -18,7 +18,6 @@ STARTING = {
 # Calls that a module makes all the same, and why no file of a stranger's is behind them.
 OPENED = {
     "ai.nn.files": ({"os.open", "archive.open", "temporary.open", "path.open", "zipfile.ZipFile"}, "the door"),
-    "ai.nn.folder": ({"os.open"}, "flushes what it has written"),
     "ai.nn.lock": ({"os.open"}, "a lock, of which nothing is read"),
     "ai.cli.command_line": ({"os.open"}, "the null device"),
     "ai.sweep.trial": ({"zipfile.ZipFile", "reader.extractall", "path.read_bytes"}, "bytes; its own code for a hash"),
