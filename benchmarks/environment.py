@@ -10,7 +10,7 @@ of EnvPool's one thread included; the table shows medians.
 
 The others' simulator, Box2D, does more in a step: three bodies, two legs on joints with motors and limits, and 180
 iterations for velocities and 60 for positions, of 1/50 s; EnvPool's source also adds a particle whenever an engine
-fires. Ours moves one rigid body, with 10 iterations where it touches anything, by 1/60 s.
+fires. Ours moves one rigid body, with 5 and 2 iterations where it touches anything, by 1/60 s.
 
 Flights of random actions seldom stand on their feet, and contacts take longer than free flight. So one lander alone
 is measured once more in ten flights of the scripted pilot that land, whose actions were recorded.

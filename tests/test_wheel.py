@@ -77,6 +77,7 @@ def environment(installed: Path) -> dict[str, str]:
     return os.environ | {"PYTHONPATH": str(installed), "SDL_VIDEODRIVER": "dummy", "SDL_AUDIODRIVER": "dummy"}
 
 
+@pytest.mark.slow
 def test_the_metadata_of_a_wheel_leads_nowhere_that_is_not_there(installed: Path):
     (told,) = (distribution.metadata for distribution in distributions(path=[str(installed)]))
     description = told.get_payload()

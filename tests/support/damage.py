@@ -85,7 +85,7 @@ def _mutate_archive(path: Path, rng: np.random.Generator) -> None:
     except Exception:  # no archive, an empty one, or one damaged before
         _flip(path, rng)
         return
-    array = kept[name]
+    array = kept[name] if kept[name].size < 1_000_000 else kept[name].ravel()[:1000]  # huge once is enough for memory
     choices: list[Any] = [
         np.zeros((4_000, 4_000), np.float32), np.full(array.shape, 7), np.array("x" * 1000), array[..., None],
         np.zeros(0), array.astype(complex) if array.dtype.kind in "if" else array, np.asfortranarray(array),
