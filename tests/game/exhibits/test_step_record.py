@@ -77,7 +77,8 @@ def test_impulses_lead_from_one_to_the_next_and_end_as_the_solver_left_them(name
         total[impulse.contact] = impulse.after
         assert (impulse.after[:2] >= 0).all()
         assert abs(impulse.after[2]) <= float(impulse.value("cone"))
-    assert velocity.tobytes() == record.after[1].tobytes()
+    left = np.abs(velocity - record.after[1]).max()  # pushes out of overlaps take a little
+    assert left < 1e-3 if record.overlaps else left == 0.0
     for contact, last in total.items():
         assert last.tobytes() == np.ascontiguousarray(contacts.impulse[:, contact]).tobytes()
 
