@@ -8,12 +8,14 @@ import os
 import signal
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import FrameType
-from typing import TYPE_CHECKING, Final, NoReturn, TypeVar
+from typing import TYPE_CHECKING, Any, Final, NoReturn, TypeVar
 
 if TYPE_CHECKING:
+    from tqdm import tqdm
+
     from ai.common.knobs import Knobs
 
     Settings = TypeVar("Settings", bound=Knobs)
@@ -47,9 +49,35 @@ def add_where(command: argparse.ArgumentParser, workers: str) -> None:
 
 
 def fail(message: str) -> int:
-    """Say what went wrong, and return the exit code of a failure."""
-    print("\n".join(readable(line) for line in message.splitlines()), file=sys.stderr)
+    """Say what went wrong, if anybody still listens, and return the exit code of a failure."""
+    with suppress(OSError):
+        print("\n".join(readable(line) for line in message.splitlines()), file=sys.stderr)
     return FAILED
+
+
+class Unheard:
+    """Standard error as a bar of progress writes to it: a terminal that is gone ends no work."""
+
+    def write(self, text: str) -> int:
+        """Write a text; what cannot be written is lost."""
+        with suppress(OSError):
+            sys.stderr.write(text)
+        return len(text)
+
+    def flush(self) -> None:
+        """Flush what was written."""
+        with suppress(OSError):
+            sys.stderr.flush()
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(sys.stderr, name)
+
+
+def progress_bar(total: int, desc: str, **options: Any) -> tqdm[Any]:
+    """Return a bar of progress, which is drawn on terminals alone, and never ends the work that it shows."""
+    from tqdm import tqdm
+
+    return tqdm(total=total, desc=desc, file=Unheard(), **({"disable": None} | options))
 
 
 def say(line: str) -> None:

@@ -18,6 +18,7 @@ from ai.cli.command_line import (
     fail,
     folder,
     out_of_range,
+    progress_bar,
     reason,
     say,
     stoppable,
@@ -38,6 +39,7 @@ def add_commands(commands: Any) -> None:
     guardian.add_argument("--model", type=folder, default=MODEL, metavar="DIR",
                           help="the network, which gets its guardian in a folder within (default: modern)")  # fmt: skip
     guardian.add_argument("--rounds", type=int, default=ROUNDS, help=f"rounds of flights (default: {ROUNDS})")
+    guardian.add_argument("--replace", action="store_true", help="put it in the place of the guardian it has")
     guardian.add_argument("--seed", type=int, default=0)
     guardian.set_defaults(run=_train_guardian)
     table = commands.add_parser("copilot-table", help="measure how much the co-pilot helps good and bad pilots")
@@ -57,7 +59,6 @@ def add_commands(commands: Any) -> None:
 
 def _train_guardian(arguments: argparse.Namespace) -> int:
     import numpy as np
-    from tqdm import tqdm
 
     from ai.agent.config import ANYWHERE, LANDER
     from ai.agent.storage import GUARDIAN
@@ -65,13 +66,15 @@ def _train_guardian(arguments: argparse.Namespace) -> int:
 
     if problem := out_of_range(arguments, rounds=ROUNDS_ALLOWED, seed=SEEDS):
         return fail(problem)
+    if not arguments.replace and (arguments.model / GUARDIAN).exists():
+        return fail(f"{arguments.model} has a guardian already; --replace puts the new one in its place")
     try:
         training = CriticTraining(
             _lander(arguments.model, (LANDER, ANYWHERE)), np.random.default_rng(arguments.seed), arguments.rounds
         )
         with (
             stoppable() as stop,
-            tqdm(total=arguments.rounds, desc="training", unit="round", disable=None) as bar,
+            progress_bar(arguments.rounds, "training", unit="round") as bar,
         ):
             for progress in training.run():
                 bar.update(progress.round - bar.n)
@@ -100,8 +103,6 @@ def _lander(model: Path, envs: tuple[str, ...]) -> DeepQAgent:
 
 
 def _table(arguments: argparse.Namespace) -> int:
-    from tqdm import tqdm
-
     from ai.agent.config import LANDER
     from ai.sweep.cluster import each
     from ai.sweep.copilot_table import fly, parts, tables_of
@@ -112,7 +113,7 @@ def _table(arguments: argparse.Namespace) -> int:
     try:
         agent = _lander(arguments.model, (LANDER,))
         asked = parts(agent, arguments.good == "scripted", arguments.episodes, arguments.seed)
-        with tqdm(total=len(asked), desc="flying", unit="part", disable=None) as bar:
+        with progress_bar(len(asked), "flying", unit="part") as bar:
             for index, rows in each(fly, asked, arguments.address, arguments.workers or 1):
                 done[index] = rows
                 bar.update()

@@ -95,8 +95,6 @@ def read_bytes(path: str | Path, most: int = SMALL) -> bytes:
 
 def read_standard_input(most: int = SMALL) -> str:
     """Return the text that is piped in, of at most so many bytes; raises OSError, or ValueError if it is no UTF-8."""
-    if sys.stdin is None:
-        raise OSError(errno.EBADF, "standard input is closed")
     return _all_of(sys.stdin.buffer, "standard input", most).decode("utf-8")
 
 

@@ -1,4 +1,7 @@
+import errno
+import io
 import json
+import shlex
 import signal
 import subprocess
 import sys
@@ -323,3 +326,87 @@ def test_an_unknown_part_of_the_reward_is_named_with_those_there_are(tmp_path, c
     ):
         assert main(["train", *where, "--set", f"reward_weights={given}"]) == 1
         assert capsys.readouterr().err.startswith(told), given
+
+
+def test_an_earlier_run_is_replaced_only_by_who_says_so(tmp_path, capsys):
+    run, other = tmp_path / "run", tmp_path / "other"
+    train = ["train", "--decisions", "80", "--validation", "4", *SMALL]
+    for output in (run, other):
+        assert main([*train, "--output", str(output), "--seed", "3"]) == 0
+    before = {file: file.read_bytes() for file in tmp_path.rglob("*") if file.is_file()}
+    for command in (
+        [*train, "--output", str(run)],
+        ["train", "--decisions", "160", "--resume", str(run), "--output", str(other)],
+    ):
+        capsys.readouterr()
+        assert main(command) == 1
+        assert f"{command[-1]} holds an earlier run: --resume {command[-1]} goes" in capsys.readouterr().err
+        assert {file: file.read_bytes() for file in tmp_path.rglob("*") if file.is_file()} == before
+    assert main(["train", "--decisions", "160", "--resume", str(run), "--output", f"{run}/../run"]) == 0
+    assert main([*train, "--output", str(run), "--seed", "5", "--replace"]) == 0
+    assert json.loads((run / "training.json").read_text())["seed"] == 5
+
+
+def test_evaluate_refuses_a_network_of_another_environment_than_it_names(capsys):
+    model = str(ROOT / "models" / "lander" / "modern")
+    for env in ("CartPole-v1", "lander-anywhere", "x"):
+        assert main(["evaluate", "--model", model, "--env", env, "--episodes", "1"]) == 1
+        assert capsys.readouterr().err == f"the network in {model} is for lander, not for {env}\n"
+    assert main(["evaluate", "--model", model, "--env", "lander", "--episodes", "1"]) == 0
+
+
+class Gone(io.StringIO):
+    """A terminal that is there no more."""
+
+    def write(self, _):
+        raise OSError(errno.EIO, "Input/output error")
+
+    flush = isatty = lambda self: True
+
+
+def test_whoever_does_not_listen_has_the_run_kept_all_the_same(tmp_path, monkeypatch):
+    for number, stream in enumerate((None, Gone())):
+        monkeypatch.setattr(sys, "stderr", stream)
+        run = tmp_path / f"run {number}"
+        assert main(["train", "--decisions", "400", "--validation", "4", "--output", str(run), *SMALL]) == 0
+        assert json.loads((run / "training.json").read_text())["decisions"] == 400
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="file descriptors of a shell")
+@pytest.mark.slow
+def test_a_run_without_standard_streams_is_kept(tmp_path):
+    for closed in ("2>&-", ">&-", "<&- >&- 2>&-", "2>/dev/full"):
+        run = tmp_path / f"run {closed.replace('/', ' ')}"
+        command = shlex.join(
+            [sys.executable, "main.py", "train", "--decisions", "80", "--validation", "4", "--output", str(run), *SMALL]
+        )
+        assert subprocess.run(["sh", "-c", f"{command} {closed}"], cwd=ROOT, check=False).returncode == 0, closed
+        assert json.loads((run / "training.json").read_text())["decisions"] == 80, closed
+
+
+def test_ctrl_c_while_modules_are_imported_ends_quietly(monkeypatch, capsys):
+    def interrupted(parser):
+        raise KeyboardInterrupt
+
+    def in_a_class():
+        try:
+            raise KeyboardInterrupt
+        except KeyboardInterrupt as error:
+            raise RuntimeError("Error calling __set_name__ on 'cached_property' instance") from error
+
+    monkeypatch.setattr("tranquility.__main__._parser", in_a_class)
+    assert main([]) == 130
+    monkeypatch.setattr("tranquility.__main__._parser", lambda: interrupted(None))
+    assert main([]) == 130
+    assert capsys.readouterr() == ("", "")
+
+
+def test_nothing_is_imported_before_ctrl_c_is_looked_after():
+    program = """
+import sys
+before = set(sys.modules)
+import main
+print(*sorted(set(sys.modules) - before - {"main", "tranquility", "tranquility.__main__", "__future__"}))
+"""
+    done = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert done.stdout == "\n"

@@ -173,6 +173,13 @@ def test_the_command_trains_the_one_that_follows_from_its_seed_and_the_co_pilot_
     assert CoPilot(DeepQAgent.load(tmp_path / "mine"), 0.4, "guardian").critic is not None
     assert critic.facts.moments == 900
     np.testing.assert_array_equal(critic.network.values, learnt(agent).network.values)
+    again = ["train-guardian", "--model", str(tmp_path / "mine"), "--rounds", "3", "--seed", "6"]
+    assert main.main(again) == 1
+    assert "--replace" in capsys.readouterr().err
+    np.testing.assert_array_equal(
+        SafetyCritic.load(tmp_path / "mine" / "guardian").network.values, critic.network.values
+    )
+    assert main.main([*again, "--replace"]) == 0
 
 
 def test_for_a_network_that_lands_anywhere_it_learns_from_worlds_of_many_kinds(monkeypatch, small):

@@ -81,7 +81,7 @@ def test_a_flight_from_elsewhere_than_it_says_is_wrong_and_the_day_is_named(tmp_
 def test_closed_standard_input_is_refused_in_a_sentence(capsys, monkeypatch):
     monkeypatch.setattr(sys, "stdin", None)
     assert main(["verify", "-"]) == 1
-    assert capsys.readouterr().out == "-: refused, standard input is closed\n"
+    assert capsys.readouterr().out == f"-: refused, {texts.CODE_REFUSED['none']}\n"
 
 
 def test_an_end_elsewhere_than_claimed_is_said_to_be_wrong(tmp_path, capsys, record):
