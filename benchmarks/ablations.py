@@ -14,6 +14,7 @@ import argparse
 import os
 import platform
 import statistics
+import sys
 import time
 from dataclasses import replace
 from typing import Any
@@ -24,7 +25,7 @@ import numpy as np
 
 from ai.agent.config import PRESETS, Config
 from ai.lander.rewards import RewardWeights
-from ai.sweep.cluster import each
+from ai.sweep.cluster import MISSING, each, installed
 from ai.training.loop import VALIDATION_SEED, Training, evaluate
 
 EVERY = 25_000
@@ -98,6 +99,8 @@ def main() -> None:
     parser.add_argument("--workers", type=int, default=1)
     parser.add_argument("--address")
     arguments = parser.parse_args()
+    if (arguments.workers != 1 or arguments.address) and not installed():
+        sys.exit(MISSING)
     print(
         f"Python {platform.python_version()}, NumPy {np.__version__}; {arguments.seeds} seeds,"
         f" {arguments.decisions:,} decisions each, one thread\n"

@@ -10,6 +10,7 @@ import os
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is imported, or it has no effect
 
+import argparse
 from pathlib import Path
 
 import numpy as np
@@ -36,6 +37,7 @@ def aside(image):
 
 
 def main():
+    argparse.ArgumentParser(description=__doc__.splitlines()[0]).parse_args()
     images, labels = (part[:ROUND_TRIPS] for part in load_part("test"))
     rng = np.random.default_rng(5)
     digits = np.repeat(np.arange(10, dtype=np.uint8), TEMPLATES_EACH)

@@ -18,6 +18,7 @@ os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
 os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 os.environ["SDL_AUDIODRIVER"] = "dummy"
 
+import argparse
 import sys
 import time
 from itertools import count
@@ -105,6 +106,7 @@ def row(name: str, spent: list[float]) -> float:
 
 def main() -> int:
     """Print the table."""
+    argparse.ArgumentParser(description=__doc__.splitlines()[0]).parse_args()
     rng = np.random.default_rng(3)
     read = {"modern": 0, "classic": 0}
     worst = 0.0

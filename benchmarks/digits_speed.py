@@ -13,6 +13,7 @@ import os
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is imported, or it has no effect
 
+import argparse
 import platform
 from collections.abc import Callable
 from math import prod
@@ -133,6 +134,7 @@ def guesses() -> list[Task]:
 
 
 def main() -> None:
+    argparse.ArgumentParser(description=__doc__.splitlines()[0]).parse_args()
     versions = f"Python {platform.python_version()}, NumPy {np.__version__}"
     if torch is not None:
         torch.set_num_threads(1)
@@ -148,7 +150,7 @@ def main() -> None:
         ours, *theirs = (microseconds / 1000 for microseconds in medians(*tasks, calls=calls, rounds=rounds))
         print(f"{name:44}{ours:8.2f}" + "".join(f"{time:10.2f}{ours / time:8.2f}" for time in theirs))
     if torch is None:
-        print('\nPyTorch is not installed; to compare with it: pip install "tranquility[bench]"')
+        print('\nPyTorch is not installed; to compare with it: pip install -e ".[bench]"')
 
 
 if __name__ == "__main__":

@@ -16,6 +16,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 import argparse
 import platform
 import statistics
+import sys
 import time
 from collections.abc import Iterator
 from importlib.metadata import version
@@ -77,6 +78,8 @@ def main() -> None:
     parser.add_argument("--rival-seeds", type=int, default=3)
     parser.add_argument("--rival-seconds", type=float, default=300.0)
     arguments = parser.parse_args()
+    if not (find_spec("gymnasium") and find_spec("Box2D")):
+        sys.exit('this needs Gymnasium and Box2D: pip install -e ".[bench]"')
     rivals = [name for name in ("stable-baselines3", "torch") if find_spec(name.replace("-", "_"))]
     names = ", ".join(f"{name} {version(name)}" for name in ("numpy", "gymnasium", *rivals))
     print(f"Python {platform.python_version()}, {names}\n")
@@ -85,7 +88,7 @@ def main() -> None:
     print("|---|---|---|---|---|---|")
     row("ours", [measured(ours(seed, arguments.decisions)) for seed in range(arguments.seeds)])
     if "stable-baselines3" not in rivals:
-        print('\nto compare with stable-baselines3: pip install "tranquility[bench]"')
+        print('\nto compare with stable-baselines3: pip install -e ".[bench]"')
     elif arguments.rival_seeds > 0:
         limit = arguments.rival_seconds
         row(

@@ -15,13 +15,14 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is imported, 
 import argparse
 import json
 import platform
+import sys
 import tempfile
 import time
 from importlib.metadata import version
 from pathlib import Path
 
 from ai.agent.config import PRESETS
-from ai.sweep.cluster import joined
+from ai.sweep.cluster import MISSING, installed, joined
 from ai.sweep.plan import Plan
 from ai.sweep.space import knob_space
 from ai.sweep.study import Study
@@ -72,6 +73,8 @@ def main() -> None:
     parser.add_argument("--empty", type=int, default=500)
     parser.add_argument("--workers", type=int, nargs="+", default=[1, 2])
     given = parser.parse_args()
+    if not installed():
+        sys.exit(MISSING)
     print(
         f"Python {platform.python_version()}, Ray {version('ray')}, Optuna {version('optuna')};"
         f" load {os.getloadavg()[0]:.1f}"

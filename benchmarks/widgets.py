@@ -14,6 +14,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is imported, 
 os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
 os.environ["SDL_VIDEODRIVER"] = os.environ["SDL_AUDIODRIVER"] = "dummy"
 
+import argparse
 import statistics
 import time
 import warnings
@@ -248,6 +249,7 @@ def tooltips() -> None:
 
 def main() -> None:
     """Print everything."""
+    argparse.ArgumentParser(description=__doc__.splitlines()[0]).parse_args()
     warnings.simplefilter("ignore")  # pygame_gui's, on fonts that are loaded when they are needed
     pygame.init()
     pygame.display.set_mode(VIEW_SIZE)

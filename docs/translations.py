@@ -31,6 +31,7 @@ from typing import Final
 from game.core.catalogue import Plural
 
 LANGUAGE: Final[str]
+damaged: Final[str]  # the path of a catalogue that cannot be read
 
 def said(sentence: str, /) -> str: ...
 

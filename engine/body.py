@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.vector import Array, Bools, cross
+from engine.vector import Array, Bools, cross, finite
 
 if TYPE_CHECKING:
     from engine.world import World
@@ -101,14 +101,14 @@ class Body:
 
     def apply_force(self, force: object, point: object = None) -> None:
         """Add a force (2,) or (batch, 2) in newtons for the next step, at a world `point` or the centre."""
-        push = np.broadcast_to(np.asarray(force, dtype=float), (self.world.batch, 2))
-        self.world.state.force[:, self.index, :2] += push
+        push = np.broadcast_to(finite("force", force), (self.world.batch, 2))
         if point is not None:
-            self.apply_torque(cross(np.asarray(point, dtype=float) - self.position, push))
+            self.apply_torque(cross(finite("point", point) - self.position, push))
+        self.world.state.force[:, self.index, :2] += push
 
     def apply_torque(self, torque: object) -> None:
         """Add a torque, one or (batch,), in newton metres for the next step."""
-        self.world.state.force[:, self.index, 2] += np.asarray(torque, dtype=float)
+        self.world.state.force[:, self.index, 2] += finite("torque", torque)
 
     def set(
         self,
@@ -121,19 +121,21 @@ class Body:
     ) -> None:
         """Set pose and velocity in the worlds of `mask` (batch,), or in all; what is left out stays.
 
-        Values are one for all worlds or have a row for each world that is set.
+        Values are one for all worlds or have a row for each world that is set. Raises ValueError, and sets nothing, if
+        any is not finite.
         """
         worlds = None if mask is None else np.asarray(mask, dtype=bool)
         rows = slice(None) if worlds is None else worlds
         state = self.world.state
-        if position is not None:
-            state.pose[rows, self.index, :2] = np.asarray(position, dtype=float)
-        if angle is not None:
-            state.pose[rows, self.index, 2] = np.asarray(angle, dtype=float)
-        if velocity is not None:
-            state.velocity[rows, self.index, :2] = np.asarray(velocity, dtype=float)
-        if angular_velocity is not None:
-            state.velocity[rows, self.index, 2] = np.asarray(angular_velocity, dtype=float)
+        places = (
+            (state.pose, slice(2), "position", position),
+            (state.pose, 2, "angle", angle),
+            (state.velocity, slice(2), "velocity", velocity),
+            (state.velocity, 2, "angular velocity", angular_velocity),
+        )
+        given = [(table, part, finite(name, value)) for table, part, name, value in places if value is not None]
+        for table, part, value in given:
+            table[rows, self.index, part] = value
         if self.static or position is not None or angle is not None:
             self.world.moved(self, worlds)
 

@@ -51,11 +51,6 @@ class WarmStart:
             contacts.age[rising],
         )
 
-    @property
-    def parts(self) -> list[bytes]:
-        """All that a step takes over which does without ages, to be compared at once."""
-        return [part.tobytes() for part in (self.key, self.feature, self.impulse)]
-
     def where(self, kept: Bools | Ints) -> WarmStart:
         """Return the memory of these manifolds alone, which are marked, or named by their rows."""
         return WarmStart(
@@ -97,6 +92,7 @@ class Memory:
     impulses: WarmStart
     rest: Rest | None
     forgotten: list[tuple[int, Bools | None]]
+    gravity: Array | None
     pairs: int  # of shapes, in every world
 
     def of_worlds(self, worlds: Ints) -> Memory:
@@ -109,7 +105,8 @@ class Memory:
         ends = count.cumsum()
         row = np.arange(count.sum()) + (first - ends + count).repeat(count)
         key = last.key[row] + ((np.arange(len(worlds)) - worlds) * self.pairs).repeat(count)
-        return replace(self, impulses=replace(last.where(row), key=key))
+        gravity = self.gravity if self.gravity is None or self.gravity.ndim == 1 else self.gravity[worlds]
+        return replace(self, impulses=replace(last.where(row), key=key), gravity=gravity)
 
 
 class Detector:
@@ -129,6 +126,7 @@ class Detector:
         self.restitution = _mix(params.restitution[self.body_pairs], np.maximum, 0.0)
         self._kinds = shapes.is_circle[self.pairs].sum(axis=1)  # how many of the two are circles
         self.impulses = _NOTHING
+        self.gravity: Array | None = None  # under which these were needed
         self._forgotten: list[tuple[int, Bools | None]] = []  # bodies, and in which worlds: see `forget`
         self._colours = (np.zeros(0, dtype=np.intp), np.zeros(0, dtype=np.intp), [0])  # of what, order, ends
 
@@ -173,14 +171,33 @@ class Detector:
 
     def memory(self) -> Memory:
         """Return the impulses that `remember` has kept, and what sleeps, to be put back by `recall_memory`."""
-        return Memory(self.impulses, self.rest.copy() if self.rest else None, self._forgotten.copy(),
+        return Memory(self.impulses, self.rest.copy() if self.rest else None, self._forgotten.copy(), self.gravity,
                       len(self.pairs))  # fmt: skip
 
     def recall_memory(self, memory: Memory) -> None:
         """Put back what a call of `memory` returned."""
-        self.impulses, self._forgotten = memory.impulses, memory.forgotten.copy()
+        self.impulses, self._forgotten, self.gravity = memory.impulses, memory.forgotten.copy(), memory.gravity
         self.rest = memory.rest.copy() if memory.rest else None
         self.broad.forget_boxes()
+
+    def feel(self, gravity: Array, batch: int) -> None:
+        """Expect of contacts no more than another `gravity` (2,) or (batch, 2) asks of them.
+
+        Impulses that bore a stack under a stronger one would throw it up, and a few iterations do not take that back.
+        """
+        before, self.gravity = self.gravity, gravity
+        if before is None or not before.any():
+            return
+        strength = dot(before, before)
+        share = np.where(strength > 0, dot(before, gravity) / np.where(strength > 0, strength, 1.0), 1.0)
+        shares = np.broadcast_to(np.clip(share, 0.0, 1.0), (batch,))
+        if (shares == 1).all():
+            return
+        last = self.impulses
+        if len(last.key):
+            self.impulses = replace(last, impulse=last.impulse * shares[last.key // len(self.pairs)])
+        if self.rest and (slept := self.rest.contacts):
+            self.rest.contacts = replace(slept, impulse=slept.impulse * shares[slept.world])
 
     def forget(self, body: int, worlds: Bools | None) -> None:
         """Forget the contacts of a body that was put elsewhere, in these worlds or in all: they no longer apply."""

@@ -20,7 +20,8 @@ class MovingBodies:
         self.quadratic_drag = params.quadratic_drag[..., self.bodies, :]
         self.falls = params.dynamic[self.bodies, None]
         self.all_fall = bool(self.falls.all())
-        self.fast_drag = bool(self.quadratic_drag.any())  # whether any grows with the square of the speed
+        # Whether any grows with the square of the speed; the air of each world may be changed in place.
+        self.fast_drag = self.quadratic_drag.ndim == 3 or bool(self.quadratic_drag.any())
         self.any_drag = self.fast_drag or bool(self.linear_drag.any())
         self._ease = (np.nan, self.inverse_mass)
 

@@ -3,11 +3,11 @@
 A craft on its feet has one to four contacts, each a colour of its own, and a step of them makes a thousand calls of
 NumPy on arrays of length one. Here the same is computed in Python's floats, in the same operations and the same order
 as in `collide`, `contacts` and `solver`, which say what each formula is for; so the results are the same, bit for bit.
-Scalar products of six numbers are NumPy's own, which rounds them in a way of its own.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -17,13 +17,15 @@ from engine.contact_set import Contacts
 from engine.contacts import MARGIN, WarmStart
 from engine.lone_touch import Face, Touch, edges_of, placed, touch_of
 from engine.solver import CORRECTION, NARROWEST, SLOP, TOLERANCE
-from engine.vector import Array, Ints
+from engine.vector import Ints
 
 if TYPE_CHECKING:
     from engine.free_flight import FreeFlight
     from engine.world import World
 
-_STIFF: Final = ([0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2])  # which rows meet in the six numbers of a stiffness
+_STIFF: Final = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))  # the rows of the six numbers of a stiffness
+
+Triple = list[float]  # x, y and turn of the body; what it touches does not move
 
 
 class LoneContacts:
@@ -42,8 +44,7 @@ class LoneContacts:
         self._pairs: dict[int, list[tuple[int, int]]] = {}  # by fixed shape: row of the world's pairs, and own shape
         for row, (part, fixed) in enumerate(detector.pairs.tolist()):
             self._pairs.setdefault(fixed, []).append((row, part))
-        self._inverse = np.zeros(6)
-        self._inverse[:3] = world.params.inverse_mass[body]
+        self._inverse: Triple = world.params.inverse_mass[body].tolist()
         self._faces: dict[int, list[Face]] = {}  # of fixed shapes, as far as any was near
         self._version = -1  # of where fixed bodies were when these were read
 
@@ -101,37 +102,31 @@ class _Solver:
         world: World,
         flight: FreeFlight,
         touches: list[Touch],
-        inverse: Array,
+        inverse: Triple,
         friction: list[float],
         restitution: list[float],
     ) -> None:
         self._world, self._flight, self._touches = world, flight, touches
         self._impulses = _recalled(world.detector.impulses, touches)
-        jacobian = np.array([_jacobian(touch, flight.x, flight.y) for touch in touches])  # (m, 3, 6)
-        response = jacobian * inverse
-        stiffness = np.vecdot(jacobian[:, _STIFF[0]], response[:, _STIFF[1]]).tolist()
-        for row, (first, second, _, coupling, _, _) in enumerate(stiffness):
-            product = first * second
-            if product > 0 and product - coupling * coupling <= NARROWEST * product:
-                depth = touches[row].depth
-                shallower = int(depth[1] < depth[0])
-                jacobian[row, shallower] = response[row, shallower] = self._impulses[row][shallower] = 0.0
-                stiffness[row] = np.vecdot(jacobian[row, _STIFF[0]], response[row, _STIFF[1]]).tolist()
-        self._jacobian = jacobian
-        self._motion = np.zeros(6)  # of the body, and of what is fixed
-        self._set_motion()
-        self.approach = np.vecdot(jacobian, self._motion)
-        self.approach[:, :2] *= -1
-        self._rows = [
-            (jacobian[row], _mixed(stiffness[row]), response[row, :, :3].tolist(), friction[touch.pair])
-            for row, touch in enumerate(touches)
-        ]
+        self._rows = []
+        for touch, impulse in zip(touches, self._impulses, strict=True):
+            jacobian = _jacobian(touch, flight.x, flight.y)
+            response, stiffness = _response(jacobian, inverse)
+            product = stiffness[0] * stiffness[1]
+            if product > 0 and product - stiffness[3] * stiffness[3] <= NARROWEST * product:
+                shallower = int(touch.depth[1] < touch.depth[0])
+                jacobian[shallower], impulse[shallower] = [0.0, 0.0, 0.0], 0.0
+                response, stiffness = _response(jacobian, inverse)
+            self._rows.append((jacobian, _mixed(stiffness), response, friction[touch.pair]))
+        self.approach = self._speeds()
+        for closing in self.approach:
+            closing[:2] = -closing[0], -closing[1]
         self._restitution = [restitution[touch.pair] for touch in touches]
 
     def solve_velocities(self, dt: float) -> None:
         flight, threshold = self._flight, self._world.restitution_threshold
         targets = []
-        for touch, approach, bounce in zip(self._touches, self.approach.tolist(), self._restitution, strict=True):
+        for touch, approach, bounce in zip(self._touches, self.approach, self._restitution, strict=True):
             rebounds = [bounce * closing if closing > threshold else 0.0 for closing in approach[:2]]
             targets.append(
                 [back if back > 0 else min(depth, 0.0) / dt for back, depth in zip(rebounds, touch.depth, strict=True)]
@@ -145,9 +140,8 @@ class _Solver:
 
     def solve_overlaps(self, dt: float) -> None:
         flight = self._flight
-        self._set_motion()
         targets, any_excess = [], False
-        for touch, speeds in zip(self._touches, np.vecdot(self._jacobian, self._motion).tolist(), strict=True):
+        for touch, speeds in zip(self._touches, self._speeds(), strict=True):
             excess = [
                 depth - dt * speed - SLOP if there else 0.0
                 for depth, speed, there in zip(touch.depth, speeds[:2], touch.valid, strict=True)
@@ -162,9 +156,10 @@ class _Solver:
         flight.x, flight.y, flight.angle = flight.x + shift[0], flight.y + shift[1], flight.angle + shift[2]
         flight.turn()
 
-    def _set_motion(self) -> None:
-        flight = self._flight
-        self._motion[0], self._motion[1], self._motion[2] = flight.vx, flight.vy, flight.spin
+    def _speeds(self) -> list[Triple]:
+        """Speed along each row of each touch: normal, normal, friction."""
+        motion = self._flight.vx, self._flight.vy, self._flight.spin
+        return [[_product(row, motion) for row in jacobian] for jacobian, _, _, _ in self._rows]
 
     def _sweep(
         self,
@@ -175,7 +170,6 @@ class _Solver:
         rubs: bool,
     ) -> None:
         """`Solver._sweep` with `Rows.relax`, one touch after another; changes `velocity` and `impulses`."""
-        motion, speed = self._motion, np.empty(3)
         vx, vy, spin = velocity
         for _ in range(iterations):
             changed = False
@@ -183,8 +177,10 @@ class _Solver:
                 self._rows, impulses, targets, strict=True
             ):
                 mass, second_mass, rub_mass, coupling, rub, second_rub, inverse, second_inverse, cross = mixed
-                motion[0], motion[1], motion[2] = vx, vy, spin
-                closing, second_closing, sliding = np.vecdot(jacobian, motion, speed).tolist()
+                (closing_x, closing_y, closing_turn), (second_x, second_y, second_turn), (x, y, turn) = jacobian
+                closing = closing_x * vx + closing_y * vy + closing_turn * spin
+                second_closing = second_x * vx + second_y * vy + second_turn * spin
+                sliding = x * vx + y * vy + turn * spin
                 lacking, second_lacking = wanted - closing, second_wanted - second_closing
                 first, second, third = total
                 push = inverse * lacking + first + cross * second_lacking
@@ -232,7 +228,7 @@ class _Solver:
             friction=detector.friction[pairs],
             restitution=detector.restitution[pairs],
             impulse=np.array(self._impulses).T,
-            approach=self.approach.T,
+            approach=np.array(self.approach).T,
             age=np.zeros(count, dtype=np.intp),
             colour_ends=list(range(1, count + 1)),
         )
@@ -252,7 +248,17 @@ def _recalled(last: WarmStart, touches: list[Touch]) -> list[list[float]]:
     return impulses
 
 
-def _jacobian(touch: Touch, x: float, y: float) -> list[list[float]]:
+def _product(a: Sequence[float], b: Sequence[float]) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _response(jacobian: list[Triple], inverse: Triple) -> tuple[list[Triple], Triple]:
+    """Return the velocity change per unit of impulse, by row, and the six numbers of the stiffness."""
+    response = [[along * ease for along, ease in zip(row, inverse, strict=True)] for row in jacobian]
+    return response, [_product(jacobian[one], response[other]) for one, other in _STIFF]
+
+
+def _jacobian(touch: Touch, x: float, y: float) -> list[Triple]:
     """`solver._jacobian` of one touch: A is the body, at `x` and `y`; B does not move, wherever its middle is."""
     (normal_x, normal_y), valid = touch.normal, touch.valid
     (first_x, first_y), (second_x, second_y) = touch.points
@@ -266,7 +272,7 @@ def _jacobian(touch: Touch, x: float, y: float) -> list[list[float]]:
         (middle, normal_y, -normal_x, True),
     ):
         turn = (at_x - x) * along_y - (at_y - y) * along_x
-        rows.append([-along_x * there, -along_y * there, -turn * there, 0.0, 0.0, 0.0])
+        rows.append([-along_x * there, -along_y * there, -turn * there])
     return rows
 
 

@@ -207,27 +207,6 @@ class Rest:
         return changed
 
 
-class Standstill:
-    """Worlds without sleep in which a step has led back to where it began, bit for bit, and so would lead there again.
-
-    All that a step depends on is compared with what the last one began with. That is done only while nothing moves, for
-    it takes longer than it could save as long as anything does.
-    """
-
-    def __init__(self) -> None:
-        self._before: list[object] | None = None
-
-    def lasts(self, state: BodyState, gravity: Array, impulses: list[bytes], settings: object) -> bool:
-        """Whether a step would change nothing, with these impulses of the last one and these settings of the world."""
-        before = self._before
-        self._before = [*_watched(state, gravity), *impulses, settings]
-        return self._before == before
-
-    def end(self) -> None:
-        """Note that something moves."""
-        self._before = None
-
-
 def _parts(state: BodyState) -> tuple[NDArray[Any], ...]:
     return state.pose, state.velocity, state.active
 
@@ -237,8 +216,3 @@ def _same_bits(a: NDArray[Any], b: NDArray[Any]) -> bool:
     if a.size < _FEW or a.dtype != float:
         return a.tobytes() == b.tobytes()  # many times as fast for few numbers, but copies of many have to be made
     return bool(np.all(a.view(np.int64) == b.view(np.int64)))
-
-
-def _watched(state: BodyState, gravity: Array) -> list[bytes]:
-    """Return all of a world's state that a step depends on, to be compared at once."""
-    return [part.tobytes() for part in (*_parts(state), state.force, np.asarray(gravity))]

@@ -21,7 +21,7 @@ import numpy as np
 from engine.collide import Manifold
 from engine.contact_set import Contacts
 from engine.state import BodyParams, BodyState
-from engine.vector import Array, Bools, Ints, cross, right_of
+from engine.vector import Array, Bools, Ints, cross, dot, right_of
 
 # Overlap that is left alone, so that resting contacts persist; metres.
 SLOP = 0.005
@@ -45,6 +45,7 @@ class Solver:
 
     def __init__(self, state: BodyState, params: BodyParams, contacts: Contacts) -> None:
         self.contacts = contacts
+        self._inverse_mass = params.inverse_mass[contacts.body]  # (m, 2, 3)
         self._rows = Rows.build(state, params, contacts)
         contacts.approach = self._rows.speeds(state.velocity.reshape(-1))
         contacts.approach[:2] *= -1
@@ -84,6 +85,38 @@ class Solver:
         push = np.zeros((3, len(self.contacts)))
         self._sweep(shift, push, CORRECTION * excess, None, iterations)
         state.pose += shift.reshape(state.pose.shape)
+        self._keep_angular_momentum(state, push)
+
+    def _keep_angular_momentum(self, state: BodyState, push: Array) -> None:
+        """Take back the angular momentum that free bodies gained as overlaps pushed them aside across their motion.
+
+        Each pair turns a little about its common centre of mass as if it were one body, like a skater who spreads the
+        arms, so the two move neither apart nor along each other. Where that would add energy, they do so less.
+        """
+        rows = np.flatnonzero((self._inverse_mass[:, :, 0] > 0).all(axis=1) & push[:2].any(axis=0))
+        if not len(rows):
+            return
+        contacts, (mass, _, inertia) = self.contacts, 1.0 / self._inverse_mass[rows].transpose(2, 1, 0)
+        places = contacts.world[rows, None], contacts.body[rows]
+        pose, velocity = state.pose[places], state.velocity[places]
+        along, spins = velocity[:, 1, :2] - velocity[:, 0, :2], velocity[..., 2].T
+        turned = -right_of(pose[:, 1, :2] - pose[:, 0, :2])  # how B moves about A when both turn by a radian
+        share = mass[0] / (mass[0] + mass[1])
+        reduced = share * mass[1]
+        whole = reduced * dot(turned, turned) + inertia[0] + inertia[1]
+        now = reduced * dot(turned, along) + inertia[0] * spins[0] + inertia[1] * spins[1]
+        before = now - (push[0, rows] + push[1, rows]) * cross(contacts.manifold.normal[rows], along)
+        turn = now / whole
+        own, own_spins = along - turn[:, None] * turned, spins - turn
+        energy = reduced * dot(own, own) + inertia[0] * own_spins[0] ** 2 + inertia[1] * own_spins[1] ** 2  # twice
+        excess = np.divide(before**2 - now**2, whole * energy, out=np.zeros_like(whole), where=energy > 0)
+        less = np.sqrt(np.clip(1.0 - excess, 0.0, 1.0)) - 1.0
+        turn = before / whole - turn
+        change = np.empty_like(velocity)
+        pull = turn[:, None] * turned + less[:, None] * own
+        change[:, 0, :2], change[:, 1, :2] = (share - 1.0)[:, None] * pull, share[:, None] * pull
+        change[..., 2] = (turn + less * own_spins).T
+        np.add.at(state.velocity, places, change)
 
     def _sweep(self, velocity: Array, impulse: Array, target: Array, friction: Array | None, iterations: int) -> None:
         """Projected Gauss-Seidel: drive each normal speed to `target` (2, m) or more, by pushing only.
@@ -107,11 +140,15 @@ class Solver:
 
 @dataclass
 class Rows:
-    """Constraint rows. First axis: normal, normal, friction; last axis: A's x, y, turn, then B's."""
+    """Constraint rows. Axes: normal, normal, friction; A's x, y, turn, then B's; manifolds, which NumPy works along.
 
-    index: Ints  # (m, 6): where A's and B's velocities stand among all of them, laid flat
-    jacobian: Array  # (3, m, 6): row · velocities is the speed along it
-    response: Array  # (3, m, 6): velocity change per unit of impulse
+    Their scalar products are added up one after another by NumPy itself. The linear algebra library behind `dot` adds
+    in an order of its own on each kind of processor, and fuses additions on some: flights would differ.
+    """
+
+    index: Ints  # (6, m): where A's and B's velocities stand among all of them, laid flat
+    jacobian: Array  # (3, 6, m): row · velocities is the speed along it
+    response: Array  # (3, 6, m): velocity change per unit of impulse
     mass: Array  # (3, m): effective mass, impulse per unit of speed; 0 for a point that is not there
     coupling: Array  # (m,): how a push at one point moves the other
     rub_coupling: Array  # (2, m): how friction moves both points
@@ -121,22 +158,22 @@ class Rows:
     @cached_property
     def space(self) -> Space:
         """Where `relax` works."""
-        return Space(len(self.index))
+        return Space(self.index.shape[1])
 
     @classmethod
     def build(cls, state: BodyState, params: BodyParams, contacts: Contacts) -> Rows:
         """Return the rows of these contacts, before any has been solved."""
         slots = contacts.world[:, None] * state.pose.shape[1] + contacts.body
-        index = (slots[:, :, None] * 3 + np.arange(3)).reshape(-1, 6)
+        index = (slots[:, :, None] * 3 + np.arange(3)).reshape(-1, 6).T.copy()
         jacobian = _jacobian(state.pose.reshape(-1, 3)[slots, :2], contacts.manifold)
-        inverse_mass = params.inverse_mass[contacts.body].reshape(-1, 6)
+        inverse_mass = params.inverse_mass[contacts.body].reshape(-1, 6).T.copy()
         response = jacobian * inverse_mass
         stiffness = _stiffness(jacobian, response)
         spare = np.flatnonzero(_coincide(stiffness))
         if len(spare):
             # Points that nearly coincide can't share a push sensibly; the deeper one will do.
             shallower = contacts.manifold.depth[spare].argmin(axis=1)
-            jacobian[shallower, spare] = contacts.impulse[shallower, spare] = 0.0
+            jacobian[shallower, :, spare] = contacts.impulse[shallower, spare] = 0.0
             response = jacobian * inverse_mass
             stiffness = _stiffness(jacobian, response)
         mass = np.divide(1.0, stiffness[:3], out=np.zeros_like(stiffness[:3]), where=stiffness[:3] > 0)
@@ -150,9 +187,9 @@ class Rows:
     def part(self, span: slice) -> Rows:
         """Only the manifolds of `span`."""
         return Rows(
-            self.index[span],
-            self.jacobian[:, span],
-            self.response[:, span],
+            self.index[:, span],
+            self.jacobian[..., span],
+            self.response[..., span],
             self.mass[:, span],
             self.coupling[span],
             self.rub_coupling[:, span],
@@ -162,12 +199,12 @@ class Rows:
 
     def speeds(self, velocity: Array) -> Array:
         """Speed along each row, (3, m), given all velocities laid flat."""
-        speed: Array = np.vecdot(self.jacobian, velocity.take(self.index))
+        speed: Array = (self.jacobian * velocity.take(self.index)).sum(axis=1)
         return speed
 
     def effect(self, impulse: Array) -> Array:
-        """Velocity change (m, 6) of A and B by impulses (3, m)."""
-        change = self.response * impulse[:, :, None]
+        """Velocity change (6, m) of A and B by impulses (3, m)."""
+        change = self.response * impulse[:, None]
         total: Array = change[0] + change[1] + change[2]
         return total
 
@@ -180,7 +217,8 @@ class Rows:
         space = self.space
         change, pushed = space.change, total[:2]
         motion = velocity.take(self.index, out=space.motion, mode="clip")
-        speed = np.vecdot(self.jacobian, motion, out=space.speed)
+        np.multiply(self.jacobian, motion, out=space.products)
+        speed = np.add.reduce(space.products, 1, None, space.speed)
         pushes = self.push(np.subtract(wanted, space.closing, out=space.lacking), pushed)
         np.subtract(pushes, pushed, out=space.pushed)
         if friction is not None:
@@ -209,7 +247,7 @@ class Rows:
         both = np.multiply(self.inverse, lacking, out=space.both)
         both += total
         both += np.multiply(self.cross_inverse, lacking[::-1], out=space.alone)
-        if len(self.index) < _MANY and both.min() >= 0:
+        if both.shape[1] < _MANY and both.min() >= 0:
             return both
         # Where that would pull at one point, there is no impulse at it, and the other point has to do alone.
         alone = np.multiply(self.coupling, total[::-1], out=space.alone)
@@ -224,12 +262,12 @@ class Space:
     """Arrays in which `Rows.relax` works on m manifolds, and views of them, made once for all its calls."""
 
     def __init__(self, count: int) -> None:
-        self.motion, self.moved = np.empty((2, count, 6))
-        self.turn = np.empty((3, count, 6))
+        self.motion, self.moved = np.empty((2, 6, count))
+        self.products, self.turn = np.empty((2, 3, 6, count))
         self.speed = np.empty((3, count))
         self.closing = self.speed[:2]
         self.change = np.zeros((3, count))  # of impulses
-        self.pushed, self.column = self.change[:2], self.change[:, :, None]
+        self.pushed, self.column = self.change[:2], self.change[:, None]
         self.lacking, self.both, self.alone, self.nudges = np.empty((4, 2, count))
         self.sliding, self.cone, self.low, self.rub = np.empty((4, count))
 
@@ -257,7 +295,7 @@ def colour(slots: Ints, free: Bools) -> tuple[Ints, list[int]]:
 
 def _stiffness(jacobian: Array, response: Array) -> Array:
     """Speed per unit of impulse: of each row (3, m), of both pushes on each other, of friction on both."""
-    products: Array = np.vecdot(jacobian[[0, 1, 2, 0, 0, 1]], response[[0, 1, 2, 1, 2, 2]])
+    products: Array = (jacobian[[0, 1, 2, 0, 0, 1]] * response[[0, 1, 2, 1, 2, 2]]).sum(axis=1)
     return products
 
 
@@ -269,17 +307,17 @@ def _coincide(stiffness: Array) -> Bools:
 
 
 def _jacobian(positions: Array, manifold: Manifold) -> Array:
-    """Rows (3, m, 6) of a manifold between bodies centred at `positions` (m, 2, 2)."""
+    """Rows (3, 6, m) of a manifold between bodies centred at `positions` (m, 2, 2)."""
     valid = manifold.valid
     both = (valid[:, 0] & valid[:, 1])[:, None]
     first, second = manifold.points[:, 0], manifold.points[:, 1]
     middle = np.where(both, (first + second) / 2, np.where(valid[:, :1], first, second))
     points = np.stack([first, second, middle])
     along = np.stack([manifold.normal, manifold.normal, right_of(manifold.normal)])
-    rows = np.empty((3, len(valid), 6))
-    rows[..., 0:2] = -along
-    rows[..., 2] = -cross(points - positions[:, 0], along)
-    rows[..., 3:5] = along
-    rows[..., 5] = cross(points - positions[:, 1], along)
-    rows[:2] *= valid.T[..., None]
+    rows = np.empty((3, 6, len(valid)))
+    rows[:, 3:5] = along.swapaxes(1, 2)
+    rows[:, 0:2] = -rows[:, 3:5]
+    rows[:, 2] = -cross(points - positions[:, 0], along)
+    rows[:, 5] = cross(points - positions[:, 1], along)
+    rows[:2] *= valid.T[:, None]
     return rows

@@ -15,6 +15,10 @@ from engine.shapes import Circle, Polygon, Shape
 from engine.vector import Array, Bools, Ints, rotate
 
 Span = slice | Ints
+_LARGEST: Final = float(np.finfo(float).max)
+# Largest values of the tables that have any, and the tables in which NaN stands for a value left out.
+_MOST: Final = dict.fromkeys(("inverse_mass", "linear_drag", "quadratic_drag", "friction"), _LARGEST) | {"restitution": 1.0}
+_LEFT_OUT: Final = ("restitution", "friction")
 ALL: Final = slice(None)
 
 
@@ -67,7 +71,10 @@ class BodyState:
 class BodyParams:
     """Mass, drag and surface of the bodies. Rows are bodies, the same in every world of the batch.
 
-    Once all bodies are there, `quadratic_drag` may be made (batch, bodies, 3): one air for each world.
+    A table may be replaced at any time by another of its shape, and holds from the next step on, which begins without
+    sleep and without the last one's impulses. Once all bodies are there, `quadratic_drag` may be made (batch, bodies,
+    3), one air for each world, and written into; the others can't be written into. Raises ValueError for values without
+    physical sense.
     """
 
     inverse_mass: Array = field(default_factory=lambda: np.zeros((0, 3)))  # 1/kg twice, 1/(kg·m²); 0: static
@@ -76,12 +83,32 @@ class BodyParams:
     restitution: Array = field(default_factory=lambda: np.zeros(0))  # NaN: takes the other body's
     friction: Array = field(default_factory=lambda: np.zeros(0))
     group: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
+    version: int = 0  # one more each time a table is replaced
+
+    def __setattr__(self, name: str, value: object) -> None:
+        """Replace a table by a copy of this one."""
+        before = self.__dict__.get(name)
+        if name == "version" or before is None:
+            object.__setattr__(self, name, value)
+            return
+        table = np.array(value, dtype=before.dtype)
+        for_each_world = name == "quadratic_drag" and table.ndim == 3
+        if (table.shape[1:] if for_each_world else table.shape) != before.shape[-table.ndim + for_each_world :]:
+            raise ValueError(f"{name} must be of shape {before.shape}, not {table.shape}")
+        if name in _MOST and not (np.isnan(table) * (name in _LEFT_OUT) | (table >= 0) & (table <= _MOST[name])).all():
+            raise ValueError(f"{name} must be from 0 to {_MOST[name]}, not {table.tolist()}")
+        self._put(name, table)
 
     def append(self, **row: object) -> None:
         """Add one body's row to every table."""
         for name, value in row.items():
             table = getattr(self, name)
-            setattr(self, name, np.concatenate([table, np.asarray(value, dtype=table.dtype)[None]]))
+            self._put(name, np.concatenate([table, np.asarray(value, dtype=table.dtype)[None]]))
+
+    def _put(self, name: str, table: Array | Ints) -> None:
+        table.flags.writeable = table.ndim == 3
+        object.__setattr__(self, name, table)
+        self.version += 1
 
     @property
     def dynamic(self) -> Bools:

@@ -19,6 +19,14 @@ def every(flags: Bools) -> bool:
     return bool(np.count_nonzero(flags) == flags.size)
 
 
+def finite(name: str, value: object) -> Array:
+    """Return `value` as an array of floats; raise ValueError, with its `name`, if any is not finite."""
+    numbers = np.asarray(value, dtype=float)
+    if not np.isfinite(numbers).all():
+        raise ValueError(f"{name} must be finite, not {value}")
+    return numbers
+
+
 def dot(a: Array, b: Array) -> Array:
     """Scalar product, (..., 2) and (..., 2) to (...)."""
     return a[..., 0] * b[..., 0] + a[..., 1] * b[..., 1]

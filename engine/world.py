@@ -12,26 +12,27 @@ from engine.contacts import Detector
 from engine.free_flight import FreeFlight
 from engine.integrate import MovingBodies, integrate_position, integrate_velocity
 from engine.lone_contacts import LoneContacts
-from engine.rest import Rest, Standstill
+from engine.rest import Rest
 from engine.shapes import Point, Shape, mass_properties
 from engine.solver import Solver
 from engine.state import BodyParams, BodyState, ShapeTable
-from engine.vector import Array, Bools
+from engine.vector import Array, Bools, dot, finite
 
 DT = 1.0 / 60.0
-_BARELY = 1e-12  # m/s and rad/s, at which a place does not change by a bit; what stands moves so fast by rounding
 
 
 class World:
     """`batch` independent worlds under `gravity` (m/s²), advanced together by `step`.
 
     Bodies live in fixed slots, the same in every world; `active` masks, not shorter lists, take one out.
-    `gravity` may be reassigned at any time to an array (2,) or (batch, 2). After a step, `contacts` holds
-    what touched in it (or would have, but for 2 mm), with closing speeds and impulses.
+    `gravity` may be reassigned at any time to (2,) or (batch, 2), and so may `iterations` of the solver and
+    `restitution_threshold`, the closing speed (m/s) from which bodies rebound; each raises ValueError for a value
+    without physical sense. After a step, `contacts` holds what touched in it (or would have, but for 2 mm), with closing
+    speeds and impulses.
 
     Unless `sleeping` is off, what lies still falls asleep and costs nothing, until something about it changes. So
     that it comes to lie still, impulses pass over to the points that take the place of others, and overlaps of
-    less than a centimetre are left alone. Off, each step computes everything anew, as a flight needs that was
+    up to 1.5 cm are left alone. Off, each step computes everything anew, as a flight needs that was
     recorded so.
 
     Unless `in_floats` is off, the only body of a batch of one that forces can move flies in plain floats, and so many
@@ -51,8 +52,8 @@ class World:
     ) -> None:
         if batch < 1:
             raise ValueError(f"a world needs a batch of at least 1, not {batch}")
-        self.gravity: Array = np.asarray(gravity, dtype=float)
         self.batch = batch
+        self.gravity = gravity
         self.iterations = iterations
         self.restitution_threshold = restitution_threshold
         self.sleeping = sleeping
@@ -65,7 +66,42 @@ class World:
         self._detector: Detector | None = None
         self._movers: MovingBodies | None = None
         self._lone: LoneContacts | None = None
-        self._standstill = Standstill()
+        self._version = 0  # of `params`, with which these were made
+
+    @property
+    def gravity(self) -> Array:
+        """Metres a second squared, (2,) or (batch, 2)."""
+        return self._gravity
+
+    @gravity.setter
+    def gravity(self, value: Sequence[float] | Array) -> None:
+        gravity = finite("gravity", value).copy()
+        if gravity.shape not in ((2,), (self.batch, 2)):
+            raise ValueError(f"gravity must be of shape (2,) or ({self.batch}, 2), not {gravity.shape}")
+        gravity.flags.writeable = False
+        self._gravity = gravity
+
+    @property
+    def iterations(self) -> int:
+        """Iterations of the solver, at least 1."""
+        return self._iterations
+
+    @iterations.setter
+    def iterations(self, value: int) -> None:
+        if not isinstance(value, int | np.integer) or value < 1:
+            raise ValueError(f"the solver needs a whole number of iterations, at least 1, not {value}")
+        self._iterations = int(value)
+
+    @property
+    def restitution_threshold(self) -> float:
+        """Closing speed in m/s from which bodies rebound."""
+        return self._restitution_threshold
+
+    @restitution_threshold.setter
+    def restitution_threshold(self, value: float) -> None:
+        if not value >= 0:
+            raise ValueError(f"the speed from which bodies rebound must be 0 m/s or more, not {value}")
+        self._restitution_threshold = float(value)
 
     def add(
         self,
@@ -117,8 +153,11 @@ class World:
         else:
             shapes = [part.moved(-origin) for part in shapes] if origin.any() else shapes
             offset = centroid - origin
-            turning = mass * (spread + float(offset @ offset)) if inertia is None else inertia
-            inverse_mass = 1.0 / np.array([mass, mass, turning])
+            turning = mass * (spread + float(dot(offset, offset))) if inertia is None else inertia
+            with np.errstate(all="ignore"):
+                inverse_mass = 1.0 / np.array([mass, mass, turning])
+            if not (np.isfinite(inverse_mass) & (inverse_mass > 0)).all():
+                raise ValueError(f"a mass of {mass} kg and an inertia of {turning} kg·m² are beyond all numbers")
         pose = np.empty((self.batch, 3))
         pose[:, :2], pose[:, 2] = position, angle
         if not np.isfinite(pose).all():
@@ -135,7 +174,6 @@ class World:
         self.shapes += shapes
         self._shape_bodies += [len(self.bodies)] * len(shapes)
         self.bodies.append(Body(self, len(self.bodies)))
-        self._detector = self._movers = self._lone = None
         return self.bodies[-1]
 
     def step(self, touching: bool = True) -> None:
@@ -144,11 +182,10 @@ class World:
         Skipping is cheaper, and gives the same result, bit for bit, as long as nothing touches.
         """
         rest = self.detector.rest
+        if self.gravity is not self.detector.gravity:
+            self.detector.feel(self.gravity, self.batch)
         if rest and rest.undisturbed(self.state, self.gravity):
             self._touched = (rest.contacts, None)
-            return
-        if not rest and self.contacts and touching and self._stands():
-            self.state.force[:] = 0.0
             return
         if touching and self._step_in_floats():
             return
@@ -165,14 +202,6 @@ class World:
         self.state.force[:] = 0.0
         self._touched = (contacts, rest.settle(self.state, contacts, self.gravity) if rest else None)
         self.detector.remember(contacts)
-
-    def _stands(self) -> bool:
-        """Whether a step would change nothing, as the last one did."""
-        if np.abs(self.state.velocity).max() > _BARELY:
-            self._standstill.end()
-            return False
-        settings = (self.iterations, self.restitution_threshold)
-        return self._standstill.lasts(self.state, self.gravity, self.detector.impulses.parts, settings)
 
     def _step_in_floats(self) -> bool:
         """Take the step in plain floats, and return whether that was possible.
@@ -236,7 +265,8 @@ class World:
 
     @property
     def detector(self) -> Detector:
-        """Contact detector; made anew when a body has been added."""
+        """Contact detector; made anew when a body has been added, or a parameter replaced."""
+        self._heed_params()
         if self._detector is None:
             table = ShapeTable(self.shapes, self._shape_bodies, self.params.dynamic)
             self._detector = Detector(self.params, table, Rest(self.params, self.batch) if self.sleeping else None)
@@ -245,9 +275,16 @@ class World:
     @property
     def movers(self) -> MovingBodies:
         """Bodies that a step may move: those that forces can move, and static ones that have a velocity."""
+        self._heed_params()
         if self._movers is None:
             self._movers = MovingBodies(self.params, self.params.dynamic | self.state.velocity.any(axis=(0, 2)))
         return self._movers
+
+    def _heed_params(self) -> None:
+        """Forget what was made with other parameters."""
+        if self._version != self.params.version:
+            self._version = self.params.version
+            self._detector = self._movers = self._lone = None
 
     def moved(self, body: Body, worlds: Bools | None) -> None:
         """Update what is cached about a body that was changed by hand, in these worlds or in all."""

@@ -37,6 +37,7 @@ def play(folder: Path | None = None, full_screen: bool | None = None, begin: Rou
 
     """
     tell_sdl()
+    from ai.cli.command_line import stoppable
     from game.core import texts
     from game.core.assets import user_dir
     from game.core.settings import SettingsFile
@@ -59,15 +60,16 @@ def play(folder: Path | None = None, full_screen: bool | None = None, begin: Rou
         print(texts.NO_DISPLAY.format(reason=error), file=sys.stderr)
         return 2
     context.sound.open()
-    if file.problem:
-        context.note(file.problem)
+    if file.problem or texts.damaged:
+        context.note(file.problem or texts.LANGUAGE_DAMAGED.format(path=texts.damaged))
     if begin is not None:
         app.show(begin)
     # Exclude objects that live as long as the game from garbage collection, which took 20 ms each time.
     gc.freeze()
     gc.set_threshold(20_000, 20, 50)
     ahead.begin(context)
-    return app.run()
+    with stoppable("SIGHUP") as stop:
+        return app.run(stop)
 
 
 @cache

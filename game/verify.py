@@ -8,7 +8,8 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from itertools import islice
 from pathlib import Path
 from typing import Any, Final
@@ -16,11 +17,12 @@ from typing import Any, Final
 from ai.cli.command_line import readable
 from ai.flights.shared import SharedFlight
 from ai.flights.verification import Earned, is_true, verified
-from ai.nn.files import brief, read_text
+from ai.nn.files import brief, read_standard_input, read_text
 from game.core import texts
 from game.flight import sharing
 
 _LARGEST: Final = 64_000_000  # bytes of a file
+_STDIN: Final = Path("-")
 _PORTION: Final = 4_096  # flights that are held at a time, whatever the number of all
 _SUFFIXES: Final = (".json", ".txt")  # of what is read in a folder
 
@@ -54,17 +56,17 @@ def verify(arguments: argparse.Namespace) -> int:
 
 def _judged(place: str, flight: SharedFlight, real: Earned) -> tuple[dict[str, Any], str]:
     """Return a flight's row and its line."""
-    claim, steps = flight.claim, len(flight.recording.actions)
+    claim, true = flight.claim, is_true(flight, real)
     row = {
-        "place": place, "verdict": "true" if is_true(claim, steps, real) else "wrong", "where": sharing.where(flight),
+        "place": place, "verdict": "true" if true else "wrong", "where": sharing.where(flight),
         "outcome": real.outcome.name, "points": real.points, "medal": real.medal, "seconds": round(real.seconds, 3),
         "fuel": round(real.fuel, 3), "claimed": {"outcome": claim.outcome.name, "points": claim.points},
     }  # fmt: skip
-    told, claimed = sharing.words(real.outcome, real.points), sharing.words(claim.outcome, claim.points)
-    text = texts.VERIFY_TRUE if row["verdict"] == "true" else texts.VERIFY_WRONG
-    if text is texts.VERIFY_WRONG and told == claimed:
-        text = texts.VERIFY_WRONG_END
-    return row, text.format(place=place, earned=told, claim=claimed)
+    if not true:
+        row["why"] = sharing.why_wrong(flight, real)
+    verdict = texts.VERIFY_TRUE if true else texts.VERIFY_WRONG.format(why=row["why"])
+    words = sharing.words(real)
+    return row, texts.VERIFY_LINE.format(place=place, where=row["where"], earned=words, verdict=verdict)
 
 
 def _refused(place: str, why: str) -> tuple[dict[str, Any], str]:
@@ -75,13 +77,16 @@ def _refused(place: str, why: str) -> tuple[dict[str, Any], str]:
 def _flights(paths: list[Path]) -> Iterator[tuple[str, SharedFlight | str]]:
     """Yield every flight, or why it is refused, and its place: the file, and the number of its code there."""
     for path in paths:
+        if path == _STDIN:
+            yield from _flights_in(_STDIN, partial(read_standard_input, _LARGEST))
+            continue
         try:
             files = _files(path)
         except OSError as error:
             yield str(path), error.strerror or str(error)
             continue
         for file in files:
-            yield from _flights_of(file)
+            yield from _flights_in(file, partial(read_text, file, _LARGEST))
 
 
 def _files(path: Path) -> list[Path]:
@@ -91,9 +96,9 @@ def _files(path: Path) -> list[Path]:
     return sorted(file for file in path.iterdir() if file.suffix in _SUFFIXES and file.is_file())
 
 
-def _flights_of(file: Path) -> Iterator[tuple[str, SharedFlight | str]]:
+def _flights_in(file: Path, read: Callable[[], str]) -> Iterator[tuple[str, SharedFlight | str]]:
     try:
-        text = read_text(file, _LARGEST)
+        text = read()
     except OSError as error:
         yield str(file), error.strerror or str(error)
         return

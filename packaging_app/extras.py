@@ -65,9 +65,10 @@ def draw_icons(folder: Path) -> None:
 
 def write_metadata(folder: Path) -> None:
     """Write the name and the version where `--version` looks for them; an editable install's own names its folder."""
-    metadata = folder / f"{recipe.NAME}-{recipe.version()}.dist-info" / "METADATA"
+    name, version = recipe.distribution(), recipe.version()
+    metadata = folder / f"{name.replace('-', '_')}-{version}.dist-info" / "METADATA"
     metadata.parent.mkdir(parents=True)
-    text = f"Metadata-Version: 2.1\nName: {recipe.NAME}\nVersion: {recipe.version()}\n"
+    text = f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\n"
     metadata.write_text(text, encoding="utf-8")
 
 

@@ -36,8 +36,9 @@ LIBRARIES: Final = {
 _LIBRARY: Final = re.compile(r"^lib(.+?)(?:[-.]\w*)*\.(?:so|dylib)[\d.]*$")
 _HEAD: Final = """What is packed with Tranquility, and under which licence; the texts lie beside this file.
 
-Tranquility itself is under the MIT licence, LICENSE. The libraries under the LGPL are files of their own in the
-folder of the program, and may be replaced by others of the same interface.
+Tranquility itself is under the MIT licence, LICENSE; the digits of MNIST in it are under CC BY-SA 3.0, MNIST.txt. The
+libraries under the LGPL are files of their own in the folder of the program, and may be replaced by others of the same
+interface.
 """
 
 
@@ -45,6 +46,7 @@ def collect(packages: Iterable[str], app: Path, folder: Path) -> None:
     """Write into a folder the licences of these packages, of Python, and of the libraries that lie in the app."""
     folder.mkdir(exist_ok=True)
     shutil.copy(ROOT / "LICENSE", folder / "LICENSE")
+    shutil.copy(ROOT / "assets" / "mnist" / "README.txt", folder / "MNIST.txt")
     shutil.copy(_LGPL, folder / _LGPL.name)
     names = packages_distributions()
     distributions = sorted({names[package][0] for package in packages} | {"pyinstaller"})

@@ -6,7 +6,7 @@ import tomllib
 from importlib.metadata import packages_distributions
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 ROOT: Final = Path(__file__).resolve().parents[1]
 NAME: Final = "tranquility"
@@ -43,7 +43,16 @@ _UNUSED_PARTS: Final = (
 
 def version() -> str:
     """Return the version in pyproject.toml."""
-    return str(tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"])
+    return str(_project()["version"])
+
+
+def distribution() -> str:
+    """Return the name under which the version is looked for."""
+    return str(_project()["name"])
+
+
+def _project() -> dict[str, Any]:
+    return dict(tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"])
 
 
 def modules() -> list[str]:

@@ -167,7 +167,7 @@ def test_the_archive_is_small_and_has_all_licences(archive: Path, app: Path):
     assert all(known.values()), [name for name, licence in known.items() if not licence]
     texts = [path.name for path in (app / FOLDER).rglob("*") if path.is_file()]
     assert len(texts) > 15
-    assert {"LICENSE", "LGPL-2.1.txt", "Python-LICENSE.txt", "font_manrope-OFL.txt"} <= set(texts)
+    assert {"LICENSE", "LGPL-2.1.txt", "MNIST.txt", "Python-LICENSE.txt", "font_manrope-OFL.txt"} <= set(texts)
 
 
 def test_commands_train_evaluate_and_say_what_they_are(app: Path, home: Path):

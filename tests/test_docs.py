@@ -1,10 +1,13 @@
 """What documents, docstrings and comments name exists: modules, classes, functions and files."""
 
 import re
+import tomllib
 from importlib import import_module
 from pathlib import Path
 
 import pytest
+
+from tranquility.__main__ import _version
 
 ROOT = Path(__file__).parents[1]
 SOURCES = [path for folder in ("ai", "engine", "game", "benchmarks") for path in sorted((ROOT / folder).rglob("*.py"))]
@@ -31,13 +34,14 @@ def exists(name: str) -> bool:
     return False
 
 
-@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.relative_to(ROOT).as_posix())
-def test_what_a_document_names_exists(document: Path):
-    text = document.read_text(encoding="utf-8")
-    names = {name for name in _DOTTED.findall(text) if not exists(name)}
-    files = {name for name in _FILE.findall(text) if not (ROOT / name).exists()}
-    links = {link for link in _LINK.findall(text) if not (document.parent / link).exists()}
-    assert not names | files | links
+def test_what_a_document_names_exists(subtests: pytest.Subtests):
+    for document in DOCUMENTS:
+        with subtests.test(document=document):
+            text = document.read_text(encoding="utf-8")
+            names = {name for name in _DOTTED.findall(text) if not exists(name)}
+            files = {name for name in _FILE.findall(text) if not (ROOT / name).exists()}
+            links = {link for link in _LINK.findall(text) if not (document.parent / link).exists()}
+            assert not names | files | links
 
 
 def test_what_a_source_names_exists():
@@ -49,3 +53,25 @@ def test_a_name_that_is_gone_is_found():
     assert exists("ai.nn.NeuralNetwork")
     assert not exists("ai.nn.NeuralNetwork.fly")
     assert not exists("game.shell.nothing")
+
+
+def test_nobody_is_told_to_install_what_the_index_has_under_our_name():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert project["name"] == "tranquility-lander"
+    assert project["scripts"].keys() == {"tranquility"}
+    own = {"tranquility", project["name"]}
+    wanted = [re.split(r"[\[<>=; ]", need, maxsplit=1)[0] for needs in project["optional-dependencies"].values()
+              for need in needs]  # fmt: skip
+    assert own & set(wanted) == {project["name"]}
+    texts = [*SOURCES, *DOCUMENTS, *sorted((ROOT / "game" / "locale").glob("*.pot"))]
+    told = re.compile(r"install[^\n`]*[\s\"']tranquility\b(?!-lander\[)")
+    assert not [path for path in texts if told.search(path.read_text(encoding="utf-8"))]
+
+
+def test_the_version_is_our_own_not_that_of_a_namesake(tmp_path, monkeypatch):
+    for name, version in (("tranquility", "9.9"), ("tranquility_lander", "3.2.1")):
+        folder = tmp_path / f"{name}-{version}.dist-info"
+        folder.mkdir()
+        (folder / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\n")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    assert _version() == "Tranquility 3.2.1"

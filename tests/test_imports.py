@@ -85,29 +85,32 @@ def assert_imports_only(path, packages):
     assert not strange, f"{path.relative_to(ROOT)} stands on a floor that knows nothing of {sorted(strange)}"
 
 
-@pytest.mark.parametrize("path", modules("engine"), ids=name_of)
-def test_the_engine_stands_on_numpy_alone(path):
-    assert_imports_only(path, {"engine", "numpy"})
+@pytest.mark.parametrize(("folder", "name"), [("engine", "engine"), ("ai/nn", "ai.nn")])
+def test_the_engine_and_the_network_library_stand_on_numpy_alone(subtests, folder, name):
+    for path in modules(folder):
+        with subtests.test(name_of(path)):
+            assert_imports_only(path, {name, "numpy"})
 
 
-@pytest.mark.parametrize("path", modules("ai/nn"), ids=name_of)
-def test_the_network_library_stands_on_numpy_alone(path):
-    assert_imports_only(path, {"ai.nn", "numpy"})
-
-
-@pytest.mark.parametrize("path", [p for p in modules("ai") if "nn" not in p.parts], ids=name_of)
-def test_ai_stands_on_the_engine_and_the_network_library(path):
-    late = LATE.get(name_of(path), set())
-    assert_imports_only(path, {"ai", "engine", "numpy"} | late | EXTRA.get(name_of(path), set()))
-    assert not [name for name in imports(path, everywhere=False) if is_within(name, late)]
+def test_ai_stands_on_the_engine_and_the_network_library(subtests):
+    for path in (path for path in modules("ai") if "nn" not in path.parts):
+        with subtests.test(name := name_of(path)):
+            late = LATE.get(name, set())
+            assert_imports_only(path, {"ai", "engine", "numpy"} | late | EXTRA.get(name, set()))
+            assert not [each for each in imports(path, everywhere=False) if is_within(each, late)]
 
 
 def floor_of(name):
     return next((floor for floor in (*AI_FLOORS, *GAME_FLOORS) if is_within(name, {floor})), None)
 
 
-@pytest.mark.parametrize("path", [*modules("ai"), *modules("game")], ids=name_of)
-def test_inside_ai_and_game_imports_run_down_only(path):
+def test_inside_ai_and_game_imports_run_down_only(subtests):
+    for path in (*modules("ai"), *modules("game")):
+        with subtests.test(name_of(path)):
+            assert_imports_run_down(path)
+
+
+def assert_imports_run_down(path):
     name, floors = name_of(path), [*AI_FLOORS, *GAME_FLOORS]
     if name in ("ai", "game"):
         assert not {each for each in imports(path) if is_within(each, {"ai", "game"})}

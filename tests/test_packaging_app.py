@@ -48,7 +48,7 @@ def session(run):
     from game.drawing import typeface
     from game.scenes import ROUTES
 
-    def play(app):
+    def play(app, stop):
         for name in ("play", "missions", "watch", "train", "runs", "digits", "learn", "physics", "logbook", "settings"):
             app.show(Route(name))
             app.tick()
@@ -89,6 +89,7 @@ def test_data_lies_in_the_app_as_in_a_checkout(files):
     assert {"mnist", "models", "files"} <= {part for _, folder in files for part in folder.parts}
 
 
+@pytest.mark.slow
 def test_the_game_opens_nothing_that_is_left_out(files, tmp_path: Path):
     script = tmp_path / "session.py"
     script.write_text(SESSION, encoding="utf-8")
@@ -158,6 +159,7 @@ def test_licences_are_collected_and_a_strange_library_is_noticed(tmp_path: Path)
         "libSDL2-2-50d19f93.0.so.0.3200.10": "Zlib", "libpng16-fefdc88d.so.16.58.0": "libpng-2.0",
         "libstranger.so.1": "", "libz.so.1": "Zlib",
     }  # fmt: skip
+    assert "licenses/by-sa/3.0" in (folder / "MNIST.txt").read_text(encoding="utf-8")
     assert "SIL OPEN FONT LICENSE" in (folder / "font_manrope-OFL.txt").read_text(encoding="utf-8").upper()
 
 

@@ -2,12 +2,15 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
+from importlib.metadata import distributions
 from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.slow
 ROOT = Path(__file__).parents[1]
 DECOYS = ("main", "ai", "engine", "game", "models", "assets")
 
@@ -25,7 +28,7 @@ def session():
     from game.shell.app import App
     from game.core.worker import Worker
     run, worker = App.run, Worker(places)
-    App.run = lambda app: run(app, max_frames=20)
+    App.run = lambda app, stop: run(app, stop, max_frames=20)
     assert main(["--user-dir", "player"]) == 0
     told = []
     while not told:
@@ -72,6 +75,23 @@ def elsewhere(tmp_path: Path) -> Path:
 
 def environment(installed: Path) -> dict[str, str]:
     return os.environ | {"PYTHONPATH": str(installed), "SDL_VIDEODRIVER": "dummy", "SDL_AUDIODRIVER": "dummy"}
+
+
+@pytest.mark.slow
+def test_the_metadata_of_a_wheel_leads_nowhere_that_is_not_there(installed: Path):
+    (told,) = (distribution.metadata for distribution in distributions(path=[str(installed)]))
+    description = told.get_payload()
+    assert isinstance(description, str)
+    assert description.startswith("# Tranquility")
+    assert not re.findall(r"!\[", description), "pictures"
+    assert not [link for link in re.findall(r"\]\(([^)]*)\)", description) if not link.startswith("https://")]
+    assert not re.findall(r"<(?:img|a)\b", description)
+    assert told["License-Expression"] == "MIT AND CC-BY-SA-3.0"
+    (info,) = installed.glob("*.dist-info")
+    for name in told.get_all("License-File", []):
+        assert (info / "licenses" / name).read_text(encoding="utf-8") == (ROOT / name).read_text(encoding="utf-8")
+    licences = " ".join(file.read_text(encoding="utf-8") for file in (info / "licenses").rglob("*.*"))
+    assert "creativecommons.org/licenses/by-sa/3.0" in licences
 
 
 def test_commands_of_a_wheel_run_beside_strangers_of_the_same_names(installed: Path, elsewhere: Path):

@@ -2,17 +2,18 @@
 
 Modules are imported as `engine`, `ai` and `game`. In a checkout these folders lie beside this one. In an installed
 wheel they lie within it, so the wheel owns one top-level name; `find_own_folders` makes the imports work there.
+
+Nothing is imported here that Python has not loaded by itself: until `main` runs, Ctrl-C would end in a traceback.
 """
 
 from __future__ import annotations
 
-import argparse
 import os
 import sys
-from importlib import import_module
-from importlib.metadata import PackageNotFoundError, version
-from importlib.util import find_spec
-from pathlib import Path
+
+TYPE_CHECKING = False  # typing's own is late, too
+if TYPE_CHECKING:
+    import argparse
 
 
 def limit_threads() -> None:
@@ -30,6 +31,8 @@ def find_own_folders() -> None:
 
     This holds only for this process and its children, to which multiprocessing's `spawn` passes the path.
     """
+    from pathlib import Path
+
     own = Path(__file__).resolve().parent
     folder = str(own if (own / "engine").is_dir() else own.parent)
     if sys.path[:1] != [folder]:
@@ -38,14 +41,13 @@ def find_own_folders() -> None:
 
 def main(argv: list[str] | None = None) -> int:
     """Run `tranquility` with these arguments and return the exit code."""
-    limit_threads()
-    find_own_folders()
-    _forgive_terminals()
     try:
+        limit_threads()
+        find_own_folders()
+        _open_streams()
         arguments = _parser().parse_args(argv)
         code = _open_game(arguments) if arguments.run is None else int(arguments.run(arguments))
-        if sys.stdout is not None:
-            sys.stdout.flush()  # here, where a failure can still be reported
+        sys.stdout.flush()  # here, where a failure can still be reported
         return code
     except KeyboardInterrupt:
         return 130
@@ -58,13 +60,22 @@ def main(argv: list[str] | None = None) -> int:
         _discard_output()
         print(f"tranquility: cannot write: {error.strerror or error}", file=sys.stderr)
         return 1
+    except RuntimeError as error:  # what Python makes of Ctrl-C while a class of a module is made
+        if isinstance(error.__cause__, KeyboardInterrupt):
+            return 130
+        raise
 
 
-def _forgive_terminals() -> None:
-    """Print characters outside the terminal's encoding as question marks, instead of raising an error."""
-    for stream in (sys.stdout, sys.stderr):
-        if hasattr(stream, "reconfigure"):
-            stream.reconfigure(errors="replace")
+def _open_streams() -> None:
+    """Open closed standard streams to nowhere, or the next file would take their place, and what is printed with it.
+
+    Characters outside a terminal's encoding are printed as question marks, instead of raising an error.
+    """
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:
+            setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_RDWR), mode, encoding="utf-8", closefd=False))
+        elif mode == "w" and hasattr(getattr(sys, name), "reconfigure"):
+            getattr(sys, name).reconfigure(errors="replace")
 
 
 def _discard_output() -> None:
@@ -75,6 +86,9 @@ def _discard_output() -> None:
 
 
 def _parser() -> argparse.ArgumentParser:
+    from importlib import import_module
+    from importlib.util import find_spec
+
     from ai.cli.command_line import Parser, folder  # imported after `find_own_folders`
 
     parser = Parser(prog="tranquility", description="Land on the moon by hand, by network, or share the stick.")
@@ -92,8 +106,10 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _version() -> str:
+    from importlib.metadata import PackageNotFoundError, version
+
     try:
-        return f"Tranquility {version('tranquility')}"
+        return f"Tranquility {version('tranquility-lander')}"
     except PackageNotFoundError:
         return "Tranquility, from a checkout"
 

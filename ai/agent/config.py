@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import astuple, dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
 from typing import Any, Final
 
-from ai.common.knobs import Knobs, is_number, knob, shown
+from ai.common.knobs import Knobs, is_number, knob
 from ai.lander.rewards import RewardWeights
 from ai.lander.spawns import CURRICULA, RUNGS, SPAWNS
 from ai.nn import OPTIMIZERS
 from ai.nn.activations import ACTIVATIONS
+from ai.nn.files import shown
 
 LANDER: Final = "lander"
 ANYWHERE: Final = "lander-anywhere"  # our lander at random sites, with what is around it as further inputs
@@ -110,9 +112,7 @@ class Config(Knobs):
     def problems(self) -> list[str]:
         """Return what is wrong with the values, a sentence each."""
         problems = super().problems()
-        if not _pays(self.reward_weights):
-            given = shown(self.reward_weights)
-            problems.append(f"reward_weights are finite numbers, one for each part of the reward, not {given}")
+        problems += _weight_problems(self.reward_weights)
         if self.env == "":
             problems.append("env is the name of an environment, and was empty")
         if not problems and self.replay_prune > self.replay_size:
@@ -121,13 +121,23 @@ class Config(Knobs):
 
     @classmethod
     def value_from_json(cls, name: str, value: Any) -> Any:
-        """Return the value of a field from what a file holds of it; what cannot be one raises TypeError."""
-        return RewardWeights(**value) if name == "reward_weights" else super().value_from_json(name, value)
+        """Return the value of a field from what a file holds of it; raises ValueError for what cannot be one."""
+        if name != "reward_weights":
+            return super().value_from_json(name, value)
+        parts = [item.name for item in fields(RewardWeights)]
+        if not isinstance(value, Mapping):
+            raise ValueError(f"reward_weights are numbers by name, of {', '.join(parts)}, not {shown(value)}")
+        if unknown := [part for part in value if part not in parts]:
+            raise ValueError(f"reward_weights has no {shown(unknown[0])}, only {', '.join(parts)}")
+        return RewardWeights(**value)
 
 
-def _pays(weights: Any) -> bool:
-    """Whether `weights` are reward weights that are all finite numbers."""
-    return isinstance(weights, RewardWeights) and all(map(is_number, astuple(weights)))
+def _weight_problems(weights: Any) -> list[str]:
+    """Return what is wrong with the weights of the parts of the reward, a sentence each."""
+    if not isinstance(weights, RewardWeights):
+        return [f"reward_weights are finite numbers by name, not {shown(weights)}"]
+    wrong = {name: value for name, value in vars(weights).items() if not is_number(value)}
+    return [f"reward_weights.{name} is a finite number, not {shown(value)}" for name, value in wrong.items()]
 
 
 # What a network is taught with that lands anywhere, by `python main.py train --preset anywhere`; not among the presets

@@ -18,7 +18,7 @@ from ai.agent.normalizer import Normalizer
 from ai.common.environment import Floats
 from ai.nn import ModelFormatError, NeuralNetwork, atomic_folder, recover_folder
 from ai.nn.budget import WIDEST
-from ai.nn.files import brief, count_of, inside, read_arrays, read_json
+from ai.nn.files import brief, count_of, inside, problem_in, read_arrays, read_json
 from ai.nn.folder import NETWORK, FolderKind
 from ai.nn.optimizers import Optimizer
 from ai.nn.schema import check_header
@@ -90,7 +90,7 @@ def read_agent(folder: str | Path, *, env: str | None = None) -> SavedAgent:
     described = _read_description(folder)
     try:
         config = Config.from_json(described["config"])
-        _check_env(config.env, env)
+        check_env(config.env, env)
         features, actions = (count_of(described[name], 1, WIDEST) for name in ("features", "actions"))
         network = build_network(features, actions, config, np.random.default_rng(0))
         decisions, train_count = count_of(described["decisions"]), count_of(described["train_count"])
@@ -98,8 +98,7 @@ def read_agent(folder: str | Path, *, env: str | None = None) -> SavedAgent:
         if normalizer:
             normalizer.load(described["scale"])
     except (KeyError, TypeError, ValueError, ArithmeticError) as error:
-        said = f"{error.args[0]} is missing" if isinstance(error, KeyError) else brief(error)
-        raise ModelFormatError(folder, [f"{AGENT_FILE}: {said}"]) from error
+        raise ModelFormatError(folder, [f"{AGENT_FILE}: {problem_in(error)}"]) from error
     problems: list[str] = []
     online, target = (_read_network(folder, name, network, problems) for name in ("online", "target"))
     optimizer = make_optimizer(config)
@@ -108,7 +107,7 @@ def read_agent(folder: str | Path, *, env: str | None = None) -> SavedAgent:
     except OSError as error:
         problems.append(f"{OPTIMIZER_FILE}: {error.strerror or error}")
     except (ValueError, KeyError) as error:
-        problems.append(f"{OPTIMIZER_FILE}: {error}")
+        problems.append(f"{OPTIMIZER_FILE}: {problem_in(error)}")
     if problems:
         raise ModelFormatError(folder, problems)
     return SavedAgent(features, actions, config, decisions, train_count, online, target, optimizer, normalizer)
@@ -124,8 +123,8 @@ def _read_description(folder: Path) -> dict[str, Any]:
         raise ModelFormatError(folder, [f"{AGENT_FILE}: {error}"]) from error
 
 
-def _check_env(env: str, named: str | None) -> None:
-    """Raise ValueError for an environment whose name would import code, unless the user has named it."""
+def check_env(env: object, named: str | None) -> None:
+    """Raise ValueError for a file's environment whose name would import code, unless the user has named it."""
     if not isinstance(env, str) or (":" in env and env != named):
         raise ValueError(
             f"it is for the environment {brief(repr(env), 100)}, which is code that a file may not start; "

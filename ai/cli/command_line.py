@@ -7,13 +7,15 @@ import json
 import os
 import signal
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import FrameType
-from typing import TYPE_CHECKING, Final, NoReturn, TypeVar
+from typing import TYPE_CHECKING, Any, Final, NoReturn, TypeVar
 
 if TYPE_CHECKING:
+    from tqdm import tqdm
+
     from ai.common.knobs import Knobs
 
     Settings = TypeVar("Settings", bound=Knobs)
@@ -25,6 +27,7 @@ SEEDS: Final = (0, 2**63 - 1)
 SECONDS: Final = (0.001, 1e9)
 EPISODES: Final = (1, 50_000)  # all are flown at once, in 5 KB each
 WORKERS: Final = (1, 1000)
+_REQUESTS: Final = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK")  # signals that ask a program to end
 
 # Errors of reading a path or settings that the user has named. A loop of links and JSON that is nested too deeply
 # are RuntimeErrors.
@@ -46,22 +49,55 @@ def add_where(command: argparse.ArgumentParser, workers: str) -> None:
 
 
 def fail(message: str) -> int:
-    """Say what went wrong, and return the exit code of a failure."""
-    print("\n".join(readable(line) for line in message.splitlines()), file=sys.stderr)
+    """Say what went wrong, if anybody still listens, and return the exit code of a failure."""
+    with suppress(OSError):
+        print("\n".join(readable(line) for line in message.splitlines()), file=sys.stderr)
     return FAILED
 
 
-def readable(line: str) -> str:
+class Unheard:
+    """Standard error as a bar of progress writes to it: a terminal that is gone ends no work."""
+
+    def write(self, text: str) -> int:
+        """Write a text; what cannot be written is lost."""
+        with suppress(OSError):
+            sys.stderr.write(text)
+        return len(text)
+
+    def flush(self) -> None:
+        """Flush what was written."""
+        with suppress(OSError):
+            sys.stderr.flush()
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(sys.stderr, name)
+
+
+def progress_bar(total: int, desc: str, **options: Any) -> tqdm[Any]:
+    """Return a bar of progress, which is drawn on terminals alone, and never ends the work that it shows."""
+    from tqdm import tqdm
+
+    return tqdm(total=total, desc=desc, file=Unheard(), **({"disable": None} | options))
+
+
+def say(line: str) -> None:
+    """Print a line with a name in it that may be anything."""
+    print(readable(line))
+
+
+def readable(line: str, longest: int = LONGEST) -> str:
     """Return a line without its middle, if it is too long, and with control characters escaped."""
-    short = line if len(line) <= LONGEST else f"{line[: LONGEST - 100]} ... {line[-90:]}"
+    short = line if len(line) <= longest else f"{line[: LONGEST - 100]} ... {line[-90:]}"
     return "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in short)
 
 
 def folder(text: str) -> Path:
-    """Return the path of a folder that the user named; raises ArgumentTypeError for one that no system allows."""
+    """Return the path of a folder that the user named; raises ArgumentTypeError for one that cannot be, or be shown."""
+    from ai.nn.files import CONTROLS
+
     try:
         os.fsencode(text)
-        named = "\0" not in text and text.strip() != "" and Path(text).resolve().name != ""
+        named = not CONTROLS.search(text) and text.strip() != "" and Path(text).resolve().name != ""
     except (ValueError, RuntimeError):  # characters that no file system takes, a loop of links
         named = False
     except OSError:  # opening it will report what is wrong
@@ -93,19 +129,21 @@ def out_of_range(arguments: argparse.Namespace, **ranges: tuple[float, float]) -
 
 def configured(preset: Settings, given: list[str]) -> Settings:
     """Return the preset with some settings changed, each as NAME=VALUE; raises ValueError for nonsense."""
-    changes = {}
+    values = preset.to_json()
     for change in given:
         name, equals, text = change.partition("=")
         name = preset.name_now(name)
-        if not equals or name not in preset.to_json():
+        if not equals or name not in values:
             raise ValueError(f"--set takes NAME=VALUE with the name of a setting, not {change!r}")
         try:
-            changes[name] = json.loads(text)
+            value = json.loads(text)
         except RecursionError:
             raise ValueError(f"--set {name}: that is nested too deeply") from None
         except ValueError:
-            changes[name] = text
-    return preset.from_json(preset.to_json() | changes)
+            value = text
+        parts = isinstance(value, dict) and isinstance(values[name], dict)  # those not named stay as they are
+        values[name] = values[name] | value if parts else value
+    return preset.from_json(values)
 
 
 def refuse_fixed(begun: Settings, wanted: Settings, begun_seed: int, seed: int | None) -> None:
@@ -128,7 +166,7 @@ def keep(save: Callable[[Path], Kept], output: Path) -> tuple[Path, Kept]:
     try:
         return output, save(output)
     except FileExistsError as error:
-        print(error, file=sys.stderr)
+        fail(str(error))
         beside = free_folder(output)
         return beside, save(beside)
 
@@ -149,10 +187,11 @@ def fail_diverged(stopped: str, output: Path, *, measured: bool) -> int:
 
 
 @contextmanager
-def stoppable() -> Iterator[list[int]]:
+def stoppable(*names: str) -> Iterator[list[int]]:
     """Collect Ctrl-C and termination signals in the list, so that they never cut short a step or its save.
 
-    An entry is the number of a signal. Meant for the main thread; afterwards, signals do what they did before.
+    An entry is the number of a signal; `names` are of other signals to collect in place of these. Meant for the main
+    thread; afterwards, signals do what they did before.
     """
     stop: list[int] = []
     terminals = [number for number in (1, 2) if os.isatty(number)]
@@ -162,7 +201,7 @@ def stoppable() -> Iterator[list[int]]:
         if number == getattr(signal, "SIGHUP", None):
             _forget(terminals)
 
-    before = {number: signal.signal(number, note) for number in _requests()}
+    before = {number: signal.signal(number, note) for number in _requests(names or _REQUESTS)}
     try:
         yield stop
     finally:
@@ -170,12 +209,13 @@ def stoppable() -> Iterator[list[int]]:
             signal.signal(number, handler)
 
 
-def _requests() -> list[int]:
-    """Return the signals that ask a program to end on this system; a hang-up that is ignored (nohup) is none."""
-    names = ["SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK"]
-    if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
-        names.remove("SIGHUP")
-    return [getattr(signal, name) for name in names if hasattr(signal, name)]
+def _requests(names: Sequence[str]) -> list[int]:
+    """Return those signals that this system has; a hang-up that is ignored (nohup) is none."""
+    numbers = [getattr(signal, name) for name in names if hasattr(signal, name)]
+    return [
+        number for number in numbers
+        if number != getattr(signal, "SIGHUP", None) or signal.getsignal(number) is not signal.SIG_IGN
+    ]  # fmt: skip
 
 
 def _forget(terminals: list[int]) -> None:

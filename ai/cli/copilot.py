@@ -17,6 +17,7 @@ from ai.cli.command_line import (
     fail,
     folder,
     out_of_range,
+    progress_bar,
     reason,
 )
 
@@ -67,8 +68,6 @@ def _lander(model: Path, envs: tuple[str, ...]) -> DeepQAgent:
 
 
 def _table(arguments: argparse.Namespace) -> int:
-    from tqdm import tqdm
-
     from ai.agent.config import ANYWHERE, LANDER
     from ai.copilot.copilot import Mode
     from ai.copilot.measurement import HELPS, seconds
@@ -80,18 +79,17 @@ def _table(arguments: argparse.Namespace) -> int:
     if not all(0 <= assist <= 1 for assist in arguments.assist):
         return fail("the dial goes from 0 to 1")
     helps = [*HELPS, *((Mode.GUARDIAN, assist) for assist in arguments.assist)]
-    models = {"one_pad": arguments.model, "three_pads": arguments.model, "other_worlds": arguments.anywhere}
     done: dict[int, list[AssistedFlights]] = {}
     try:
         agent = _lander(arguments.model, (LANDER,))
-        _lander(arguments.anywhere, (ANYWHERE,))
-        asked = parts(models, arguments.good == "scripted", helps, arguments.episodes, arguments.seed)
+        agents = {"one_pad": agent, "three_pads": agent, "other_worlds": _lander(arguments.anywhere, (ANYWHERE,))}
+        asked = parts(agents, arguments.good == "scripted", helps, arguments.episodes, arguments.seed)
         guarded = sum(len(part.names) for part in asked) * (1 + len(arguments.assist)) * arguments.episodes
         minutes = seconds(agent, guarded) / 60 / (arguments.workers or 1)
         print(
             f"this takes about {minutes:.0f} minutes" if minutes > 1 else "this takes about a minute", file=sys.stderr
         )
-        with tqdm(total=len(asked), desc="flying", unit="part", disable=None) as bar:
+        with progress_bar(len(asked), "flying", unit="part") as bar:
             for index, rows in each(fly, asked, arguments.address, arguments.workers or 1):
                 done[index] = rows
                 bar.update()

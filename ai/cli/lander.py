@@ -23,15 +23,17 @@ from ai.cli.command_line import (
     fail,
     folder,
     out_of_range,
+    progress_bar,
     reason,
 )
 from ai.cli.training_run import RunCommand, add_run_options, show_progress, train
 
 if TYPE_CHECKING:
+    from ai.agent.agent import DeepQAgent
     from ai.agent.config import Config
     from ai.training.checkpoints import TrainingClock
     from ai.training.loop import Progress, Training
-    from ai.training.task import Score
+    from ai.training.task import Score, Task
 
 DECISIONS: Final = (1, 10**12)
 FLIGHTS: Final = (1, 10**8)
@@ -128,11 +130,9 @@ def _advance(clock: TrainingClock, training: Training, output: Path, stop: list[
 
 
 def _evaluate(arguments: argparse.Namespace) -> int:
-    from ai.agent.agent import DeepQAgent
     from ai.agent.config import LANDER
     from ai.common.intervals import wilson
     from ai.lander.spawns import SPAWNS
-    from ai.training.tasks import task_of
 
     spawn, episodes = "random" if arguments.spawn is None else arguments.spawn, arguments.episodes
     if problem := out_of_range(arguments, episodes=FLIGHTS, seed=SEEDS, workers=WORKERS):
@@ -140,17 +140,14 @@ def _evaluate(arguments: argparse.Namespace) -> int:
     if spawn not in SPAWNS:
         return fail(f"--spawn is one of {', '.join(SPAWNS)}, not {spawn}")
     try:
-        agent = DeepQAgent.load(arguments.model, env=arguments.env)
-        task = task_of(agent.config)
-        if (agent.num_features, agent.num_actions) != (task.num_features, task.num_actions):
-            raise ValueError(f"the network in {arguments.model} is not made for {agent.config.env}")
+        agent, task = _agent_and_task(arguments)
     except REFUSED as error:
         return fail(reason(error))
     episodes = episodes or task.test_episodes
     spread = arguments.address is not None or arguments.workers is not None
     if agent.config.env == LANDER:
         try:
-            score: Score = _flown(arguments, episodes, spawn, agent.config.frame_skip)
+            score: Score = _flown(arguments, agent, episodes, spawn)
         except REFUSED as error:
             return fail(reason(error))
     elif spread or episodes > EPISODES[1]:
@@ -172,14 +169,27 @@ def _evaluate(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _flown(arguments: argparse.Namespace, episodes: int, spawn: str, frame_skip: int) -> Score:
-    """Fly the flights, in shards; on several processes if that is asked for. Raises what `ai.sweep.cluster` raises."""
-    from tqdm import tqdm
+def _agent_and_task(arguments: argparse.Namespace) -> tuple[DeepQAgent, Task]:
+    """Read the network, and what it is measured by; raises ValueError if these two or `--env` do not fit together."""
+    from ai.agent.agent import DeepQAgent
+    from ai.training.tasks import task_of
 
+    agent = DeepQAgent.load(arguments.model, env=arguments.env)
+    env = agent.config.env
+    if arguments.env not in (None, env):
+        raise ValueError(f"the network in {arguments.model} is for {env}, not for {arguments.env}")
+    task = task_of(agent.config)
+    if (agent.num_features, agent.num_actions) != (task.num_features, task.num_actions):
+        raise ValueError(f"the network in {arguments.model} is not made for {env}")
+    return agent, task
+
+
+def _flown(arguments: argparse.Namespace, agent: DeepQAgent, episodes: int, spawn: str) -> Score:
+    """Fly the flights, in shards; on several processes if that is asked for. Raises what `ai.sweep.cluster` raises."""
     from ai.sweep.shards import flown_shards, shards
 
-    parts = shards(arguments.model, episodes, arguments.seed, spawn, frame_skip)
-    with tqdm(total=episodes, desc="flying", unit="flight", disable=True if len(parts) == 1 else None) as bar:
+    parts = shards(agent, episodes, arguments.seed, spawn)
+    with progress_bar(episodes, "flying", unit="flight", disable=True if len(parts) == 1 else None) as bar:
         for sums in flown_shards(parts, arguments.address, arguments.workers or 1):
             if sums is not None:
                 return sums.evaluation()

@@ -19,7 +19,9 @@ from ai.cli.command_line import (
     fail,
     folder,
     out_of_range,
+    readable,
     reason,
+    say,
     stoppable,
 )
 
@@ -34,7 +36,7 @@ BUDGET: Final = (1, 10**12)
 _TRIALS, _RUNS, _DECISIONS, _MEASURED = 64, 3, 250_000, 5  # defaults; a run is measured five times
 _OF_A_NEW_ONE: Final = (
     "seeds", "metric", "judge", "knobs", "space", "search", "population", "stop_early", "decisions", "epochs", "every",
-    "validation", "env", "preset", "changes", "digits", "seed",
+    "validation", "preset", "changes", "digits", "seed",
 )  # fmt: skip
 
 
@@ -61,7 +63,8 @@ def add_commands(commands: Any) -> None:
     sweep.add_argument("--epochs", type=int, metavar="N", help="length of each run of digits (default: the preset's)")
     sweep.add_argument("--every", type=int, metavar="N", help="decisions or epochs between two measurements")
     sweep.add_argument("--validation", type=int, metavar="N", help="episodes of a measurement, as for train")
-    sweep.add_argument("--env", metavar="NAME", help="an environment of Gymnasium (default: our own lander)")
+    sweep.add_argument("--env", metavar="NAME", help="an environment of Gymnasium (default: our own lander);"
+                       " with --resume only to allow a study one whose name is module:Name")  # fmt: skip
     sweep.add_argument("--digits", action="store_true", default=None, help="train networks that read digits")
     sweep.add_argument("--preset", help="settings of all that is not searched, as for train or train-digits")
     sweep.add_argument("--set", action="append", metavar="NAME=VALUE", dest="changes", help="change such a setting")
@@ -77,7 +80,7 @@ def add_commands(commands: Any) -> None:
 
 
 def _sweep(arguments: argparse.Namespace) -> int:
-    from ai.sweep.cluster import MISSING, installed
+    from ai.sweep.cluster import MISSING, answering, installed
     from ai.sweep.study import Study
 
     if not installed():
@@ -89,16 +92,22 @@ def _sweep(arguments: argparse.Namespace) -> int:
     code = 0
     try:
         place = _place(arguments)
+        if arguments.address is not None:
+            answering(arguments.address)  # before there is a study
         study = _resumed(arguments, place) if arguments.resume else Study.create(place, _plan(arguments))
         with study.claimed(), stoppable() as stop:
-            if len(study.trials) < study.plan.trials:
+            if not _complete(study):
                 code = _run(arguments, study, stop)
     except REFUSED as error:
         return fail(reason(error))
     _tell(study)
-    if len(study.trials) < study.plan.trials:
-        print(_again(arguments, study))
+    if not _complete(study):
+        say(_again(arguments, study))
     return exit_code(stop) or code
+
+
+def _complete(study: Study) -> bool:
+    return len(study.trials) >= study.plan.trials
 
 
 def _run(arguments: argparse.Namespace, study: Study, stop: list[int]) -> int:
@@ -107,6 +116,8 @@ def _run(arguments: argparse.Namespace, study: Study, stop: list[int]) -> int:
     from ai.sweep.report import importance_of
 
     with joined(arguments.address, arguments.workers) as workers:
+        if stop:
+            return 0
         from ai.sweep.table import Table
         from ai.sweep.tuning import run_trials
 
@@ -117,15 +128,17 @@ def _run(arguments: argparse.Namespace, study: Study, stop: list[int]) -> int:
         study.write_summary({name: each.share for name, each in importance_of(study).items()})
     if recorder.trouble:
         return fail(recorder.trouble)
-    if recorder.lost:
-        return fail(f"workers of trials died again and again: {', '.join(map(str, sorted(recorder.lost)))}")
+    if recorder.lost and not stop:
+        numbers, why = ", ".join(map(str, sorted(recorder.lost))), "; ".join(sorted(set(recorder.lost.values())))
+        return fail(f"trials failed again and again: {numbers}: {why}")
     return 0
 
 
 def _again(arguments: argparse.Namespace, study: Study) -> str:
+    named = f" --env {arguments.env}" if ":" in (arguments.env or "") else ""
     return (
         f"{len(study.trials)} of {study.plan.trials} trials are kept; to go on:"
-        f" sweep --study {arguments.study} --resume"
+        f" sweep --study {arguments.study} --resume{named}"
     )
 
 
@@ -142,15 +155,28 @@ def _place(arguments: argparse.Namespace) -> Path:
 
 
 def _resumed(arguments: argparse.Namespace, place: Path) -> Study:
-    """Return a study to go on with; raises ValueError for options that only a new one can have."""
+    """Return a study to go on with; raises ValueError for options that only a new one can have.
+
+    A study may be a stranger's: an environment whose name would import code has to be named by the user as well.
+    """
+    from ai.agent.storage import check_env
+    from ai.sweep.runs import AGENT, check_ready, read_config
     from ai.sweep.study import Study
 
     if given := [name for name in _OF_A_NEW_ONE if getattr(arguments, name) is not None]:
         named = ", ".join(f"--{'set' if name == 'changes' else name.replace('_', '-')}" for name in given)
         raise ValueError(f"a study that has begun keeps its plan: {named} can only be given without --resume")
     study = Study.load(place)
+    config = read_config(study.plan.kind, study.plan.settings)
+    env = getattr(config, "env", None)
+    if arguments.env not in (None, env):
+        raise ValueError(f"a study that has begun keeps its plan: it is not for --env {arguments.env}")
+    if study.plan.kind == AGENT:
+        check_env(env, arguments.env)
     if arguments.trials is not None and arguments.trials != study.plan.trials:
         study.extend(arguments.trials)
+    if not _complete(study):
+        check_ready(config)
     return study
 
 
@@ -158,10 +184,11 @@ def _plan(arguments: argparse.Namespace) -> Plan:
     """Return the plan of a new study; raises ValueError or OSError for what makes no sense."""
     from ai.agent.config import ANYWHERE, LANDER
     from ai.sweep.plan import POPULATION, TPE, Plan
-    from ai.sweep.runs import AGENT, DIGITS
+    from ai.sweep.runs import AGENT, DIGITS, check_ready
     from ai.sweep.space import knob_space, read_space
 
     config = _config(arguments)
+    check_ready(config)
     settings = json.loads(json.dumps(config.to_json()))
     if arguments.digits:
         budget, metric = settings["epochs"], "accuracy"
@@ -199,24 +226,19 @@ def _plan(arguments: argparse.Namespace) -> Plan:
 
 
 def _config(arguments: argparse.Namespace) -> Knobs:
-    """Return the settings of all that is not searched, and make sure that such a run can begin."""
+    """Return the settings of all that is not searched."""
     arguments.changes = arguments.changes or []
     if arguments.digits:
         from ai.cli.digits import config_of as digits_of
-        from ai.digits.mnist import TRAIN, load_part
 
         if arguments.env or arguments.decisions:
             raise ValueError("--env and --decisions are not for digits: these train for --epochs")
-        load_part(TRAIN)  # tells at once if the images are missing
         return digits_of(arguments)
     from ai.cli.lander import config_of
-    from ai.training.tasks import task_of
 
     if arguments.epochs:
         raise ValueError("--epochs is for --digits: agents train for --decisions")
-    config = config_of(arguments)
-    task_of(config)  # tells at once if the environment is missing
-    return config
+    return config_of(arguments)
 
 
 def _study(arguments: argparse.Namespace) -> int:
@@ -242,5 +264,5 @@ def _study(arguments: argparse.Namespace) -> int:
 def _tell(study: Study) -> None:
     from ai.sweep.report import told
 
-    print(told(study))
+    print("\n".join(readable(line, len(line)) for line in told(study).splitlines()))  # its texts may be a stranger's
     sys.stdout.flush()

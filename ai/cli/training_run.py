@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Callable, Iterable
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -16,14 +15,18 @@ from typing import TYPE_CHECKING, Any, Final, Generic, Protocol, TypeVar
 
 from ai.cli.command_line import (
     REFUSED,
+    Unheard,
     exit_code,
     fail,
     fail_diverged,
     folder,
     keep,
     keep_checkpoint,
+    progress_bar,
+    readable,
     reason,
     refuse_fixed,
+    say,
     stoppable,
 )
 
@@ -90,6 +93,7 @@ def add_run_options(train: argparse.ArgumentParser, example: str) -> None:
         help="go on with what an earlier run kept there, by its settings; --set and --preset may"
         " change those that can change while a run goes on",
     )
+    train.add_argument("--replace", action="store_true", help="put the new run in the place of an earlier one")
     train.add_argument("--seed", type=int, help="what all chance follows from (default: 0)")
     train.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes",
                        help=f"change a setting of the preset, such as --set {example}")  # fmt: skip
@@ -106,9 +110,16 @@ def train(arguments: argparse.Namespace, command: RunCommand[Run]) -> int:
             if used_up := command.used_up(training):
                 raise ValueError(used_up)
             claims.enter_context(claimed_folder(output, command.kind))
+            if not arguments.replace and _holds_another(output, arguments.resume):
+                raise ValueError(f"{output} holds an earlier run: --resume {output} goes on with it, --replace ends it")
         except REFUSED as error:
             return fail(reason(error))
         return _train_and_keep(training, output, command)
+
+
+def _holds_another(output: Path, resumed: Path | None) -> bool:
+    """Whether a folder holds a run, and not the one that is gone on with."""
+    return output.is_dir() and any(output.iterdir()) and not (resumed and output.samefile(resumed))
 
 
 def _begun_or_resumed(arguments: argparse.Namespace, command: RunCommand[Run]) -> Run:
@@ -142,7 +153,7 @@ def _train_and_keep(training: Run, output: Path, command: RunCommand[Run]) -> in
         return fail(f"{stopped}{'' if saved else f'Nothing new is kept in {output}: '}{error}")
     if stopped:
         return fail_diverged(stopped, output, measured=training.best is not None)
-    print(f"kept in {output}: {command.verdict(training, described)}")
+    say(f"kept in {output}: {command.verdict(training, described)}")
     return exit_code(stop)
 
 
@@ -160,10 +171,8 @@ def show_progress(
     `shown` gives, for what a step yields, how much of `total` is done and what is written behind the bar;
     `checkpoint` what saves one now, or None when none is due. A checkpoint that cannot be written is reported once.
     """
-    from tqdm import tqdm
-
     trouble = ""
-    with tqdm(total=total, initial=initial, desc="training", bar_format=_BAR, disable=None) as bar:
+    with progress_bar(total, "training", initial=initial, bar_format=_BAR) as bar:
         for progress in steps:
             done, words = shown(progress)
             bar.update(done - bar.n)
@@ -173,5 +182,5 @@ def show_progress(
             if save := checkpoint(progress):
                 new = keep_checkpoint(save, output)
                 if new and new != trouble:
-                    bar.write(new, file=sys.stderr)
+                    bar.write(readable(new), file=Unheard())
                 trouble = new

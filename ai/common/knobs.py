@@ -10,13 +10,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import Field, asdict, dataclass, field, fields, is_dataclass, replace
 from sys import float_info
-from typing import Any, Final, Self
+from typing import Any, Self
 
 import numpy as np
 
-from ai.nn.files import brief
-
-SHOWN: Final = 80  # letters of a wrong value in a message
+from ai.nn.files import shown
 
 
 def knob(
@@ -83,10 +81,7 @@ class Knobs:
         unknown = sorted(set(values) - {item.name for item in fields(cls)})
         if unknown:
             raise ValueError(f"unknown settings: {', '.join(unknown)}")
-        try:
-            return cls(**{name: cls.value_from_json(name, value) for name, value in values.items()})
-        except TypeError as error:
-            raise ValueError(f"settings cannot be read: {error}") from error
+        return cls(**{name: cls.value_from_json(name, value) for name, value in values.items()})
 
     @classmethod
     def name_now(cls, name: str) -> str:
@@ -111,7 +106,7 @@ class Knobs:
 
     @classmethod
     def value_from_json(cls, name: str, value: Any) -> Any:  # noqa: ARG003
-        """Return the value of a field from what a file holds of it; what cannot be one raises TypeError."""
+        """Return the value of a field from what a file holds of it; raises ValueError for what cannot be one."""
         return tuple(value) if isinstance(value, list) else value
 
     def changed(self, **values: Any) -> Self:
@@ -173,15 +168,6 @@ def field_problem(item: Field[Any], value: Any) -> str | None:
 def is_number(value: object) -> bool:
     """Whether a value is one finite plain number that a float can hold; a yes or no is none."""
     return isinstance(value, int | float) and not isinstance(value, bool) and -float_info.max <= value <= float_info.max
-
-
-def shown(value: object) -> str:
-    """Return a value as a message shows it: shortened, whatever a file may hold."""
-    try:
-        text = repr(value)
-    except ValueError:  # an int of more than some 4,000 digits
-        return "a number of very many digits"
-    return brief(text, SHOWN)
 
 
 def _plain(value: Any) -> Any:

@@ -15,7 +15,7 @@ from ai.digits.config import DIGIT_PRESETS, DigitConfig
 from ai.digits.mnist import TEST, load_part
 from ai.digits.training import DigitTraining, accuracy
 from ai.nn import ModelFormatError, atomic_folder
-from ai.nn.files import inside, read_arrays, read_json
+from ai.nn.files import inside, problem_in, read_arrays, read_json
 from ai.nn.schema import Count, Duration, OneOf, Seed, Share, Sized, read_as
 
 TRAINING_FILE: Final = "training.json"
@@ -97,7 +97,7 @@ def resume_digit_run(folder: str | Path, **options: Any) -> DigitTraining:
     except OSError as error:
         raise ModelFormatError(folder, [f"{TRAINING_FILE}: {error.strerror or error}"]) from error
     except (ValueError, TypeError, ArithmeticError) as error:
-        raise ModelFormatError(folder, [f"{TRAINING_FILE}: {error}"]) from error
+        raise ModelFormatError(folder, [f"{TRAINING_FILE}: {problem_in(error)}"]) from error
     if not (folder / LAST_FILE).exists():
         raise ModelFormatError(folder, ["the run is finished: there is nothing to go on with"])
     if best.shape != training.average.shape:
@@ -110,7 +110,7 @@ def resume_digit_run(folder: str | Path, **options: Any) -> DigitTraining:
     except OSError as error:
         raise ModelFormatError(folder, [f"{LAST_FILE}: {error.strerror or error}"]) from error
     except (ValueError, KeyError) as error:
-        raise ModelFormatError(folder, [f"{LAST_FILE}: {error}"]) from error
+        raise ModelFormatError(folder, [f"{LAST_FILE}: {problem_in(error)}"]) from error
     training.best_values = None if training.best is None else best.copy()
     return training
 

@@ -12,7 +12,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ai.nn.files import described, read_arrays
+from ai.nn.files import described, problem_in, read_arrays
 
 FOLDER: Final = Path(__file__).parents[2] / "assets" / "mnist"
 SIDE: Final = 28  # pixels along an image
@@ -84,7 +84,7 @@ def read_part(part: str, folder: str | Path = FOLDER) -> tuple[Pixels, Labels]:
     except FileNotFoundError as error:
         raise MnistError(f"MNIST: {path} is missing; install the program again") from error
     except (OSError, ValueError, KeyError) as error:
-        raise MnistError(f"MNIST: {path} is damaged ({error}); install the program again") from error
+        raise MnistError(f"MNIST: {path} is damaged ({problem_in(error)}); install the program again") from error
     if (_checksum(pixels), _checksum(labels)) != (images_sum, labels_sum):
         raise MnistError(f"MNIST: {path} is damaged (a checksum differs); install the program again")
     return pixels, labels

@@ -17,6 +17,7 @@ from typing import Any, Final
 
 from ai.flights import key_presses, letters, stick_positions
 from ai.flights.easing import AS_IT_IS, Easing
+from ai.flights.places import COURSES
 from ai.flights.recording import LONGEST, Recording, StickHolder
 from ai.flights.shared import Claim, SharedFlight
 from ai.flights.stick import STEPS, Shares
@@ -336,7 +337,10 @@ def _pack_course(flight: SharedFlight) -> bytes:
 
 
 def _read_course(reader: _Reader, found: dict[str, Any]) -> None:
-    found["course"] = reader.text()
+    course = reader.text()
+    if course not in COURSES:
+        raise CodeError("newer")
+    found["course"] = course
 
 
 def _pack_barred(flight: SharedFlight) -> bytes:

@@ -12,11 +12,15 @@ End = tuple[float, float, float]  # x, y in metres, angle in rad
 
 @dataclass(frozen=True)
 class Claim:
-    """What a flight is said to have ended in: its outcome, the points of its landing, and its last pose."""
+    """What a flight is said to have ended in: its outcome, the points of its landing, its last pose, and its medal.
+
+    A code says nothing of the medal, which is 0 then, as it is without one.
+    """
 
     outcome: Outcome
     points: int
     end: End
+    medal: int = 0
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,11 @@ from typing import Final
 import numpy as np
 
 from ai.common.environment import Doubles, Ints
+from ai.flights.easing import AS_IT_IS
+from ai.flights.places import in_its_place
 from ai.flights.recording import Recording
 from ai.flights.score import landing_score
-from ai.flights.shared import Claim, End, SharedFlight
+from ai.flights.shared import End, SharedFlight
 from ai.flights.starts import begun
 from ai.flights.stick import STEPS, full
 from ai.lander.environment import LanderEnv, Outcome
@@ -30,7 +32,7 @@ class Earned:
     Attributes:
         outcome: its outcome; FLYING if its record stops before.
         points: the points of its landing.
-        medal: 3 for gold, 2, 1, in a mission; 0 without a landing, or in a free flight.
+        medal: 3 for gold, 2, 1, in a mission; 0 without a landing, in a free flight, or under other rules.
         steps: physics steps flown until it ended.
         fuel: seconds of main engine.
         end: its last pose.
@@ -50,19 +52,24 @@ class Earned:
         return self.steps * DT
 
 
-def earned(env: LanderEnv, mission: str, slot: int = 0) -> Earned:
-    """Return what a lander has earned so far, in a mission or, with "", in a free flight."""
+def earned(env: LanderEnv, recording: Recording, slot: int = 0) -> Earned:
+    """Return what a lander has earned so far in the flight that is recorded."""
     outcome, fuel = Outcome(int(env.outcome[slot])), float(env.fuel[slot])
-    landed = outcome is Outcome.LANDED
-    medal = MISSIONS[mission].medal(fuel, float(env.time[slot])) if landed and mission in MISSIONS else 0
+    mission = MISSIONS.get(recording.mission)
+    as_it_is = recording.easing == AS_IT_IS and not recording.gravity
+    medal = mission.medal(fuel, float(env.time[slot])) if mission and as_it_is and outcome is Outcome.LANDED else 0
     (x, y), angle = env.position[slot].tolist(), float(env.angle[slot])
     return Earned(outcome, landing_score(env, slot), medal, int(env.steps[slot]), fuel, (x, y, angle))
 
 
-def is_true(claim: Claim, steps: int, real: Earned) -> bool:
-    """Whether a claim about a flight of so many recorded steps is what it really earned."""
+def is_true(flight: SharedFlight, real: Earned) -> bool:
+    """Whether a flight was flown where it says, and really earned what it claims."""
+    claim, steps = flight.claim, len(flight.recording.actions)
     away = max(abs(told - flown) for told, flown in zip(claim.end, real.end, strict=True))
-    return (claim.outcome, claim.points, steps) == (real.outcome, real.points, real.steps) and away <= TOLERANCE
+    return (
+        in_its_place(flight) and away <= TOLERANCE and claim.medal <= real.medal
+        and (claim.outcome, claim.points, steps) == (real.outcome, real.points, real.steps)
+    )  # fmt: skip
 
 
 def verified(flights: Sequence[SharedFlight]) -> Iterator[tuple[int, Earned]]:
@@ -94,13 +101,13 @@ def fly_again(recordings: Sequence[Recording]) -> list[Earned]:
     actions = np.zeros((lengths.max(), len(recordings)), dtype=np.intp)
     for slot, each in enumerate(recordings):
         actions[: lengths[slot], slot] = each.actions
-    found = {slot: earned(env, like.mission, slot) for slot in np.flatnonzero(lengths == 0).tolist()}
+    found = {slot: earned(env, like, slot) for slot in np.flatnonzero(lengths == 0).tolist()}
     gravity = dict(like.gravity)
     for step, row in enumerate(actions):
         if step in gravity:
             env.gravity = gravity[step] * env.params.gravity
         env.fly(row, _shares(recordings, step, row))
-        found |= {slot: earned(env, like.mission, slot) for slot in np.flatnonzero(lengths == step + 1).tolist()}
+        found |= {slot: earned(env, like, slot) for slot in np.flatnonzero(lengths == step + 1).tolist()}
     return [found[slot] for slot in range(len(recordings))]
 
 

@@ -102,6 +102,14 @@ def leg_of(seed: int, start: LegStart) -> Leg:
     return leg(seed, start.number, start.bare)
 
 
+def can_begin(seed: int, start: LegStart) -> bool:
+    """Whether a leg of the descent with that seed can begin so: full at first, and on a flat spot only after one."""
+    if start.number == 1:
+        return start == LegStart()
+    pads_before = leg(seed, start.number - 1).ground.pads
+    return any(pad.bare for pad in pads_before) if start.bare else start.tank >= _REFILL[0]
+
+
 @lru_cache(maxsize=8)
 def leg(seed: int, number: int, bare: bool = False) -> Leg:
     """Return leg `number` of the descent with that seed; `bare` is whether it begins on a flat spot."""

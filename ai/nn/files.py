@@ -10,13 +10,14 @@ import errno
 import json
 import math
 import os
+import re
 import secrets
 import stat
 import sys
 import zipfile
 import zlib
 from collections.abc import Callable, Iterable
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from pathlib import Path
 from typing import IO, Any, BinaryIO, Final
 
@@ -33,6 +34,9 @@ _END: Final = 22  # bytes at the end of a zip archive that say where that list i
 _FLAGS: Final = sum(getattr(os, name, 0) for name in ("O_RDONLY", "O_NONBLOCK", "O_CLOEXEC", "O_NOCTTY", "O_BINARY"))
 _BROKEN: Final = (EOFError, MemoryError, NotImplementedError, RuntimeError, zipfile.BadZipFile, zlib.error)
 
+# Characters that end a line, move the cursor or turn the order of writing around, and show nothing themselves.
+CONTROLS: Final = re.compile("[\x00-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]")
+
 Expect = Callable[[str, tuple[int, ...], np.dtype[Any]], None]  # raises ValueError for an array not expected
 
 
@@ -40,6 +44,26 @@ def brief(text: object, most: int = 200) -> str:
     """Return a text in at most so many letters, the end left out."""
     said = str(text)
     return said if len(said) <= most else said[: most - 1] + "…"
+
+
+def shown(value: object, most: int = 40) -> str:
+    """Return a value as a message quotes it: in JSON's words, not Python's, and shortened, whatever a file may hold."""
+    try:
+        text = repr(value) if isinstance(value, str) else json.dumps(value, ensure_ascii=False, default=vars)
+    except TypeError:  # an object of the program's own
+        text = repr(value)
+    except ValueError:  # an int of more than some 4,000 digits
+        return "a number of very many digits"
+    return brief(text, most)
+
+
+def problem_in(error: Exception) -> str:
+    """Return what is wrong with values that a file holds, for which reading them failed: not in Python's words."""
+    if isinstance(error, KeyError):
+        return f"{brief(error.args[0], 60)} is missing"
+    if isinstance(error, TypeError):
+        return "what it holds is of another kind than it should be"
+    return brief((isinstance(error, OSError) and error.strerror) or error, 400)
 
 
 # Bytes and text
@@ -66,9 +90,18 @@ def open_file(path: str | Path, most: int | None = None) -> BinaryIO:
 def read_bytes(path: str | Path, most: int = SMALL) -> bytes:
     """Return what a file of at most so many bytes holds; raises OSError."""
     with open_file(path, most) as file:
-        held = file.read(most + 1)
+        return _all_of(file, path, most)
+
+
+def read_standard_input(most: int = SMALL) -> str:
+    """Return the text that is piped in, of at most so many bytes; raises OSError, or ValueError if it is no UTF-8."""
+    return _all_of(sys.stdin.buffer, "standard input", most).decode("utf-8")
+
+
+def _all_of(file: BinaryIO, name: str | Path, most: int) -> bytes:
+    held = file.read(most + 1)
     if len(held) > most:  # it has grown, or lies about its size as the system's own files do
-        raise _too_large(path, most)
+        raise _too_large(name, most)
     return held
 
 
@@ -146,16 +179,16 @@ _DECODER: Final = json.JSONDecoder(parse_int=_whole, parse_float=_finite, parse_
 def count_of(value: Any, least: int = 0, most: int = MOST) -> int:
     """Return a whole number that a file has given; raises ValueError if it is none, or out of range."""
     if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
-        raise ValueError(f"{brief(repr(value), 40)} is no whole number from {least:,} to {most:,}")
+        raise ValueError(f"{shown(value)} is no whole number from {least:,} to {most:,}")
     return value
 
 
 def number_of(value: Any, least: float = -math.inf) -> float:
     """Return a finite number that a file has given, as it is; raises ValueError if it is none, or too small."""
     if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= sys.float_info.max:
-        raise ValueError(f"{brief(repr(value), 40)} is no finite number")
+        raise ValueError(f"{shown(value)} is no finite number")
     if value < least:
-        raise ValueError(f"{brief(repr(value), 40)} is below {least:g}")
+        raise ValueError(f"{shown(value)} is below {least:g}")
     return value
 
 
@@ -278,17 +311,29 @@ def write_bytes(path: Path, content: bytes, *, flush: bool = True, new: bool = F
     try:
         with temporary.open("xb") as file:
             file.write(content)
-            if flush:
-                file.flush()
-                os.fsync(file.fileno())
+        if flush:
+            synchronise(temporary)
         if new and _linked(temporary, path):
             temporary.unlink()
         else:
             temporary.replace(path)
+        if flush:
+            synchronise(path.parent)  # which holds the name
     except BaseException:
         with suppress(OSError):
             temporary.unlink(missing_ok=True)
         raise
+
+
+def synchronise(path: Path) -> None:
+    """Wait until a file or folder has reached the disk; not every system can promise that of a folder."""
+    folder = path.is_dir()
+    with suppress(OSError) if folder else nullcontext():
+        descriptor = os.open(path, os.O_RDONLY if folder else os.O_RDWR)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)
 
 
 def _linked(temporary: Path, path: Path) -> bool:

@@ -14,7 +14,7 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Final
 
-from ai.nn.files import beside, brief, read_json
+from ai.nn.files import beside, brief, read_json, synchronise
 from ai.nn.lock import take_folder
 
 CONFIG = "config.json"  # what every model's folder holds
@@ -74,10 +74,10 @@ def atomic_folder(target: str | Path, kind: FolderKind = NETWORK) -> Iterator[Pa
     try:
         yield new
         for path in [*new.rglob("*"), new]:
-            _synchronise(path)
+            synchronise(path)
         _check(target, kind)  # something else may have been put there meanwhile
         _swap(new, target)
-        _synchronise(target.parent)
+        synchronise(target.parent)
     except BaseException:
         recover_folder(target)
         shutil.rmtree(new, ignore_errors=True)
@@ -183,20 +183,3 @@ def moved_aside(target: Path) -> list[Path]:
 
 def _literal(name: str) -> str:
     return "".join(f"[{letter}]" if letter in "*?[" else letter for letter in name)
-
-
-def _synchronise(path: Path) -> None:
-    """Wait until a file or folder has reached the disk; not every system can promise that of a folder."""
-    if path.is_dir():
-        with suppress(OSError):
-            _flush(path, os.O_RDONLY)
-    else:
-        _flush(path, os.O_RDWR)
-
-
-def _flush(path: Path, flags: int) -> None:
-    descriptor = os.open(path, flags)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)

@@ -16,7 +16,7 @@ from itertools import islice
 from types import NoneType, UnionType
 from typing import Annotated, Any, Final, TypeVar, Union, get_args, get_origin, get_type_hints
 
-from ai.nn.files import MOST, brief, count_of, number_of
+from ai.nn.files import MOST, brief, count_of, number_of, shown
 
 T = TypeVar("T")
 Rule = Callable[[Any], object]  # raises ValueError for a value of the right type that is not allowed
@@ -34,11 +34,6 @@ class SchemaError(ValueError):
         self.problems = problems
         named = [*map(brief, problems[:_NAMED]), *(["and more"] if len(problems) > _NAMED else [])]
         super().__init__("; ".join(named))
-
-
-def shown(value: object) -> str:
-    """Return a value as a message quotes it: shortened, whatever a file may hold."""
-    return brief(repr(value), _SHOWN)
 
 
 @dataclass(frozen=True)

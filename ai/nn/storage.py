@@ -16,7 +16,7 @@ from ai.nn.activations import ACTIVATIONS, Activation
 from ai.nn.budget import MOST_LAYERS, check_budget
 from ai.nn.costs import COSTS, Cost
 from ai.nn.dropout import DropoutLayer
-from ai.nn.files import brief, inside, read_array, read_json
+from ai.nn.files import brief, inside, read_array, read_json, shown
 from ai.nn.folder import CONFIG, NETWORK, recover_folder
 from ai.nn.images import ConvolutionLayer, FlattenLayer, MaxPoolingLayer
 from ai.nn.layers import ActivationLayer, DuelingLayer, FullyConnectedLayer, Layer, LayerNormalisation, check_fit
@@ -113,7 +113,7 @@ def read_network(folder: str | Path) -> tuple[Cost, list[Layer], str]:
 
     dtype = config.get("dtype")
     if dtype not in DTYPES:
-        problems.append(f"{CONFIG}: dtype is {dtype!r}, not one of {', '.join(DTYPES)}")
+        problems.append(f"{CONFIG}: dtype is {shown(dtype)}, not one of {', '.join(DTYPES)}")
     cost = _attempt(problems, f"{CONFIG}: cost", _named, COSTS, config.get("cost"))
     layers = _read_layers(problems, config.get("layers"))
     if layers is not None:
@@ -182,7 +182,7 @@ def _read_config(folder: Path) -> dict[str, Any]:
 def _make_layer(description: Any) -> Layer:
     name = _required(description, "type")
     if name not in LAYERS:
-        raise ValueError(f"unknown type {brief(repr(name), 40)}; known are {', '.join(LAYERS)}")
+        raise ValueError(f"unknown type {shown(name)}; known are {', '.join(LAYERS)}")
     kind = LAYERS[name]
     settings = {setting: _required(description, setting) for setting in kind.settings}
     if "activation" in settings:
@@ -194,7 +194,7 @@ def _named(table: Mapping[str, Callable[..., T]], description: Any) -> T:
     """Return the cost or activation of a description such as {"name": "huber", "delta": 1.0}."""
     name = _required(description, "name")
     if name not in table:
-        raise ValueError(f"unknown name {brief(repr(name), 40)}; known are {', '.join(table)}")
+        raise ValueError(f"unknown name {shown(name)}; known are {', '.join(table)}")
     make = table[name]
     return make(**{option: _required(description, option) for option in signature(make).parameters})
 
@@ -210,9 +210,9 @@ def _read_parameter(folder: Path, description: Any, name: str, shape: Sequence[i
     entry = _required(_required(description, "arrays"), name)
     file = _required(entry, "file")
     if not isinstance(file, str) or Path(file).name != file:
-        raise ValueError(f"{name}: {brief(repr(file), 60)} is not a file of this folder")
+        raise ValueError(f"{name}: {shown(file)} is not a file of this folder")
     if dtype not in DTYPES:
-        raise ValueError(f"{file} cannot be read as {brief(repr(dtype), 40)}")
+        raise ValueError(f"{file} cannot be read as {shown(dtype)}")
     said = {key: entry.get(key) for key in ("shape", "dtype")}
     if said != {"shape": list(shape), "dtype": dtype}:
         raise ValueError(f"{file} is said to hold {brief(said, 60)}, and should hold {dtype} {list(shape)}")

@@ -6,14 +6,21 @@ Comes with the extra `sweep`. Nothing of Ray is imported before it is used.
 from __future__ import annotations
 
 import os
+import re
+import secrets
+import signal
+import socket
 import sys
+import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
-MISSING: Final = 'this needs Ray and Optuna: pip install "tranquility[sweep]"'
+from ai.nn.files import brief
+
+MISSING: Final = 'this needs Ray and Optuna: pip install -e ".[sweep]"'
 LOOPBACK: Final = "127.0.0.1"
 _ROOT: Final = Path(__file__).parents[2]
 _STORE: Final = 256 << 20  # bytes of Ray's object store on one machine; results are some hundred KB each
@@ -29,6 +36,11 @@ _QUIET: Final = {
 # Ray binds its ports to the loopback interface alone only if it takes itself to be on a system without clusters; by
 # itself, "127.0.0.1" is replaced by the machine's address on the network, and the ports are open to all.
 _LOCAL: Final = {"RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER": "0"}
+# A token that only this process and those it starts know. Ray's own would stay in the user's home, readable for all.
+_TOKEN: Final = {"RAY_AUTH_MODE": "token", "RAY_AUTH_TOKEN": secrets.token_hex(32)}
+_PATIENCE: Final = 5.0  # seconds in which a cluster has to answer; Ray itself waits for minutes
+# How a client of HTTP/2 begins, with settings that are empty; a server, as all of Ray's are, answers with its own.
+_PREFACE: Final = b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n" + bytes([0, 0, 0, 4, 0, 0, 0, 0, 0])
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -55,23 +67,28 @@ def worker_environment() -> dict[str, str]:
 def joined(address: str | None = None, workers: int | None = None) -> Iterator[int]:
     """Start Ray on this machine, or join the cluster at an address; yield the number of cores there are for workers.
 
-    Raises ImportError without the extra, ConnectionError where no cluster answers.
+    Raises ImportError without the extra, ConnectionError where no cluster answers, ValueError for an address that is
+    none.
     """
     if not installed():
         raise ImportError(MISSING)
-    if "ray" not in sys.modules and (address is None or _is_local(address)):
-        os.environ.update(_LOCAL)  # read when Ray is imported
-    os.environ.update(_QUIET)
-    import ray
-
-    quiet: dict[str, Any] = {"log_to_driver": False, "logging_level": "ERROR"}
     if address is not None:
-        ray.init(address=address, runtime_env={"env_vars": worker_environment()}, **quiet)
+        address = answering(address)
     else:
-        with _environment(worker_environment()):
-            ray.init(address="local", num_cpus=workers or cores(), include_dashboard=False, _node_ip_address=LOOPBACK,
-                     object_store_memory=_STORE, **quiet)  # fmt: skip
+        _set_environment(None)
+    import ray
+    from ray._private import worker
+
+    worker.print_to_stdstream = _tell
+    quiet: dict[str, Any] = {"log_to_driver": False, "logging_level": "ERROR"}
     try:
+        with _own_signals():
+            if address is not None:
+                _join(address, runtime_env={"env_vars": worker_environment()}, **quiet)
+            else:
+                with _environment(worker_environment()):
+                    ray.init(address="local", num_cpus=workers or cores(), include_dashboard=False,
+                             _node_ip_address=LOOPBACK, object_store_memory=_STORE, **quiet)  # fmt: skip
         if address is None and (opened := _opened()):
             raise ConnectionError(f"Ray would listen on {opened}, and not on this machine alone; nothing was started")
         count = int(ray.cluster_resources().get("CPU", 1))
@@ -80,6 +97,81 @@ def joined(address: str | None = None, workers: int | None = None) -> Iterator[i
         yield count
     finally:
         ray.shutdown()
+
+
+def _join(address: str, **options: Any) -> None:
+    """Join a cluster; raises ConnectionError, which says what may be missing."""
+    import ray
+
+    try:
+        ray.init(address=address, **options)
+    except (ConnectionError, ray.exceptions.AuthenticationError) as error:
+        named = "the token in RAY_AUTH_TOKEN or ~/.ray/auth_token may be missing or another cluster's"
+        raise ConnectionError(f"could not join the cluster at {address}: {named}") from error
+
+
+def _set_environment(address: str | None) -> None:
+    """Set what Ray reads of the environment when it is imported, or begins."""
+    if "ray" not in sys.modules and (address is None or _is_local(address)):
+        os.environ.update(_LOCAL)
+    os.environ.update(_QUIET if address is not None else _QUIET | _TOKEN)
+
+
+def answering(address: str) -> str:
+    """Return an address, looked up if it is "auto"; raises ConnectionError unless a server like Ray's answers there."""
+    _set_environment(address)
+    if address == "auto":
+        from ray._private.services import canonicalize_bootstrap_address_or_die
+
+        address = canonicalize_bootstrap_address_or_die(address)
+    if (parts := re.fullmatch(r"(?:ray://)?\[?([^/\[\]]+)\]?:(\d+)", address)) is None:
+        raise ValueError(f"--address is HOST:PORT, or auto for the cluster around; not {address}")
+    try:
+        with socket.create_connection((parts[1], int(parts[2])), _PATIENCE) as link:
+            link.settimeout(_PATIENCE)
+            link.sendall(_PREFACE)
+            told = link.recv(9)
+    except (OSError, OverflowError, UnicodeError) as error:
+        raise ConnectionError(f"no cluster answers at {address}: {getattr(error, 'strerror', '') or error}") from error
+    if "RAY_USE_TLS" not in os.environ and told[3:4] != b"\4":
+        raise ConnectionError(f"what answers at {address} is no head of a Ray cluster")
+    return address
+
+
+@contextmanager
+def _own_signals() -> Iterator[None]:
+    """Keep SIGTERM ours while Ray begins in a block: it waits meanwhile, and does afterwards what it did before.
+
+    Ray and its library in C++ take it for themselves, and would end the program in the midst of a trial. Processes that
+    Ray starts are a group of their own, so that a signal to ours, as `timeout` sends it, does not end them first.
+    """
+    if not hasattr(signal, "pthread_sigmask") or threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    from ray._private import services
+
+    def begin(*arguments: Any, preexec_fn: Callable[[], None] = lambda: None, **options: Any) -> Any:
+        def prepare() -> None:
+            preexec_fn()
+            signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGTERM})
+
+        return popen(*arguments, preexec_fn=prepare, process_group=0, **options)
+
+    popen, before = services.ConsolePopen, signal.getsignal(signal.SIGTERM)
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGTERM})
+    services.ConsolePopen = begin
+    try:
+        yield
+    finally:
+        services.ConsolePopen = popen
+        signal.signal(signal.SIGTERM, before)
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+
+
+def _tell(news: Mapping[str, Any], ignore_prefix: bool = False) -> None:  # noqa: ARG001 - as Ray calls it
+    """Tell what Ray has to tell of workers and nodes that die, a line each: it would print pages among our results."""
+    for text in news["lines"]:
+        print(f"Ray: {brief(text.strip().partition('. ')[0].replace(chr(10), ' '))}", file=sys.stderr)
 
 
 def _is_local(address: str) -> bool:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Final
 
+from ai.agent.agent import DeepQAgent
 from ai.copilot import measurement
 from ai.copilot.measurement import AssistedFlights, Help
 from ai.lander.pilots import Pilot, ScriptedPilot
-from ai.sweep.shards import packed_agent
-from ai.sweep.trial import archive
+from ai.sweep.shards import pack_agent, packed_agent
 
 _PILOTS: Final = 8  # of a part: the more fly at once, the less time each takes
 
@@ -20,7 +19,7 @@ _PILOTS: Final = 8  # of a part: the more fly at once, the less time each takes
 class Part:
     """Part of a table: the rows of some of its pilots."""
 
-    agent: bytes  # the co-pilot's folder, packed
+    agent: bytes  # the co-pilot, packed
     scripted: bool  # whether the imperfect pilots are made of the scripted one, not of the network
     table: str
     names: tuple[str, ...]
@@ -29,9 +28,9 @@ class Part:
     seed: int
 
 
-def parts(models: Mapping[str, Path], scripted: bool, helps: Sequence[Help], episodes: int, seed: int) -> list[Part]:
-    """Return all parts of the tables that have a network: `models` are the folders of these by the table's name."""
-    packed = {table: archive(model) for table, model in models.items()}
+def parts(agents: Mapping[str, DeepQAgent], scripted: bool, helps: Sequence[Help], episodes: int, seed: int) -> list[Part]:
+    """Return all parts of the tables that have a network: `agents` are these by the table's name."""
+    packed = {table: pack_agent(agent) for table, agent in agents.items()}
     return [
         Part(agent, scripted, table, names[first : first + _PILOTS], tuple(helps), episodes, seed)
         for table, agent in packed.items()

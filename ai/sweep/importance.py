@@ -38,6 +38,7 @@ def importances(space: Space, params: list[dict[str, object]], values: list[floa
         return {}
     places = np.array([[_place(space, name, each[name]) for name in space] for each in params])
     told = np.array(values)
+    told /= np.abs(told).max()  # shares stay, and no square is too large
     rng = np.random.default_rng(0)
     shares = np.array([_shares(*_grown(places, told, rng)) for _ in range(TREES)])
     means, spreads = shares.mean(axis=0), shares.std(axis=0)

@@ -96,6 +96,10 @@ class Metric:
         """Return a value as a table shows it."""
         if value is None:
             return "–"
+        if self.kind == "time" and value > budget:
+            return "not reached"
+        if abs(value) >= 1e12:
+            return f"{value:.3g}"
         if self.kind == "time":
-            return f"{value:,.0f}" if value <= budget else "not reached"
+            return f"{value:,.0f}"
         return f"{value:.1f}" if self.kind == "return" else f"{value:.2%}"

@@ -86,7 +86,7 @@ def _curves(study: Study, ranked: list[FinishedTrial], best: FinishedTrial) -> s
         return point.mean_return if returns else point.success or 0.0
 
     low, high = (min(map(height, points)), max(map(height, points))) if returns else (0.0, 1.0)
-    reach = max(point.at for point in points)
+    reach = max(1, *(point.at for point in points))
 
     def line(curve: Iterable[Point], kind: str) -> str:
         path = " ".join(f"{_across(each.at / reach)},{_up(height(each), low, high)}" for each in curve)
@@ -94,7 +94,7 @@ def _curves(study: Study, ranked: list[FinishedTrial], best: FinishedTrial) -> s
 
     lines = [line(seed.curve, "seed") for trial in ranked[:_SHOWN] if trial is not best for seed in trial.seeds]
     lines += [line(seed.curve, "best") for seed in best.seeds]
-    shown = "{:.0f}" if returns else "{:.0%}"
+    shown = ("{:.0f}" if max(abs(low), abs(high)) < 1e12 else "{:.3g}") if returns else "{:.0%}"
     axes = _axes("0", f"{reach:,} {study.plan.unit}", shown.format(low), shown.format(high))
     return (
         f"<h2>Learning curves</h2><figure><svg width='{_WIDE}' height='{_HIGH + _FOOT}'>{axes}{''.join(lines)}</svg>"
@@ -145,6 +145,7 @@ def _across(share: float) -> str:
 
 
 def _up(value: float, low: float, high: float) -> str:
+    value, low, high = value / 2, low / 2, high / 2  # the difference of two floats may be no float
     return f"{8 + (1 - ((value - low) / (high - low) if high > low else 0.5)) * (_HIGH - 16):.1f}"
 
 

@@ -62,6 +62,8 @@ class Plan:
             raise ValueError("each seed is there once")
         if not self.space:
             raise ValueError("a study searches at least one knob")
+        if "env" in self.space:
+            raise ValueError("a study has one environment: env cannot be searched")
         for name in self.dimensions():
             if name not in self.settings:
                 raise ValueError(f"there is no setting called {name}")
@@ -74,6 +76,8 @@ class Plan:
                 raise ValueError(
                     "a population has two members or more, trials are a multiple of them, and none is stopped early"
                 )
+        elif self.population:
+            raise ValueError(f"a population is for --search {POPULATION}")
 
     def dimensions(self) -> Space:
         """Return the space that is searched; raises ValueError for one that makes no sense."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Final
 
+from ai.nn.files import brief
 from ai.sweep.importance import Importance, importances
 from ai.sweep.study import Study
 from ai.sweep.table import settings
@@ -48,6 +49,9 @@ def told(study: Study) -> str:
     lines = [f"{trials}, compared by {plan.metric}, {plan.judge} of the seeds ({better} is better)"]
     if study.damaged:
         lines.append(f"of {len(study.damaged)} more, the files cannot be read: {', '.join(map(str, study.damaged))}")
+    if senseless := [trial for _, trial in sorted(study.trials.items()) if trial.problem]:
+        numbers = ", ".join(str(trial.number) for trial in senseless)
+        lines.append(f"of {len(senseless)}, the settings make no sense: {numbers}: {brief(senseless[0].problem)}")
     ranked = study.ranked()
     if best and ranked[0] is not best:  # a population's best is one of its last generation
         ranked = [best, *(trial for trial in ranked if trial is not best)]
@@ -62,6 +66,6 @@ def told(study: Study) -> str:
     if known := importance_of(study):
         lines.append("\nshare of the differences that a knob explains by itself (fANOVA)")
         lines += [f"  {name:24} {each.share:5.0%} ± {each.spread:.0%}" for name, each in known.items()]
-    if best and (seed := best.best_seed):
-        lines.append(f"\nbest network: {study.run_folder(best, seed.seed)}")
+    if best and (seed := best.best_seed) and (folder := study.run_folder(best, seed.seed)):
+        lines.append(f"\nbest network: {folder}")
     return "\n".join(lines)

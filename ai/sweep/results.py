@@ -47,6 +47,7 @@ class FinishedTrial:
         seeds: the result of each seed; none if the settings made no sense.
         parent: number of the trial whose runs it went on with; None without a population.
         problem: why there is no result; empty if there is one.
+        restarts: times that it went on from its last checkpoint, with an empty memory, as its worker had died.
 
     """
 
@@ -59,6 +60,7 @@ class FinishedTrial:
     seeds: tuple[SeedResult, ...]
     parent: Count | None = None
     problem: _Words = ""
+    restarts: Count = 0
 
     @property
     def values(self) -> list[float]:

@@ -14,10 +14,12 @@ from ai.agent.config import Config
 from ai.common.knobs import Knobs
 from ai.digits.checkpoints import resume_digit_run, save_digit_run
 from ai.digits.config import DigitConfig
+from ai.digits.mnist import TRAIN, load_part
 from ai.digits.training import DigitTraining
 from ai.sweep.metric import Point
 from ai.training.checkpoints import resume_run, save_run
 from ai.training.loop import VALIDATION_SEED, Training
+from ai.training.tasks import task_of
 
 AGENT: Final = "agent"  # kinds of run
 DIGITS: Final = "digits"
@@ -35,6 +37,9 @@ class SeedRun(Protocol):
 
     def save(self, folder: Path) -> dict[str, Any]:
         """Save the run as its command does at its end; return the figures of the network that is kept."""
+
+    def keep(self, folder: Path) -> None:
+        """Save the run as it is now, to go on with."""
 
     def salvage(self, folder: Path) -> None:
         """Save what was best of a run that has diverged."""
@@ -68,10 +73,14 @@ class AgentRun:
         best = self.training.best
         return {} if best is None else best.to_json()
 
+    def keep(self, folder: Path) -> None:
+        """Save the run as `train` does now and then."""
+        save_run(self.training, folder)
+
     def salvage(self, folder: Path) -> None:
         """Save what was best."""
         self.training.restore_best()
-        save_run(self.training, folder)
+        self.keep(folder)
 
 
 class DigitRun:
@@ -100,10 +109,14 @@ class DigitRun:
         described = save_digit_run(self.training, folder, final=True)
         return {"held_out": described["held_out"], "test": described["test"]}
 
+    def keep(self, folder: Path) -> None:
+        """Save the run as `train-digits` does now and then."""
+        save_digit_run(self.training, folder)
+
     def salvage(self, folder: Path) -> None:
         """Save what was best."""
         self.training.restore_best()
-        save_digit_run(self.training, folder)
+        self.keep(folder)
 
 
 def read_config(kind: str, settings: dict[str, Any]) -> Knobs:
@@ -111,12 +124,22 @@ def read_config(kind: str, settings: dict[str, Any]) -> Knobs:
     return (DigitConfig if kind == DIGITS else Config).from_json(settings)
 
 
+def check_ready(config: Knobs) -> None:
+    """Raise ValueError or ImportError where no run of these settings can begin: images or environment are missing."""
+    if isinstance(config, DigitConfig):
+        load_part(TRAIN)
+    else:
+        assert isinstance(config, Config)
+        task_of(config)
+
+
 def begin(
     kind: str, settings: dict[str, Any], seed: int, parent: Path | None = None, validation: int | None = None
 ) -> SeedRun:
-    """Begin a run of a kind; or go on, with other live knobs, from what a finished run kept in `parent`.
+    """Begin a run of a kind; or go on, with other live knobs, from what a run kept in `parent`.
 
-    That is what `train` does, with `--resume` in the second case. Raises ValueError for settings that make no sense.
+    That is what `train` does, with `--resume` in the second case. Raises ValueError for settings that make no sense,
+    ModelFormatError for a parent that cannot be read. The settings are the user's: their environment is named.
     """
     config = read_config(kind, settings)
     if isinstance(config, DigitConfig):
@@ -126,7 +149,7 @@ def begin(
     assert isinstance(config, Config)
     if parent is None:
         return AgentRun(Training(config, seed, validation_episodes=validation))
-    resumed = resume_run(parent)
+    resumed = resume_run(parent, env=config.env)
     if validation is not None:
         resumed.validation_episodes = validation
     resumed.apply_live(config)

@@ -110,7 +110,7 @@ class PopulationSearch(Searcher):
 
     def on_trial_complete(self, trial_id: str, result: dict[str, Any] | None = None, error: bool = False) -> None:
         """Note a member that is lost: the next generation cannot begin without it."""
-        self._lost = self._lost or error
+        self._lost = self._lost or error or bool(result and result.get("failed"))
 
     def save(self, checkpoint_path: str) -> None:
         """Save nothing: the study's folder has it all."""
@@ -124,7 +124,7 @@ def _config(asked: Asked, shared: dict[str, Any], runs: Any = None) -> dict[str,
     """Return what Tune hands to a worker; as text, which Tune does not look into."""
     parent = asked.parent.to_json() if asked.parent else None
     told = {"number": asked.number, "params": asked.params, "parent": parent}
-    return {**shared, "asked": json.dumps(told), "runs": runs}
+    return {**shared, "asked": json.dumps(told), "runs": runs, "so_far": ""}
 
 
 def _distribution(dimension: Dimension) -> optuna.distributions.BaseDistribution:

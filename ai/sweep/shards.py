@@ -7,8 +7,6 @@ there or not; and sums are taken in the order of the shards.
 
 from __future__ import annotations
 
-import atexit
-import shutil
 import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -19,6 +17,7 @@ from typing import Final
 import numpy as np
 
 from ai.agent.agent import DeepQAgent
+from ai.agent.storage import write_agent
 from ai.lander.environment import LanderEnv
 from ai.sweep.cluster import each
 from ai.sweep.trial import archive, unpack
@@ -39,11 +38,11 @@ class Shard:
     frame_skip: int
 
 
-def shards(model: Path, episodes: int, seed: int, spawn: str, frame_skip: int) -> list[Shard]:
-    """Return the shards of an evaluation of the network in a folder."""
-    agent = archive(model)
+def shards(agent: DeepQAgent, episodes: int, seed: int, spawn: str) -> list[Shard]:
+    """Return the shards of an evaluation of an agent."""
+    packed = pack_agent(agent)
     return [
-        Shard(agent, first, min(episodes, first + SHARD), seed, spawn, frame_skip)
+        Shard(packed, first, min(episodes, first + SHARD), seed, spawn, agent.config.frame_skip)
         for first in range(0, episodes, SHARD)
     ]
 
@@ -72,13 +71,16 @@ def flown_shards(parts: list[Shard], address: str | None, workers: int | None) -
     yield reduce(FlightSums.plus, (done[index] for index in range(len(parts))))
 
 
+def pack_agent(agent: DeepQAgent) -> bytes:
+    """Return an agent as an archive: what was read of it, and no file as it lies."""
+    with tempfile.TemporaryDirectory() as folder:
+        write_agent(agent.saved(), Path(folder))
+        return archive(Path(folder))
+
+
 @lru_cache(maxsize=2)
 def packed_agent(packed: bytes) -> DeepQAgent:
-    """Return the agent of an archive; a worker flies one part after another with the same.
-
-    Its folder stays until the process ends.
-    """
-    folder = tempfile.mkdtemp(prefix="tranquility-agent-")
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
-    unpack(packed, Path(folder))
-    return DeepQAgent.load(folder)
+    """Return the agent of an archive; a worker flies one part after another with the same."""
+    with tempfile.TemporaryDirectory() as folder:
+        unpack(packed, Path(folder))
+        return DeepQAgent.load(folder)

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from ai.common.knobs import Knobs, field_problem, is_number, shown
-from ai.nn.files import read_json
+from ai.common.knobs import Knobs, field_problem, is_number
+from ai.nn.files import read_json, shown
 
 Space = dict[str, "Dimension"]
 

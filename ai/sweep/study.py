@@ -10,6 +10,7 @@ Only the process that runs a study writes it. It gets results through Ray, so wo
 
 from __future__ import annotations
 
+import errno
 import json
 import re
 import secrets
@@ -20,13 +21,16 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, Final, Self
 
-from ai.nn.files import beside, brief, read_bytes, read_json, write_text
+from ai.agent.storage import KIND
+from ai.digits.classifier import KIND as DIGITS_KIND
+from ai.nn.files import beside, brief, read_json, write_text
 from ai.nn.folder import NEW
 from ai.nn.lock import take_folder
 from ai.nn.schema import Count, OneOf, Sized, read_as
 from ai.sweep.metric import Metric
 from ai.sweep.plan import FORMAT, VERSION, Plan
 from ai.sweep.results import FinishedTrial
+from ai.sweep.runs import DIGITS
 from ai.sweep.trial import archive, seed_folder, unpack
 
 STUDIES: Final = "studies"  # folder of all studies, in the user's
@@ -35,6 +39,7 @@ SUMMARY_FILE: Final = "summary.json"
 TRIAL_FILE: Final = "trial.json"
 _NAME: Final = re.compile(r"\d{4,6}")
 _MOST: Final = 64_000_000  # bytes of a trial's file
+_UNREADABLE: Final = (OSError, ValueError, TypeError, ArithmeticError, RecursionError)
 
 
 class StudyError(ValueError):
@@ -114,20 +119,29 @@ class Study:
             number = int(path.name)
             try:
                 trial = FinishedTrial.from_json(read_json(path / TRIAL_FILE, _MOST))
-                if trial.number != number or set(trial.params) != set(self.plan.space):
-                    raise ValueError("of another trial or another study")
-                for name, dimension in self.plan.dimensions().items():
-                    dimension.place(trial.params[name])
-            except (OSError, ValueError, TypeError, RecursionError):
+                self._check(number, trial)
+            except _UNREADABLE:
                 self.damaged.append(number)
             else:
                 self.trials[number] = trial
         for path in _numbered(self.folder / "started", ".json"):
             if int(path.stem) not in self.trials:
-                with suppress(OSError, ValueError, RecursionError):
+                with suppress(*_UNREADABLE):
                     begun = read_as(Begun, read_json(path))
-                    if begun.number == int(path.stem) and set(begun.params) == set(self.plan.space):
-                        self.begun[begun.number] = begun
+                    self._check(int(path.stem), begun)
+                    self.begun[begun.number] = begun
+
+    def _check(self, number: int, trial: FinishedTrial | Begun) -> None:
+        """Raise ValueError or TypeError for what a file says of a trial if it cannot be one of this study."""
+        if trial.number != number or set(trial.params) != set(self.plan.space):
+            raise ValueError("of another trial or another study")
+        for name, dimension in self.plan.dimensions().items():
+            dimension.place(trial.params[name])
+        if isinstance(trial, FinishedTrial) and (trial.seeds or trial.value is not None):
+            if tuple(seed.seed for seed in trial.seeds) != self.plan.seeds:
+                raise ValueError("of other seeds")
+            if trial.value is not None and len(trial.values) < len(trial.seeds):
+                raise ValueError("a value without that of a seed")
 
     # Writing
 
@@ -211,9 +225,10 @@ class Study:
     def runs_of(self, number: int) -> bytes:
         """Return the runs of a finished trial as one archive; raises OSError."""
         folder = self.trial_folder(number)
-        for path in folder.rglob("*"):
-            if path.is_file():
-                read_bytes(path, _MOST)  # raises for what is no ordinary file
+        for seed in self.plan.seeds:
+            run = folder / seed_folder(seed)
+            if run.exists() and (stranger := (DIGITS_KIND if self.plan.kind == DIGITS else KIND).stranger(run)):
+                raise OSError(errno.EINVAL, f"holds something else than a run ({stranger})", str(run))
         return archive(folder)
 
     def ranked(self) -> list[FinishedTrial]:

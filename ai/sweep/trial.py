@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import io
 import tempfile
@@ -16,12 +17,14 @@ from typing import Any, Final
 
 import numpy as np
 
+from ai.nn.files import read_bytes
 from ai.sweep.metric import Metric, Point
 from ai.sweep.plan import Plan
 from ai.sweep.results import FinishedTrial, SeedResult
 from ai.sweep.runs import SeedRun, begin
 
 _ROOT: Final = Path(__file__).parents[2]
+_MOST: Final = 1_000_000_000  # bytes of an archive
 
 
 @dataclass(frozen=True)
@@ -55,26 +58,30 @@ class Trial:
     Args:
         plan: of the study.
         asked: of this trial.
-        parents: archive of the parent's runs, as `archive` gave it; empty without a parent.
+        runs: archive of the runs to go on with, the parent's or its own, as `archive` gave it; else empty.
+        so_far: what there was of this trial when `checkpoint` gave these runs; None for one that begins.
 
-    Raises ValueError for settings that make no sense.
+    Raises ValueError for settings that make no sense, ModelFormatError for runs that cannot be read.
 
     """
 
-    def __init__(self, plan: Plan, asked: Asked, parents: bytes = b"") -> None:
+    def __init__(self, plan: Plan, asked: Asked, runs: bytes = b"", so_far: FinishedTrial | None = None) -> None:
         self.plan, self.asked = plan, asked
         self.metric = Metric.named(plan.metric)
         self.begun, self.end = plan.span(asked.number)
-        self._began = time.monotonic()
-        earlier = [list(seed.curve) for seed in asked.parent.seeds] if asked.parent else [[] for _ in plan.seeds]
-        self._state = _State(self.begun, earlier, [""] * len(plan.seeds))
+        self._restarts = so_far.restarts + 1 if so_far else 0
+        self._began = time.monotonic() - (so_far.seconds if so_far else 0.0)
+        source = so_far or asked.parent
+        earlier = [list(seed.curve) for seed in source.seeds] if source else [[] for _ in plan.seeds]
+        self._state = _State(so_far.at if so_far else self.begun, earlier, [""] * len(plan.seeds))
         settings = plan.settings | asked.params
         with tempfile.TemporaryDirectory() as folder:
-            if parents:
-                unpack(parents, Path(folder))
-            self._runs: list[SeedRun] = [
-                begin(plan.kind, settings, seed, Path(folder, seed_folder(seed)) if parents else None, plan.validation)
-                for seed in plan.seeds
+            if runs:
+                unpack(runs, Path(folder))
+            kept = {seed: Path(folder, seed_folder(seed)) for seed in plan.seeds}
+            self._runs: list[SeedRun] = [  # what diverged at once has kept nothing, and begins anew
+                begin(plan.kind, settings, seed, run if run.is_dir() else None, plan.validation)
+                for seed, run in kept.items()
             ]
 
     @property
@@ -120,8 +127,17 @@ class Trial:
         parent = self.asked.parent.number if self.asked.parent else None
         return FinishedTrial(
             self.asked.number, self.asked.params, self.value, self.at, self.at < self.end,
-            round(time.monotonic() - self._began, 3), seeds, parent,
+            round(time.monotonic() - self._began, 3), seeds, parent, restarts=self._restarts,
         )  # fmt: skip
+
+    def checkpoint(self) -> bytes:
+        """Return an archive of every seed's run as it is now, to go on with; empty if one has diverged."""
+        if any(self._state.problems):
+            return b""
+        with tempfile.TemporaryDirectory() as temporary:
+            for seed, run in zip(self.plan.seeds, self._runs, strict=True):
+                run.keep(Path(temporary, seed_folder(seed)))
+            return archive(Path(temporary))
 
     def finish(self) -> tuple[FinishedTrial, bytes]:
         """Save and measure every seed's run as its command would; return the result and an archive of the folders."""
@@ -144,11 +160,20 @@ def seed_folder(seed: int) -> str:
 
 
 def archive(folder: Path) -> bytes:
-    """Return the files in a folder as one archive, not compressed."""
-    packed = io.BytesIO()
+    """Return the files in a folder as one archive, not compressed.
+
+    Raises OSError for a link, for what is no ordinary file, and for more than an archive may hold: nothing is sent to
+    other processes that does not lie in the folder itself.
+    """
+    packed, left = io.BytesIO(), _MOST
     with zipfile.ZipFile(packed, "w") as writer:
         for path in sorted(folder.rglob("*")):
-            writer.write(path, path.relative_to(folder).as_posix())
+            if path.is_symlink():
+                raise OSError(errno.ELOOP, "is a link", str(path))
+            if not path.is_dir():
+                content = read_bytes(path, left)
+                left -= len(content)
+                writer.writestr(path.relative_to(folder).as_posix(), content)
     return packed.getvalue()
 
 

@@ -11,6 +11,7 @@ import logging
 import math
 import os
 import tempfile
+import time
 import warnings
 from collections.abc import Sequence
 from types import SimpleNamespace
@@ -22,15 +23,18 @@ from ray import tune
 from ray.tune.schedulers import ASHAScheduler, FIFOScheduler, TrialScheduler
 from ray.tune.search import Searcher
 
+from ai.nn import ModelFormatError
 from ai.nn.files import brief
 from ai.nn.schema import read_as
 from ai.sweep.metric import Metric
 from ai.sweep.plan import POPULATION, Plan
 from ai.sweep.results import FinishedTrial
+from ai.sweep.runs import check_ready, read_config
 from ai.sweep.searches import AT, VALUE, PopulationSearch, StudySearch
 from ai.sweep.study import Study
 from ai.sweep.table import Table
 from ai.sweep.trial import Asked, Trial, fingerprint
+from ai.training.checkpoints import CHECKPOINT_SECONDS
 
 TRIES: Final = 4  # of a trial whose worker dies; after that it waits for --resume
 REDUCTION: Final = 3  # ASHA: one trial in three goes on at each rung
@@ -51,13 +55,18 @@ class SweepTrial(tune.Trainable):
         parent = FinishedTrial.from_json(asked["parent"]) if asked["parent"] else None
         self._asked = Asked(asked["number"], asked["params"], parent)
         self._trial: Trial | None = None
-        self._problem = ""
+        self._problem, self._failed, self._kept = "", False, time.monotonic()
+        plan = read_as(Plan, json.loads(config["plan"]))
         try:
-            plan = read_as(Plan, json.loads(config["plan"]))
-            parents = ray.get(config["runs"]) if config["runs"] else b""
-            self._trial = Trial(plan, self._asked, parents)
-        except ValueError as error:  # settings that make no sense together
-            self._problem = str(error)
+            check_ready(read_config(plan.kind, plan.settings))
+        except (ValueError, ImportError) as error:  # what is missing on this node is no result of a trial
+            self._problem, self._failed = brief(error), True
+            return
+        so_far = FinishedTrial.from_json(json.loads(config["so_far"])) if config["so_far"] else None
+        try:
+            self._trial = Trial(plan, self._asked, ray.get(config["runs"]) if config["runs"] else b"", so_far)
+        except ValueError as error:  # settings that make no sense together, unless it is the parent
+            self._problem, self._failed = brief(error), isinstance(error, ModelFormatError)
 
     def reset_config(self, new_config: dict[str, Any]) -> bool:
         """Begin another trial in the same process."""
@@ -70,16 +79,23 @@ class SweepTrial(tune.Trainable):
             nothing = FinishedTrial(
                 self._asked.number, self._asked.params, None, 0, False, 0.0, (), None, self._problem
             )
-            return _report(nothing, finished=True)
+            return _report(nothing, finished=True) | {"failed": self._failed}
         if not self._trial.done:
             self._trial.step()
         if not self._trial.done:
-            return _report(self._trial.result())
+            return _report(self._trial.result(), runs=self._checkpoint(self._trial))
         result, runs = self._trial.finish()
         return _report(result, finished=True, runs=runs)
 
+    def _checkpoint(self, trial: Trial) -> bytes:
+        """Return the runs as they are now, as often as `train` keeps its own; else nothing."""
+        if time.monotonic() - self._kept < CHECKPOINT_SECONDS:
+            return b""
+        self._kept = time.monotonic()
+        return trial.checkpoint()
+
     def save_checkpoint(self, checkpoint_dir: str) -> None:
-        """Save nothing: a trial that is lost begins anew, and gives the same."""
+        """Save nothing: Tune's checkpoints need a disk that all nodes share. `Recorder` keeps the last one."""
 
     def load_checkpoint(self, checkpoint: Any) -> None:
         """Load nothing."""
@@ -88,7 +104,10 @@ class SweepTrial(tune.Trainable):
 def _report(result: FinishedTrial, finished: bool = False, runs: bytes = b"") -> dict[str, Any]:
     value = math.nan if result.value is None else result.value
     told = json.dumps(result.to_json())
-    return {VALUE: value, AT: result.at, "told": told, "runs": runs, "finished": finished, "done": finished}
+    return {
+        VALUE: value, AT: result.at, "told": told, "runs": runs, "finished": finished, "failed": False,
+        "done": finished,
+    }  # fmt: skip
 
 
 class Recorder(tune.Callback):
@@ -100,7 +119,7 @@ class Recorder(tune.Callback):
     def __init__(self, study: Study, table: Table, stop: Sequence[int]) -> None:
         self._study, self._table, self._stop = study, table, stop
         self._waiting: list[tuple[FinishedTrial, bytes]] = []
-        self.lost: list[int] = []  # trials whose workers died too often
+        self.lost: dict[int, str] = {}  # trials that failed, or whose workers died too often, and the last reason
         self.trouble = ""
 
     def on_trial_start(self, iteration: int, trials: list[Any], trial: Any, **info: Any) -> None:
@@ -114,19 +133,26 @@ class Recorder(tune.Callback):
         """Keep a trial that is over: at its end, or because the scheduler has stopped it."""
         told = FinishedTrial.from_json(json.loads(result.pop("told")))
         runs = result.pop("runs")  # not to be kept in memory by Tune
-        if result["finished"] or (result.get("done") and not self._stop):
-            self._waiting.append((told, runs))
+        if result["failed"]:
+            self._lose(told.number, told.problem)
+        elif result["finished"] or (result.get("done") and not self._stop):
+            self._waiting.append((told, runs if result["finished"] else b""))
             self.write()
             self._table.finish(told)
         else:
             self._table.progress(told)
+            if runs:  # what a worker is asked to go on with, if this one dies
+                trial.config |= {"runs": ray.put(runs), "so_far": json.dumps(told.to_json())}
 
     def on_trial_error(self, iteration: int, trials: list[Any], trial: Any, **info: Any) -> None:
         """Note a trial that was tried too often, and say why."""
-        self.lost.append(json.loads(trial.config["asked"])["number"])
-        if error := trial.get_error():
-            self._table.say(f"trial {self.lost[-1]}: {brief(str(error).strip().splitlines()[-1])}")
-        self._table.drop(self.lost[-1])
+        said = str(trial.get_error() or "").strip().splitlines()
+        self._lose(json.loads(trial.config["asked"])["number"], brief(said[-1]) if said else "its worker died")
+
+    def _lose(self, number: int, why: str) -> None:
+        self.lost[number] = why
+        self._table.say(f"a trial failed: {why}")
+        self._table.drop(number)
 
     def on_step_end(self, iteration: int, trials: list[Any], **info: Any) -> None:
         """Try again what could not be written, and draw."""

@@ -16,7 +16,7 @@ from ai.agent.storage import KIND, LAST, write_agent
 from ai.common.knobs import nearest_preset
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.nn import ModelFormatError, atomic_folder
-from ai.nn.files import count_of, inside, number_of, read_json
+from ai.nn.files import count_of, inside, number_of, problem_in, read_json
 from ai.training.gym_task import gym_config
 from ai.training.history import Checkpoint, History
 from ai.training.loop import Progress, Training
@@ -155,8 +155,7 @@ def resume_run(folder: str | Path, *, env: str | None = None) -> Training:
             described.get("flights", EpisodeStatistics(0).to_json())
         )  # older runs do not have them
     except (KeyError, TypeError, ValueError, ArithmeticError) as error:
-        said = f"{error.args[0]} is missing" if isinstance(error, KeyError) else error
-        raise ModelFormatError(folder, [f"{TRAINING_FILE}: {said}"]) from error
+        raise ModelFormatError(folder, [f"{TRAINING_FILE}: {problem_in(error)}"]) from error
     training.agent.copy_from(last)
     return training
 
@@ -192,5 +191,5 @@ def restore_checkpoint(agent: DeepQAgent, checkpoint: Checkpoint) -> None:
         try:
             normalizer.load(checkpoint.normalizer)
         except (KeyError, TypeError) as error:
-            raise ValueError(f"the checkpoint's scale of observations makes no sense: {error}") from error
+            raise ValueError(f"the checkpoint's scale of observations: {problem_in(error)}") from error
     agent.restore(checkpoint.values, normalizer)

@@ -214,5 +214,5 @@ def _gymnasium() -> Any:
     try:
         import gymnasium
     except ImportError as error:
-        raise ImportError('this needs Gymnasium: pip install "tranquility[gym]"') from error
+        raise ImportError('this needs Gymnasium: pip install -e ".[gym]"') from error
     return gymnasium

@@ -15,7 +15,7 @@ from ai.agent.normalizer import Normalizer
 from ai.common.environment import Doubles, Floats
 from ai.lander.rewards import REWARDS
 from ai.nn import ModelFormatError
-from ai.nn.files import MOST, brief, inside, parse_json, read_arrays, read_json
+from ai.nn.files import MOST, inside, parse_json, problem_in, read_arrays, read_json
 from ai.nn.files import described as array_said
 from ai.nn.schema import Above, Count, OneOf, Sized, Within, read_as
 
@@ -280,8 +280,7 @@ class History:
         except OSError as error:
             raise ModelFormatError(folder, [f"{HISTORY_FILE}: {error.strerror or error}"]) from error
         except (ValueError, KeyError, TypeError, ArithmeticError) as error:
-            said = f"{brief(error.args[0])} is missing" if isinstance(error, KeyError) else error
-            raise ModelFormatError(folder, [f"{HISTORY_FILE}: {said}"]) from error
+            raise ModelFormatError(folder, [f"{HISTORY_FILE}: {problem_in(error)}"]) from error
         return history
 
     def _restore(self, described: _HistoryFile, points: Doubles, values: Floats) -> None:

@@ -10,7 +10,7 @@ from ai.agent.config import Config
 from ai.agent.symmetry import Symmetry
 from ai.common.environment import Doubles, Env
 from ai.lander.pilots import Pilot
-from ai.nn.files import brief, number_of
+from ai.nn.files import number_of, shown
 
 VALIDATION_SEED = 1_000_003  # episodes that choose the best checkpoint
 TEST_SEED = 2_000_003  # episodes that have no say in anything, to measure a finished network by
@@ -74,7 +74,7 @@ class Task(Protocol):
 def checked_score(values: Any, may_be_none: tuple[str, ...]) -> dict[str, Any]:
     """Return the values of a score from a file; raises ValueError if they are not finite numbers by name."""
     if not isinstance(values, dict):
-        raise ValueError(f"{brief(repr(values), 40)} is no score")
+        raise ValueError(f"{shown(values)} is no score")
     return {
         name: value if value is None and name in may_be_none else number_of(value) for name, value in values.items()
     }

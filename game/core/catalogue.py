@@ -18,6 +18,8 @@ AI_DOMAIN: Final = "ai"  # what `ai` says in English, which knows nothing of pla
 ENGLISH: Final = "en"
 LOCALE = Path(__file__).parents[1] / "locale"  # a test reads another
 _CONTEXT_ENDS, _FORM_ENDS = "\x04", "\0"
+_MAGIC: Final = 0x950412DE  # what a compiled catalogue begins with
+_DAMAGE: Final = (OSError, ValueError, LookupError, ArithmeticError, struct.error)  # what reading a cut one raises
 
 
 class Plural(str):
@@ -46,8 +48,10 @@ def read(folder: Path) -> dict[str, Any]:
 
     A name's parts after its first are keys of groups. Keys from 0 on make a tuple; other numbers are whole numbers. In
     a group of tuples, all are as long as the longest: where the catalogue has nothing, a text is empty.
+
+    Raises ValueError, which names the file, if the English catalogue cannot be read.
     """
-    language = gettext.translation(DOMAIN, folder, fallback=True)
+    language = _translation(DOMAIN, folder)
     tree: dict[str, Any] = {}
     for name, one, many in _english(folder / ENGLISH / "LC_MESSAGES" / f"{DOMAIN}.mo"):
         *groups, last = name.split(".")
@@ -61,12 +65,30 @@ def read(folder: Path) -> dict[str, Any]:
 def language(folder: Path) -> str:
     """Return the code of the language that texts are in, as far as they are translated."""
     path = gettext.find(DOMAIN, folder)
-    return Path(path).parts[-3] if path else ENGLISH
+    return Path(path).parts[-3] if path and not damaged(folder) else ENGLISH
+
+
+def damaged(folder: Path) -> str:
+    """Return the path of a catalogue of the player's language that cannot be read; empty if all can.
+
+    English stands in for the whole language then.
+    """
+    for domain in (DOMAIN, AI_DOMAIN):
+        for path in gettext.find(domain, folder, all=True):
+            try:
+                gettext.translation(domain, folder, [Path(path).parts[-3]]).ngettext("", "", 2)
+            except _DAMAGE:
+                return path
+    return ""
 
 
 def said_in(folder: Path) -> Callable[[str], str]:
     """Return what turns a sentence of `ai` into the player's language; one that is not in its catalogue stays."""
-    return gettext.translation(AI_DOMAIN, folder, fallback=True).gettext
+    return _translation(AI_DOMAIN, folder).gettext
+
+
+def _translation(domain: str, folder: Path) -> gettext.NullTranslations:
+    return gettext.NullTranslations() if damaged(folder) else gettext.translation(domain, folder, fallback=True)
 
 
 def _plural(language: gettext.NullTranslations, name: str, one: str, many: str) -> Plural:
@@ -91,11 +113,17 @@ def _english(path: Path) -> Iterator[tuple[str, str, str]]:
 
     The format is described in the manual of GNU gettext, 10.3. The standard library answers for one message at a time.
     """
-    data = path.read_bytes()
-    count, table = struct.unpack_from("<2I", data, 8)
-    places = struct.unpack_from(f"<{2 * count}I", data, table)
-    for length, start in zip(places[::2], places[1::2], strict=True):
-        name, ends, words = data[start : start + length].decode().partition(_CONTEXT_ENDS)
+    try:
+        data = path.read_bytes()
+        magic, _, count, table = struct.unpack_from("<4I", data)
+        places = list(struct.iter_unpack("<2I", data[table : table + 8 * count]))
+        messages = [data[start : start + length].decode() for length, start in places]
+    except _DAMAGE as error:
+        raise ValueError(f"{path} cannot be read") from error
+    if magic != _MAGIC or len(places) < count or any(sum(place) >= len(data) for place in places):
+        raise ValueError(f"{path} is damaged")
+    for message in messages:
+        name, ends, words = message.partition(_CONTEXT_ENDS)
         if ends:  # without a context, it is the catalogue's head
             one, _, many = words.partition(_FORM_ENDS)
             yield name, one, many

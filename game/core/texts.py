@@ -5,6 +5,10 @@
 
 from game.core import catalogue
 
-globals().update(catalogue.read(catalogue.LOCALE))
+try:
+    globals().update(catalogue.read(catalogue.LOCALE))
+except ValueError as error:  # nothing can be said without it
+    raise SystemExit(f"tranquility: {error}; install the game again") from error
 said = catalogue.said_in(catalogue.LOCALE)
 LANGUAGE = catalogue.language(catalogue.LOCALE)
+damaged = catalogue.damaged(catalogue.LOCALE)

@@ -102,10 +102,12 @@ def serve(connection: Connection, payload: bytes) -> None:
 
 
 def _settle() -> None:
-    """Configure the process to spare the window: one core, lower priority, and Ctrl-C ignored."""
+    """Configure the process to spare the window: one core, lower priority; what ends the window is left to it."""
     for library in ("OPENBLAS", "OMP", "MKL"):
         os.environ[f"{library}_NUM_THREADS"] = "1"
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    for name in ("SIGINT", "SIGHUP"):  # which reach all processes of a terminal
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), signal.SIG_IGN)
     with suppress(AttributeError, OSError):
         os.nice(_NICENESS)
 

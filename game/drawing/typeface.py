@@ -18,6 +18,7 @@ import numpy.typing as npt
 import pygame
 from font_manrope import font_files
 
+from ai.nn.files import CONTROLS
 from game.drawing.glyphs import SIGN, draw_sign, sign_width
 from game.drawing.tokens import GROWS, Colour
 
@@ -251,8 +252,8 @@ def _with_signs(string: str, pixels: float, weight: Weight) -> pygame.Surface:
 
 
 def _writable(string: str) -> str:
-    """Replace characters that no font has by question marks; a file's name can hold any bytes, at any length."""
-    return string[:_LONGEST].replace("\0", "?").encode(errors="replace").decode()
+    """Replace what no font has or no line can hold by question marks: a file's name can be any bytes, at any length."""
+    return CONTROLS.sub("?", string[:_LONGEST]).encode(errors="replace").decode()
 
 
 def _cut(string: str, pixels: float, weight: Weight) -> str:

@@ -152,7 +152,7 @@ class Impulse:
     @property
     def motion(self) -> tuple[Array, Array]:
         """Velocities (2, 3) of both bodies before and after."""
-        before = self.call.values["motion"][self.column].reshape(2, 3)
+        before = self.call.values["motion"][:, self.column].reshape(2, 3)
         return before, self.call.values["velocity"].reshape(-1, 3)[self.bodies]
 
 

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Annotated, Any, Final
 
 from ai.flights.easing import AS_IT_IS, Easing
+from ai.flights.places import COURSES
 from ai.flights.recording import LONGEST, Recording, StickHolder
 from ai.flights.stick import STEPS, Shares
 from ai.lander.descent import MOST_LEGS, TANK, LegStart
@@ -34,12 +35,12 @@ VERSION: Final = 5
 # of thrust, no easing, no descents and no version of the area: it was the first.
 _READS: Final = (1, 2, 3, 4, 5)
 _LARGEST: Final = 2_000_000  # bytes
-_LONGEST_NAME: Final = 255  # characters, as in the name of a file
+LONGEST_NAME: Final = 255  # characters, as in the name of a file
 _MOST: Final = 32_503_680_000 - 1  # limit of any figure; as a date the year 2999, the last on some systems
 
 _Figure = Annotated[float, Within(0, _MOST)]
 _Number = Annotated[int, Within(0, _MOST)]
-_Name = Annotated[str, Sized(_LONGEST_NAME)]
+_Name = Annotated[str, Sized(LONGEST_NAME)]
 
 
 def _plain_name(name: str) -> None:
@@ -89,7 +90,7 @@ class Entry:
     score: _Number = 0
     course: _Name = ""
     medal: _Number = 0
-    file: Annotated[str, Sized(_LONGEST_NAME), _plain_name] = ""
+    file: Annotated[str, Sized(LONGEST_NAME), _plain_name] = ""
     gravity: _Figure = 1.0
     pace: _Figure = 1.0
     rules: _Number = 0
@@ -207,8 +208,9 @@ def from_text(text: str) -> Record:
     except ValueError as error:
         raise ValueError(texts.FLIGHT_FORMAT.format(format=FORMAT, version=VERSION)) from error
     file = read_as(_FlightFile, values, strict=True)
-    if file.mission and file.mission not in MISSIONS:
-        raise ValueError(texts.FLIGHT_MISSION.format(name=brief(file.mission, 40)))
+    for name, known in ((file.mission, ("", *MISSIONS)), (file.entry.course, COURSES)):
+        if name not in known:
+            raise ValueError(texts.FLIGHT_MISSION.format(name=brief(name, 40)))
     actions = [int(word) for word in _unpacked(file.actions)]
     hands = [StickHolder(word) for word in _unpacked(file.hands)]
     if len(actions) != len(hands) or not all(0 <= action < NUM_ACTIONS for action in actions):

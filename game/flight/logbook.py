@@ -14,8 +14,9 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any, Final
 
+from ai.flights.places import DESCENT
 from ai.flights.score import landing_score
-from ai.nn.files import parse_json, read_end
+from ai.nn.files import brief, parse_json, read_end
 from ai.nn.schema import read_as
 from game.core import texts
 from game.core.names import LibraryError, free_path
@@ -26,7 +27,6 @@ from game.flight.flight_file import Entry, Record
 
 FOLDER: Final = "flights"
 LOGBOOK: Final = "logbook.jsonl"
-DESCENT: Final = "descent"  # the course of its legs
 RECENT: Final = 100  # latest flights, whose files are kept whatever their outcome
 BEST: Final = 5  # best landings of each mission, whose files are kept too, as are those of the longest descent
 _LARGEST: Final = 16_000_000  # last bytes of the logbook that are read: 50,000 flights
@@ -38,6 +38,7 @@ RECENT_OWN: Final = 10  # number of last flights by the person alone that measur
 def describe(flight: Flight, when: float, **more: Any) -> Entry:
     """Return the logbook's line for a flight that has ended; `more` are the fields that the flight does not know."""
     env = flight.env
+    more["network"] = brief(more.get("network", ""), flight_file.LONGEST_NAME)  # a folder's name, and maybe words on it
     return Entry(
         when=round(when, 3),
         outcome=flight.outcome.name,

@@ -101,7 +101,7 @@ class FlightReplay:
     @property
     def earned(self) -> Earned | None:
         """What the flight really earned; None until the scout has reached the end."""
-        return earned(self._scout.env, self.record.recording.mission) if self.complete else None
+        return earned(self._scout.env, self.record.recording) if self.complete else None
 
     @property
     def faithful(self) -> bool:

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import asdict
 from pathlib import Path
 from typing import Final
 
 from ai.flights.code import CodeError, code_of, codes_in, flight_of
+from ai.flights.places import DAILY, DESCENT, day_of, in_its_place
 from ai.flights.recording import StickHolder
 from ai.flights.shared import Claim, SharedFlight
 from ai.flights.verification import Earned
 from ai.lander.environment import Outcome
+from ai.lander.rules import tenths
+from ai.lander.spawns import LADDER, RUNGS
 from ai.nn.files import read_text
 from engine import DT
 from game.core import texts
@@ -23,8 +27,9 @@ DROPPED: Final = 1_000_000  # bytes of a file that is dropped on the window, at 
 def shared(record: Record) -> SharedFlight:
     """Return a record as it is sent to a friend."""
     entry = record.entry
-    claim = Claim(Outcome[entry.outcome], entry.score, record.end)
-    return SharedFlight(record.recording, claim, entry.course, entry.bar if not entry.alone else "")
+    claim = Claim(Outcome[entry.outcome], entry.score, record.end, 0 if entry.outdated else entry.medal)
+    course = entry.course or record.recording.mission
+    return SharedFlight(record.recording, claim, course, entry.bar if not entry.alone else "")
 
 
 def code(record: Record) -> str:
@@ -82,14 +87,47 @@ def flight_in_file(path: Path) -> SharedFlight:
         raise ValueError(texts.CODE_REFUSED["none"]) from error
 
 
-def words(outcome: Outcome, points: int) -> str:
-    """Return in words what a flight has earned, or claims."""
-    return texts.EARNED[outcome.name].format(points=points)
+def words(claim: Claim | Earned) -> str:
+    """Return in words what a flight claims, or has earned."""
+    said = texts.EARNED[claim.outcome.name].format(points=claim.points)
+    return texts.EARNED_MEDAL.format(earned=said, medal=texts.MEDALS[claim.medal]) if claim.medal in (1, 2, 3) else said
+
+
+def why_wrong(flight: SharedFlight, real: Earned) -> str:
+    """Return what is wrong with a claim that is not true: the place, what was earned, or where the flight ended."""
+    if not in_its_place(flight):
+        return texts.WRONG_PLACE
+    claim = flight.claim
+    if (claim.outcome, claim.points) == (real.outcome, real.points) and claim.medal <= real.medal:
+        return texts.WRONG_END
+    return texts.WRONG_CLAIM.format(claim=words(claim))
 
 
 def where(flight: SharedFlight) -> str:
-    """Return where a flight was flown: a mission, the start of the day, or the kind of a free flight."""
-    if flight.course == "daily":
+    """Return where a flight says it was flown, with the day, the tank, and what makes it easier there."""
+    recording = flight.recording
+    leg, day = recording.leg, day_of(recording.seed)
+    parts = [course_name(flight.course, leg.number if leg else 0, recording.spawn, recording.pads)]
+    if flight.course == DAILY and day:
+        parts.append(day.isoformat())
+    if leg and leg.number > 1:
+        parts.append(texts.PLACE_TANK.format(seconds=f"{tenths(leg.tank):.1f}"))
+    if recording.gravity:
+        share = max((share for _, share in recording.gravity), key=lambda share: abs(share - 1))
+        parts.append(texts.PRACTICE_GRAVITY.format(percent=round(100 * share)))
+    return ", ".join([*parts, *(texts.ASSIST_WORDS[name] for name, on in asdict(recording.easing).items() if on)])
+
+
+def course_name(course: str, leg: int, spawn: str, pads: int) -> str:
+    """Return the name of a flight's course: a mission, the start of the day, a leg, or the kind of a free flight."""
+    if leg:
+        return texts.DESCENT_COURSE.format(number=leg)
+    if course == DAILY:
         return texts.DAILY
-    mission = texts.MISSIONS.get(flight.recording.mission)
-    return mission[0] if mission else texts.COURSE_FREE[flight.recording.pads]
+    if course == DESCENT:  # and no leg of one
+        return texts.DESCENT_TITLE
+    if course in texts.MISSIONS:
+        return texts.MISSIONS[course][0]
+    if spawn in RUNGS:
+        return texts.LADDER_FLIGHT.format(number=LADDER.stage_of(spawn) + 1)
+    return texts.COURSE_FREE.get(pads, "")

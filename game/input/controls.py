@@ -115,11 +115,6 @@ class Controls:
         return 0 if left == right else (1 if left else 2)
 
     @property
-    def action(self) -> int:
-        """The lander's action: 3 · main + steer."""
-        return 3 * self.main + self.steer
-
-    @property
     def shares(self) -> tuple[float, float]:
         """Shares of thrust that sticks and triggers ask for: main engine 0 to 1, jets -1, left, to 1, right."""
         return analogue.shares([pad.axes for pad in self._pads.values()], self.buttons)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from datetime import date
 
+from ai.flights.places import DAILY
 from ai.lander.environment import Outcome
 from game.core import texts
 from game.flight.flight import Flight
@@ -11,7 +12,7 @@ from game.flight.flight_file import Entry, Record
 from game.flight.networks import Policy
 from game.flight.replay import ReplayedFlight
 from game.play.challenge import Challenge
-from game.play.days import COURSE, Attempt, Days, line
+from game.play.days import Attempt, Days, line
 from game.play.ghost import Ghost
 
 
@@ -28,7 +29,7 @@ class DailyStart(Challenge):
 
     """
 
-    name = COURSE
+    name = DAILY
     alone = True
     eases = True
     title = texts.DAILY

@@ -12,16 +12,15 @@ from datetime import date, datetime
 from pathlib import Path
 from typing import Annotated, Final
 
+from ai.flights.places import DAILY
 from ai.lander.environment import Outcome
 from ai.nn.files import parse_json, read_end
 from ai.nn.schema import Count, OneOf, Sized, read_as
 from game.core import texts
-from game.flight import sharing
 from game.flight.flight_file import Entry, Record
 from game.flight.logbook import Records
 
 FILE_NAME: Final = "days.jsonl"
-COURSE: Final = "daily"  # in the logbook
 _LARGEST: Final = 2_000_000  # last bytes that are read: decades
 _AROUND: Final = 40 * 3600.0  # seconds from a day's noon within which its flights were flown
 _MOST_READ: Final = 10  # files that are read to find the best flight of a day
@@ -55,7 +54,7 @@ class Attempt:
 def line(day: str, outcome: Outcome, points: int, attempt: str) -> str:
     """Return a result of a day in a line for a message; `attempt` is a key of `texts.DAILY_ATTEMPTS`."""
     landed = outcome is Outcome.LANDED
-    end = texts.DAILY_LANDED.format(points=points) if landed else sharing.words(outcome, points)
+    end = texts.DAILY_LANDED.format(points=points) if landed else texts.EARNED[outcome.name]
     return texts.DAILY_LINE.format(day=day, end=end, attempt=texts.DAILY_ATTEMPTS[attempt])
 
 
@@ -116,7 +115,7 @@ class Days:
     def best_flight(self, day: date) -> Record | None:
         """Return the player's best flight of a day that can be replayed; None if there is none."""
         if self._flown is None:
-            self._flown = [entry for entry in self._records.entries() if entry.course == COURSE]
+            self._flown = [entry for entry in self._records.entries() if entry.course == DAILY]
         noon, kept = datetime(day.year, day.month, day.day, 12).timestamp(), self._records.kept()
         near = [entry for entry in self._flown if abs(entry.when - noon) < _AROUND and entry.file in kept]
         for entry in sorted(near, key=lambda entry: (not entry.landed, -entry.score))[:_MOST_READ]:

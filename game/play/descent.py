@@ -14,6 +14,7 @@ from typing import Final
 import numpy as np
 import pygame
 
+from ai.flights.places import DESCENT
 from ai.flights.score import landing_score
 from ai.lander.descent import TANK, LegStart, leg_of
 from ai.lander.environment import LanderEnv, Outcome
@@ -24,7 +25,6 @@ from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NET, NIGHT0, SMALL, TEX
 from game.flight.credit import Credit
 from game.flight.flight import Flight, Recording
 from game.flight.flight_file import Entry
-from game.flight.logbook import DESCENT
 from game.flight.networks import Policy
 from game.flight.outcomes import OutcomeCard
 from game.flight.replay import ReplayedFlight

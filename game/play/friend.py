@@ -76,27 +76,26 @@ class Claimed:
 
     def __init__(self, flight: SharedFlight, flight_replay: FlightReplay) -> None:
         self.flight, self._flight_replay = flight, flight_replay
-        claim = sharing.words(flight.claim.outcome, flight.claim.points)
+        claim = sharing.words(flight.claim)
         self.line = texts.FRIEND_LINE.format(where=sharing.where(flight), claim=claim)
 
     @property
     def true(self) -> bool | None:
         """Whether the claim is true; None until the flight is flown to its end."""
         real = self._flight_replay.earned
-        return None if real is None else is_true(self.flight.claim, self._flight_replay.length, real)
+        return None if real is None else is_true(self.flight, real)
 
     @property
     def words(self) -> str:
         """How far the check is, or its result."""
-        real, claim = self._flight_replay.earned, self.flight.claim
+        real = self._flight_replay.earned
         if real is None:
             percent = 100 * self._flight_replay.reached // max(1, self._flight_replay.length)
             return texts.FRIEND_CHECKING.format(percent=percent)
         if self.true:
             return texts.FRIEND_TRUE
-        if (real.outcome, real.points) == (claim.outcome, claim.points):
-            return texts.FRIEND_WRONG_END
-        return texts.FRIEND_WRONG.format(earned=sharing.words(real.outcome, real.points))
+        why = sharing.why_wrong(self.flight, real)
+        return texts.FRIEND_WRONG.format(earned=sharing.words(real), why=why)
 
     def draw(self, canvas: Canvas) -> None:
         """Draw the claim in the corner, and what comes of checking it below the words of the replay."""

@@ -13,7 +13,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any, Final
 
-from ai.nn.files import parse_json, read_text, write_bytes, write_text
+from ai.nn.files import parse_json, read_bytes, read_text, write_bytes, write_text
 from ai.nn.schema import sound_fields
 from game.core import texts
 from game.core.names import LibraryError, free_path, library_errors
@@ -27,6 +27,7 @@ SETTINGS: Final = ("tutored", "first_flown", "rung", "learnt", "chapter")  # and
 _PREFIX: Final = "progress "  # of the folder that progress is put away in
 _VALUES: Final = "progress.json"
 _LARGEST: Final = 1_000_000  # bytes of the settings put away
+_LOGBOOK: Final = 500_000_000  # and of a logbook, which grows by a line for each flight
 _MOST: Final = 5  # resets that can be undone
 
 
@@ -105,5 +106,5 @@ class Progress:
             if not home.exists():
                 path.rename(home)
             elif home.name in (LOGBOOK, DAYS):  # a line for each flight or day: what was put away is older
-                write_bytes(home, path.read_bytes().rstrip(b"\n") + b"\n" + home.read_bytes())
+                write_bytes(home, read_bytes(path, _LOGBOOK).rstrip(b"\n") + b"\n" + read_bytes(home, _LOGBOOK))
         shutil.rmtree(box)

@@ -9,7 +9,6 @@ import numpy as np
 import pygame
 
 from ai.lander.rules import tenths
-from ai.lander.spawns import LADDER
 from game.charts.chart import Chart, Series
 from game.charts.charts import Charts
 from game.core import texts
@@ -253,15 +252,5 @@ def entry_row(entry: Entry) -> Row:
     points = (texts.LOGBOOK_UNCOUNTED if entry.bar else "{points}").format(points=entry.score)
     by = {1.0: texts.LOGBOOK_YOU, 0.0: texts.LOGBOOK_NETWORK}.get(entry.human, texts.LOGBOOK_SHARED)
     end, seconds = ending_word(entry.outcome, intact=entry.intact), f"{tenths(entry.seconds):.1f} s"
-    return when, _challenge(entry), end, seconds, points if entry.landed else "–", by
-
-
-def _challenge(entry: Entry) -> str:
-    """Return the name of the challenge that a flight belongs to."""
-    if entry.leg:
-        return texts.DESCENT_COURSE.format(number=entry.leg)
-    if entry.course == "daily":
-        return texts.DAILY
-    if entry.on_ladder and not entry.course:
-        return texts.LADDER_FLIGHT.format(number=LADDER.stage_of(entry.spawn) + 1)
-    return texts.MISSIONS[entry.course][0] if entry.course in texts.MISSIONS else texts.COURSE_FREE.get(entry.pads, "")
+    course = sharing.course_name(entry.course, entry.leg, entry.spawn, entry.pads)
+    return when, course, end, seconds, points if entry.landed else "–", by

@@ -8,6 +8,7 @@ from typing import Final
 
 import pygame
 
+from ai.flights.places import DAILY
 from ai.lander.missions import FIRST, MISSIONS
 from ai.lander.rules import tenths
 from game.cockpit.hud import draw_ring
@@ -44,9 +45,8 @@ _WIDTH: Final = VIEW_SIZE[0] - MARGIN - _LEFT
 _RIVAL: Final = (_LEFT, 412, _WIDTH, 32)
 _RIVAL_LABEL: Final = 112.0
 _NETWORK: Final = 468.0  # baseline of the network's result
-_DAILY: Final = "daily"
 _FLIGHTS: Final = "flights"  # in the game's own data
-_NAMES: Final = (FIRST.name, *MISSIONS, _DAILY)
+_NAMES: Final = (FIRST.name, *MISSIONS, DAILY)
 
 
 class MissionsScene(ListScene[str]):
@@ -98,7 +98,7 @@ class MissionsScene(ListScene[str]):
         return self._fly()
 
     def _fly(self) -> Transition:
-        return push("days") if self.chosen == _DAILY else push("play", 0, challenge=self._challenge())
+        return push("days") if self.chosen == DAILY else push("play", 0, challenge=self._challenge())
 
     # Ghosts
 
@@ -151,7 +151,7 @@ class MissionsScene(ListScene[str]):
             return title, texts.TUTORIAL_FLOWN if self.context.settings.first_flown else "–", ""
         if best is None:
             return title, texts.MISSION_TOGETHER if name in self._together else "–", ""
-        if name == _DAILY:
+        if name == DAILY:
             return title, "", texts.SCORE.format(count=best.score)
         return title, texts.MEDALS[best.medal], f"{tenths(best.fuel):.1f} s"
 
@@ -201,7 +201,7 @@ def _draw_lamps(canvas: Canvas, first: tuple[float, float], medal: int) -> None:
 
 _TOLD: Final = {
     FIRST.name: (texts.TUTORIAL_TITLE, texts.TUTORIAL_ASKS),
-    _DAILY: (texts.DAILY, texts.DAILY_BEGIN),
+    DAILY: (texts.DAILY, texts.DAILY_BEGIN),
 }
 
 

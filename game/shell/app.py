@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from datetime import datetime
 from io import BytesIO
 from logging.handlers import RotatingFileHandler
@@ -96,11 +96,11 @@ class App:
         """Build a scene and push it; if it cannot be built, the error screen is shown as for any other failure."""
         self._guarded(lambda: self.scenes.apply(Push(scene if isinstance(scene, Route) else scene(self.context))))
 
-    def run(self, max_frames: int | None = None) -> int:
-        """Play until the game is closed, or for `max_frames`. Return the process's exit code."""
+    def run(self, stop: Sequence[int] = (), max_frames: int | None = None) -> int:
+        """Play until the game is closed, `stop` has an entry, or for `max_frames`. Return the process's exit code."""
         try:
             frame = 0
-            while (max_frames is None or frame < max_frames) and self.tick():
+            while (max_frames is None or frame < max_frames) and not stop and self.tick():
                 frame += 1
         finally:
             self.close()

@@ -3,7 +3,6 @@
 from itertools import pairwise
 
 import numpy as np
-import pytest
 
 from engine import Circle, Polygon, World
 
@@ -40,31 +39,32 @@ def assert_same(world, twin):
     assert mine.colour_ends == theirs.colour_ends
 
 
-@pytest.mark.parametrize("seed", range(8))
-def test_a_craft_that_falls_bounces_slides_and_lies_does_so_as_in_arrays(seed):
-    rng = np.random.default_rng(seed)
-    start = {
-        "position": rng.uniform((-4, 3), (4, 4)), "angle": rng.uniform(-3, 3),
-        "velocity": rng.uniform(-1.5, 1.5, 2), "angular_velocity": rng.uniform(-2, 2),
-    }  # fmt: skip
-    world, twin = craft(start), craft(start)
-    twin.in_floats = False
-    touched = 0
-    for step in range(360):
-        if step % 60 == 0:
-            push = rng.uniform(-1500, 1500, 2)
-        for each in (world, twin):
-            if step % 60 < 10:
-                each.bodies[-1].apply_force(push, each.bodies[-1].position + np.array([0.2, 0.1]))
-            if step == 200:  # the pad goes, and a wall comes
-                each.bodies[5].active = False
-                each.bodies[6].position = (2.0, 1.5)
-            if step == 300:
-                each.bodies[5].active = True
-            each.step()
-        assert_same(world, twin)
-        touched += twin.contacts is not None
-    assert touched > 20
+def test_a_craft_that_falls_bounces_slides_and_lies_does_so_as_in_arrays(subtests):
+    for seed in range(8):
+        with subtests.test(seed=seed):
+            rng = np.random.default_rng(seed)
+            start = {
+                "position": rng.uniform((-4, 3), (4, 4)), "angle": rng.uniform(-3, 3),
+                "velocity": rng.uniform(-1.5, 1.5, 2), "angular_velocity": rng.uniform(-2, 2),
+            }  # fmt: skip
+            world, twin = craft(start), craft(start)
+            twin.in_floats = False
+            touched = 0
+            for step in range(360):
+                if step % 60 == 0:
+                    push = rng.uniform(-1500, 1500, 2)
+                for each in (world, twin):
+                    if step % 60 < 10:
+                        each.bodies[-1].apply_force(push, each.bodies[-1].position + np.array([0.2, 0.1]))
+                    if step == 200:  # the pad goes, and a wall comes
+                        each.bodies[5].active = False
+                        each.bodies[6].position = (2.0, 1.5)
+                    if step == 300:
+                        each.bodies[5].active = True
+                    each.step()
+                assert_same(world, twin)
+                touched += twin.contacts is not None
+            assert touched > 20
 
 
 def test_points_that_nearly_coincide_share_no_push_in_floats_either():

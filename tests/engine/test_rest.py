@@ -108,20 +108,21 @@ DISTURBANCES = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("disturb", DISTURBANCES)
-def test_a_sleeping_stack_wakes_by(disturb):
-    world, awake = sleeping_tower(), tower(sleeping=False)
-    top = world.bodies[3].position.copy()
-    disturb(world)
-    world.step()
-    assert not asleep(world)[0, world.state.active[0]].any()
-    advance(world, 30)
-    assert abs(world.bodies[3].position - top).max() > 0.002
-    # It goes on as a stack does that has never slept.
-    advance(awake, 120)
-    disturb(awake)
-    advance(awake, 31)
-    assert world.state.pose == pytest.approx(awake.state.pose, abs=0.01)
+def test_a_sleeping_stack_wakes_by(subtests):
+    for disturb in DISTURBANCES:
+        with subtests.test(disturb=disturb):
+            world, awake = sleeping_tower(), tower(sleeping=False)
+            top = world.bodies[3].position.copy()
+            disturb(world)
+            world.step()
+            assert not asleep(world)[0, world.state.active[0]].any()
+            advance(world, 30)
+            assert abs(world.bodies[3].position - top).max() > 0.002
+            # It goes on as a stack does that has never slept.
+            advance(awake, 120)
+            disturb(awake)
+            advance(awake, 31)
+            assert world.state.pose == pytest.approx(awake.state.pose, abs=0.01)
 
 
 def test_a_sleeping_stack_wakes_by_a_hit():
@@ -330,9 +331,23 @@ def test_a_recalled_memory_brings_sleep_back_too():
     assert world.state.pose.tobytes() == first.tobytes()
 
 
+def test_without_gravity_a_stack_stays_where_it_is():
+    for sleeping in (True, False):
+        world = World(gravity=(0.0, -9.81), sleeping=sleeping, batch=2)
+        world.add(Polygon.box(20.0, 1.0), (0.0, -0.5), static=True)
+        for i in range(5):
+            world.add(Polygon.box(1.0, 1.0), (0.05 * (i % 2), 0.5 + i))
+        advance(world, 300)
+        assert asleep(world)[:, 1:].all() == sleeping
+        before = world.state.pose.copy()
+        world.gravity = np.array([[0.0, 0.0], [0.0, -9.81]])
+        advance(world, 120)
+        assert np.abs(world.state.pose - before).max() < 1e-3, sleeping
+
+
 def test_worlds_that_go_to_nan_neither_sleep_nor_wake_others():
     world = sleeping_tower(batch=2)
-    world.bodies[1].set(position=(np.nan, 0.5), mask=np.array([True, False]))
+    world.state.pose[0, 1, 0] = np.nan
     before = world.state.pose[1].tobytes()
     advance(world, 60)
     assert asleep(world)[1, 1:].all()

@@ -61,9 +61,8 @@ def test_either_winding_gives_the_same_polygon():
         assert np.linalg.norm(shape.normals, axis=1) == pytest.approx(1.0)
 
 
-@pytest.mark.parametrize(
-    ("corners", "reason"),
-    [
+def test_what_is_no_convex_polygon_is_refused(subtests):
+    for corners, reason in [
         ([(0, 0), (1, 0)], "three"),
         ([(0, 0), (1, 0), (2, np.nan)], "finite"),
         ([(0, 0, 0), (1, 0, 0), (0, 1, 0)], "corners"),
@@ -72,11 +71,9 @@ def test_either_winding_gives_the_same_polygon():
         ([(0, 0), (0, 0), (1, 0), (0, 1)], "distinct"),
         ([(0, 0), (2, 0), (0.5, 0.5), (0, 2)], "convex"),
         ([(np.cos(a), np.sin(a)) for a in np.arange(5) * 4 * np.pi / 5], "cross"),
-    ],
-)
-def test_what_is_no_convex_polygon_is_refused(corners, reason):
-    with pytest.raises(ValueError, match=reason):
-        Polygon(corners)
+    ]:
+        with subtests.test(corners=corners, reason=reason), pytest.raises(ValueError, match=reason):
+            Polygon(corners)
 
 
 @pytest.mark.parametrize(("radius", "centre"), [(0, (0, 0)), (-1, (0, 0)), (np.inf, (0, 0)), (1, (np.nan, 0))])

@@ -145,17 +145,15 @@ def test_a_world_gone_to_nan_harms_no_other():
         return world
 
     three, one = toys(3), toys(1)
-    three.bodies[1].set(position=(np.nan, 1.0), mask=np.array([True, False, False]))
-    three.bodies[2].set(velocity=(np.nan, 0.0), mask=np.array([False, False, True]))
+    three.state.pose[0, 1, 0] = three.state.velocity[2, 2, 0] = np.nan
     run(three, 90)
     run(one, 90)
     assert three.state.pose[1].tobytes() == one.state.pose[0].tobytes()
     assert np.isnan(three.state.pose[[0, 2]]).any(axis=(1, 2)).all()
 
 
-@pytest.mark.parametrize(
-    ("settings", "reason"),
-    [
+def test_what_makes_no_sense_is_refused(subtests):
+    for settings, reason in [
         ({"mass": 0.0}, "positive, finite mass"),
         ({"mass": np.nan}, "positive, finite mass"),
         ({"mass": -1.0}, "positive, finite mass"),
@@ -165,14 +163,82 @@ def test_a_world_gone_to_nan_harms_no_other():
         ({"friction": -0.1}, "friction"),
         ({"restitution": 1.5}, "restitution"),
         ({"position": (0.0, np.nan)}, "position"),
-    ],
-)
-def test_what_makes_no_sense_is_refused(settings, reason):
-    world = World()
-    with pytest.raises(ValueError, match=reason):
-        world.add(BOX, **{"position": (0, 0), **settings})
-    assert world.bodies == []
-    assert world.state.pose.shape == (1, 0, 3)
+        ({"friction": np.nan}, "friction"),
+        ({"mass": 1e-320}, "beyond all numbers"),
+    ]:
+        with subtests.test(settings=settings, reason=reason):
+            world = World()
+            with pytest.raises(ValueError, match=reason):
+                world.add(BOX, **{"position": (0, 0), **settings})
+            assert world.bodies == []
+            assert world.state.pose.shape == (1, 0, 3)
+
+
+def test_no_setter_takes_what_makes_no_sense():
+    world = World(batch=2)
+    body = world.add(BOX, (0, 0), linear_drag=1.0)
+    run(world, 1)
+    before = {name: value.copy() for name, value in vars(world.state).items()}
+    nan, some = np.nan, np.array([False, True])
+    cases = {
+        "position": lambda: setattr(body, "position", (0.0, nan)),
+        "angle": lambda: setattr(body, "angle", [0.0, np.inf]),
+        "velocity": lambda: body.set(position=(1.0, 1.0), velocity=(nan, 0.0), mask=some),
+        "angular velocity": lambda: setattr(body, "angular_velocity", nan),
+        "force": lambda: body.apply_force((nan, 0.0)),
+        "point": lambda: body.apply_force((1.0, 0.0), (nan, 0.0)),
+        "torque": lambda: body.apply_torque(-np.inf),
+        "gravity must be finite": lambda: setattr(world, "gravity", (0.0, nan)),
+        "gravity must be of shape": lambda: setattr(world, "gravity", np.zeros((3, 2))),
+        "whole number of iterations": lambda: setattr(world, "iterations", 0),
+        "whole number of iterations, at least 1, not 2.5": lambda: setattr(world, "iterations", 2.5),
+        "whole number of iterations, at least 1, not nan": lambda: World(iterations=nan),
+        "rebound": lambda: setattr(world, "restitution_threshold", nan),
+        "gravity": lambda: World(gravity=(nan, 0.0)),
+        "inverse_mass": lambda: setattr(world.params, "inverse_mass", [[nan, nan, 1.0]]),
+        "linear_drag": lambda: setattr(world.params, "linear_drag", [[-1.0, 0.0, 0.0]]),
+        "quadratic_drag": lambda: setattr(world.params, "quadratic_drag", np.full((2, 1, 3), np.inf)),
+        "quadratic_drag must be of shape": lambda: setattr(world.params, "quadratic_drag", np.zeros((2, 2, 3))),
+        "friction": lambda: setattr(world.params, "friction", [-0.1]),
+        "restitution": lambda: setattr(world.params, "restitution", [1.5]),
+        "group must be of shape": lambda: setattr(world.params, "group", [1, 2]),
+        "read-only": lambda: world.params.friction.fill(nan),
+    }
+    for reason, change in cases.items():
+        with pytest.raises(ValueError, match=reason):
+            change()
+    with pytest.raises(ValueError, match="read-only"):
+        world.gravity[1] = nan
+    for name, value in before.items():
+        assert np.array_equal(value, getattr(world.state, name)), name
+
+
+def test_gravity_may_be_two_numbers():
+    for batch in (1, 2):
+        world = World(batch=batch)
+        body = world.add(BOX, (0, 10))
+        run(world, 1)
+        world.gravity = (0, -9.81)
+        run(world, 1)
+        assert body.velocity[:, 1] == pytest.approx(-(1.62 + 9.81) / 60)
+
+
+def test_a_parameter_replaced_between_steps_holds_from_the_next_one():
+    world = World(gravity=(0.0, 0.0))
+    slow, other = world.add(Circle(0.5), (0, 0)), world.add(Circle(0.5), (9, 0))
+    slow.velocity = other.velocity = (4.0, 0.0)
+    run(world, 1)
+    world.params.quadratic_drag = [[1e9, 1e9, 0.0], [0.0, 0.0, 0.0]]
+    run(world, 1)
+    assert slow.velocity[0, 0] == pytest.approx(0.0, abs=1e-3)
+    assert other.velocity[0, 0] == 4.0
+    floored = floor()
+    box = floored.add(BOX, (0, 0.5))
+    for rubs in (1.0, 0.0):
+        floored.params.friction = [rubs, rubs]
+        box.velocity = (1.0, 0.0)
+        run(floored, 60)
+        assert box.velocity[0, 0] == pytest.approx(1.0 - rubs, abs=1e-3)
 
 
 def test_no_shapes_and_no_worlds_are_refused():

@@ -49,6 +49,7 @@ def english(text: str) -> set[str]:
     return {word for word in words if word not in UNITS | NAMES | FOLDERS and not KEY.fullmatch(word)}
 
 
+@pytest.mark.slow
 def test_every_word_comes_from_the_catalogue_and_every_text_fits_and_meets_no_other(walk):
     """One test, so that no two processes take the same walk."""
     assert len(walk["seen"]) > 500

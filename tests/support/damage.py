@@ -1,4 +1,4 @@
-"""Ways to damage a file; each takes its path and a random generator."""
+"""Ways to damage a file, whole or damaged before; each takes its path and a random generator."""
 
 from __future__ import annotations
 
@@ -38,22 +38,22 @@ def _splice(path: Path, rng: np.random.Generator) -> None:
     path.write_bytes(held[:end] + rng.bytes(int(rng.integers(200))) + held[start:])
 
 
-def _mutate(path: Path, rng: np.random.Generator) -> None:
+def mutate(path: Path, rng: np.random.Generator) -> None:
     """Change one value in a JSON file, in a line of JSON lines, or in the JSON within an archive."""
     if path.suffix == ".npz":
         _mutate_archive(path, rng)
         return
     try:
-        values = json.loads(path.read_text(encoding="utf-8"))
-    except ValueError:
+        changed = json.dumps(_changed(json.loads(path.read_text(encoding="utf-8")), rng))
+    except (ValueError, RecursionError):  # damaged before: no JSON, or nested too deeply
         _flip(path, rng)
         return
-    path.write_text(json.dumps(_changed(values, rng)), encoding="utf-8")
+    path.write_text(changed, encoding="utf-8")
 
 
 def _changed(values: Any, rng: np.random.Generator) -> Any:
     places: list[tuple[Any, Any]] = []
-    level = [values]
+    level = [values] if isinstance(values, dict | list) else []
     while level:
         each = level.pop()
         inside = list(each.items()) if isinstance(each, dict) else list(enumerate(each))
@@ -79,13 +79,13 @@ def _changed(values: Any, rng: np.random.Generator) -> Any:
 
 def _mutate_archive(path: Path, rng: np.random.Generator) -> None:
     try:
-        with np.load(path) as arrays:
+        with np.load(io.BytesIO(path.read_bytes())) as arrays:
             kept = dict(arrays)
-    except Exception:
+        name = str(rng.choice(list(kept)))
+    except Exception:  # no archive, an empty one, or one damaged before
         _flip(path, rng)
         return
-    name = str(rng.choice(list(kept)))
-    array = kept[name]
+    array = kept[name] if kept[name].size < 1_000_000 else kept[name].ravel()[:1000]  # huge once is enough for memory
     choices: list[Any] = [
         np.zeros((4_000, 4_000), np.float32), np.full(array.shape, 7), np.array("x" * 1000), array[..., None],
         np.zeros(0), array.astype(complex) if array.dtype.kind in "if" else array, np.asfortranarray(array),
@@ -95,13 +95,14 @@ def _mutate_archive(path: Path, rng: np.random.Generator) -> None:
     (np.savez_compressed if rng.random() < 0.5 else np.savez)(path, **kept)
 
 
-def _repack(path: Path, rng: np.random.Generator) -> None:
+def repack(path: Path, rng: np.random.Generator) -> None:
     """Pack an archive in a way that NumPy does not, or let it claim so."""
-    if not zipfile.is_zipfile(path):
+    try:
+        with zipfile.ZipFile(path) as old:
+            members = {name: old.read(name) for name in old.namelist()}
+    except Exception:  # no archive, or one damaged before
         _splice(path, rng)
         return
-    with zipfile.ZipFile(path) as old:
-        members = {name: old.read(name) for name in old.namelist()}
     made = io.BytesIO()
     kind = int(rng.choice([zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA, zipfile.ZIP_DEFLATED]))
     with warnings.catch_warnings(), zipfile.ZipFile(made, "w", kind) as new:
@@ -165,6 +166,6 @@ def _empty(path: Path, _: np.random.Generator) -> None:
 
 
 DAMAGES: tuple[Callable[[Path, np.random.Generator], None], ...] = (
-    _cut, _flip, _flip, _splice, _mutate, _mutate, _mutate, _mutate, _repack, _claim, _holes, _pipe, _folder, _link,
+    _cut, _flip, _flip, _splice, mutate, mutate, mutate, mutate, repack, _claim, _holes, _pipe, _folder, _link,
     _deep, _remove, _empty,
 )  # fmt: skip

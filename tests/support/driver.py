@@ -3,6 +3,7 @@
 import json
 import time
 from collections.abc import Callable
+from multiprocessing import active_children
 from typing import Any, TypeVar
 
 import pygame
@@ -79,7 +80,7 @@ class Driver:
         while not until():
             assert time.monotonic() < end, "it never happened"
             self.skip()
-            time.sleep(0.005)
+            time.sleep(0.005 if active_children() else 0.001)  # a process needs the time, a thread a little
 
     def post(self, event_type: int, **values: Any) -> bool:
         pygame.event.post(pygame.event.Event(event_type, values))

@@ -4,7 +4,6 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
-import pytest
 
 from ai.agent.config import PRESETS, Config
 from ai.agent.lesson import Lesson
@@ -56,6 +55,8 @@ def digit_lesson_of(name: str) -> DigitLesson:
 def shown(driver: Driver, frame: int) -> list[str]:
     """Go to a frame and return what is written on the screen there."""
     driver.top.show(frame)
+    import pytest  # which benchmarks do without
+
     with pytest.MonkeyPatch.context() as patch:
         words = words_written(patch)
         driver.app.canvas.attach(driver.app.window.surface)

@@ -5,14 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pygame
-import pytest
 
 from game.drawing import typeface
 from game.drawing.canvas import PAGE, Canvas
 from game.drawing.tokens import TEXT, TITLE
+
+if TYPE_CHECKING:  # benchmarks do without it
+    import pytest
 
 # A capital's height and what hangs below the line, in sizes of the type: where ink is.
 ABOVE, BELOW = 0.72, 0.2

@@ -51,9 +51,8 @@ def test_what_is_called_idle_changes_nothing_bit_for_bit(config: Config, at: int
         assert np.array_equal(turned.observation, quiet.observation), found
 
 
-@pytest.mark.parametrize(
-    ("preset", "decisions", "episodes", "expected"),
-    [
+def test_schedules_leave_their_settings_behind_one_by_one(subtests):
+    for preset, decisions, episodes, expected in [
         ("modern", 0, 0, {"success_batch_size", "double"}),
         ("modern", 14_000, 250, {"success_batch_size", "double"}),
         ("modern", 15_000, 250, {"success_batch_size", "double", "epsilon_decay"}),
@@ -61,10 +60,9 @@ def test_what_is_called_idle_changes_nothing_bit_for_bit(config: Config, at: int
         ("classic", 0, 0, {"epsilon_spread"}),
         ("classic", 299_999, 2_000, {"epsilon_spread"}),
         ("classic", 300_000, 4_000, {"epsilon_spread", "learning_rate", "epsilon_decisions"}),
-    ],
-)
-def test_schedules_leave_their_settings_behind_one_by_one(preset, decisions, episodes, expected):
-    assert {name for name in idle(PRESETS[preset], decisions, episodes) if name in LIVE} == expected
+    ]:
+        with subtests.test(preset=preset, decisions=decisions, episodes=episodes, expected=expected):
+            assert {name for name in idle(PRESETS[preset], decisions, episodes) if name in LIVE} == expected
 
 
 def test_what_is_not_turned_on_changes_nothing():

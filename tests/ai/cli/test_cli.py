@@ -1,7 +1,11 @@
+import errno
+import io
 import json
+import shlex
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -10,6 +14,8 @@ import pytest
 
 import ai.training.checkpoints
 from ai.agent.agent import DeepQAgent
+from ai.agent.config import PRESETS
+from ai.cli.command_line import configured
 from ai.training.checkpoints import save_run
 from ai.training.lander_task import Evaluation, LanderTask
 from ai.training.loop import Training
@@ -125,6 +131,7 @@ sys.exit(main(sys.argv[1:]))
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
 def test_a_request_to_end_reaches_a_process_and_its_work_is_kept(tmp_path):
     arguments = ["train", "--seconds", "600", "--output", str(tmp_path / "run"), "--validation", "4", *SMALL]
@@ -140,6 +147,7 @@ def test_a_request_to_end_reaches_a_process_and_its_work_is_kept(tmp_path):
     assert (tmp_path / "run" / "last" / "config.json").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("preset", ["modern", "classic"])
 def test_a_pause_past_a_checkpoint_changes_nothing_that_is_kept(tmp_path, monkeypatch, preset):
     """Same seed, same network: when the clock asks for a checkpoint, that saves, and chooses nothing."""
@@ -301,3 +309,104 @@ def test_a_gradient_that_is_not_finite_ends_the_run_with_the_reason_and_keeps_th
     assert "learning step 21" in told
     assert "learning rate" in told
     assert DeepQAgent.load(tmp_path / "run").train_count == 20
+
+
+def test_weights_of_the_reward_that_are_not_named_stay_the_presets():
+    for preset in PRESETS.values():
+        changed = configured(preset, ['reward_weights={"time": -0.3}', 'weights={"feet": 2.0}'])
+        assert changed.reward_weights == replace(preset.reward_weights, time=-0.3, feet=2.0)
+
+
+def test_an_unknown_part_of_the_reward_is_named_with_those_there_are(tmp_path, capsys):
+    where = ["--output", str(tmp_path / "run"), "--decisions", "1"]
+    for given, told in (
+        ('{"tim": 1}', "reward_weights has no 'tim', only distance, speed, alignment, tilt, feet, engine, switch"),
+        ('{"time": null}', "reward_weights.time is a finite number, not null"),
+        ("3", "reward_weights are numbers by name, of distance, "),
+    ):
+        assert main(["train", *where, "--set", f"reward_weights={given}"]) == 1
+        assert capsys.readouterr().err.startswith(told), given
+
+
+def test_an_earlier_run_is_replaced_only_by_who_says_so(tmp_path, capsys):
+    run, other = tmp_path / "run", tmp_path / "other"
+    train = ["train", "--decisions", "80", "--validation", "4", *SMALL]
+    for output in (run, other):
+        assert main([*train, "--output", str(output), "--seed", "3"]) == 0
+    before = {file: file.read_bytes() for file in tmp_path.rglob("*") if file.is_file()}
+    for command in (
+        [*train, "--output", str(run)],
+        ["train", "--decisions", "160", "--resume", str(run), "--output", str(other)],
+    ):
+        capsys.readouterr()
+        assert main(command) == 1
+        assert f"{command[-1]} holds an earlier run: --resume {command[-1]} goes" in capsys.readouterr().err
+        assert {file: file.read_bytes() for file in tmp_path.rglob("*") if file.is_file()} == before
+    assert main(["train", "--decisions", "160", "--resume", str(run), "--output", f"{run}/../run"]) == 0
+    assert main([*train, "--output", str(run), "--seed", "5", "--replace"]) == 0
+    assert json.loads((run / "training.json").read_text())["seed"] == 5
+
+
+def test_evaluate_refuses_a_network_of_another_environment_than_it_names(capsys):
+    model = str(ROOT / "models" / "lander" / "modern")
+    for env in ("CartPole-v1", "lander-anywhere", "x"):
+        assert main(["evaluate", "--model", model, "--env", env, "--episodes", "1"]) == 1
+        assert capsys.readouterr().err == f"the network in {model} is for lander, not for {env}\n"
+    assert main(["evaluate", "--model", model, "--env", "lander", "--episodes", "1"]) == 0
+
+
+class Gone(io.StringIO):
+    """A terminal that is there no more."""
+
+    def write(self, _):
+        raise OSError(errno.EIO, "Input/output error")
+
+    flush = isatty = lambda self: True
+
+
+def test_whoever_does_not_listen_has_the_run_kept_all_the_same(tmp_path, monkeypatch):
+    for number, stream in enumerate((None, Gone())):
+        monkeypatch.setattr(sys, "stderr", stream)
+        run = tmp_path / f"run {number}"
+        assert main(["train", "--decisions", "400", "--validation", "4", "--output", str(run), *SMALL]) == 0
+        assert json.loads((run / "training.json").read_text())["decisions"] == 400
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="file descriptors of a shell")
+@pytest.mark.slow
+def test_a_run_without_standard_streams_is_kept(tmp_path):
+    for closed in ("2>&-", ">&-", "<&- >&- 2>&-", "2>/dev/full"):
+        run = tmp_path / f"run {closed.replace('/', ' ')}"
+        command = shlex.join(
+            [sys.executable, "main.py", "train", "--decisions", "80", "--validation", "4", "--output", str(run), *SMALL]
+        )
+        assert subprocess.run(["sh", "-c", f"{command} {closed}"], cwd=ROOT, check=False).returncode == 0, closed
+        assert json.loads((run / "training.json").read_text())["decisions"] == 80, closed
+
+
+def test_ctrl_c_while_modules_are_imported_ends_quietly(monkeypatch, capsys):
+    def interrupted(parser):
+        raise KeyboardInterrupt
+
+    def in_a_class():
+        try:
+            raise KeyboardInterrupt
+        except KeyboardInterrupt as error:
+            raise RuntimeError("Error calling __set_name__ on 'cached_property' instance") from error
+
+    monkeypatch.setattr("tranquility.__main__._parser", in_a_class)
+    assert main([]) == 130
+    monkeypatch.setattr("tranquility.__main__._parser", lambda: interrupted(None))
+    assert main([]) == 130
+    assert capsys.readouterr() == ("", "")
+
+
+def test_nothing_is_imported_before_ctrl_c_is_looked_after():
+    program = """
+import sys
+before = set(sys.modules)
+import main
+print(*sorted(set(sys.modules) - before - {"main", "tranquility", "tranquility.__main__", "__future__"}))
+"""
+    done = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert done.stdout == "\n"

@@ -129,6 +129,7 @@ def test_a_folder_that_cannot_be_written_is_named_before_anything_is_learnt(tmp_
     assert [path.name for path in tmp_path.iterdir()] == ["letters"]
 
 
+@pytest.mark.slow
 def test_the_recipe_as_described_saves_reloads_and_reads(tmp_path, capsys):
     run = str(tmp_path / "run")
     assert main(["train-digits", "--preset", "as-described", "--seed", "3", "--output", run]) == 0
@@ -152,6 +153,7 @@ def test_the_recipe_as_described_saves_reloads_and_reads(tmp_path, capsys):
     np.testing.assert_array_equal(network.values, DigitClassifier.load(run).network.values)
 
 
+@pytest.mark.slow
 def test_the_network_does_not_depend_on_how_many_threads_are_offered(tmp_path):
     """Two threads share products of 500 images with 784 numbers, and round their sums otherwise than one."""
     for threads in ("1", "2"):

@@ -116,9 +116,8 @@ def test_every_code_of_a_text_is_found_and_one_that_is_cut_is_said_to_be():
     assert refusal(found[1]) == "cut"
 
 
-@pytest.mark.parametrize(
-    ("text", "kind"),
-    [
+def test_what_is_no_flight_is_refused_with_the_reason(subtests):
+    for text, kind in [
         ("", "none"),
         ("hello", "none"),
         (BEGIN, "cut"),
@@ -131,15 +130,14 @@ def test_every_code_of_a_text_is_found_and_one_that_is_cut_is_said_to_be():
         (sealed(bytes([1, 2, 200])), "nonsense"),
         (sealed(bytes([1, 3, 1, 0])), "nonsense"),  # hands without actions
         (BEGIN + "0" * 60_000 + END, "nonsense"),
-    ],
-)
-def test_what_is_no_flight_is_refused_with_the_reason(text, kind):
-    assert refusal(text) == kind
-    assert kind in REFUSALS
+    ]:
+        with subtests.test(text=text, kind=kind):
+            assert refusal(text) == kind
+            assert kind in REFUSALS
 
 
 def test_a_claim_and_a_name_out_of_all_bounds_have_a_code_too():
-    flight = replace(shared([0, 3]), course="ü" * 99, claim=Claim(Outcome.CRASHED, 0, (1e300, -1e306, 0.0)))
+    flight = replace(shared([0, 3]), barred="ü" * 99, claim=Claim(Outcome.CRASHED, 0, (1e300, -1e306, 0.0)))
     assert flight_of(code_of(flight)).recording == flight.recording
 
 
@@ -237,9 +235,8 @@ def test_a_flight_by_sticks_takes_few_letters_and_any_at_all_comes_back():
     assert flight_of(code_of(flight)) == flight
 
 
-@pytest.mark.parametrize(
-    ("tag", "content", "kind"),
-    [
+def test_a_section_that_no_flight_can_have_is_refused(subtests):
+    for tag, content, kind in [
         (10, b"", "nonsense"),
         (10, bytes([2, 7]), "newer"),
         (6, varint_of((STEPS + 1) * (2 * STEPS + 1) + 1) + varint_of(2), "nonsense"),  # more thrust than there is
@@ -255,10 +252,9 @@ def test_a_flight_by_sticks_takes_few_letters_and_any_at_all_comes_back():
         (9, bytes([2]) + varint_of(1000) + bytes([2]), "nonsense"),
         (9, bytes([2]), "nonsense"),
         (9, b"", "nonsense"),
-    ],
-)
-def test_a_section_that_no_flight_can_have_is_refused(tag, content, kind):
-    assert refusal(with_section(tag, content)) == kind
+    ]:
+        with subtests.test(tag=tag, content=content, kind=kind):
+            assert refusal(with_section(tag, content)) == kind
 
 
 @pytest.mark.parametrize("start", [bytes([5, 3, 0, 0]), bytes([5, 1, 0, 4]) + b"fall"])

@@ -23,7 +23,7 @@ def flown(seed, pads=1, mission="", gravity=()):
         actions += pilot.act(env.observe()).tolist()
         env.fly(np.array(actions[-1:]))
     recording = Recording(seed, "random", pads, actions, [StickHolder.HUMAN] * len(actions), mission, list(gravity))
-    real = earned(env, mission)
+    real = earned(env, recording)
     return SharedFlight(recording, Claim(real.outcome, real.points, real.end), mission), real
 
 
@@ -54,17 +54,19 @@ def test_a_landing_earns_points_and_in_a_mission_a_medal():
 
 def test_true_claims_are_true_and_wrong_ones_are_not():
     flight, real = ROWS[0]
-    claim, steps = flight.claim, len(flight.recording.actions)
+    claim, recording = flight.claim, flight.recording
     x, y, angle = claim.end
-    assert is_true(claim, steps, real)
-    assert is_true(replace(claim, end=(x + TOLERANCE / 2, y, angle)), steps, real)
+    assert is_true(flight, real)
+    assert is_true(replace(flight, claim=replace(claim, end=(x + TOLERANCE / 2, y, angle))), real)
     for wrong in (
         replace(claim, points=claim.points + 1),
         replace(claim, outcome=Outcome.CRASHED),
         replace(claim, end=(x + 2 * TOLERANCE, y, angle)),
+        replace(claim, medal=1),
     ):
-        assert not is_true(wrong, steps, real)
-    assert not is_true(claim, steps + 1, real)
+        assert not is_true(replace(flight, claim=wrong), real)
+    longer = replace(recording, actions=[*recording.actions, 0])
+    assert not is_true(replace(flight, recording=longer), real)
 
 
 def test_a_record_that_stops_before_the_end_has_earned_nothing():
@@ -82,4 +84,4 @@ def test_what_is_recorded_after_the_end_is_not_flown():
     flight, real = ROWS[0]
     longer = replace(flight.recording, actions=[*flight.recording.actions, 3, 3])
     assert fly_again([longer])[0] == real
-    assert not is_true(flight.claim, len(longer.actions), real)
+    assert not is_true(replace(flight, recording=longer), real)

@@ -116,9 +116,10 @@ def fly_with_shares(many, alone, actions, shares):
         one.fly(actions[[slot]], shares[[slot]])
 
 
-@pytest.mark.parametrize("case", CASES)
-def test_a_lander_alone_flies_as_it_does_among_others(case):
-    assert CASES[case][2] in fly_both(case)
+def test_a_lander_alone_flies_as_it_does_among_others(subtests):
+    for case in CASES:
+        with subtests.test(case=case):
+            assert CASES[case][2] in fly_both(case)
 
 
 @pytest.mark.parametrize("case", ["plain", "harsh", "cave"])

@@ -42,22 +42,23 @@ def test_the_first_legs_meet_every_kind_of_ground_once():
     }  # fmt: skip
 
 
-@pytest.mark.parametrize("number", NUMBERS)
-def test_a_route_keeps_clear_of_all_rock_and_the_start_stands_free(number: int):
-    for seed in SEEDS:
-        for bare in (False, True):
-            flown = leg(seed, number, bare)
-            route = Route(flown.route)
-            way = np.array([route.point(along) for along in np.arange(0, route.length, 0.25)])
-            around = np.linspace(0, 2 * np.pi, 12, endpoint=False)
-            ring = (way[:, None] + CLEAR * np.stack([np.cos(around), np.sin(around)], axis=1)).reshape(-1, 2)
-            assert (ring[:, 1] > flown.ground.height(ring[:, 0])).all(), (seed, flown.kinds)
-            assert not flown.ground.roofed(ring).any(), (seed, flown.kinds)
-            env = flown.begin(TANK)
-            for _ in range(40):
-                env.fly(np.zeros(1, int))
-            assert env.outcome[0] == Outcome.FLYING  # it stands, and standing where it began ends nothing
-            assert env.contacts.all()
+def test_a_route_keeps_clear_of_all_rock_and_the_start_stands_free(subtests: pytest.Subtests):
+    for number in NUMBERS:
+        with subtests.test(number=number):
+            for seed in SEEDS:
+                for bare in (False, True):
+                    flown = leg(seed, number, bare)
+                    route = Route(flown.route)
+                    way = np.array([route.point(along) for along in np.arange(0, route.length, 0.25)])
+                    around = np.linspace(0, 2 * np.pi, 12, endpoint=False)
+                    ring = (way[:, None] + CLEAR * np.stack([np.cos(around), np.sin(around)], axis=1)).reshape(-1, 2)
+                    assert (ring[:, 1] > flown.ground.height(ring[:, 0])).all(), (seed, flown.kinds)
+                    assert not flown.ground.roofed(ring).any(), (seed, flown.kinds)
+                    env = flown.begin(TANK)
+                    for _ in range(40):
+                        env.fly(np.zeros(1, int))
+                    assert env.outcome[0] == Outcome.FLYING  # it stands, and standing where it began ends nothing
+                    assert env.contacts.all()
 
 
 def test_a_landing_on_the_goal_or_a_flat_spot_ends_a_leg_and_one_at_the_start_does_not():

@@ -96,18 +96,19 @@ def test_a_flight_among_hills_is_the_same_alone_and_in_a_batch():
         assert one.outcome[0] == all_.outcome[0]
 
 
-@pytest.mark.parametrize("seed", SEEDS)
-def test_hills_leave_room_for_every_approach(seed):
-    ground = hilly(np.random.default_rng(seed))
-    assert sorted((pad.width, pad.factor) for pad in ground.pads) == sorted(PADS)
-    x = np.linspace(-20, 20, 2001)
-    for pad in ground.pads:
-        away = np.abs(x - pad.x)
-        beside = away > pad.width / 2 + 1.0
-        assert (ground.height(x) <= pad.top + np.maximum(clearance(away), 0.0) + 1e-6)[beside].all()
-        assert ground.height(pad.x) == pad.top
-    assert ground.height(x).max() < 6.0
-    assert len(ground.hills) > len(PADS)
+def test_hills_leave_room_for_every_approach(subtests):
+    for seed in SEEDS:
+        with subtests.test(seed=seed):
+            ground = hilly(np.random.default_rng(seed))
+            assert sorted((pad.width, pad.factor) for pad in ground.pads) == sorted(PADS)
+            x = np.linspace(-20, 20, 2001)
+            for pad in ground.pads:
+                away = np.abs(x - pad.x)
+                beside = away > pad.width / 2 + 1.0
+                assert (ground.height(x) <= pad.top + np.maximum(clearance(away), 0.0) + 1e-6)[beside].all()
+                assert ground.height(pad.x) == pad.top
+            assert ground.height(x).max() < 6.0
+            assert len(ground.hills) > len(PADS)
 
 
 def test_hills_follow_from_the_seed():

@@ -294,12 +294,13 @@ def test_the_curriculum_follows_landings():
         Curriculum(((0, "fixed"), (0, "random")))
 
 
-@pytest.mark.parametrize("actions", [[6, 0], [-1, 0], [0], [0, 0, 0], [[0, 0]], [0.5, 1.0], [np.nan, 0.0], ["a", "b"]])
-def test_wrong_actions_are_refused(actions):
-    env = LanderEnv(2, 0)
-    env.reset()
-    with pytest.raises(ValueError, match="actions"):
-        env.step(actions)
+def test_wrong_actions_are_refused(subtests):
+    for actions in [[6, 0], [-1, 0], [0], [0, 0, 0], [[0, 0]], [0.5, 1.0], [np.nan, 0.0], ["a", "b"]]:
+        with subtests.test(actions=actions):
+            env = LanderEnv(2, 0)
+            env.reset()
+            with pytest.raises(ValueError, match="actions"):
+                env.step(actions)
 
 
 def test_stepping_before_a_reset_says_so():
@@ -342,9 +343,8 @@ def test_a_flight_begun_at_a_state_flies_from_there_and_leaves_the_others_alone(
     assert np.array_equal(env.observe()[1], alone.observe()[0])
 
 
-@pytest.mark.parametrize(
-    ("start", "how"),
-    [
+def test_a_flight_does_not_begin_at_just_any_state(subtests):
+    for start, how in [
         ((0.0, np.nan, 0, 0, 0, 0), "finite"),
         ((0.0, 9.0, np.inf, 0, 0, 0), "finite"),
         ((0.0, 9.0, 0, 0, 0), "six"),
@@ -352,15 +352,14 @@ def test_a_flight_begun_at_a_state_flies_from_there_and_leaves_the_others_alone(
         ((0.0, 26.5, 0, 0, 0, 0), "inside"),
         ((0.0, 2.5, 0, 0, 0, 0), "above"),  # in the pad
         ((9.0, 2.1, 0, 0, 0.8, 0), "above"),  # a foot in the plain
-    ],
-)
-def test_a_flight_does_not_begin_at_just_any_state(start, how):
-    env = LanderEnv(1, seed=1)
-    env.reset()
-    before = env.observe()
-    with pytest.raises(ValueError, match=how):
-        env.begin_at(0, np.array(start))
-    assert np.array_equal(env.observe(), before)
+    ]:
+        with subtests.test(start=start, how=how):
+            env = LanderEnv(1, seed=1)
+            env.reset()
+            before = env.observe()
+            with pytest.raises(ValueError, match=how):
+                env.begin_at(0, np.array(start))
+            assert np.array_equal(env.observe(), before)
 
 
 def test_the_lowest_height_clears_the_ground_and_no_more():

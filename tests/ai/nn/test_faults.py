@@ -1,14 +1,17 @@
 """What lies on disk and what comes from strangers: read within bounds, replaced only if it is ours, lost never."""
 
+import errno
 import io
 import json
 import os
 import shutil
+import stat
 import subprocess
 import sys
 import tracemalloc
 import zipfile
 from contextlib import contextmanager
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -38,6 +41,7 @@ from ai.training.history import History
 from ai.training.lander_task import LanderTask
 from ai.training.loop import Training
 from main import main
+from tests.support.damage import DAMAGES, HOLES, mutate, repack
 from tests.support.faults import damaged, killed, limited
 from tests.support.saved import SUBJECTS
 
@@ -88,6 +92,20 @@ def test_damage_of_any_kind_is_read_or_refused(subject, tmp_path):
     found = list(damaged(subject, 60, 1, tmp_path))
     assert set(found) <= {"read", "refused"}
     assert "refused" in found or not subject.refusals
+
+
+def test_a_damaged_file_can_be_damaged_once_more(tmp_path):
+    np.savez(tmp_path / "whole.npz", x=np.ones(3), y=np.arange(4))
+    whole = {"json": b'{"a": [1, {"b": 2}]}', "npz": (tmp_path / "whole.npz").read_bytes()}
+    for suffix, first, again, seed in product(whole, dict.fromkeys(DAMAGES), (mutate, repack), range(2)):
+        rng = np.random.default_rng(seed)
+        path = tmp_path / f"{first.__name__} {again.__name__} {seed}.{suffix}"
+        path.write_bytes(whole[suffix])
+        first(path, rng)
+        if path.is_file() and not path.is_symlink() and path.stat().st_size < HOLES:
+            again(path, rng)  # the file's name says what failed
+        if path.is_file() and not path.is_symlink():
+            path.unlink()
 
 
 @pytest.mark.parametrize("name", ["config.json", "online/config.json", "online/layer-0-bias.npy", "optimizer.npz",
@@ -238,6 +256,33 @@ def test_a_score_is_made_of_numbers(run, success):
         resume_run(run)
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="a folder cannot be opened")
+def test_a_written_file_waits_for_its_content_and_then_for_its_name(tmp_path, monkeypatch):
+    flushed, fsync = [], os.fsync
+
+    def note(descriptor):
+        folder = stat.S_ISDIR(os.fstat(descriptor).st_mode)
+        flushed.append([path.name for path in tmp_path.iterdir()] if folder else "content")
+        fsync(descriptor)
+
+    monkeypatch.setattr(os, "fsync", note)
+    for new in (True, False):
+        write_text(tmp_path / "settings.json", "{}", new=new)
+    assert flushed == ["content", ["settings.json"]] * 2
+    write_text(tmp_path / "settings.json", "{}", flush=False)
+    assert len(flushed) == 4
+
+
+def test_a_folder_that_cannot_wait_for_the_disk_is_no_failure(tmp_path, monkeypatch):
+    def refuse(descriptor):
+        if stat.S_ISDIR(os.fstat(descriptor).st_mode):
+            raise OSError(errno.EINVAL, "not here")
+
+    monkeypatch.setattr(os, "fsync", refuse)
+    write_text(tmp_path / "settings.json", "{}")
+    assert (tmp_path / "settings.json").read_text() == "{}"
+
+
 def test_json_is_nested_so_deep_and_no_deeper():
     assert parse_json("[" * 31 + "]" * 31)
     assert parse_json('"[[[["') == "[[[["
@@ -327,6 +372,7 @@ def test_a_file_never_starts_code(tmp_path, monkeypatch, capsys):
 # Writers
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("subject", SUBJECTS, ids=lambda subject: subject.name)
 def test_a_writer_that_is_killed_leaves_the_old_or_the_new(subject, tmp_path):
     found = list(killed(subject, tmp_path, every=29 if subject.name == "run" else 7 if subject.name == "digits" else 1))

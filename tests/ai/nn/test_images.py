@@ -158,15 +158,14 @@ def test_dropout_is_reproducible():
     assert histories[0] == histories[1] != histories[2]
 
 
-@pytest.mark.parametrize("rate", [-0.1, 1, 1.5, float("nan"), "0.5", None, True])
-def test_rates_are_checked(rate):
-    with pytest.raises(ValueError, match="rate of dropout"):
-        DropoutLayer(rate)
+def test_rates_are_checked(subtests):
+    for rate in [-0.1, 1, 1.5, float("nan"), "0.5", None, True]:
+        with subtests.test(rate=rate), pytest.raises(ValueError, match="rate of dropout"):
+            DropoutLayer(rate)
 
 
-@pytest.mark.parametrize(
-    ("make", "message"),
-    [
+def test_sizes_that_make_no_sense_are_named(subtests):
+    for make, message in [
         (lambda: ConvolutionLayer((28, 28), 8, 3), "height, width, channels"),
         (lambda: ConvolutionLayer(28, 8, 3), "height, width, channels"),
         (lambda: ConvolutionLayer((4, 9, 1), 8, 5), "5 does not fit into 4 x 9"),
@@ -179,11 +178,9 @@ def test_rates_are_checked(rate):
         (lambda: MaxPoolingLayer((4, 9, 1), 5), "between 2 and that of the image, 4 x 9"),
         (lambda: MaxPoolingLayer((4, 9, 1), 1), "between 2"),
         (lambda: FlattenLayer("784"), "height, width, channels"),
-    ],
-)
-def test_sizes_that_make_no_sense_are_named(make, message):
-    with pytest.raises(ValueError, match=message):
-        make()
+    ]:
+        with subtests.test(make=make, message=message), pytest.raises(ValueError, match=message):
+            make()
 
 
 @pytest.mark.parametrize(

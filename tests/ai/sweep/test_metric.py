@@ -7,9 +7,8 @@ from ai.sweep.metric import Metric, Point
 CURVE = [Point(100, 0.0, -5.0), Point(200, 0.96, 1.0), Point(300, 0.99, 2.0), Point(400, 0.97, 3.0)]
 
 
-@pytest.mark.parametrize(
-    ("name", "value"),
-    [
+def test_a_metric_reads_a_curve(subtests):
+    for name, value in [
         ("success", 0.97),
         ("accuracy", 0.97),
         ("return", 3.0),
@@ -17,10 +16,9 @@ CURVE = [Point(100, 0.0, -5.0), Point(200, 0.96, 1.0), Point(300, 0.99, 2.0), Po
         ("time_to_95", 200),
         ("time_to_99", 300),
         ("time_to_100", 400 * (1 + 1.0 - 0.99)),
-    ],
-)
-def test_a_metric_reads_a_curve(name, value):
-    assert Metric.named(name).of(CURVE, 400) == pytest.approx(value)
+    ]:
+        with subtests.test(name=name, value=value):
+            assert Metric.named(name).of(CURVE, 400) == pytest.approx(value)
 
 
 def test_a_share_never_reached_counts_for_more_than_the_whole_run_and_the_nearer_the_better():

@@ -1,22 +1,27 @@
 """Evaluations in shards: the same flights as in one batch, however they are cut."""
 
 import json
+import os
+import shutil
 
+import numpy as np
 import pytest
 
 from ai.agent.agent import DeepQAgent
 from ai.copilot import measurement
+from ai.copilot.critic import critic_beside
 from ai.copilot.measurement import one_pad, three_pads
 from ai.sweep import copilot_table
 from ai.sweep import shards as module
 from ai.sweep.cluster import each
 from ai.sweep.copilot_table import parts, tables_of
-from ai.sweep.shards import flown_shards, fly, shards
+from ai.sweep.shards import flown_shards, fly, pack_agent, packed_agent, shards
 from ai.training.lander_task import FlightSums, evaluate
 from game.core.assets import MODELS_DIR
 from main import main
 
 MODERN = MODELS_DIR / "lander" / "modern"
+AGENT = DeepQAgent.load(MODERN)
 
 
 def total(parts):
@@ -26,9 +31,9 @@ def total(parts):
 @pytest.mark.parametrize("size", [7, 40])
 def test_flights_are_those_of_one_batch_whatever_the_size_of_a_shard(monkeypatch, size):
     monkeypatch.setattr(module, "SHARD", size)
-    parts = shards(MODERN, 40, 3, "hard", 4)
+    parts = shards(AGENT, 40, 3, "hard")
     assert [part.last - part.first for part in parts] == ([7] * 5 + [5] if size == 7 else [40])
-    cut, whole = total(parts).evaluation(), evaluate(DeepQAgent.load(MODERN), 40, 3, "hard")
+    cut, whole = total(parts).evaluation(), evaluate(AGENT, 40, 3, "hard")
     if size == 40:
         assert cut == whole
     assert (cut.episodes, cut.success, cut.crash) == (whole.episodes, whole.success, whole.crash)
@@ -38,7 +43,7 @@ def test_flights_are_those_of_one_batch_whatever_the_size_of_a_shard(monkeypatch
 
 def test_the_order_in_which_shards_are_done_changes_nothing(monkeypatch):
     monkeypatch.setattr(module, "SHARD", 7)
-    parts = shards(MODERN, 20, 3, "random", 4)
+    parts = shards(AGENT, 20, 3, "random")
     in_order = total(parts)
 
     def backwards(function, items, address, workers):
@@ -66,19 +71,57 @@ def test_evaluate_tells_an_interval_around_the_share(capsys):
 
 
 def test_a_worker_flies_one_shard_after_another_with_the_same_network(monkeypatch):
-    parts = shards(MODERN, 3, 0, "random", 4)
+    parts = shards(AGENT, 3, 0, "random")
     assert fly(parts[0]) == fly(parts[0])
 
 
+@pytest.mark.slow
 def test_the_copilots_table_is_the_same_in_parts(monkeypatch):
     monkeypatch.setattr(measurement, "ONE_PAD", measurement.ONE_PAD[:2])  # the rest takes long
     monkeypatch.setattr(measurement, "THREE_PADS", measurement.THREE_PADS[:2])
     monkeypatch.setattr(measurement, "INTENT_PILOTS", ("laggy",))
     monkeypatch.setattr(measurement, "GROUNDS", 2)
     monkeypatch.setattr(measurement, "PILOTS", {name: measurement.PILOTS[name] for name in ("laggy", "noisy")})
-    asked = parts(MODERN, False, 3, 2)
+    asked = parts(AGENT, False, 3, 2)
     done = {index: copilot_table.fly(part) for index, part in reversed([*enumerate(asked)])}
     tables = tables_of(asked, done)
-    agent = DeepQAgent.load(MODERN)
-    assert tables["one_pad"] == list(one_pad(agent, agent, 3, 2))
-    assert tables["three_pads"] == list(three_pads(agent, agent, 3, 2))
+    assert tables["one_pad"] == list(one_pad(AGENT, AGENT, 3, 2))
+    assert tables["three_pads"] == list(three_pads(AGENT, AGENT, 3, 2))
+
+
+def test_evaluating_a_model_sends_what_was_read_and_leaves_nothing_behind(monkeypatch, tmp_path, capsys):
+    """Beside the files of a network lie a link to a secret, a pipe and a file of 30 GB, all but empty."""
+    (tmp_path / "secret").write_text("a secret")
+    shutil.copytree(MODERN, tmp_path / "model")
+    (tmp_path / "model" / "online" / "layer-9-weights.npy").symlink_to(tmp_path / "secret")
+    os.mkfifo(tmp_path / "model" / "pipe")
+    with (tmp_path / "model" / "large").open("wb") as file:
+        file.truncate(30 << 30)
+    (tmp_path / "temporary").mkdir()
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "temporary"))
+    asked = []
+
+    def here(function, items, address, workers):
+        asked.extend(items)
+        return each(function, items, None, 1)
+
+    monkeypatch.setattr(module, "each", here)
+    module.packed_agent.cache_clear()
+    command = ["evaluate", "--model", str(tmp_path / "model"), "--episodes", "3", "--workers", "2"]
+    assert main(command) == 0
+    capsys.readouterr()
+    assert asked
+    for shard in asked:
+        assert b"a secret" not in shard.agent
+        assert len(shard.agent) < 1_000_000
+    assert not list((tmp_path / "temporary").iterdir())
+
+
+def test_an_agent_that_was_sent_flies_with_the_same_guardian():
+    sent, critic = packed_agent(pack_agent(AGENT)), critic_beside(AGENT)[0]
+    there = critic_beside(sent)[0]
+    assert critic is not None
+    assert there is not None
+    assert np.array_equal(there.network.values, critic.network.values)
+    assert np.array_equal(sent.network.values, AGENT.network.values)
+    assert not sent.folder.exists()

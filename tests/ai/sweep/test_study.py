@@ -2,6 +2,7 @@
 
 import errno
 import json
+import os
 import shutil
 
 import numpy as np
@@ -15,6 +16,7 @@ from ai.nn.files import read_arrays
 from ai.sweep import study as study_module
 from ai.sweep.plan import Plan
 from ai.sweep.report import report, told
+from ai.sweep.results import FinishedTrial
 from ai.sweep.runs import AgentRun
 from ai.sweep.space import knob_space
 from ai.sweep.study import Study, StudyError, find
@@ -35,6 +37,14 @@ def study(made, tmp_path):
     return Study.load(tmp_path / "made")
 
 
+def digits_plan(config, epochs):
+    return Plan(
+        "digits", json.loads(json.dumps(config.to_json())),
+        {name: each.to_json() for name, each in knob_space(config, ["learning_rate"]).items()}, (3,), epochs, 1,
+        "accuracy", "worst", "random", False, 1,
+    )  # fmt: skip
+
+
 def optimizer_of(folder):
     kept = {}
     path = folder / LAST / "optimizer.npz"
@@ -42,6 +52,7 @@ def optimizer_of(folder):
     return kept
 
 
+@pytest.mark.slow
 def test_a_trials_run_is_that_of_train_bit_for_bit(made, tmp_path):
     changes = [f"{name}={list(value) if isinstance(value, tuple) else value}" for name, value in TINY.items()]
     changes += ["learning_rate=0.002", "tau=0.02"]
@@ -151,6 +162,109 @@ def test_a_report_is_json_and_names_the_best(study):
     assert str(study.run_folder(study.best(), study.best().best_seed.seed)) in told(study)
 
 
+def test_a_trial_that_goes_on_from_a_checkpoint_ends_as_long_and_says_so():
+    plan, asked = tiny_plan(every=100), Asked(0, {"learning_rate": 0.01, "tau": 0.1})
+    trial = Trial(plan, asked)
+    trial.step()
+    trial.step()
+    so_far, runs = trial.result(), trial.checkpoint()
+    again = Trial(plan, asked, runs, so_far)
+    assert (again.at, again.result().seeds[0].curve) == (200, so_far.seeds[0].curve)
+    while not again.done:
+        again.step()
+    result, runs = again.finish()
+    assert [[point.at for point in seed.curve] for seed in result.seeds] == [[100, 200, 300, 400]] * 2
+    assert (result.restarts, result.parent, result.seeds[0].curve[:2]) == (1, None, so_far.seeds[0].curve)
+    assert result.seconds >= so_far.seconds
+    assert FinishedTrial.from_json(json.loads(json.dumps(result.to_json()))) == result
+
+
+def test_a_trial_of_digits_goes_on_from_a_checkpoint_as_if_nothing_had_been(tmp_path, monkeypatch):
+    drawn = np.random.default_rng(0)
+    part = drawn.random((600, 28, 28), np.float32), drawn.integers(10, size=600).astype(np.uint8)
+    for module in ("training", "checkpoints"):
+        monkeypatch.setattr(f"ai.digits.{module}.load_part", lambda _: part)
+    config = DIGIT_PRESETS["classic"].changed(hidden=(8,), batch_size=50, epochs=2, augmentation=0.0, held_out=100)
+    plan = digits_plan(config, 2)
+    asked = Asked(0, {"learning_rate": 0.01})
+    straight, expected = run_alone(plan, asked)
+    trial = Trial(plan, asked)
+    trial.step()
+    again = Trial(plan, asked, trial.checkpoint(), trial.result())
+    again.step()
+    result, runs = again.finish()
+    unpack(expected, tmp_path / "straight")
+    unpack(runs, tmp_path / "again")
+    ours, uninterrupted = (networks_in(tmp_path / name) for name in ("again", "straight"))
+    assert [name for name in uninterrupted if name.endswith(".npy") and ours[name] != uninterrupted[name]] == []
+    assert result.value == straight.value
+
+
+def test_taking_a_checkpoint_changes_nothing_of_a_run(tmp_path):
+    plan, asked = tiny_plan(seeds=(0,)), Asked(0, {"learning_rate": 0.01, "tau": 0.1})
+    trial, kept = Trial(plan, asked), []
+    while not trial.done:
+        trial.step()
+        kept.append(trial.checkpoint())
+    unpack(trial.finish()[1], tmp_path / "kept")
+    unpack(run_alone(plan, asked)[1], tmp_path / "straight")
+    assert all(kept)
+    assert networks_in(tmp_path / "kept") == networks_in(tmp_path / "straight")
+
+
+def test_a_study_of_an_environment_that_is_code_is_not_searched_over_environments():
+    with pytest.raises(ValueError, match="env cannot be searched"):
+        tiny_plan(space={"env": {"choices": ["CartPole-v1", "evilcwd:X-v0"]}}).check()
+
+
+def test_a_trial_under_way_has_values_of_its_space_or_is_not_there(study):
+    plan = study.plan
+    sound = {"learning_rate": 0.01, "tau": 0.1}
+    for params in (sound | {"tau": "evilcwd:X-v0"}, sound | {"tau": None}, sound | {"env": "x:Y"}, {}):
+        study.begin(2, params)
+        assert not Study.load(study.folder).begun, params
+    study.begin(2, sound)
+    assert Study.load(study.folder).begun[2].params == sound
+    assert plan == study.plan
+
+
+def test_a_trial_of_other_seeds_or_with_a_value_out_of_nowhere_is_damaged(study):
+    file = study.trial_folder(0) / "trial.json"
+    sound = json.loads(file.read_text())
+    for name, change in {
+        "no seeds": {"seeds": []},
+        "one seed": {"seeds": sound["seeds"][:1]},
+        "seeds in another order": {"seeds": sound["seeds"][::-1]},
+        "a seed without a value": {"seeds": [sound["seeds"][0], sound["seeds"][1] | {"value": None}]},
+    }.items():
+        file.write_text(json.dumps(sound | change))
+        left = Study.load(study.folder)
+        assert left.damaged == [0], name
+        assert "cannot be read: 0" in told(left), name
+
+
+def test_the_runs_of_a_trial_are_sent_without_anything_that_is_no_run(study, tmp_path):
+    """A link to a secret, a pipe and 30 GB of nothing, each instead of a file of the run and beside it."""
+    (tmp_path / "secret").write_text("a secret")
+    run = study.trial_folder(0) / "seed-1"
+    assert study.runs_of(0)
+
+    def large(path):
+        with path.open("wb") as file:
+            file.truncate(30 << 30)
+
+    for name in ("training.json", "more"):
+        for put in (lambda path: path.symlink_to(tmp_path / "secret"), os.mkfifo, large):
+            path, kept = run / name, (run / name).read_bytes() if (run / name).exists() else None
+            path.unlink(missing_ok=True)
+            put(path)
+            with pytest.raises(OSError, match=r"link|ordinary|larger|else"):
+                study.runs_of(0)
+            path.unlink()
+            if kept is not None:
+                path.write_bytes(kept)
+
+
 def test_an_archive_holds_a_folder(tmp_path):
     (tmp_path / "a" / "b").mkdir(parents=True)
     (tmp_path / "a" / "b" / "c.txt").write_text("here")
@@ -163,13 +277,10 @@ def test_a_name_is_found_among_the_users_studies_and_a_path_where_it_leads(tmp_p
     assert str(find("./mine", tmp_path)) == "mine"
 
 
+@pytest.mark.slow
 def test_a_trial_of_digits_is_that_of_train_digits(tmp_path):
     config = DIGIT_PRESETS["classic"].changed(hidden=(8,), batch_size=5000, epochs=1, augmentation=0.0)
-    plan = Plan(
-        "digits", json.loads(json.dumps(config.to_json())),
-        {name: each.to_json() for name, each in knob_space(config, ["learning_rate"]).items()}, (3,), 1, 1,
-        "accuracy", "worst", "random", False, 1,
-    )  # fmt: skip
+    plan = digits_plan(config, 1)
     result, runs = run_alone(plan, Asked(0, {"learning_rate": 0.01}))
     training = DigitTraining(config.changed(learning_rate=0.01), 3)
     while not training.done:

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 from contextlib import contextmanager
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -17,9 +18,11 @@ import pytest
 
 from ai.sweep.study import Study
 from ai.sweep.trial import Asked, unpack
+from ai.training.checkpoints import CHECKPOINT_SECONDS
 from tests.support.studies import TINY, networks_in, run_alone
 
 pytestmark = [
+    pytest.mark.slow,
     pytest.mark.skipif(find_spec("ray") is None or find_spec("optuna") is None, reason="needs the extra: sweep"),
     pytest.mark.skipif(not Path("/proc/net/tcp").exists(), reason="finds processes and sockets in /proc"),
 ]
@@ -46,10 +49,11 @@ def nodes():
 
 
 @contextmanager
-def sweep(folder, *options):
+def sweep(folder, *options, **started):
     """Run `sweep` on a study in a folder; end it if a test fails meanwhile."""
     command = [sys.executable, "main.py", "sweep", "--study", f"{folder}/", *options]
-    with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    with subprocess.Popen(command, cwd=ROOT, text=True, **pipes, **started) as process:
         try:
             yield process
         finally:
@@ -160,6 +164,69 @@ def test_without_an_address_nothing_listens_but_on_this_machine(tmp_path):
     assert opened <= {"0100007F", "0000000000000000FFFF00000100007F"}
     assert len(opened) == 2
     assert len(finished(folder)) == 2
+
+
+def test_a_termination_ends_in_143_whenever_it_comes_and_the_study_goes_on(tmp_path):
+    """To the process alone, and to its whole group, as `timeout` does."""
+    folder = tmp_path / "study"
+    options = [*NEW, "--trials", "3", "--decisions", "1200", "--workers", "1"]
+    began = [
+        (lambda driver: descendants(driver.pid), os.kill),  # Ray begins
+        (lambda driver: training_workers(driver.pid), os.kill),
+        (lambda driver: finished(folder), os.killpg),
+    ]
+    for begun, kill in began:
+        with sweep(folder, *options, start_new_session=True) as driver:
+            wait_for(partial(begun, driver), driver)
+            kill(driver.pid, signal.SIGTERM)
+            out, errors = driver.communicate(timeout=LONG)
+        assert driver.returncode == 143, errors
+        assert "SIGTERM" not in errors
+        assert "--resume" in out
+        options = ["--resume", "--workers", "1"]
+    with sweep(folder, *options) as driver:
+        ended(driver)
+    assert_as_alone(folder)
+
+
+def test_a_trial_goes_on_from_its_last_checkpoint_when_its_worker_is_killed(tmp_path):
+    folder = tmp_path / "study"
+    options = ["--trials", "1", "--decisions", "60000", "--every", "1000", "--workers", "1"]
+    with sweep(folder, *NEW, *options) as driver:
+        (worker,) = wait_for(lambda: training_workers(driver.pid), driver)
+        time.sleep(CHECKPOINT_SECONDS + 8)
+        os.kill(worker, signal.SIGKILL)
+        out = ended(driver)
+    assert "raylet" not in out, "Ray tells it elsewhere than among the results"
+    (trial,) = Study.load(folder).trials.values()
+    assert trial.restarts == 1
+    assert [point.at for point in trial.seeds[0].curve] == list(range(1000, 61000, 1000))
+
+
+def test_what_is_missing_on_a_node_is_a_failure_and_no_finished_trial(tmp_path):
+    """An environment that only the process that runs the study has."""
+    (tmp_path / "half.py").write_text(
+        "import gymnasium, sys\n"
+        "if not any(name.startswith('ray._private.workers') for name in sys.modules) and 'main.py' in sys.argv[0]:\n"
+        "    gymnasium.register('Half-v0', 'gymnasium.envs.classic_control:CartPoleEnv', max_episode_steps=200)\n"
+    )
+    options = [*NEW, "--env", "half:Half-v0", "--trials", "2", "--decisions", "400", "--workers", "1"]
+    path = os.pathsep.join([str(tmp_path), os.environ.get("PYTHONPATH", "")])
+    with sweep(tmp_path / "study", *options, env=os.environ | {"PYTHONPATH": path}) as driver:
+        out, errors = driver.communicate(timeout=LONG)
+    assert driver.returncode == 1
+    assert "Half" in errors
+    assert "0 of 2 trials are kept" in out
+    assert "--env half:Half-v0" in out
+    assert not finished(tmp_path / "study")
+
+
+def test_a_local_start_writes_no_token_and_needs_no_home(tmp_path):
+    (tmp_path / "home").mkdir(mode=0o500)
+    options = [*NEW, "--trials", "1", "--decisions", "400", "--workers", "1"]
+    with sweep(tmp_path / "study", *options, env=os.environ | {"HOME": str(tmp_path / "home")}) as driver:
+        ended(driver)
+    assert not list((tmp_path / "home").iterdir())
 
 
 def test_a_killed_worker_driver_and_node_lose_and_repeat_no_finished_trial_and_change_none(nodes, tmp_path):

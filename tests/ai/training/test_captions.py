@@ -1,5 +1,7 @@
 """Captions of charts, on recordings of real runs."""
 
+from functools import cache
+
 import pytest
 
 from ai.training.captions import ABOUT, CAPTION_RULES, CHARTS, captions
@@ -10,6 +12,7 @@ from tests.support.recordings import growing, names, recorded
 EACH = 8  # points between two looks
 
 
+@cache
 def seen(name: str) -> dict[str, list[str]]:
     """The captions that each chart of a recording had, in order, beside the hints that were shown."""
     found: dict[str, list[str]] = {chart: [] for chart in CHARTS}
@@ -56,6 +59,7 @@ def test_a_run_that_only_crashes_is_never_praised_for_landing(name: str):
     assert not {"rises", "high"} & set(seen(name)["success"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", [name for name in names() if "sabotage" in name or "healthy" in name or "back" in name]
 )

@@ -87,6 +87,7 @@ def test_flights_are_relived_together_as_alone(landings):
             assert np.array_equal(column, same)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("preset", ["modern", "classic"])
 def test_an_agent_learns_from_demonstrations_alone(landings, preset):
     agent = DeepQAgent(config=taught(PRESETS[preset]).changed(learning_starts=64), rng=np.random.default_rng(0))

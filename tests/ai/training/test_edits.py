@@ -109,9 +109,8 @@ def test_a_weight_is_set_and_no_other_changes() -> None:
         assert np.array_equal(weights, link.weights)
 
 
-@pytest.mark.parametrize(
-    ("edit", "said"),
-    [
+def test_what_cannot_be_edited_is_refused_and_nothing_changes(subtests: pytest.Subtests):
+    for edit, said in [
         (SilenceUnit(0, 9), "no unit 9"),
         (SilenceUnit(0, -1), "no unit -1"),
         (SilenceUnit(3, 0), "no outgoing weights"),
@@ -121,15 +120,14 @@ def test_a_weight_is_set_and_no_other_changes() -> None:
         (SetWeight(0, 0, 0, np.nan), "not nan"),
         (SetWeight(0, 0, 0, np.inf), "not inf"),
         (SetWeight(0, 0, 0, 101.0), "at most 100"),
-    ],
-)
-def test_what_cannot_be_edited_is_refused_and_nothing_changes(edit: Edit, said: str) -> None:
-    agent = agent_of()
-    editor, before = NetworkEditor(agent), both(agent)
-    with pytest.raises(ValueError, match=said):
-        editor.apply(edit)
-    assert both(agent) == before
-    assert not agent.held
+    ]:
+        with subtests.test(edit=edit, said=said):
+            agent = agent_of()
+            editor, before = NetworkEditor(agent), both(agent)
+            with pytest.raises(ValueError, match=said):
+                editor.apply(edit)
+            assert both(agent) == before
+            assert not agent.held
 
 
 def test_a_weight_of_a_dueling_layer_is_refused_with_the_reason() -> None:

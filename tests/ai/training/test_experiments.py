@@ -50,9 +50,10 @@ def test_of_a_knob_that_has_no_effect_there_is_nothing_to_try():
     assert experiments(MODERN.changed(prioritised=True), "priority_exponent")
 
 
-@pytest.mark.parametrize("name", SABOTAGES)
-def test_a_sabotage_is_an_experiment_too(name: str):
-    assert experiment_of(MODERN, name).applied(MODERN) == sabotaged(MODERN, name)
+def test_a_sabotage_is_an_experiment_too(subtests: pytest.Subtests):
+    for name in SABOTAGES:
+        with subtests.test(name=name):
+            assert experiment_of(MODERN, name).applied(MODERN) == sabotaged(MODERN, name)
 
 
 def test_both_begin_with_the_same_decisions():

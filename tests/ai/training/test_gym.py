@@ -58,7 +58,7 @@ def test_without_the_extra_one_line_names_the_command(arguments, tmp_path, monke
     assert main(arguments) == 1
     told = capsys.readouterr().err
     assert told.count("\n") == 1
-    assert 'pip install "tranquility[gym]"' in told
+    assert 'pip install -e ".[gym]"' in told
 
 
 def train_cart_pole(folder, decisions, *more):

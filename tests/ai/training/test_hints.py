@@ -73,9 +73,8 @@ CRASHES = LANDS_NOTHING | {"crashed": 0.97, "out_of_bounds": 0.02, "timed_out": 
 HOVERS = LANDS_NOTHING | {"crashed": 0.0, "out_of_bounds": 0.02, "timed_out": 0.98}
 
 
-@pytest.mark.parametrize(
-    ("name", "curve", "config"),
-    [
+def test_each_rule_holds_for_what_it_is_about(subtests: pytest.Subtests):
+    for name, curve, config in [
         ("loss_explodes", later(0.97, loss=0.8), MODERN),
         ("loss_explodes", later(0.99, loss=float("inf")), MODERN),
         ("q_runs_away", later(0.9, mean_q=12.0), MODERN),
@@ -88,10 +87,9 @@ HOVERS = LANDS_NOTHING | {"crashed": 0.0, "out_of_bounds": 0.02, "timed_out": 0.
         ("overfed", points(), MODERN.changed(num_envs=1)),
         ("random", points(epsilon=0.6), MODERN),
         ("plateau", points(success=0.4), MODERN),
-    ],
-)
-def test_each_rule_holds_for_what_it_is_about(name: str, curve: Curve, config: Config):
-    assert holding(curve, config) == {name}
+    ]:
+        with subtests.test(name=name, curve=curve, config=config):
+            assert holding(curve, config) == {name}
 
 
 def test_gradients_that_are_cut_short_are_counted():
@@ -107,9 +105,8 @@ def test_dead_units_are_counted_where_units_can_die():
     assert holding(points(), MODERN.changed(activation="tanh"), dead_share=0.7) == set()
 
 
-@pytest.mark.parametrize(
-    ("curve", "config"),
-    [
+def test_rules_hold_their_peace(subtests: pytest.Subtests):
+    for curve, config in [
         (later(0.97, loss=0.3), MODERN),  # modern rises and falls by a factor of 3
         (later(0.999, success=0.3), MODERN),  # one bad point
         (later(0.9, success=0.75), MODERN),
@@ -120,26 +117,27 @@ def test_dead_units_are_counted_where_units_can_die():
         (lambda share: replace(HEALTHY, loss=NAN if share < 0.5 else 0.05), MODERN),
         (points(loss=NAN, mean_q=NAN), MODERN),  # not known, as when a run goes on
         (later(0.95, success=0.3), MODERN),  # a bad hundred flights
-    ],
-)
-def test_rules_hold_their_peace(curve: Curve, config: Config):
-    assert holding(curve, config) == set()
+    ]:
+        with subtests.test(curve=curve, config=config):
+            assert holding(curve, config) == set()
 
 
-@pytest.mark.parametrize("column", ["loss", "mean_q", "success", "epsilon", "landed", "crashed", "timed_out"])
-def test_no_number_stops_a_rule(column: str):
-    for when in (0.0, 0.5, 0.999):
-        holding(later(when, **{column: NAN}))
-    holding(points(**{column: NAN}), points=1)
+def test_no_number_stops_a_rule(subtests: pytest.Subtests):
+    for column in ["loss", "mean_q", "success", "epsilon", "landed", "crashed", "timed_out"]:
+        with subtests.test(column=column):
+            for when in (0.0, 0.5, 0.999):
+                holding(later(when, **{column: NAN}))
+            holding(points(**{column: NAN}), points=1)
 
 
-@pytest.mark.parametrize("before", [None, "x", -1, 1e9, True, [1], {"a": 1}])
-def test_no_value_that_a_file_holds_of_a_rate_stops_a_rule(before: Any):
-    run, config = history(points()), MODERN.changed(schedule_decisions=600_000)
-    run.append(SettingChange(200_000, "learning_rate", before, 1e-3))
-    assert RecentCurves(run, config).damaged_at() is None
-    run.append(SettingChange(300_000, "learning_rate", 1.0, 1e-3))
-    assert RecentCurves(run, config).damaged_at() == 0, "before that, it may have been so from the start"
+def test_no_value_that_a_file_holds_of_a_rate_stops_a_rule(subtests: pytest.Subtests):
+    for before in [None, "x", -1, 1e9, True, [1], {"a": 1}]:
+        with subtests.test(before=before):
+            run, config = history(points()), MODERN.changed(schedule_decisions=600_000)
+            run.append(SettingChange(200_000, "learning_rate", before, 1e-3))
+            assert RecentCurves(run, config).damaged_at() is None
+            run.append(SettingChange(300_000, "learning_rate", 1.0, 1e-3))
+            assert RecentCurves(run, config).damaged_at() == 0, "before that, it may have been so from the start"
 
 
 def test_what_a_flight_can_pay_follows_the_weights():

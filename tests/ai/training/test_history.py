@@ -50,19 +50,20 @@ def test_columns_are_what_was_told():
         history["no such column"]
 
 
-@pytest.mark.parametrize("count", [1, 2, CAPACITY, CAPACITY + 1, CAPACITY + 2, 5 * CAPACITY + 3, 8 * CAPACITY])
-def test_points_are_thinned_evenly_and_the_latest_is_always_there(count):
-    history = History()
-    for number in range(count):
-        history.append(point(number))
-    told = history["decisions"]
-    assert len(told) == len(history) <= CAPACITY
-    assert len(told) >= min(count, CAPACITY // 2)
-    assert told[0] == 0
-    assert told[-1] == count - 1
-    gaps = np.diff(told)
-    assert len(np.unique(gaps[:-1])) <= 1
-    assert (gaps > 0).all()
+def test_points_are_thinned_evenly_and_the_latest_is_always_there(subtests):
+    for count in [1, 2, CAPACITY, CAPACITY + 1, CAPACITY + 2, 5 * CAPACITY + 3, 8 * CAPACITY]:
+        with subtests.test(count=count):
+            history = History()
+            for number in range(count):
+                history.append(point(number))
+            told = history["decisions"]
+            assert len(told) == len(history) <= CAPACITY
+            assert len(told) >= min(count, CAPACITY // 2)
+            assert told[0] == 0
+            assert told[-1] == count - 1
+            gaps = np.diff(told)
+            assert len(np.unique(gaps[:-1])) <= 1
+            assert (gaps > 0).all()
 
 
 def test_checkpoints_are_thinned_and_the_first_and_last_are_kept():

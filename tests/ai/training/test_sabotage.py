@@ -19,29 +19,32 @@ def changes(before: Config, after: Config) -> dict[str, Any]:
     }
 
 
-@pytest.mark.parametrize("name", SABOTAGES)
-def test_each_takes_something_away_from_modern(name: str):
-    assert changes(PRESETS["modern"], sabotaged(PRESETS["modern"], name))
+def test_each_takes_something_away_from_modern(subtests: pytest.Subtests):
+    for name in SABOTAGES:
+        with subtests.test(name=name):
+            assert changes(PRESETS["modern"], sabotaged(PRESETS["modern"], name))
 
 
-@pytest.mark.parametrize(("base", "name"), CASES)
-def test_each_is_a_configuration_that_learns(base: str, name: str):
-    small = PRESETS[base].changed(
-        num_envs=min(8, PRESETS[base].num_envs), batch_size=16, gradient_steps=1, learning_starts=16
-    )
-    training = Training(sabotaged(small, name), evaluate_every=0)
-    for _ in range(120 if training.env.num_envs == 1 else 30):
-        training.advance()
-    assert training.agent.train_count > 0
+def test_each_is_a_configuration_that_learns(subtests: pytest.Subtests):
+    for base, name in CASES:
+        with subtests.test(base=base, name=name):
+            small = PRESETS[base].changed(
+                num_envs=min(8, PRESETS[base].num_envs), batch_size=16, gradient_steps=1, learning_starts=16
+            )
+            training = Training(sabotaged(small, name), evaluate_every=0)
+            for _ in range(120 if training.env.num_envs == 1 else 30):
+                training.advance()
+            assert training.agent.train_count > 0
 
 
-@pytest.mark.parametrize(("base", "name"), CASES)
-def test_taken_away_twice_is_gone_no_more_than_once(base: str, name: str):
-    once = sabotaged(PRESETS[base], name)
-    twice = sabotaged(once, name)
-    if name != "rate_times_100":
-        assert once == twice
-    assert twice.learning_rate <= 1.0
+def test_taken_away_twice_is_gone_no_more_than_once(subtests: pytest.Subtests):
+    for base, name in CASES:
+        with subtests.test(base=base, name=name):
+            once = sabotaged(PRESETS[base], name)
+            twice = sabotaged(once, name)
+            if name != "rate_times_100":
+                assert once == twice
+            assert twice.learning_rate <= 1.0
 
 
 def test_only_the_end_of_a_flight_pays_without_shaping():

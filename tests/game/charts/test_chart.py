@@ -57,18 +57,17 @@ def chart_of(y: object, x: object = None, **options: object) -> Chart:
 # Limits and grids
 
 
-@pytest.mark.parametrize(
-    ("low", "high"), [(0, 1), (0.021, 0.83), (-412, 118), (0, 1e30), (-1e-7, 3e-7), (5, 5), (0, 0)]
-)
-def test_grid_lines_are_few_even_and_around_the_numbers(low: float, high: float) -> None:
-    lines = plotting.grid(low, high)
-    assert 2 <= len(lines) <= 4
-    slack = 1e-9 * (lines[-1] - lines[0])
-    assert lines[0] <= low + slack
-    assert lines[-1] >= high - slack
-    np.testing.assert_allclose(np.diff(lines), lines[1] - lines[0])
-    mantissa = (lines[1] - lines[0]) / 10.0 ** np.floor(np.log10(lines[1] - lines[0]))
-    assert min(abs(mantissa - good) for good in (1, 2, 2.5, 5, 10)) < 1e-6
+def test_grid_lines_are_few_even_and_around_the_numbers(subtests: pytest.Subtests):
+    for low, high in [(0, 1), (0.021, 0.83), (-412, 118), (0, 1e30), (-1e-7, 3e-7), (5, 5), (0, 0)]:
+        with subtests.test(low=low, high=high):
+            lines = plotting.grid(low, high)
+            assert 2 <= len(lines) <= 4
+            slack = 1e-9 * (lines[-1] - lines[0])
+            assert lines[0] <= low + slack
+            assert lines[-1] >= high - slack
+            np.testing.assert_allclose(np.diff(lines), lines[1] - lines[0])
+            mantissa = (lines[1] - lines[0]) / 10.0 ** np.floor(np.log10(lines[1] - lines[0]))
+            assert min(abs(mantissa - good) for good in (1, 2, 2.5, 5, 10)) < 1e-6
 
 
 def test_a_few_exploded_values_do_not_flatten_the_rest() -> None:

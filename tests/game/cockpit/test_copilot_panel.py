@@ -24,24 +24,25 @@ class Wavers:
         return decide(observation, self.q_values(observation), held)
 
 
-@pytest.mark.parametrize("before", range(8))
-def test_the_panel_shows_what_is_flown_from_the_first_step_after_a_hand_over(before: int):
-    flight = Flight(3, Wavers(), shares=False)
-    copilot_panel = CopilotPanel(flight.env.ground)
-    for _ in range(before):
-        flight.step(3)
-        copilot_panel.follow(flight)
-    flight.hand_over()
-    seen = set()
-    for _ in range(20):
-        flight.step(0)
-        copilot_panel.follow(flight)
-        flown = flight.recording.actions[-1]
-        assert copilot_panel.shown
-        assert copilot_panel.values is not None
-        assert copilot_panel.values.flown == np.argmax(copilot_panel.values.points) == flown
-        seen.add(flown)
-    assert len(seen) > 1
+def test_the_panel_shows_what_is_flown_from_the_first_step_after_a_hand_over(subtests: pytest.Subtests):
+    for before in range(8):
+        with subtests.test(before=before):
+            flight = Flight(3, Wavers(), shares=False)
+            copilot_panel = CopilotPanel(flight.env.ground)
+            for _ in range(before):
+                flight.step(3)
+                copilot_panel.follow(flight)
+            flight.hand_over()
+            seen = set()
+            for _ in range(20):
+                flight.step(0)
+                copilot_panel.follow(flight)
+                flown = flight.recording.actions[-1]
+                assert copilot_panel.shown
+                assert copilot_panel.values is not None
+                assert copilot_panel.values.flown == np.argmax(copilot_panel.values.points) == flown
+                seen.add(flown)
+            assert len(seen) > 1
 
 
 class Damaged(Wavers):

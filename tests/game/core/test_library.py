@@ -220,9 +220,10 @@ def test_what_is_no_run_is_not_listed(library: Library):
     assert names(library) == ["run"]
 
 
-@pytest.mark.parametrize("name", ["moon 2", "a", "x" * 40, "v1.2_final-b", "Zoë", "console", "com10", "2026-08-02"])
-def test_good_names(name: str):
-    assert is_valid_name(name)
+def test_good_names(subtests: pytest.Subtests):
+    for name in ["moon 2", "a", "x" * 40, "v1.2_final-b", "Zoë", "console", "com10", "2026-08-02"]:
+        with subtests.test(name=name):
+            assert is_valid_name(name)
 
 
 @pytest.mark.parametrize(

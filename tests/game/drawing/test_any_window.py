@@ -42,21 +42,6 @@ def reshape(driver: Driver, size: tuple[int, int]) -> None:
     driver.frames(10)
 
 
-# Whatever is laid out for a page is laid out alike in every window: two of those stand for all.
-WORLDS = ["MenuScene", "WatchScene", "ReplayScene", "Play", "swarm", "mission", "TrainScene", "PhysicsScene"]
-PAGES = ["SettingsScene", "PauseScene", "QuestionDialog"]
-
-
-@pytest.mark.parametrize("name", [*WORLDS, *PAGES])
-def test_nothing_leaves_the_view_and_no_texts_meet(open_game, context: Context, written: Written, name: str):
-    settle(context)
-    driver = opened(open_game, name)
-    as_usual = wrong(written, driver)
-    for size in SHAPES:
-        reshape(driver, size)
-        assert wrong(written, driver) <= as_usual, size  # a figure over another on purpose is so in every window
-
-
 @pytest.mark.parametrize(
     ("settings", "happens", "size"),
     [

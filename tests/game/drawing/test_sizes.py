@@ -16,30 +16,32 @@ from tests.support.driver import Driver
 SIZES = [(1366, 768), (1000, 700), (3440, 1440), (640, 360), (720, 1280), (1921, 1079), (2560, 1600)]
 
 
-@pytest.mark.parametrize("size", SIZES)
-def test_points_and_pixels_lead_to_each_other(size: tuple[int, int]):
-    canvas = Canvas(pygame.Surface(size))
-    for corner in ((0, 0), VIEW_SIZE):
-        pixels = [round(p * canvas.scale + o) for p, o in zip(corner, canvas.offset, strict=True)]
-        assert all(-1 <= p <= limit + 1 for p, limit in zip(pixels, size, strict=True))
-    for place in ((0, 0), (1, 719), (640, 360), (1279.5, 3)):
-        box = canvas.in_window((*place, 1, 1))
-        assert canvas.to_points(box.topleft) == pytest.approx(place, abs=1 / canvas.scale)
+def test_points_and_pixels_lead_to_each_other(subtests: pytest.Subtests):
+    for size in SIZES:
+        with subtests.test(size=size):
+            canvas = Canvas(pygame.Surface(size))
+            for corner in ((0, 0), VIEW_SIZE):
+                pixels = [round(p * canvas.scale + o) for p, o in zip(corner, canvas.offset, strict=True)]
+                assert all(-1 <= p <= limit + 1 for p, limit in zip(pixels, size, strict=True))
+            for place in ((0, 0), (1, 719), (640, 360), (1279.5, 3)):
+                box = canvas.in_window((*place, 1, 1))
+                assert canvas.to_points(box.topleft) == pytest.approx(place, abs=1 / canvas.scale)
 
 
-@pytest.mark.parametrize("size", SIZES)
-def test_the_page_fits_in_the_middle_and_is_drawn_in_the_windows_own_pixels(size: tuple[int, int]):
-    window = pygame.Surface(size)
-    page = Canvas(window).page
-    left, top = page.surface.get_abs_offset()
-    assert (
-        page.surface is window or page.surface.get_abs_parent() is window
-    )  # nothing is scaled on its way to the screen
-    width, height = page.surface.get_size()
-    assert abs(2 * left + width - size[0]) <= 1
-    assert abs(2 * top + height - size[1]) <= 1
-    assert width == size[0] or height == size[1]
-    assert width / height == pytest.approx(16 / 9, rel=0.01)
+def test_the_page_fits_in_the_middle_and_is_drawn_in_the_windows_own_pixels(subtests: pytest.Subtests):
+    for size in SIZES:
+        with subtests.test(size=size):
+            window = pygame.Surface(size)
+            page = Canvas(window).page
+            left, top = page.surface.get_abs_offset()
+            assert (
+                page.surface is window or page.surface.get_abs_parent() is window
+            )  # nothing is scaled on its way to the screen
+            width, height = page.surface.get_size()
+            assert abs(2 * left + width - size[0]) <= 1
+            assert abs(2 * top + height - size[1]) <= 1
+            assert width == size[0] or height == size[1]
+            assert width / height == pytest.approx(16 / 9, rel=0.01)
 
 
 @settings(deadline=None, max_examples=25)

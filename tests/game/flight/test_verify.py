@@ -4,13 +4,19 @@ import json
 import subprocess
 import sys
 from dataclasses import replace
+from datetime import date
+from io import BytesIO, TextIOWrapper
 from pathlib import Path
 
 import pytest
 
 from ai.lander.environment import Outcome
+from game.core import texts
 from game.core.assets import ASSETS_DIR
 from game.flight import flight_file, sharing
+from game.flight.flight_file import Record
+from game.flight.logbook import describe
+from tests.support.flights import scripted
 from tranquility.__main__ import main
 
 ROOT = Path(__file__).parents[3]
@@ -48,7 +54,34 @@ def test_each_code_of_a_text_is_judged_by_itself(tmp_path, capsys, record):
     assert told["flights"][0]["medal"] == record.entry.medal
     assert main(["verify", str(file)]) == 1
     lines = capsys.readouterr().out.splitlines()
-    assert lines[1] == f"{file}:2: landed, {best} points  (WRONG, it claims: landed, {best + 9} points)"
+    fall = texts.MISSIONS["fall"][0]
+    gold = f"{file}:2: {fall}: landed, {best} points, gold"
+    assert lines[1] == f"{gold}  (WRONG, it claims: landed, {best + 9} points)"
+
+
+def test_a_flight_from_elsewhere_than_it_says_is_wrong_and_the_day_is_named(tmp_path, capsys, monkeypatch):
+    day = date(2026, 11, 22)
+    true = scripted(day.toordinal(), pads=3)
+    codes = []
+    for flight, course in ((true, "daily"), (scripted(day.toordinal()), "daily"), (true, "")):
+        entry = describe(flight, 0.0, course=course)
+        x, y, angle = flight.poses.now[0].tolist()
+        codes.append(sharing.code(Record(flight.recording, entry, (x, y, angle))))
+    piped = TextIOWrapper(BytesIO("\n".join(codes).encode()))
+    monkeypatch.setattr(sys, "stdin", piped)
+    assert main(["verify", "-"]) == 1
+    lines = capsys.readouterr().out.splitlines()
+    verdicts = [line.partition("points  ")[2] for line in lines[:3]]
+    assert verdicts == ["(true)", "(WRONG, it was not flown there)", "(true)"]
+    assert [line.split(": ")[:2] for line in lines[:3]] == [
+        ["-:1", f"{texts.DAILY}, 2026-11-22"], ["-:2", f"{texts.DAILY}, 2026-11-22"], ["-:3", texts.COURSE_FREE[3]],
+    ]  # fmt: skip
+
+
+def test_closed_standard_input_is_refused_in_a_sentence(capsys, monkeypatch):
+    monkeypatch.setattr(sys, "stdin", None)
+    assert main(["verify", "-"]) == 1
+    assert capsys.readouterr().out == f"-: refused, {texts.CODE_REFUSED['none']}\n"
 
 
 def test_an_end_elsewhere_than_claimed_is_said_to_be_wrong(tmp_path, capsys, record):

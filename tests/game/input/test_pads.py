@@ -63,11 +63,11 @@ def test_a_pad_is_plugged_in_flown_with_and_pulled_out(game: Driver, pads: Virtu
         pads.press(pygame.CONTROLLER_BUTTON_A)
         pads.push(pygame.CONTROLLER_AXIS_LEFTX, -30000)
         game.frames(2)
-        assert controls.action == 4
+        assert (controls.main, controls.steer) == (True, 1)
         assert controls.gamepad_in_use
         pads.pull_out_all()
         assert game.frames(2)
-        assert controls.action == 0
+        assert (controls.main, controls.steer) == (False, 0)
 
 
 def test_a_pad_leads_from_the_menu_to_settings_and_back(game: Driver, pads: VirtualPads):

@@ -290,6 +290,7 @@ def trained(chapter: PayChapter, pay: str) -> Flown:
     return chapter.results[pay]
 
 
+@pytest.mark.slow
 def test_each_pay_teaches_what_it_pays_for(made: Made, monkeypatch: pytest.MonkeyPatch):
     inline_worker.install(monkeypatch.setattr)
     chapter = made(PayChapter)

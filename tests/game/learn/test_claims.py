@@ -1,6 +1,7 @@
 """What chapters 7 to 9 claim, on the real runs that they show; `benchmarks.small_runs` prints more seeds of them."""
 
 import numpy as np
+import pytest
 
 from ai.lander.environment import LIMITS, PARAMS
 from ai.lander.rewards import FEET_STEPS_PAID, RewardWeights
@@ -38,6 +39,7 @@ def test_daring_finds_the_landing_that_is_only_paid_at_the_end():
     assert sometimes.state.landed > 0.6
 
 
+@pytest.mark.slow
 def test_learning_from_the_latest_alone_forgets_yesterday():
     latest = SmallRun(SMALL_RUN, 0, MemoryChapter.PLAN._replace(keep=LATEST))
     for _ in range(YESTERDAY):

@@ -66,6 +66,7 @@ def test_the_ladder_widens_from_above_the_pad_to_starts_from_anywhere():
     assert LADDER.stages[-1][1] == "random"
 
 
+@pytest.mark.slow
 def test_slow_hands_can_climb_it():
     for rung in (0, 5, 9):
         env = LanderEnv(24, rung, LADDER.spawn(rung), frame_skip=1)

@@ -147,9 +147,10 @@ def test_a_true_claim_is_said_to_be_true(open_game: Open, record: Record, writte
 @pytest.mark.parametrize(
     ("changed", "words"),
     [
-        ({"score": 999}, "wrong. It really landed"),
-        ({"outcome": "CRASHED", "score": 0}, "wrong. It really landed"),
-        (None, texts.FRIEND_WRONG_END),
+        ({"score": 999}, texts.WRONG_CLAIM.format(claim="landed, 999 points")),
+        ({"outcome": "CRASHED", "score": 0}, texts.WRONG_CLAIM.format(claim="crashed")),
+        ({"course": "daily"}, texts.WRONG_PLACE),
+        (None, texts.WRONG_END),
     ],
 )
 def test_a_wrong_claim_is_said_to_be_wrong(open_game: Open, record: Record, changed, words):
@@ -161,7 +162,7 @@ def test_a_wrong_claim_is_said_to_be_wrong(open_game: Open, record: Record, chan
     driver.post(pygame.DROPTEXT, text=sharing.code(told))
     driver.frames(200)
     assert page(driver).claimed.true is False
-    assert words in page(driver).claimed.words
+    assert f"landed, {record.entry.score} points. Wrong: {words}." in page(driver).claimed.words
 
 
 def test_a_flight_without_a_step_is_shown(open_game: Open, record: Record):

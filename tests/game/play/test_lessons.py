@@ -173,6 +173,7 @@ def test_who_does_all_that_is_said_to_the_letter_lands(open_game: Open, device: 
     assert pupil.driver.app.context.settings.first_flown
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("device", DEVICES)
 def test_who_does_the_opposite_never_stands_still_for_anything_but_a_key_that_is_named(open_game: Open, device: str):
     """Each lesson is done the wrong way for four seconds when it comes, and then to the letter, which leads on."""

@@ -67,41 +67,43 @@ def test_a_medal_is_for_little_fuel_and_little_time_together():
     assert mission.medal(mission.silver[0] + 0.1, 1.0) == 1
 
 
-@pytest.mark.parametrize("name", MISSIONS)
-def test_whoever_flies_the_printed_limit_has_kept_it_and_a_tenth_more_is_too_much(name: str):
-    mission = MISSIONS[name]
-    for medal, (most_fuel, longest) in ((3, mission.gold), (2, mission.silver)):
-        flight = Flight(0, None, mission=name)
-        env = flight.env
-        for steps in range(round(600 * most_fuel) - 90, round(600 * most_fuel) + 91):  # of a jet, a 600th each
-            env.main_steps[:], env.side_steps[:], env.steps[:] = 0, steps, round(60 * (longest - 1))
-            figures = {label: float(value) for label, value, _ in flight_figures(env)}
-            kept = mission.medal(float(env.fuel[0]), float(env.time[0])) >= medal
-            assert kept == (figures[texts.FUEL] <= most_fuel)
-            if env.conditions.tank == np.inf:
-                (burnt,) = (each.figure for each in flight_readouts(env) if each.label == texts.FUEL_USED)
-                assert float(burnt) == figures[texts.FUEL]
-        env.side_steps[:] = 0
-        for steps in range(round(60 * longest) - 9, round(60 * longest) + 10):
-            env.steps[:] = steps
-            figures = {label: float(value) for label, value, _ in flight_figures(env)}
-            assert (mission.medal(0.0, float(env.time[0])) >= medal) == (figures[texts.TIME] <= longest)
+def test_whoever_flies_the_printed_limit_has_kept_it_and_a_tenth_more_is_too_much(subtests: pytest.Subtests):
+    for name in MISSIONS:
+        with subtests.test(name=name):
+            mission = MISSIONS[name]
+            for medal, (most_fuel, longest) in ((3, mission.gold), (2, mission.silver)):
+                flight = Flight(0, None, mission=name)
+                env = flight.env
+                for steps in range(round(600 * most_fuel) - 90, round(600 * most_fuel) + 91):  # of a jet, a 600th each
+                    env.main_steps[:], env.side_steps[:], env.steps[:] = 0, steps, round(60 * (longest - 1))
+                    figures = {label: float(value) for label, value, _ in flight_figures(env)}
+                    kept = mission.medal(float(env.fuel[0]), float(env.time[0])) >= medal
+                    assert kept == (figures[texts.FUEL] <= most_fuel)
+                    if env.conditions.tank == np.inf:
+                        (burnt,) = (each.figure for each in flight_readouts(env) if each.label == texts.FUEL_USED)
+                        assert float(burnt) == figures[texts.FUEL]
+                env.side_steps[:] = 0
+                for steps in range(round(60 * longest) - 9, round(60 * longest) + 10):
+                    env.steps[:] = steps
+                    figures = {label: float(value) for label, value, _ in flight_figures(env)}
+                    assert (mission.medal(0.0, float(env.time[0])) >= medal) == (figures[texts.TIME] <= longest)
 
 
 def recorded(name: str) -> Record:
     return flight_file.read(ASSETS_DIR / "flights" / f"{name}.json")
 
 
-@pytest.mark.parametrize("name", MISSIONS)
-def test_every_mission_can_be_won_and_has_a_recorded_flight_that_earns_gold(name: str):
-    flight_replay = FlightReplay(recorded(name))
-    flight_replay.scout(10_000)
-    flight_replay.seek(flight_replay.reached)
-    env = flight_replay.flight.env
-    assert flight_replay.flight.outcome is Outcome.LANDED
-    assert MISSIONS[name].medal(float(env.fuel[0]), float(env.time[0])) == 3
-    assert flight_replay.record.entry.course == name
-    assert flight_replay.record.entry.medal == 3
+def test_every_mission_can_be_won_and_has_a_recorded_flight_that_earns_gold(subtests: pytest.Subtests):
+    for name in MISSIONS:
+        with subtests.test(name=name):
+            flight_replay = FlightReplay(recorded(name))
+            flight_replay.scout(10_000)
+            flight_replay.seek(flight_replay.reached)
+            env = flight_replay.flight.env
+            assert flight_replay.flight.outcome is Outcome.LANDED
+            assert MISSIONS[name].medal(float(env.fuel[0]), float(env.time[0])) == 3
+            assert flight_replay.record.entry.course == name
+            assert flight_replay.record.entry.medal == 3
 
 
 def test_the_network_lands_where_its_page_says_so():

@@ -1,7 +1,5 @@
 """Hints tell what is bound: keys that were changed are named, and the old ones are not."""
 
-from collections import Counter
-
 import pygame
 import pytest
 
@@ -10,49 +8,10 @@ from game.drawing import glyphs, typeface
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK, VIEW_SIZE
 from game.input import signs
-from game.input.bindings import KEYBOARD, Bindings, Command, Held
-from game.input.controls import Controls, key_name
+from game.input.bindings import KEYBOARD, Bindings, Command
 from game.ui.context import Context
 from game.ui.hints import Hint, HintRow
-from tests.support.screens import FLOWN, OVER_OTHERS, SCREENS, opened, settle
-
-NEW = {Command.HANDOVER: pygame.K_o, Command.RETRY: pygame.K_j, Command.CHOICES: pygame.K_i, Command.STEP: pygame.K_u,
-       Command.NEXT: pygame.K_k, Command.PREVIOUS: pygame.K_l, Command.FULLSCREEN: pygame.K_F9,
-       Held.MAIN: pygame.K_f, Held.LEFT: pygame.K_q, Held.RIGHT: pygame.K_e}  # fmt: skip
-
-
-def keys_told(open_game, context: Context, monkeypatch: pytest.MonkeyPatch, name: str) -> Counter[str]:
-    """Open a screen, and count the keys that its hints name."""
-    settle(context)
-    context.controls = Controls()
-    driver = opened(open_game, name)
-    told: Counter[str] = Counter()
-    text = Canvas.text
-
-    def noted(canvas: Canvas, string: str, position: tuple[float, float], **more) -> pygame.FRect:
-        if more.get("colour", INK) == INK and more.get("weight") == "medium":  # as keys are written
-            told[string] += 1
-        return text(canvas, string, position, **more)
-
-    with monkeypatch.context() as patch:
-        patch.setattr(Canvas, "text", noted)
-        driver.app.draw()
-    driver.app.close()
-    return told
-
-
-@pytest.mark.parametrize("name", [*SCREENS, *FLOWN, *OVER_OTHERS])
-def test_every_hint_names_the_players_own_key(open_game, context: Context, monkeypatch, name: str):
-    before = keys_told(open_game, context, monkeypatch, name)
-    bindings = Bindings(KEYBOARD)
-    usual = {key_name(KEYBOARD.standard[meaning][0]): key_name(code) for meaning, code in NEW.items()}
-    for meaning, code in NEW.items():
-        bindings.bind(meaning, code)
-    context.settings.keys = bindings.to_dict()
-    after = keys_told(open_game, context, monkeypatch, name)
-    arrows = Controls().arrows
-    wanted = Counter({usual.get(word, word) if word != arrows else word: count for word, count in before.items()})
-    assert after == wanted
+from tests.support.screens import SCREENS, opened
 
 
 def test_sentences_name_the_players_own_keys_too(open_game, context: Context):

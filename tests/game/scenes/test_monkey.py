@@ -16,6 +16,7 @@ def folder() -> Iterator[Path]:
         yield place
 
 
+@pytest.mark.slow
 def test_a_monkey_finds_no_fault_and_leaves_nothing_behind(folder: Path):
     monkey = Monkey(folder, seed=7, open_sound=False)
     monkey.play(1000)
@@ -34,6 +35,7 @@ def test_it_does_find_faults(folder: Path, monkeypatch: pytest.MonkeyPatch):
     assert "a fault on purpose" in monkey.faults.found[0]
 
 
+@pytest.mark.slow
 def test_it_does_find_scenes_that_stay_in_memory(folder: Path, monkeypatch: pytest.MonkeyPatch):
     kept: list[MenuScene] = []
     leave = MenuScene.exit

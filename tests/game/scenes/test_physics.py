@@ -204,7 +204,7 @@ def test_menu_leads_to_physics_and_back(open_game: Open):
 def test_the_command_opens_the_exhibit_over_the_menu(monkeypatch, tmp_path):
     opened: list[Driver] = []
 
-    def stay(app, max_frames=None) -> int:
+    def stay(app, stop) -> int:
         driver = Driver(app)
         opened.append(driver)
         driver.frames(3)

@@ -79,6 +79,7 @@ def test_start_pause_step_and_go_on(beside: Driver) -> None:
     beside.wait(lambda: scene.lander_run.swarm_state.decisions > stood + 8)
 
 
+@pytest.mark.slow
 def test_it_learns_as_it_would_without_a_window(beside: Driver) -> None:
     beside.unseen = True
     start(beside)
@@ -173,6 +174,7 @@ def test_a_name_that_is_taken_is_told_and_can_be_changed(train: Driver) -> None:
     train.wait(scene.lander_run.library.runs)
 
 
+@pytest.mark.slow
 def test_a_run_is_begun_that_learns_from_the_players_landings(train: Driver, tmp_path: Path) -> None:
     scene, notes = train.top, list[str]()
     train.app.context.note = notes.append
@@ -309,6 +311,7 @@ def test_a_run_is_started_named_and_left_without_a_mouse(train: Driver, device: 
     assert not train.app.scenes.running, "the scene was left, and nothing was below it"
 
 
+@pytest.mark.slow
 def test_a_dead_worker_is_told_and_its_run_can_still_be_saved(beside: Driver, tmp_path: Path) -> None:
     beside.unseen = True
     start(beside)
@@ -334,6 +337,7 @@ def test_numbers_that_run_away_are_told(train: Driver) -> None:
     assert isinstance(train.top, TrainScene)
 
 
+@pytest.mark.slow
 def test_killed_again_and_again_it_goes_on_and_what_was_saved_loads(beside: Driver) -> None:
     scene = beside.top
     for number in range(2):
@@ -353,6 +357,7 @@ def _kept() -> list[object]:
     return [each for each in gc.get_objects() if isinstance(each, TrainScene | LanderRun | NetworkView)]
 
 
+@pytest.mark.slow
 def test_visits_leave_no_process_no_thread_and_no_scene(game: Driver) -> None:
     threads, others = threading.active_count(), set(map(id, _kept()))
     for visit in range(4):
@@ -374,6 +379,7 @@ def test_visits_leave_no_process_no_thread_and_no_scene(game: Driver) -> None:
     assert not [each for each in _kept() if id(each) not in others]
 
 
+@pytest.mark.slow
 def test_closing_the_game_ends_the_worker(beside: Driver) -> None:
     start(beside)
     beside.app.close()

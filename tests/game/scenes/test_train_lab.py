@@ -93,6 +93,7 @@ def test_every_numeric_knob_says_what_too_little_and_too_much_does_and_what_to_w
 # Experiments
 
 
+@pytest.mark.slow
 def test_both_runs_begin_alike_and_stay_in_step(beside: Driver) -> None:
     beside.unseen = True
     split(beside)

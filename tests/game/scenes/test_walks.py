@@ -1,20 +1,18 @@
-"""Every screen can be walked, seen and left by a gamepad alone and by the keyboard alone: real events, no window."""
+"""Ways through several screens, by a gamepad alone and by the keyboard alone: real events, no window."""
 
 from collections.abc import Callable, Iterator
 
-import numpy as np
 import pygame
 import pytest
 
 from ai.lander.environment import Outcome
 from game.core import texts
-from game.core.scene import Push, Scene
+from game.core.scene import Scene
 from game.flight.flight import StickHolder
 from game.scenes.menu import MenuScene
 from game.scenes.play import PlayScene
 from game.ui.context import Context
 from game.ui.listing import Listing
-from game.ui.widget import Widget
 from tests.support.driver import Driver
 from tests.support.player import DEVICES, Player
 from tests.support.screens import OVER_OTHERS, SCREENS, flown, settle
@@ -39,56 +37,6 @@ def open_screen(
 
 def test_every_screen_there_is_will_be_walked():
     assert {each.__name__ for each in scene_types()} - NO_SCREENS == SCREENS.keys() | OVER_OTHERS.keys()
-
-
-@pytest.mark.parametrize("name", SCREENS)
-def test_every_widget_is_reached_and_seen_and_there_is_a_way_out(open_screen, name: str):
-    player = open_screen(SCREENS[name])
-    if name in ("WatchScene", "PhysicsScene", "ReplayScene"):
-        player.press("step")
-    walk(player)
-    for _ in range(3):
-        if player.app.scenes.running and player.top_name != "PauseScene":
-            player.press("back")
-    if player.top_name == "PauseScene":
-        player.choose(texts.PAUSE_LEAVE)
-    assert not player.app.scenes.running  # it was the only scene
-
-
-@pytest.mark.parametrize("name", OVER_OTHERS)
-def test_so_are_those_that_stand_over_another(open_screen, name: str):
-    player = open_screen(SCREENS["MenuScene"])
-    menu = player.top
-    player.app.scenes.apply(Push(OVER_OTHERS[name](menu)))
-    player.frames(3)
-    if name == "NameDialog":
-        player.press("down")  # out of the line, with what stands there
-    walk(player)
-    player.press("back")
-    assert player.top is menu
-
-
-def walk(player: Player) -> None:
-    player.unseen = True
-    found = player.ways()
-    player.unseen, player.app.context.settings.reduced_motion = False, True
-    widgets = list(player.form.widgets)  # what is chosen on the way may have changed them
-    assert not [widget.label for index, widget in enumerate(widgets) if index not in found]
-    for widget in widgets[:24]:
-        if widget in player.form.widgets:
-            assert is_seen(player, widget), f"no focus is seen on {widget.label}"
-
-
-def is_seen(player: Player, widget: Widget) -> bool:
-    """Whether the picture around a widget changes when the focus comes to it."""
-    form, canvas = player.form, player.app.canvas
-    pictures = []
-    for focused in (next((each for each in form.widgets if each is not widget), widget), widget):
-        form.focus(focused)
-        player.frames(2)
-        around = canvas.rect(*widget.box.inflate(28, 16)).clip(canvas.surface.get_rect())
-        pictures.append(pygame.surfarray.array3d(canvas.surface.subsurface(around)).astype(int))
-    return len(form.widgets) == 1 or int((np.abs(pictures[0] - pictures[1]).max(axis=2) > 40).sum()) >= 12
 
 
 def test_a_mission_is_found_flown_and_left(open_screen):
@@ -174,25 +122,6 @@ def test_settings_are_changed_and_kept(open_screen):
     assert player.saved()[kind] == {}
     player.press("back", "back")
     assert player.top_name == "MenuScene"
-
-
-@pytest.mark.parametrize("name", SCREENS)
-def test_the_mouse_alone_finds_a_way_out(open_game, context: Context, name: str):
-    game: Driver = open_game(SCREENS[name])
-    game.move((640, 700))
-    game.frames(3)
-    for _ in range(3):
-        if not game.app.scenes.running:
-            break
-        words = {word.label: word for word in game.top.form.widgets}
-        exits = [label for label in (texts.BACK, texts.PAUSE_LEAVE, texts.MENU["quit"][0]) if label in words]
-        if exits:
-            game.click(words[exits[0]].box.center)
-        else:
-            hints = game.hints()
-            game.click(hints.get(texts.HINT_BACK) or hints[texts.HINT_PAUSE])
-        game.frames(3)
-    assert not game.app.scenes.running
 
 
 def test_a_flight_is_flown_with_the_mouse_alone(open_game, context: Context):

@@ -1,5 +1,6 @@
 from collections.abc import Callable
 from pathlib import Path
+from shutil import copytree
 
 import numpy as np
 import pygame
@@ -143,10 +144,9 @@ def test_restart_flies_new_starts(watching: Driver):
 def many(open_game: Open, context: Context, tmp_path: Path) -> Driver:
     """Twenty networks of the player's own, the game's, and the scripted pilot."""
     context.models_dir = tmp_path / "shipped"
-    agent = DeepQAgent(config=Config(hidden=(4,)))
-    agent.save(context.models_dir / "lander" / "modern")
+    DeepQAgent(config=Config(hidden=(4,))).save(context.models_dir / "lander" / "modern")
     for number in range(20):
-        agent.save(context.user_dir / "models" / f"run {number:02}")
+        copytree(context.models_dir / "lander" / "modern", context.user_dir / "models" / f"run {number:02}")
     context.settings.model = "run 03"
     SettingsFile(context.user_dir).save(context.settings)
     return open_game(WatchScene, seed=2)

@@ -15,6 +15,7 @@ from game.scenes.pause import PauseScene
 from game.scenes.settings import SettingsScene
 from game.shell.app import LOG_NAME, App, log_to
 from game.shell.window import NoDisplayError
+from game.start import play
 from game.ui.context import Context
 from tests.support.driver import Driver
 
@@ -388,6 +389,19 @@ def test_interrupt_reaches_the_caller(game: Driver, monkeypatch):
     monkeypatch.setattr(game.app.scenes, "update", lambda: signal.raise_signal(signal.SIGINT))
     with pytest.raises(KeyboardInterrupt):
         game.app.run()
+    assert not pygame.display.get_init()
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="the terminal's hang-up")
+def test_a_hang_up_closes_the_game_as_its_button_does(monkeypatch, tmp_path: Path):
+    monkeypatch.setattr("game.shell.scene_manager.SceneManager.update", lambda _: signal.raise_signal(signal.SIGHUP))
+    before = signal.signal(signal.SIGHUP, signal.SIG_DFL)  # tests may run where it is ignored
+    try:
+        assert play(tmp_path) == 0
+    finally:
+        signal.signal(signal.SIGHUP, before)
+        gc.unfreeze()
+    assert (tmp_path / "settings.json").exists()
     assert not pygame.display.get_init()
 
 

@@ -21,6 +21,7 @@ def setting(window: Window, name: str) -> object:
     return json.loads((window.user_dir / "settings.json").read_text())[name]
 
 
+@pytest.mark.slow
 def test_a_setting_chosen_with_real_keys_survives_a_restart(display: str, tmp_path: Path):
     with start(display, tmp_path / "user") as window:
         window.key(*["Down"] * 9, "Return")  # Settings
@@ -34,6 +35,7 @@ def test_a_setting_chosen_with_real_keys_survives_a_restart(display: str, tmp_pa
         assert window.close() == 0
 
 
+@pytest.mark.slow
 def test_the_mouse_meets_what_it_sees_in_a_letterboxed_window(display: str, tmp_path: Path):
     with start(display, tmp_path / "user") as window:
         window.resize(900, 760)
@@ -44,6 +46,7 @@ def test_the_mouse_meets_what_it_sees_in_a_letterboxed_window(display: str, tmp_
         assert window.close() == 0
 
 
+@pytest.mark.slow
 def test_full_screen_ten_times_in_a_real_window(display: str, tmp_path: Path):
     with start(display, tmp_path / "user") as window:
         for wanted in [True, False] * 5:
@@ -56,6 +59,7 @@ def test_full_screen_ten_times_in_a_real_window(display: str, tmp_path: Path):
         assert window.close() == 0
 
 
+@pytest.mark.slow
 def test_a_game_that_begins_in_full_screen_covers_the_screen(display: str, tmp_path: Path):
     with start(display, tmp_path / "user", "--fullscreen") as window:
         window.wait_for(lambda: window.picture().get_size() == (1280, 800), "the whole screen")
@@ -87,6 +91,7 @@ def test_no_screen_is_a_message_and_exit_code_2(tmp_path: Path):
     assert "Traceback" not in finished.stderr
 
 
+@pytest.mark.slow
 def test_the_mouse_meets_what_it_sees_in_full_screen_and_back(tmp_path: Path):
     skip_without_a_screen()
     with screen("1366x768x24") as display, start(display, tmp_path / "user") as window:

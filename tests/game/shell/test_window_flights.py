@@ -15,6 +15,8 @@ needs_a_network = pytest.mark.skipif(not (MODELS_DIR / "lander" / "modern").exis
 LAMP_AT_THE_TOP = pygame.Rect(540, 28, 90, 16)
 TITLE_OF_THE_CARD = pygame.Rect(CARD.left + 20, CARD.top + 20, 160, 50)
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def display() -> Iterator[str]:

@@ -47,9 +47,8 @@ def page(open_game: Callable[..., Driver]) -> tuple[Driver, Page]:
     return driver, driver.top  # type: ignore[return-value]
 
 
-@pytest.mark.parametrize(
-    ("start", "direction", "end"),
-    [
+def test_arrows_follow_a_column_round_and_cross_to_the_next(subtests: pytest.Subtests):
+    for start, direction, end in [
         (0, focus.DOWN, 1),
         (2, focus.DOWN, 0),
         (0, focus.UP, 2),
@@ -57,10 +56,9 @@ def page(open_game: Callable[..., Driver]) -> tuple[Driver, Page]:
         (4, focus.LEFT, 1),
         (4, focus.RIGHT, 4),
         (5, focus.DOWN, 3),
-    ],
-)
-def test_arrows_follow_a_column_round_and_cross_to_the_next(start: int, direction: focus.Direction, end: int):
-    assert focus.neighbour(COLUMNS, start, direction) == end
+    ]:
+        with subtests.test(start=start, direction=direction, end=end):
+            assert focus.neighbour(COLUMNS, start, direction) == end
 
 
 def test_a_single_widget_keeps_the_focus():

@@ -196,11 +196,12 @@ def test_one_place_is_turned_into_pixels_and_points_as_many_are():
         assert view.point(*place) == tuple(view.points(place).tolist())
 
 
-@pytest.mark.parametrize("seed", range(12))
-def test_every_flight_begins_with_all_its_pads_in_view(seed: int):
-    env = Flight(seed, pads=3).env
-    view = framing.framed(env, clear=BELOW_OPENING).view(1.0)
-    assert all(seen(view, (edge, pad.top)) for pad in env.ground.pads for edge in (pad.left, pad.right))
+def test_every_flight_begins_with_all_its_pads_in_view(subtests: pytest.Subtests):
+    for seed in range(12):
+        with subtests.test(seed=seed):
+            env = Flight(seed, pads=3).env
+            view = framing.framed(env, clear=BELOW_OPENING).view(1.0)
+            assert all(seen(view, (edge, pad.top)) for pad in env.ground.pads for edge in (pad.left, pad.right))
 
 
 @pytest.mark.parametrize("pads", [1, 3])

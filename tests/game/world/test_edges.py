@@ -88,26 +88,29 @@ def test_a_craft_that_leaves_flies_out_of_view(state: tuple[float, ...]):
     assert isinstance(Departure(env, 0).pose(0.5), np.ndarray)
 
 
-@pytest.mark.parametrize("seed", range(8))
-def test_a_craft_that_is_whole_comes_to_rest_upright_beside_the_pad(seed: int):
-    rng = np.random.default_rng(seed)
-    env = LanderEnv(1, seed, frame_skip=1, ground=hilly(rng) if seed % 2 else None)
-    env.reset()
-    for _ in range(200):
-        x, lean = rng.uniform(-16, 16), rng.uniform(-0.35, 0.35)
-        env.place(np.ones(1, bool), np.array([[x, env.lowest(x, lean) + 0.05, rng.uniform(-1, 1), -1.0, lean, 0.0]]))
-        while env.outcome[0] == Outcome.FLYING:
-            env.fly(np.zeros(1, int))
-        if env.intact[0]:
-            break
-    assert env.intact[0]
-    whole = Wreck(env, 0, np.random.default_rng(0))
-    for _ in range(430):
-        whole.step()
-    x, _, angle = whole.pose(1.0)
-    assert not whole.moves
-    assert abs(angle) < 1.0
-    assert abs(x - env.position[0, 0]) < 2.5
+def test_a_craft_that_is_whole_comes_to_rest_upright_beside_the_pad(subtests: pytest.Subtests):
+    for seed in range(8):
+        with subtests.test(seed=seed):
+            rng = np.random.default_rng(seed)
+            env = LanderEnv(1, seed, frame_skip=1, ground=hilly(rng) if seed % 2 else None)
+            env.reset()
+            for _ in range(200):
+                x, lean = rng.uniform(-16, 16), rng.uniform(-0.35, 0.35)
+                env.place(
+                    np.ones(1, bool), np.array([[x, env.lowest(x, lean) + 0.05, rng.uniform(-1, 1), -1.0, lean, 0.0]])
+                )
+                while env.outcome[0] == Outcome.FLYING:
+                    env.fly(np.zeros(1, int))
+                if env.intact[0]:
+                    break
+            assert env.intact[0]
+            whole = Wreck(env, 0, np.random.default_rng(0))
+            for _ in range(430):
+                whole.step()
+            x, _, angle = whole.pose(1.0)
+            assert not whole.moves
+            assert abs(angle) < 1.0
+            assert abs(x - env.position[0, 0]) < 2.5
 
 
 def test_down_softly_beside_the_pad_is_a_touch_and_no_blast():

@@ -33,20 +33,21 @@ def drawn() -> Callable[[list[Sprite]], tuple[int, int, int]]:
     return draw
 
 
-@pytest.mark.parametrize("name", EXHIBITS)
-def test_every_sprite_of_the_gallery_covers_the_shape_that_collides(name: str):
-    exhibit = EXHIBITS[name](1.62)
-    outlines = Outlines(exhibit.sprites)
-    assert {sprite.body for sprite in exhibit.sprites} >= set(exhibit.bodies)
-    for sprite, (body, outline) in zip(exhibit.sprites, outlines.shapes, strict=True):
-        shape = exhibit.world.shapes[body.index]
-        assert sprite.body is body
-        if isinstance(shape, Circle):
-            assert isinstance(outline, Circle)
-            assert outline.radius == shape.radius
-        else:
-            assert isinstance(outline, Polygon)
-            np.testing.assert_allclose(outline.vertices, shape.vertices, atol=1e-9)
+def test_every_sprite_of_the_gallery_covers_the_shape_that_collides(subtests: pytest.Subtests):
+    for name in EXHIBITS:
+        with subtests.test(name=name):
+            exhibit = EXHIBITS[name](1.62)
+            outlines = Outlines(exhibit.sprites)
+            assert {sprite.body for sprite in exhibit.sprites} >= set(exhibit.bodies)
+            for sprite, (body, outline) in zip(exhibit.sprites, outlines.shapes, strict=True):
+                shape = exhibit.world.shapes[body.index]
+                assert sprite.body is body
+                if isinstance(shape, Circle):
+                    assert isinstance(outline, Circle)
+                    assert outline.radius == shape.radius
+                else:
+                    assert isinstance(outline, Polygon)
+                    np.testing.assert_allclose(outline.vertices, shape.vertices, atol=1e-9)
 
 
 def test_the_highest_layer_is_seen_whatever_the_order(drawn):

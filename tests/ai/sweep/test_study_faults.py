@@ -1,0 +1,127 @@
+"""The files of a study may say anything: `study` ends with a table or a sentence, not with a traceback or a warning."""
+
+import json
+import shutil
+from functools import cache
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from ai.sweep import importance
+from main import main
+from tests.support.studies import shown_study
+
+FILES = ("study.json", "trials/0000/trial.json", "started/0009.json")
+NASTY = (
+    None, True, -1, 0, 2, 0.5, 1e308, -1e308, 5e-324, 10**30, 10**39, "", "x", "\ud800\x1b[2J", "x" * 5000, "٣", [], {},
+    [[]], [None], [1e308] * 2, {"a": None}, float("nan"), float("inf"),
+)  # fmt: skip
+GONE = object()
+
+
+def make(folder, metric):
+    """Make a study of nine trials without their runs, one under way."""
+    study = shown_study(folder)
+    study.begin(9, {"learning_rate": 1e-3, "tau": 0.01, "optimizer": "sgd"})
+    for run in folder.glob("trials/*/seed-*"):
+        shutil.rmtree(run)
+    plan = json.loads((folder / "study.json").read_text())
+    plan["plan"]["metric"] = metric
+    (folder / "study.json").write_text(json.dumps(plan))
+    return folder
+
+
+@pytest.fixture(scope="module")
+def folders(tmp_path_factory):
+    return [make(tmp_path_factory.mktemp("studies") / metric, metric) for metric in ("time_to_99", "return")]
+
+
+@pytest.fixture(autouse=True)
+def few_trees(monkeypatch):
+    monkeypatch.setattr(importance, "TREES", 2)
+
+
+def places(value, path=()):
+    """Yield the path of every value within one from JSON; of a list, of its first two."""
+    yield path
+    inside = value.items() if isinstance(value, dict) else list(enumerate(value))[:2] if isinstance(value, list) else ()
+    for key, each in inside:
+        yield from places(each, (*path, key))
+
+
+def changed(value, path, new):
+    """Return a value from JSON with what lies at a path replaced, or gone."""
+    if not path:
+        return None if new is GONE else new
+    copy = json.loads(json.dumps(value))
+    within = copy
+    for key in path[:-1]:
+        within = within[key]
+    if new is GONE:
+        del within[path[-1]]
+    else:
+        within[path[-1]] = new
+    return copy
+
+
+def told(folder, capsys, *options):
+    """Return what the command prints, once it has ended as it should."""
+    code = main(["study", str(folder), "--html", str(folder.parent / "page.html"), *options])
+    out, err = capsys.readouterr()
+    assert (code, err.count("\n")) in ((0, 0), (1, 1)), err
+    assert not [sign for sign in "\x1b\ud800" if sign in out + err]
+    return out or err
+
+
+@cache
+def sound(folder, name):
+    return json.loads((folder / name).read_text())
+
+
+@given(st.data())
+@settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_study_bears_any_value_in_any_place(folders, capsys, data):
+    folder, name = data.draw(st.sampled_from(folders)), data.draw(st.sampled_from(FILES))
+    path = data.draw(st.sampled_from(list(places(sound(folder, name)))))
+    new = data.draw(st.sampled_from([*NASTY, GONE]) | st.floats() | st.integers() | st.text())
+    try:
+        (folder / name).write_text(json.dumps(changed(sound(folder, name), path, new)))
+        told(folder, capsys, *data.draw(st.sampled_from([(), ("--json",)])))
+    finally:
+        (folder / name).write_text(json.dumps(sound(folder, name)))
+
+
+def test_study_bears_what_has_broken_it(folders, capsys):
+    cases = {
+        "no seeds": (("seeds",), []),
+        "a huge value": (("value",), 1e308),
+        "a huge value of a seed": (("seeds", 0, "value"), -1e308),
+        "a huge return": (("seeds", 0, "curve", 0, 2), 1e308),
+        "a curve that stands still": (("seeds", 0, "curve"), [[0, 0.0, 0.0]]),
+    }
+    for folder in folders:
+        for named, (path, new) in cases.items():
+            try:
+                for number in range(9):
+                    name = f"trials/{number:04}/trial.json"
+                    (folder / name).write_text(json.dumps(changed(sound(folder, name), path, new)))
+                    if number in (0, 8):  # in one trial, in all
+                        said = told(folder, capsys)
+                        assert "nan" not in (folder.parent / "page.html").read_text(), (named, number)
+                        assert len(max(said.splitlines(), key=len)) < 300, (named, number)
+            finally:
+                for number in range(9):
+                    name = f"trials/{number:04}/trial.json"
+                    (folder / name).write_text(json.dumps(sound(folder, name)))
+
+
+def test_settings_that_make_no_sense_are_told(folders, capsys):
+    folder, name = folders[0], "trials/0003/trial.json"
+    nothing = {"value": None, "seeds": [], "problem": "too many\x1b[2J layers"}
+    try:
+        (folder / name).write_text(json.dumps(sound(folder, name) | nothing))
+        assert main(["study", str(folder)]) == 0
+        assert "of 1, the settings make no sense: 3: too many\\x1b[2J layers" in capsys.readouterr().out
+    finally:
+        (folder / name).write_text(json.dumps(sound(folder, name)))

@@ -1,0 +1,267 @@
+"""What holds on every screen, in each of its states: one function each, which leaves the screen as it found it."""
+
+import threading
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+
+import pygame
+import pytest
+
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import INK, VIEW_SIZE
+from game.input.bindings import KEYBOARD, Bindings, Command, Held
+from game.input.controls import Controls, key_name
+from game.scenes.menu_background import LOADER
+from game.scenes.play import PlayScene
+from game.scenes.replay import ReplayScene
+from game.ui.actions import Action, Table
+from tests.game.tour.stops import Stop
+from tests.support.driver import Driver
+from tests.support.state import state_of
+from tests.support.written import Written, misplaced
+
+SHAPES = [(1290, 430), (640, 1280), (800, 800)]  # three to one, one to two, square
+
+
+@dataclass
+class Visit:
+    """One look at a screen in one of its states."""
+
+    stop: Stop
+    driver: Driver
+    written: Written
+
+    def misplaced(self) -> set[tuple[str, str]]:
+        """Draw a frame, and return each text in it that does not fit, and why."""
+        page = self.written.turn(self.driver.app.canvas)
+        self.driver.app.draw()
+        assert page.notes, "nothing is written"
+        folder = str(self.driver.app.context.user_dir.parent)  # as long as it happens to be
+        wrong = set(misplaced(page, self.driver.app.canvas.view))
+        whole = {text for text, _ in wrong if folder in text} | {texts.BINDINGS_PRESS_KEY}  # that one ends in dots
+        return {(text, how) for text, how in wrong if how != "is cut short" or text not in whole}
+
+
+# Texts
+
+
+def texts_fit_at_the_largest_size(visit: Visit) -> None:
+    driver = visit.driver
+    for window in ((960, 540), VIEW_SIZE):
+        driver.resize(window)
+        driver.write_in("largest")
+        if (large := visit.misplaced()) and not visit.stop.state:
+            driver.write_in("normal")  # a figure over another on purpose does so at the usual size as well
+            large -= visit.misplaced()
+        assert not large, f"misplaced in a window of {window}"
+    driver.write_in("normal")
+    driver.frames(2)
+
+
+def texts_fit_in_windows_of_any_shape(visit: Visit) -> None:
+    as_usual = visit.misplaced()
+    for size in SHAPES:
+        visit.driver.resize(size)
+        visit.driver.frames(10)
+        wrong = {(text, how) for text, how in visit.misplaced() - as_usual if how != "is cut short"}
+        assert not wrong, f"misplaced in a window of {size}"  # a figure over another on purpose is so in every window
+    visit.driver.resize(VIEW_SIZE)
+
+
+NOTE = "Saved as a network with a rather long name: fly with it, or watch it."
+
+
+def a_note_hides_nothing_that_is_to_be_read_or_pressed(visit: Visit) -> None:
+    driver = visit.driver
+    driver.app.context.note(NOTE)
+    driver.frames(2)
+    notes, canvas = driver.app.notes, driver.app.canvas
+    place = canvas.rect(*notes.box(canvas))
+    canvas.turn_page()  # what stands on the last frame
+    assert not [area for area in canvas.words if area.colliderect(place)], "the note lies on words"
+    driver.frames(30)
+    assert place == canvas.rect(*notes.box(canvas)), "the note does not stay where it is"
+
+
+# Drawing
+
+
+def changed_by_drawing(driver: Driver) -> set[str]:
+    """Draw twice, and return what is not as it was."""
+    for thread in threading.enumerate():
+        if thread.name == LOADER:
+            thread.join()  # what it loads comes at any moment, and is none of the drawing's doing
+    ways = set()
+    scenes = driver.app.scenes
+    for alpha in (0.0, 0.5):
+        before = state_of(scenes)
+        scenes.draw(driver.app.canvas, alpha)
+        after = state_of(scenes)
+        # What there is only once was None before, and then a picture, or the other way round.
+        differing = {way for way in before.keys() | after.keys() if before.get(way) != after.get(way)}
+        ways |= {way for way in differing if {before.get(way), after.get(way)} != {"None", None}}
+    return ways
+
+
+def drawing_changes_nothing_but_pixels(visit: Visit) -> None:
+    driver, scenes = visit.driver, visit.driver.app.scenes
+    assert not changed_by_drawing(driver)
+    for frames in (1, 7, 40):
+        driver.frames(frames)
+        scenes.update()  # and before anybody has drawn what that did
+        assert not changed_by_drawing(driver), f"after {frames} frames"
+    driver.app.canvas.surface.fill((0, 0, 0))
+    pictures = []
+    for _ in range(2):
+        scenes.draw(driver.app.canvas, 0.5)
+        pictures.append(pygame.surfarray.array3d(driver.app.canvas.surface))
+    assert (pictures[0] == pictures[1]).all(), "a second frame is another picture"
+
+
+# Hints and actions
+
+NEW = {Command.HANDOVER: pygame.K_o, Command.RETRY: pygame.K_j, Command.CHOICES: pygame.K_i, Command.STEP: pygame.K_u,
+       Command.NEXT: pygame.K_k, Command.PREVIOUS: pygame.K_l, Command.FULLSCREEN: pygame.K_F9,
+       Held.MAIN: pygame.K_f, Held.LEFT: pygame.K_q, Held.RIGHT: pygame.K_e}  # fmt: skip
+
+
+def keys_told(driver: Driver) -> Counter[str]:
+    """Draw a frame, and count the keys that its hints name."""
+    told: Counter[str] = Counter()
+    text = Canvas.text
+
+    def noted(canvas: Canvas, string: str, position: tuple[float, float], **more) -> pygame.FRect:
+        if more.get("colour", INK) == INK and more.get("weight") == "medium":  # as keys are written
+            told[string] += 1
+        return text(canvas, string, position, **more)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Canvas, "text", noted)
+        driver.app.draw()
+    return told
+
+
+def hints_name_the_players_own_keys(visit: Visit) -> None:
+    keys = visit.driver.app.context.controls.keys
+    before = keys_told(visit.driver)
+    bindings = Bindings(KEYBOARD)
+    usual = {key_name(KEYBOARD.standard[meaning][0]): key_name(code) for meaning, code in NEW.items()}
+    for meaning, code in NEW.items():
+        bindings.bind(meaning, code)
+    keys.follow(bindings.to_dict())
+    visit.driver.frames(2)
+    after = keys_told(visit.driver)
+    keys.follow({})
+    actions = [entry for entry in visit.driver.top.actions() if isinstance(entry, Action)]
+    fixed = {key_name(entry.key) for entry in actions if not isinstance(entry.key, Command)} | {Controls().arrows}
+    wanted = Counter()
+    for word, count in before.items():
+        wanted[word if word in fixed else usual.get(word, word)] += count
+    assert after == wanted
+
+
+def hints_name_the_keys_of_their_own_actions(visit: Visit) -> None:
+    scene, controls = visit.driver.top, visit.driver.app.context.controls
+    entries = {entry.hint: entry for entry in scene.actions() if isinstance(entry, Action) and entry.hint}
+    rows = scene.hint_rows(visit.driver.app.canvas)
+    assert rows
+    for hint in (hint for row in rows for hint in row.hints if hint.run):
+        assert hint.key == entries[hint.meaning].key_word(controls), hint.meaning
+
+
+class Recorder:
+    """Stands in the table of a scene: notes which entry is run, and does nothing else."""
+
+    def __init__(self, scene: object, patch: pytest.MonkeyPatch) -> None:
+        self.ran: list[Command | int] = []
+        for name in ("actions", "_flight_actions", "_card_actions"):  # a flight has a table for each row of hints
+            if table := getattr(scene, name, None):
+                patch.setattr(scene, name, partial(self._noting, table))
+        patch.setattr(scene, "update", lambda: None)
+
+    def _noting(self, table: Callable[[], Table]) -> Table:
+        return [
+            replace(entry, run=partial(self.ran.append, entry.key)) if isinstance(entry, Action) else entry
+            for entry in table()
+        ]
+
+    def take(self) -> list[Command | int]:
+        ran, self.ran = self.ran, []
+        return ran
+
+
+# What the keys of a typing widget, or the application itself, do before the scene's table is asked.
+TAKEN = {
+    "NetworksScene, naming": {Command.CONFIRM, Command.BACK},
+    "BindingsScene, binding": {Command.PAUSE},
+    "NameDialog": {Command.CONFIRM, Command.BACK},
+}
+
+
+def the_key_the_button_and_the_click_run_the_same_action(visit: Visit) -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        _press_all(visit.stop, visit.driver, Recorder(visit.driver.top, patch))
+    visit.driver.app.context.controls.used_pad = None
+
+
+def _press_all(stop: Stop, driver: Driver, recorder: Recorder) -> None:
+    scene, controls = driver.top, driver.app.context.controls
+    actions = [entry for entry in scene.actions() if isinstance(entry, Action)]
+    assert actions
+    for action in actions:
+        if action.key is Command.FULLSCREEN or action.key in TAKEN.get(str(stop), ()):  # the application's own
+            continue
+        codes = controls.keys.codes(action.key) if isinstance(action.key, Command) else [action.key]
+        for code in codes:
+            if code == pygame.K_TAB and not isinstance(scene, PlayScene | ReplayScene):
+                continue  # moves the focus
+            driver.key(code)
+            assert recorder.take() == [action.key], f"{pygame.key.name(code)} of {action}"
+        command = action.gamepad or (action.key if isinstance(action.key, Command) else None)
+        for code in controls.buttons.codes(command) if command else ():
+            if code < 32:  # the others are axes
+                driver.button(code)
+                assert recorder.take() == [action.key], f"button {code} of {action}"
+    driver.key(pygame.K_F1)
+    recorder.take()
+    for pad in (False, True):
+        controls.used_pad = 0 if pad else None
+        told = {entry.hint: entry for entry in scene.actions() if isinstance(entry, Action) and entry.hint}
+        for meaning, place in driver.hints().items():
+            driver.post(pygame.MOUSEBUTTONDOWN, pos=driver.to_window(place), button=1)
+            assert recorder.take() == [told.pop(meaning).key], f"a click on {meaning}"
+        assert not told or stop.screen in ("DigitsScene", "TrainScene")
+
+
+CHECKERS: tuple[Callable[[Visit], None], ...] = (
+    texts_fit_at_the_largest_size,
+    texts_fit_in_windows_of_any_shape,
+    drawing_changes_nothing_but_pixels,
+    hints_name_the_players_own_keys,
+    hints_name_the_keys_of_their_own_actions,
+    the_key_the_button_and_the_click_run_the_same_action,
+    a_note_hides_nothing_that_is_to_be_read_or_pressed,
+)
+IN_HAND = {"WatchScene, explained"}  # the lander is held there: keys move it, and hints say so
+NOT_AT = {
+    hints_name_the_keys_of_their_own_actions: IN_HAND,
+    the_key_the_button_and_the_click_run_the_same_action: IN_HAND,
+    # Words stand in every row of these.
+    a_note_hides_nothing_that_is_to_be_read_or_pressed: {"swarm", "swarm, after a while", "DigitInsideScene"},
+}
+# Whatever is laid out for a page is laid out alike in every window: the last two of these stand for all.
+ONLY_AT = {
+    texts_fit_in_windows_of_any_shape: {
+        "MenuScene", "WatchScene", "ReplayScene", "Play", "swarm", "mission", "TrainScene", "PhysicsScene",
+        "PauseScene", "SettingsScene", "QuestionDialog",
+    }
+}  # fmt: skip
+
+
+def checkers_at(stop: Stop) -> list[Callable[[Visit], None]]:
+    """Return the checkers that look at a stop."""
+    at = str(stop)
+    return [each for each in CHECKERS if at not in NOT_AT.get(each, ()) and at in ONLY_AT.get(each, (at,))]

@@ -1,0 +1,82 @@
+"""Every screen in each of the states that the tour looks at."""
+
+import json
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, field, replace
+
+import pygame
+
+from game.flight.logbook import LOGBOOK, Records
+from game.ui.context import Context
+from tests.support.driver import Driver
+from tests.support.games import OpenGame
+from tests.support.screens import FLOWN, OVER_OTHERS, SCREENS, crashed, opened, settle, shared
+from tests.support.tour import stock
+
+
+@dataclass(frozen=True)
+class Stop:
+    """A screen in one of its states: how the player's folder is filled, what is set, and what is done there."""
+
+    screen: str
+    state: str = ""
+    happens: Callable[[Driver], object] = lambda _: None
+    settings: dict[str, object] = field(default_factory=dict)
+    prepare: Callable[[Context], object] = lambda _: None
+
+    def __str__(self) -> str:
+        return f"{self.screen}, {self.state}".removesuffix(", ")
+
+    @property
+    def walked(self) -> bool:
+        """Whether it is a screen as it opens, to be walked through and left."""
+        return not self.state and self.screen not in FLOWN
+
+    def open(self, open_game: OpenGame, context: Context) -> Driver:
+        """Open it at the largest size of text."""
+        self.prepare(context)
+        settle(context, text_size="largest", **self.settings)
+        driver = opened(open_game, self.screen)
+        self.happens(driver)
+        return driver
+
+
+def keys(*pressed: int, frames: int = 0) -> Callable[[Driver], None]:
+    """Return what presses keys and lets frames pass."""
+
+    def press(driver: Driver) -> None:
+        driver.keys(*pressed)
+        driver.skip(frames)
+
+    return press
+
+
+def listed(context: Context) -> None:
+    """Fill every list, the logbook also with an entry of which much is to be said."""
+    stock(context)
+    told = {"course": "ferry", "medal": 3, "gravity": 0.8, "outcome": "OUT_OF_BOUNDS", "human": 0.5}
+    entry = replace(Records(context.user_dir).entries()[0], **told)
+    with (context.user_dir / LOGBOOK).open("a", encoding="utf-8") as file:
+        file.write(json.dumps(asdict(entry)) + "\n")
+
+
+STOPS = [
+    *map(Stop, (*SCREENS, *FLOWN, *OVER_OTHERS)),
+    *(
+        Stop(name, "with much to list", keys(pygame.K_DOWN), prepare=listed)
+        for name in ("LogbookScene", "MissionsScene", "NetworksScene")
+    ),
+    Stop("NetworksScene", "naming", keys(pygame.K_F2)),
+    Stop("QuizScene", "read", keys(pygame.K_3)),
+    Stop("BindingsScene", "binding", keys(pygame.K_RETURN)),
+    Stop("WatchScene", "stopped", keys(pygame.K_SPACE)),
+    Stop("WatchScene", "touched", keys(pygame.K_SPACE, pygame.K_q, pygame.K_m)),
+    Stop("WatchScene", "under a map", keys(pygame.K_m)),
+    Stop("WatchScene", "explained", keys(pygame.K_SPACE, pygame.K_g, pygame.K_UP, pygame.K_F1)),
+    Stop("swarm", "after a while", keys(frames=400)),
+    Stop("Play", "flown by the network", keys(pygame.K_TAB)),
+    Stop("Play", "card", crashed),
+    Stop("mission", "card", crashed),
+    Stop("Play", "shared", shared, {"assist": 0.6, "three_pads": True}),
+    Stop("Play", "practice", shared, {"gravity": 0.8, "pace": 0.7, "hands": "laggy"}),
+]

@@ -1,0 +1,69 @@
+"""Every screen can be walked, seen and left by the keyboard, a gamepad and the mouse, each of them alone."""
+
+import numpy as np
+import pygame
+
+from game.core import texts
+from game.ui.widget import Widget
+from tests.support.driver import Driver
+from tests.support.player import Player
+
+
+def every_widget_is_reached_and_there_is_a_way_out(driver: Driver, screen: str, device: str) -> None:
+    player = Player(driver, device)
+    below = player.app.scenes.stack[:-1]
+    if screen in ("WatchScene", "PhysicsScene", "ReplayScene"):
+        player.press("step")
+    if screen == "NameDialog":
+        player.press("down")  # out of the line, with what stands there
+    walk(player)
+    if below:
+        player.press("back")
+        assert player.app.scenes.stack == below, "there is no way back"
+        return
+    for _ in range(3):
+        if player.app.scenes.running and player.top_name != "PauseScene":
+            player.press("back")
+    if player.top_name == "PauseScene":
+        player.choose(texts.PAUSE_LEAVE)
+    assert not player.app.scenes.running, "there is no way out"
+
+
+def walk(player: Player) -> None:
+    player.unseen = True
+    found = player.ways()
+    player.unseen, player.app.context.settings.reduced_motion = False, True
+    widgets = list(player.form.widgets)  # what is chosen on the way may have changed them
+    assert not [widget.label for index, widget in enumerate(widgets) if index not in found], "these are not reached"
+    for widget in widgets[:24]:
+        if widget in player.form.widgets:
+            assert is_seen(player, widget), f"no focus is seen on {widget.label}"
+
+
+def is_seen(player: Player, widget: Widget) -> bool:
+    """Whether the picture around a widget changes when the focus comes to it."""
+    form, canvas = player.form, player.app.canvas
+    pictures = []
+    for focused in (next((each for each in form.widgets if each is not widget), widget), widget):
+        form.focus(focused)
+        player.frames(2)
+        around = canvas.rect(*widget.box.inflate(28, 16)).clip(canvas.surface.get_rect())
+        pictures.append(pygame.surfarray.array3d(canvas.surface.subsurface(around)).astype(int))
+    return len(form.widgets) == 1 or int((np.abs(pictures[0] - pictures[1]).max(axis=2) > 40).sum()) >= 12
+
+
+def the_mouse_alone_finds_a_way_out(game: Driver) -> None:
+    game.move((640, 700))
+    game.frames(3)
+    for _ in range(3):
+        if not game.app.scenes.running:
+            break
+        words = {word.label: word for word in game.top.form.widgets}
+        exits = [label for label in (texts.BACK, texts.PAUSE_LEAVE, texts.MENU["quit"][0]) if label in words]
+        if exits:
+            game.click(words[exits[0]].box.center)
+        else:
+            hints = game.hints()
+            game.click(hints.get(texts.HINT_BACK) or hints[texts.HINT_PAUSE])
+        game.frames(3)
+    assert not game.app.scenes.running, "there is no way out"

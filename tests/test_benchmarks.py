@@ -1,0 +1,63 @@
+"""Benchmarks need nothing but the game to start; what else they compare with, they name."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+EXTRAS = {
+    "pytest", "hypothesis", "torch", "gymnasium", "Box2D", "envpool", "pymunk", "stable_baselines3", "ray", "optuna",
+    "av",
+}  # fmt: skip
+
+# Starts each benchmark so, one after another, with everything of the extras made impossible to find.
+SESSION = """
+import importlib, sys
+
+class LeftOut:
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] in EXTRAS:
+            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+
+sys.meta_path.insert(0, LeftOut())
+found = importlib.util.find_spec
+importlib.util.find_spec = lambda name, *more: None if name in EXTRAS else found(name, *more)
+for name, *options in CASES:
+    sys.argv = [name, *options]
+    try:
+        importlib.import_module(f"benchmarks.{name}").main()
+        end = "went on to its end"
+    except SystemExit as ended:
+        end = ended.code
+    except BaseException as error:
+        end = f"{type(error).__name__}: {error}"
+    print("ENDED", name, end)
+"""
+
+
+def ended(cases: list[list[str]]) -> dict[str, str]:
+    """What each benchmark started with these options ends with, by its name."""
+    program = f"import importlib.util\nEXTRAS, CASES = {EXTRAS!r}, {cases!r}\n{SESSION}"
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False, timeout=300
+    )
+    lines = [line.split(" ", 2)[1:] for line in done.stdout.splitlines() if line.startswith("ENDED ")]
+    assert len(lines) == len(cases), done.stderr
+    return dict(lines)
+
+
+@pytest.mark.slow
+def test_every_benchmark_says_what_it_does_without_what_only_tests_and_rivals_need():
+    names = [path.stem for path in sorted((ROOT / "benchmarks").glob("*.py")) if "def main(" in path.read_text()]
+    assert len(names) > 30
+    assert {name: end for name, end in ended([[name, "--help"] for name in names]).items() if end != "0"} == {}
+
+
+@pytest.mark.slow
+def test_a_benchmark_that_cannot_do_without_an_extra_names_it_in_one_sentence():
+    cases = [["lunar_lander"], ["sweep"], ["learning", "--workers", "2"], ["ablations", "--workers", "2"]]
+    for name, end in ended(cases).items():
+        assert end.startswith("this needs "), (name, end)
+        assert "pip install" in end, (name, end)
