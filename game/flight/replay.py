@@ -38,21 +38,15 @@ class ReplayedFlight(Flight):
         hands = self._source.hands
         return hands[min(max(self.at - 1, 0), len(hands) - 1)] if hands else self.hand
 
-    def _shares(self, action: int, by: StickHolder, held: int, shares: Shares | None) -> Shares | None:  # noqa: ARG002
-        """Return the recorded shares of thrust of the next step."""
-        return self._source.shares.get(self.at)
-
-    def _choose(self, held: int) -> tuple[int, StickHolder]:  # noqa: ARG002
-        """Return the recorded action of the next step, and who chose it."""
+    def _choose(self, held: int, shares: Shares | None) -> tuple[int, StickHolder, Shares | None]:  # noqa: ARG002
+        """Return the recorded action of the next step, who chose it, and its recorded shares of thrust."""
         if self.at >= len(self._source.actions):
-            return COAST, self.flown_by
+            return COAST, self.flown_by, None
         self.hand = self._source.hands[self.at]
         self.set_gravity(self._source.gravity_at(self.at))
-        if (
-            self.hand is StickHolder.HUMAN and self.at % DECISION_STEPS == 0
-        ):  # the read-outs were aimed at a pad then, too
-            self._aim()
-        return self._source.actions[self.at], self.hand
+        if self.hand is StickHolder.HUMAN and self.at % DECISION_STEPS == 0:  # the read-outs were aimed at a pad then, too
+            self.aim()
+        return self._source.actions[self.at], self.hand, self._source.shares.get(self.at)
 
 
 class FlightReplay:

@@ -112,7 +112,7 @@ def test_any_pad_will_do_and_the_one_that_is_meant_comes_first(agent):
         env.target[:] = target
         (plan,) = Lookahead(agent).plans(Moment.of(env), [(0, (KEYS[3],))])
         assert target in (plan.target, 0)
-    env = low(ground=ground, start=(6.0, 2.9, 0.0, -0.5, 0.0, 0.0))
+    env = low(ground=ground, start=(6.0, 2.9, 0.0, -1.2, 0.0, 0.0))
     env.target[:] = 0  # no network gets there from here without a touch
     assert Lookahead(agent).plans(Moment.of(env), [(0, (KEYS[0],))])[0].target == 1
 
