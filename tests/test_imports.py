@@ -14,9 +14,7 @@ STDLIB = set(sys.stdlib_module_names)
 PYGAME = {"pygame", "pygame_gui"}
 # What a single module may import besides, and only when it is used.
 LATE = {
-    "ai.cli.training_run": {"tqdm"},
-    "ai.cli.copilot": {"tqdm"},
-    "ai.cli.lander": {"tqdm"},
+    "ai.cli.command_line": {"tqdm"},
     "ai.training.gym_task": {"gymnasium"},
     "ai.common.places": {"platformdirs"},
     "ai.sweep.cluster": {"ray"},
