@@ -1,10 +1,11 @@
 """What the cards of the sabotage lab say was measured: shares of training flights that landed, over several seeds.
 
-    python -m benchmarks.sabotage [--seeds 8] [--only NAME ...]    # half a minute of one core for each run
+    python -m benchmarks.sabotage [--seeds 6] [--only NAME ...]    # ten seconds of one core for each run
 
 Each part is taken away from the modern preset, and each run is trained for 150,000 decisions. A share is of the latest
 hundred training flights, with their chance moves; a line gives its mean over the seeds, and the 95 % interval of that
-mean (Student's t). Another processor learns otherwise from the same seed, so single seeds tell nothing.
+mean (Student's t), then the least and the most. Another processor learns otherwise from the same seed, so single seeds
+tell nothing.
 """
 
 from __future__ import annotations
@@ -14,17 +15,14 @@ import os
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is imported, or it has no effect
 
 import argparse
-import math
-import statistics
 from typing import Final
 
 from ai.agent.config import PRESETS
+from ai.common.intervals import mean_of_shares
 from ai.training.loop import Training
 from ai.training.sabotage import MEASURED, SABOTAGES, sabotaged
 
 AFTER: Final = (50_000, 100_000, 150_000)
-# Student's t for a two-sided 95 % interval, by degrees of freedom.
-_T: Final = (math.inf, 12.71, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262)
 
 
 def shares(name: str, seed: int) -> list[float]:
@@ -42,17 +40,15 @@ def shares(name: str, seed: int) -> list[float]:
 def main() -> None:
     """Print a line for each part that is taken away."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--seeds", type=int, default=8)
+    parser.add_argument("--seeds", type=int, default=6)
     parser.add_argument("--only", nargs="+", choices=(MEASURED, *SABOTAGES), default=(MEASURED, *SABOTAGES))
     options = parser.parse_args()
     for name in options.only:
         runs = [shares(name, seed) for seed in range(options.seeds)]
         told = []
         for each in zip(*runs, strict=True):
-            t = _T[min(len(each), len(_T)) - 1]
-            half = t * statistics.stdev(each) / math.sqrt(len(each)) if len(each) > 1 else math.inf
-            low, high = max(0.0, statistics.mean(each) - half), min(1.0, statistics.mean(each) + half)
-            told.append(f"{statistics.mean(each):4.0%} ({low:.0%} to {high:.0%}; {min(each):.0%} to {max(each):.0%})")
+            mean, low, high = mean_of_shares(each)
+            told.append(f"{mean:4.0%} ({low:.0%} to {high:.0%}; {min(each):.0%} to {max(each):.0%})")
         print(f"{name:18} {'  '.join(told)}", flush=True)
 
 

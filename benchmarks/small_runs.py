@@ -1,6 +1,6 @@
-"""What the path's chapters on the target network, the memory and daring claim, over several seeds.
+"""What the path's chapters on the target network, the memory and daring claim, over several seeds, with 95 % intervals.
 
-python -m benchmarks.small_runs [--seeds 10] [--chapters memory]    # some ten minutes of one core
+python -m benchmarks.small_runs [--seeds 12] [--chapters memory]    # some ten minutes of one core
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ import argparse
 from collections.abc import Sequence
 
 from ai.agent.config import Config
+from ai.common.intervals import mean_of_shares, wilson
 from ai.training.small_run import SMALL_RUN, Plan, SmallRun, SmallState
 from game.learn.daring import DARING, PAY
 from game.learn.memory import LATEST, TODAY, YESTERDAY, MemoryChapter
@@ -35,11 +36,13 @@ def memory(seeds: Sequence[int]) -> None:
     """Print for each memory and seed the share of tests that landed at yesterday's end, and the least of today."""
     for kind, prioritised, keep in (("even", False, None), ("surprising", True, None), ("latest", False, LATEST)):
         plan, config = MemoryChapter.PLAN._replace(keep=keep), SMALL_RUN.changed(prioritised=prioritised)
-        told = []
+        told, least = [], []
         for seed in seeds:
             shares = [state.passed or 0.0 for state in run(config, seed, plan, YESTERDAY + TODAY)[YESTERDAY - 1 :]]
-            told.append(f"{shares[0]:.2f} to {min(shares[1:]):.2f}")
-        print(f"memory {kind}: {', '.join(told)}", flush=True)
+            least.append(min(shares[1:]))
+            told.append(f"{shares[0]:.2f} to {least[-1]:.2f}")
+        mean, low, high = mean_of_shares(least)
+        print(f"memory {kind}: {', '.join(told)}; least {mean:.0%} ({low:.0%} to {high:.0%})", flush=True)
 
 
 def daring(seeds: Sequence[int]) -> None:
@@ -56,7 +59,7 @@ CHAPTERS = {"target": target, "memory": memory, "daring": daring}
 def main() -> None:
     """Print a line for each chapter and choice."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, default=10)
+    parser.add_argument("--seeds", type=int, default=12)
     parser.add_argument("--chapters", nargs="+", choices=CHAPTERS, default=list(CHAPTERS))
     options = parser.parse_args()
     for chapter in options.chapters:
@@ -64,7 +67,9 @@ def main() -> None:
 
 
 def _landed(runs: list[list[SmallState]]) -> str:
-    return f"at least half landed in {sum((states[-1].landed or 0.0) >= 0.5 for states in runs)} of {len(runs)}"
+    landed = sum((states[-1].landed or 0.0) >= 0.5 for states in runs)
+    low, high = wilson(landed / len(runs), len(runs))
+    return f"at least half landed in {landed} of {len(runs)} ({low:.0%} to {high:.0%} of such runs)"
 
 
 if __name__ == "__main__":

@@ -15,10 +15,11 @@ from engine.shapes import Circle, Polygon, Shape
 from engine.vector import Array, Bools, Ints, rotate
 
 Span = slice | Ints
-_LARGEST: Final = float(np.finfo(float).max)
-# Largest values of the tables that have any, and the tables in which NaN stands for a value left out.
-_MOST: Final = dict.fromkeys(("inverse_mass", "linear_drag", "quadratic_drag", "friction"), _LARGEST) | {"restitution": 1.0}
-_LEFT_OUT: Final = ("restitution", "friction")
+_MOST: Final = {  # largest values of tables; none may be below 0, or infinite
+    **dict.fromkeys(("inverse_mass", "linear_drag", "quadratic_drag", "friction"), float(np.finfo(float).max)),
+    "restitution": 1.0,
+}
+_LEFT_OUT: Final = ("restitution", "friction")  # in which NaN stands for what the other body says
 ALL: Final = slice(None)
 
 
@@ -92,10 +93,11 @@ class BodyParams:
             object.__setattr__(self, name, value)
             return
         table = np.array(value, dtype=before.dtype)
-        for_each_world = name == "quadratic_drag" and table.ndim == 3
-        if (table.shape[1:] if for_each_world else table.shape) != before.shape[-table.ndim + for_each_world :]:
-            raise ValueError(f"{name} must be of shape {before.shape}, not {table.shape}")
-        if name in _MOST and not (np.isnan(table) * (name in _LEFT_OUT) | (table >= 0) & (table <= _MOST[name])).all():
+        shape, expected = ((each.shape[1:] if each.ndim == 3 else each.shape) for each in (table, before))
+        if shape != expected or (table.ndim == 3 and name != "quadratic_drag"):
+            raise ValueError(f"{name} must be of shape {expected}, not {table.shape}")
+        said = table[~np.isnan(table)] if name in _LEFT_OUT else table
+        if name in _MOST and not ((said >= 0) & (said <= _MOST[name])).all():
             raise ValueError(f"{name} must be from 0 to {_MOST[name]}, not {table.tolist()}")
         self._put(name, table)
 
