@@ -65,7 +65,6 @@ PICTURES: tuple[tuple[str, Callable[[Context], Scene], dict[int, int], int], ...
     ("cockpit", partial(PlayScene, seed=12), {5: pygame.K_UP, 40: pygame.K_RIGHT, 80: pygame.K_UP}, 89),
     ("watch", partial(WatchScene, count=64, seed=3), {}, 260),
     ("map", partial(WatchScene, seed=4), {30: pygame.K_m}, 110),
-    ("edge", partial(PlayScene, seed=12), {5: pygame.K_RIGHT, 40: pygame.K_RIGHT, 60: pygame.K_RIGHT}, 150),
     ("descent", partial(PlayScene, seed=4, challenge=Descent()), dict.fromkeys(range(5, 160, HELD), pygame.K_UP), 100),
     ("learn", partial(ChapterScene, key="plane"), EIGHT_UNITS, 700),
     ("train", TrainScene, {5: pygame.K_RETURN}, 30),
@@ -83,7 +82,6 @@ SHARP = 90
 # What has been chosen where a picture needs it.
 CHOSEN = {
     "cockpit": Settings(assist=0.6, copilot="guardian", three_pads=True),
-    "edge": Settings(assist=0.4, copilot="guardian", edge=True),
 }
 
 MOVING = "flight"

@@ -66,7 +66,6 @@ class PlayScene(Scene):
         self._stick = FlightControls(context.controls, context.settings)
         self.explained = Explained(flies=True)
         self._away = 0  # steps since the window was left; 0 while it is in use
-        self._told = ""  # why the guardian goes by points, as the player was told last
         self._controls, self._settings, self._sound = context.controls, context.settings, context.sound
         self._load_network()
         if self.challenge is None and seed is None and not context.settings.tutored:
@@ -95,14 +94,6 @@ class PlayScene(Scene):
         other = not challenge and self._chosen() != self._begun_with
         if not (self.flown.begun or self.flight.over) and (eases or other):
             self._begin(self.flight.recording.seed)
-        self._tell_lack()
-
-    def _tell_lack(self) -> None:
-        """Tell why the guardian goes by points, once: it holds for every flight with this network."""
-        problem = self.flown.cockpit.lacks
-        if problem and problem != self._told:
-            self.context.note(problem)
-        self._told = problem
 
     def exit(self) -> None:
         """Keep the flight for the return, and save the dial's setting."""
@@ -210,7 +201,6 @@ class PlayScene(Scene):
         action, shares = self._stick.read(self.flown.scenery.across)
         due = self.flown.due(action)
         if self.waiting:
-            self._tell_lack()
             return None
         if due:
             self.flown.prepare()

@@ -120,24 +120,24 @@ def test_no_hand_can_crash_a_flight_while_a_plan_is_held(agent):
         rank = np.where(passes | ~passes.any(axis=1, keepdims=True), rng.random(passes.shape), np.inf)
         return rank.argmin(axis=1)
 
-    weak = np.tile([0.3, 1.0], (2, 1))
+    weak = np.tile([0.3, 1.0], (1, 1))
     cases = (
-        ("held right", lambda env, _: np.full(2, 2), GUARD, None),
+        ("held right", lambda env, _: np.full(1, 2), GUARD, None),
         ("an adversary", adversary, GUIDE, None),
-        ("a weak stick", lambda env, _: np.full(2, 5), GUARD, weak),
+        ("a weak stick", lambda env, _: np.full(1, 5), GUARD, weak),
     )
     for what, ask, assist, shares in cases:
-        env = flights(2)
+        env = flights(1)
         _, held = guarded(agent, env, ask, assist, shares)
         assert held.all(), what
         assert (env.outcome == Outcome.LANDED).all(), what
 
 
 def test_whoever_flies_by_share_alone_is_as_safe(agent):
-    env, copilot = flights(2), CoPilot(agent, GUARD, "guardian")
-    weak = np.tile([0.4, -1.0], (2, 1))
+    env, copilot = flights(1), CoPilot(agent, GUARD, "guardian")
+    weak = np.tile([0.4, -1.0], (1, 1))
     while (env.outcome == Outcome.FLYING).any():
-        action, overridden = copilot.share(env.observe(), np.full(2, 4), None, weak, env)
+        action, overridden = copilot.share(env.observe(), np.full(1, 4), None, weak, env)
         flown = np.array([KEYS[a][1:] for a in action])
         env.fly(action, np.where(overridden[:, None], flown, weak))
     assert (env.outcome == Outcome.LANDED).all()

@@ -18,7 +18,7 @@ from game.flight.networks import Policy
 from game.scenes.watch import WatchScene
 from game.ui.context import Context
 from game.world.camera import View
-from game.world.policy_map import ACTION, CHANCE, COLOURS, OFF, SCORE, PolicyMap
+from game.world.policy_map import ACTION, COLOURS, OFF, SCORE, PolicyMap
 from tests.support.driver import Driver
 
 MODELS = Path(__file__).parents[3] / "models" / "lander"
@@ -188,10 +188,10 @@ def test_a_key_a_button_and_the_row_choose_the_map(open_game: Open, context: Con
     driver = open_game(WatchScene, seed=2)
     assert scene(driver).network.name == "modern"
     kinds = []
-    for press in (driver.key,) * 4:
+    for press in (driver.key,) * 3:
         press(pygame.K_m)
         kinds.append(scene(driver).world.policy_map.kind)
-    assert kinds == [ACTION, SCORE, CHANCE, OFF]
+    assert kinds == [ACTION, SCORE, OFF]
     row = driver.widget(texts.WATCH_MAP)
     for _ in range(3):
         driver.button(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
