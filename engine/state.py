@@ -17,7 +17,9 @@ from engine.vector import Array, Bools, Ints, rotate
 Span = slice | Ints
 _LARGEST: Final = float(np.finfo(float).max)
 # Largest values of the tables that have any, and the tables in which NaN stands for a value left out.
-_MOST: Final = dict.fromkeys(("inverse_mass", "linear_drag", "quadratic_drag", "friction"), _LARGEST) | {"restitution": 1.0}
+_MOST: Final = dict.fromkeys(("inverse_mass", "linear_drag", "quadratic_drag", "friction"), _LARGEST) | {
+    "restitution": 1.0
+}
 _LEFT_OUT: Final = ("restitution", "friction")
 ALL: Final = slice(None)
 

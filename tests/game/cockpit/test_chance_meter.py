@@ -4,6 +4,7 @@ import shutil
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pygame
 import pytest
@@ -72,7 +73,7 @@ def test_alone_the_ring_is_there_on_wish_and_asks_the_critic_once_for_each_decis
     flight, meter = metered(agent, settings, assist=0.0)
     flight.step(MAIN)
     meter.follow()
-    assert meter.chance is None
+    assert (meter.wished, meter.chance) == (False, None)
     settings.edge = True
     assert meter.wished
     asked = []
@@ -156,7 +157,7 @@ def test_a_guarded_landing_ends_with_a_card_that_names_the_rescues(open_game: Op
 def test_m_shows_the_edge_of_no_return_and_the_choices_do_so_without_keys(open_game: Open, context: Context):
     context.settings.tutored = True
     context.settings_file.save(context.settings)
-    driver = open_game(PlayScene, seed=12)
+    driver: Any = open_game(PlayScene, seed=12)
     driver.key(pygame.K_m)
     driver.frames(12)
     assert driver.app.context.settings.edge

@@ -129,7 +129,7 @@ def test_the_co_pilots_panel_draws_what_a_network_that_flies_alone_decides(
     flight, drawn = Flight(5, agent), Drawn(monkeypatch)
     copilot_panel = CopilotPanel(flight.env.ground)
     flight.hand_over()
-    while not flight.over:
+    while True:
         if len(flight.recording.actions) % DECISION_STEPS == 0:
             sensed = flight.env.observe()
         flight.step(0)
@@ -153,10 +153,9 @@ def test_the_co_pilots_panel_draws_the_shared_decision_and_its_words_say_why(
     flight, drawn = Flight(5, agent, pads=pads), Drawn(monkeypatch)
     copilot_panel = CopilotPanel(flight.env.ground)
     flight.help(0.5, mode)
-    flight.copilot.critic = None  # chances have a panel of their own
     rng = np.random.default_rng(1)
     titles, held = set(), 0
-    while not flight.over and len(flight.recording.actions) < 900:
+    while len(flight.recording.actions) < 900:
         if len(flight.recording.actions) % 7 == 0:
             held = int(rng.choice([0, 0, 1, 2, 3, 4, 5]))
         flight.step(held)
@@ -191,13 +190,13 @@ def check_chances(rows: list[Row], chances: np.ndarray, flown: int) -> None:
 def read_why_saved(why: tuple[str, str, str], decision: SharedDecision, *, overridden: bool) -> None:
     """The words on a guardian's decision are its figures, and agree with what was flown."""
     title, *lines = why
-    assert overridden == (title != texts.COPILOT_PANEL_WHY["PILOT"][0])
+    assert overridden == (title not in (texts.COPILOT_PANEL_WHY["PILOT"][0], texts.GUARDIAN_AGREES[0]))
     figures = [float(figure) for line in lines for figure in re.findall(r"(\d+(?:\.\d+)?)(?= of 100)", line)]
     assert decision.chance is not None
-    assert decision.flown_chance is not None
+    assert decision.chances is not None
     assert figures[0] == pytest.approx(100 * float(decision.chance[0]), abs=0.51)
     if overridden and len(figures) > 1:
-        assert figures[1] == pytest.approx(100 * float(decision.flown_chance[0]), abs=0.51)
+        assert figures[1] == pytest.approx(100 * float(decision.chances[0, decision.action[0]]), abs=0.51)
         assert figures[1] >= figures[0]
         assert decision.chance[0] < decision.required
 

@@ -189,7 +189,7 @@ def test_a_rescue_is_counted_only_where_the_pilots_action_was_changed():
     decision = SimpleNamespace(assist=0.4, chance=np.array([0.5]), required=np.array([0.97]))
     rescues = Rescues()
     for changed in [False] * 90 + [True] * 4 + [False] * 90 + [True] * 4 + [False] * 20 + [True] * 4:
-        rescues.follow(SimpleNamespace(decision=decision, shared=True, overridden=changed))  # type: ignore[arg-type]
+        rescues.follow(SimpleNamespace(decision=decision, shared=True, overridden=changed))
     assert rescues.times == 2  # within a second of each other they are the same one
 
 
@@ -217,5 +217,5 @@ def test_a_guardian_counts_only_if_it_watched_over_the_whole_flight_alike(
     rescues = Rescues()
     for assist in assists:
         decision = SimpleNamespace(assist=assist, chance=np.array([0.99]), required=np.array([0.9]))
-        rescues.follow(SimpleNamespace(decision=decision, shared=assist is not None, overridden=False))  # type: ignore[arg-type]
+        rescues.follow(SimpleNamespace(decision=decision, shared=assist is not None, overridden=False))
     assert rescues.throughout == throughout
