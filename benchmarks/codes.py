@@ -77,7 +77,8 @@ class Sticks:
         wanted = ACTION_SHARES[self._seen[len(self._seen) - 1 - LATE]]
         self._place += (wanted - self._place).clip(-SLOW, SLOW)
         self._tremor = 0.9 * self._tremor + self._rng.normal(0.0, TREMOR, 2)
-        stick = pushed(*np.where(self._place == 0, 0, self._place + self._tremor).tolist(), self._shares)
+        main, side = np.where(self._place == 0, 0, self._place + self._tremor).tolist()
+        stick = pushed(main, side, self._shares)
         self._shares = stick.shares or full(stick.action)
         return stick
 

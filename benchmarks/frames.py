@@ -188,7 +188,9 @@ def rows() -> dict[str, Row]:
         },
         **{
             f"lesson, {name}": Row(
-                LessonScene, (pygame.K_DOWN, pygame.K_RETURN), before=lambda context, n=name: (context, lesson_of(n))
+                LessonScene,
+                (pygame.K_DOWN, pygame.K_RETURN),
+                before=lambda context, n=name: (context, lesson_of(n)),  # type: ignore[misc]
             )
             for name in ("modern", "classic")
         },
@@ -246,7 +248,7 @@ def cost(row: Row, size: tuple[int, int], seen: set[type]) -> np.ndarray:
         given = row.before(context)
         for below in given:
             if isinstance(below, Scene):
-                app.show(lambda _, below=below: below)
+                app.show(lambda _, below=below: below)  # type: ignore[misc]
                 for _ in range(SETTLED):
                     app.tick()
         while not idle():

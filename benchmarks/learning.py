@@ -34,7 +34,7 @@ from typing import Any
 import numpy as np
 
 from ai.agent.config import PRESETS, Config
-from ai.cli.lander import configured
+from ai.cli.command_line import configured
 from ai.common.environment import Floats, Ints
 from ai.lander.pilots import Pilot
 from ai.lander.spawns import CURRICULA

@@ -100,7 +100,7 @@ def kill(game: Game, rounds: int, rng: np.random.Generator) -> list[str]:
             game.rest(rng.uniform(0.0, 1.0))
         else:
             state = "learning"
-            game.wait(lambda: lander_run.sight)
+            game.wait(lambda: lander_run.swarm_state)
             game.rest(rng.uniform(0.0, 1.5))
             if rng.random() < 0.7:
                 state = "saving"

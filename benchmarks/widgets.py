@@ -241,7 +241,7 @@ def tooltips() -> None:
         tip = UITooltip("Epsilon<br>0.05", (0, 10), manager)
         tip.find_valid_position(pygame.Vector2(300, 300))
         manager.draw_ui(window)
-        tip.kill()  # type: ignore[no-untyped-call]
+        tip.kill()
 
     own = milliseconds(lambda: draw_tooltip(canvas, (300, 300), (0, 0, *VIEW_SIZE), ["Epsilon", "0.05"]))
     print(f"\na tooltip: UITooltip {milliseconds(shown, 3):.2f} ms, ours {own:.2f} ms")

@@ -21,7 +21,7 @@ settings.load_profile("same")
 
 # Files of tests need to outlive no power cut, and most of the time of writing one is the wait for the disk. Processes
 # that tests start still wait; a test that asks when a file is flushed puts its own function here.
-os.fsync = lambda descriptor: None
+os.fsync = lambda fd: None
 
 
 def pytest_collection_finish() -> None:

@@ -7,6 +7,7 @@ import subprocess
 import sys
 from importlib.metadata import distributions
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -79,6 +80,7 @@ def environment(installed: Path) -> dict[str, str]:
 
 @pytest.mark.slow
 def test_the_metadata_of_a_wheel_leads_nowhere_that_is_not_there(installed: Path):
+    told: Any
     (told,) = (distribution.metadata for distribution in distributions(path=[str(installed)]))
     description = told.get_payload()
     assert isinstance(description, str)

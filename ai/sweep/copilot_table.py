@@ -28,7 +28,9 @@ class Part:
     seed: int
 
 
-def parts(agents: Mapping[str, DeepQAgent], scripted: bool, helps: Sequence[Help], episodes: int, seed: int) -> list[Part]:
+def parts(
+    agents: Mapping[str, DeepQAgent], scripted: bool, helps: Sequence[Help], episodes: int, seed: int
+) -> list[Part]:
     """Return all parts of the tables that have a network: `agents` are these by the table's name."""
     packed = {table: pack_agent(agent) for table, agent in agents.items()}
     return [

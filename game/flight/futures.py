@@ -170,5 +170,3 @@ def fly_ahead() -> Turns:
             done.add(push)
             (future,) = lookahead.futures(request.moment, [(0, push)], request.decisions, request.before)
             told = (Found(request.number, push, future),)
-
-

@@ -44,7 +44,9 @@ class ReplayedFlight(Flight):
             return COAST, self.flown_by, None
         self.hand = self._source.hands[self.at]
         self.set_gravity(self._source.gravity_at(self.at))
-        if self.hand is StickHolder.HUMAN and self.at % DECISION_STEPS == 0:  # the read-outs were aimed at a pad then, too
+        if (
+            self.hand is StickHolder.HUMAN and self.at % DECISION_STEPS == 0
+        ):  # the read-outs were aimed at a pad then, too
             self.aim()
         return self._source.actions[self.at], self.hand, self._source.shares.get(self.at)
 

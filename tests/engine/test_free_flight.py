@@ -26,7 +26,7 @@ def test_free_flight_is_the_same_bit_for_bit_until_just_before_something_touches
         flight, flown = FreeFlight(world, block.index), 0
         while not flight.near():
             push = rng.uniform(-4.0, 4.0, 3)
-            flight.step(*push.tolist(), DT)
+            flight.step(push[0], push[1], push[2], DT)
             other.apply_force(push[:2])
             other.apply_torque(push[2])
             twin.step()

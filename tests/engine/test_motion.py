@@ -31,11 +31,11 @@ def test_thrown_body_flies_the_parabola():
     body = world.add(Polygon.box(1, 1), (0.0, 0.0))
     body.velocity = (7.0, 12.0)
     time = np.arange(1, 121) * DT
-    path = []
+    places = []
     for _ in time:
         world.step()
-        path.append(body.position[0].copy())
-    path = np.array(path)
+        places.append(body.position[0].copy())
+    path = np.array(places)
     assert path[:, 0] == pytest.approx(7.0 * time)
     assert path[:, 1] == pytest.approx(12.0 * time - 9.81 * time**2 / 2, abs=9.81 * time[-1] * DT / 2 + 1e-9)
 

@@ -1,5 +1,7 @@
 """What a world promises besides physics: handles, masks, groups, refusals."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -153,6 +155,7 @@ def test_a_world_gone_to_nan_harms_no_other():
 
 
 def test_what_makes_no_sense_is_refused(subtests):
+    settings: Any
     for settings, reason in [
         ({"mass": 0.0}, "positive, finite mass"),
         ({"mass": np.nan}, "positive, finite mass"),
@@ -228,7 +231,7 @@ def test_a_parameter_replaced_between_steps_holds_from_the_next_one():
     slow, other = world.add(Circle(0.5), (0, 0)), world.add(Circle(0.5), (9, 0))
     slow.velocity = other.velocity = (4.0, 0.0)
     run(world, 1)
-    world.params.quadratic_drag = [[1e9, 1e9, 0.0], [0.0, 0.0, 0.0]]
+    world.params.quadratic_drag = np.array([[1e9, 1e9, 0.0], [0.0, 0.0, 0.0]])
     run(world, 1)
     assert slow.velocity[0, 0] == pytest.approx(0.0, abs=1e-3)
     assert other.velocity[0, 0] == 4.0

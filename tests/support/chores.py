@@ -8,6 +8,7 @@ import time
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from pathlib import Path
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -134,7 +135,7 @@ def eager(config, seed, keep):
     from ai.training import autosave
     from ai.training.session import live
 
-    autosave.KEEP_SECONDS = 0.0
+    vars(autosave)["KEEP_SECONDS"] = 0.0
     yield from live(config, seed, keep=keep)
 
 
@@ -145,7 +146,8 @@ def biased_fix(folder, image, digit, keep, before=None):
 
     classifier = DigitClassifier.load(folder)
     yield [FixStep(0, 0.1)]
-    classifier.network.layers[-1].bias[digit] += 50
+    last: Any = classifier.network.layers[-1]
+    last.bias[digit] += 50
     classifier.save(keep)
     yield [Fixed(digit, (0.1, 1.0), (before or 0.9, 0.1), 1, keep)]
 

@@ -110,11 +110,11 @@ def repack(path: Path, rng: np.random.Generator) -> None:
         for name, held in members.items():
             for _ in range(int(rng.integers(1, 3))):
                 new.writestr(name, held)
-    held = bytearray(made.getvalue())
+    written = bytearray(made.getvalue())
     if rng.random() < 0.5:  # encrypted, or of a kind that nobody knows
-        place = held.rfind(b"PK\1\2")
-        held[place + 8], held[place + 10] = int(rng.integers(2)), int(rng.choice([8, 99]))
-    path.write_bytes(held)
+        place = written.rfind(b"PK\1\2")
+        written[place + 8], written[place + 10] = int(rng.integers(2)), int(rng.choice([8, 99]))
+    path.write_bytes(written)
 
 
 def _claim(path: Path, rng: np.random.Generator) -> None:

@@ -23,7 +23,8 @@ class InlineWorker(Worker):
         function, args, kwargs = pickle.loads(pickle.dumps((function, args, kwargs)))  # nothing is shared
         self.problem, self._ended, self._polled_once = "", False, False
         self._paused, self._per_poll = False, TURNS
-        self._taken, self._limit = 0, None
+        self._taken = 0
+        self._limit: int | None = None
         self._waiting = MessageQueue()
         self._turns = function(*args, **kwargs)
         self._take(lambda: next(self._turns))

@@ -14,6 +14,7 @@ from functools import partial
 from itertools import count
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 os.environ["SDL_VIDEODRIVER"] = os.environ["SDL_AUDIODRIVER"] = "dummy"
 os.environ["PYGAME_HIDE_SUPPORT_PROMPT"] = "1"
@@ -373,7 +374,7 @@ class Walk:
         finally:
             driver.app.close()
 
-    def _widgets(self, driver: Driver) -> list[object]:
+    def _widgets(self, driver: Driver) -> list[Any]:
         form = getattr(driver.top, "form", None)
         return form.widgets if form else []
 

@@ -80,7 +80,7 @@ class Reading:
 
         def text(canvas: Canvas, string: str, *args: object, **more: object) -> pygame.FRect:
             self.words.append(string)
-            return write(canvas, string, *args, **more)  # type: ignore[arg-type]
+            return write(canvas, string, *args, **more)
 
         monkeypatch.setattr(Canvas, "text", text)
         driver.unseen = True

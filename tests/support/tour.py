@@ -124,9 +124,9 @@ def _of_a_digit(make: Callable[..., Scene], context: Context, classifier: DigitC
 def dialogs(below: Scene) -> dict[str, Callable[[], Scene]]:
     """Return what makes each dialog over another scene; deep in scenes that train, they are seldom come by."""
     return {
-        "QuestionDialog": lambda: QuestionDialog(below, "?", "", [("yes", int), ("no", int)]),
+        "QuestionDialog": lambda: QuestionDialog(below, "?", "", [("yes", lambda: None), ("no", lambda: None)]),
         "NameDialog": lambda: NameDialog(below, "?", "name", name_problem),
-        "ListDialog": lambda: ListDialog(below, "?", [("a",), ("b",)], int),
+        "ListDialog": lambda: ListDialog(below, "?", [("a",), ("b",)], lambda _: None),
     }
 
 

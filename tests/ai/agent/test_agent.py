@@ -76,7 +76,7 @@ def test_an_update_moves_only_the_chosen_action_towards_its_target():
     target = before[:1] + 1
     slope = []
     original = agent.online.backward_propagate
-    agent.online.backward_propagate = lambda error: (slope.append(error.copy()), original(error))
+    agent.online.backward_propagate = lambda output_error: slope.append(output_error.copy()) or original(output_error)
     agent.gradient_step(states, np.array([0]), target, np.ones(1, dtype=np.float32))
     assert slope[0] == pytest.approx(np.array([[-2.0, 0.0]]))
     assert abs(agent.online.predict(states)[0, 0] - target[0]) < 1

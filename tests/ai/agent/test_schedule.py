@@ -1,6 +1,7 @@
 """What schedules make of the settings, and which settings they leave without effect."""
 
 from dataclasses import fields
+from inspect import getgeneratorlocals
 
 import numpy as np
 import pytest
@@ -76,7 +77,7 @@ def test_what_is_not_turned_on_changes_nothing():
 def test_what_a_run_says_is_in_force_is_what_it_learns_and_flies_with():
     run = live(TINY)
     told = [next(run)]
-    training = run.gi_frame.f_locals["run"].training
+    training = getgeneratorlocals(run)["run"].training
     told += [next(run) for _ in range(80)]
     assert isinstance(told[0][-2], InForce) or any(isinstance(each, InForce) for each in told[0])
     (said,) = [each for each in run.send(ChangeSetting("discount", 0.9)) if isinstance(each, InForce)]

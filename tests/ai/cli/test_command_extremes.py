@@ -12,6 +12,7 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -132,7 +133,7 @@ def refused(tmp_path, monkeypatch, capsys):
     def refused(arguments):
         before = sorted(map(str, tmp_path.rglob("*")))
         try:
-            code = main(arguments)
+            code: Any = main(arguments)
         except SystemExit as ended:
             code = ended.code
         told = capsys.readouterr().err
@@ -248,11 +249,12 @@ class Terminal(io.TextIOWrapper):
     """A terminal that knows no more letters than its encoding."""
 
     def __init__(self, encoding):
-        super().__init__(io.BytesIO(), encoding=encoding, errors="strict", write_through=True)
+        self.written = io.BytesIO()
+        super().__init__(self.written, encoding=encoding, errors="strict", write_through=True)
 
     @property
     def shown(self):
-        return self.buffer.getvalue().decode(self.encoding)
+        return self.written.getvalue().decode(self.encoding)
 
 
 STRANGE = "m\N{LATIN SMALL LETTER U WITH DIAERESIS}n\N{EN DASH}\N{GREEK SMALL LETTER EPSILON}\udcff"

@@ -5,6 +5,7 @@ import socket
 import sys
 from importlib.util import find_spec
 from threading import Thread
+from typing import Any
 
 import pytest
 
@@ -22,7 +23,7 @@ def study(tmp_path):
 
 def refused(capsys, *arguments):
     try:
-        code = main([str(each) for each in arguments])
+        code: Any = main([str(each) for each in arguments])
     except SystemExit as error:
         code = error.code
     out = capsys.readouterr()

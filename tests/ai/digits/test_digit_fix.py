@@ -26,8 +26,10 @@ def misread(data):
 
 
 def fixed(data, misread, keep, **options) -> Fixed:
-    told = [each for message in fix(CLASSIC, *misread, keep, train=data, test=data, **options) for each in message]
+    image, digit = misread
+    told = [each for message in fix(CLASSIC, image, digit, keep, train=data, test=data, **options) for each in message]
     assert all(isinstance(each, FixStep) for each in told[:-1])
+    assert isinstance(told[-1], Fixed)
     return told[-1]
 
 
@@ -76,8 +78,9 @@ def test_what_is_no_drawing_or_no_digit_is_refused(data, image, digit):
 
 
 def test_a_damaged_network_is_named(tmp_path, data, misread):
+    image, digit = misread
     with pytest.raises(ModelFormatError):
-        list(fix(tmp_path / "nothing", *misread, tmp_path / "fixed", train=data, test=data))
+        list(fix(tmp_path / "nothing", image, digit, tmp_path / "fixed", train=data, test=data))
 
 
 def test_the_same_fix_is_the_same_network(tmp_path, data, misread):

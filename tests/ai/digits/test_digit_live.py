@@ -1,3 +1,4 @@
+from inspect import getgeneratorlocals
 from itertools import count
 
 import numpy as np
@@ -167,9 +168,9 @@ def ruin(run):
 
 def test_a_ruined_network_can_go_back_to_its_best(data):
     run = live_digits(RUINED, 4, data=data)
-    while "run" not in run.gi_frame.f_locals:
+    while "run" not in getgeneratorlocals(run):
         next(run)
-    training = run.gi_frame.f_locals["run"].training
+    training = getgeneratorlocals(run)["run"].training
     ticks = count()
     training.clock = lambda: float(next(ticks))  # it is measured for a share of the time, whatever else runs here
     told = ruin(run)
@@ -197,6 +198,7 @@ def test_what_is_shown_in_the_end_is_the_network_that_is_kept(data, tmp_path):
     best = DigitClassifier.load(tmp_path / "run")
     assert np.array_equal(shown, confusion(best, training.held_images, training.held_labels))
     assert shown.trace() / shown.sum() == training.best
+    assert training.best is not None
     assert kinds(told, HeldOutScore)[-1].accuracy < training.best - 0.2, "the curve ends with the last one"
     assert training.history[kept.epoch - 1]["held_out"] == training.best, "and which it is, is said"
 

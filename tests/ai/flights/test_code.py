@@ -201,8 +201,8 @@ START = [bytes([1, 4, 5, 1, 0, 0]), bytes([2, 3, 2, 1, 0]), bytes([3, 1, 0]), by
 
 def with_section(tag, content, start=START[0]):
     """The code of a flight of two steps with one more section."""
-    rows = [start, *START[1:], bytes([tag, len(content)]) + content]
-    return sealed(bytes([1]) + b"".join(sorted(rows, key=lambda row: row[0])))
+    rows = sorted([start, *START[1:], bytes([tag, len(content)]) + content], key=lambda row: row[0])
+    return sealed(bytes([1]) + b"".join(rows))
 
 
 @pytest.mark.parametrize(

@@ -203,12 +203,12 @@ def test_reward_is_the_sum_of_its_parts_and_potentials_telescope():
     env.reset()
     rng = np.random.default_rng(1)
     start = env.situation()
-    totals = dict.fromkeys(("distance", "speed"), 0.0)
+    totals = {name: np.zeros(16) for name in ("distance", "speed")}
     for _ in range(400):
         result = env.step(rng.integers(0, NUM_ACTIONS, 16))
         assert result.reward == pytest.approx(sum(result.components.values()), abs=1e-4)
-        for name in totals:
-            totals[name] = totals[name] + result.components[name]
+        for name, total in totals.items():
+            totals[name] = total + result.components[name]
     end = env.situation()
     weights = RewardWeights()
     assert totals["distance"] == pytest.approx(10 * weights.distance * (start.distance - end.distance), abs=1e-3)

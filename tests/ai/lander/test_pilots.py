@@ -21,6 +21,7 @@ def test_the_scripted_pilot_lands(seed):
     result = evaluate(ScriptedPilot(), 100, seed)
     assert result.success >= 0.95
     assert result.success + result.crash + result.out_of_bounds + result.time_out == pytest.approx(1.0)
+    assert result.mean_time
     assert 5 < result.mean_time < 15
 
 

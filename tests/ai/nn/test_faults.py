@@ -13,6 +13,7 @@ import zipfile
 from contextlib import contextmanager
 from itertools import product
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -439,7 +440,7 @@ def test_places_that_cannot_be_written_are_told_in_a_sentence(output, tmp_path, 
     Path("mine").touch()
     Path("loop").symlink_to("loop")
     try:
-        code = main(["train", "--decisions", "9", "--set", "num_envs=2", "--output", output])
+        code: Any = main(["train", "--decisions", "9", "--set", "num_envs=2", "--output", output])
     except SystemExit as end:  # of what can be no folder anywhere
         code = end.code
     assert code in (1, 2)

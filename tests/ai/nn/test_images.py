@@ -1,5 +1,7 @@
 """Convolution, pooling, flattening and dropout: what is theirs alone. The contract of all layers is in test_layers."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -206,7 +208,8 @@ def test_image_layers_have_to_fit():
 def test_rectified_filters_get_he_weights():
     network = NeuralNetwork(*CostFunctions.use_mse()).add_layer(ConvolutionLayer((9, 9, 16), 64, 5))
     network.add_layer(MaxPoolingLayer((5, 5, 64))).add_layer(ActivationLayer(*ActivationFunctions.use_relu()))
-    assert network.layers[0].weights.std() == pytest.approx(np.sqrt(2 / 400), rel=0.02)
+    filters: Any = network.layers[0]
+    assert filters.weights.std() == pytest.approx(np.sqrt(2 / 400), rel=0.02)
 
 
 def digits_network(seed=0, dropout=0.2):

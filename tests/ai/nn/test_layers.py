@@ -1,6 +1,7 @@
 """Every layer, activation and cost through one contract: a new one joins by one row."""
 
 import itertools
+from typing import Any
 
 import numpy as np
 import pytest
@@ -28,14 +29,14 @@ from ai.nn.storage import LAYERS
 
 INPUTS, OUTPUTS, BATCH = 5, 4, 6
 
-ACTIVATION_ROWS = {
+ACTIVATION_ROWS: dict[str, Any] = {
     "tanh": ActivationFunctions.use_tanh(),
     "sigmoid": ActivationFunctions.use_sigmoid(),
     "relu": ActivationFunctions.use_relu(),
     "leaky_relu": ActivationFunctions.use_leaky_relu(0.2),
     "plain pair": (np.sin, np.cos),
 }
-COST_ROWS = {
+COST_ROWS: dict[str, Any] = {
     "mse": CostFunctions.use_mse(),
     "huber": CostFunctions.use_huber(0.7),
     "softmax_cross_entropy": CostFunctions.use_softmax_cross_entropy(),

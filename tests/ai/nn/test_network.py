@@ -1,5 +1,7 @@
 """The network as a whole: building, training, copying."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -179,7 +181,8 @@ def test_a_custom_layer_learns_wherever_it_stands(place):
     assert gain.gradient[0] == pytest.approx((above - network.cost(network.predict(XOR_X), 0 * y)) / (2 * step))
     gain.value[0] += step
     error = network.input_gradient(XOR_X, np.ones((4, 2)))
-    both = network.layers[0 if place else 1].weights * (gain.value if place else gain.value[:, None])
+    dense: Any = network.layers[0 if place else 1]
+    both = dense.weights * (gain.value if place else gain.value[:, None])
     np.testing.assert_allclose(error, np.tile(both.sum(axis=1), (4, 1)))
     np.testing.assert_array_equal(network.gradients, gradients)
 

@@ -1,6 +1,7 @@
 """Optimizers against their definitions, written out one parameter at a time."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -82,6 +83,7 @@ def test_a_wrong_state_is_refused():
 
 
 def test_a_damaged_state_is_refused_and_changes_nothing(subtests):
+    change: Any
     for change, message in [
         ({"square_sum": np.ones(4)}, r"square_sum holds float64 \[4\], and should hold float32 \[3\]"),
         ({"square_sum": np.ones((3, 1))}, "square_sum holds"),

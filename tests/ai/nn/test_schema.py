@@ -38,6 +38,7 @@ def test_values_become_a_dataclass_and_those_that_are_missing_its_defaults():
 
 
 def test_what_is_wrong_is_named_with_its_place(subtests):
+    wrong: Any
     for wrong, said in [
         ({"name": 1}, "name: 1 is no text"),
         ({"name": ""}, "name: '' has a length of 0"),

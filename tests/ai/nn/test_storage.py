@@ -2,6 +2,7 @@
 
 import json
 import re
+from typing import Any
 
 import numpy as np
 import pytest
@@ -70,8 +71,9 @@ def test_a_network_comes_back(tmp_path, dtype):
     np.testing.assert_array_equal(loaded.predict(X), network.predict(X))
     assert loaded.predict(X).dtype == dtype
     assert (loaded.cost.name, dict(loaded.cost.options)) == ("huber", {"delta": 2.5})
-    assert loaded.layers[1].epsilon == 1e-3
-    assert loaded.layers[2].activation.options == {"slope": 0.3}
+    layers: list[Any] = loaded.layers
+    assert layers[1].epsilon == 1e-3
+    assert layers[2].activation.options == {"slope": 0.3}
     history = [one.train(X, np.ones((7, 2)), epochs=2) for one in (network, loaded)]
     assert history[0] == history[1]
 

@@ -74,6 +74,7 @@ def test_the_sum_of_a_units_products_is_what_its_layer_gave(case):
             if stage.kind == "pooling":
                 assert unit.output == unit.patch.max()
             elif stage.kind == "activation":
+                assert isinstance(stage.layer, ActivationLayer)
                 assert unit.output == stage.layer.activation.function(unit.patch)[0, 0, 0]
             else:
                 size = float(np.abs(unit.products).sum()) + abs(unit.bias)
@@ -144,7 +145,7 @@ def test_the_strongest_reader_has_the_largest_product(case):
                 if all(0 <= at < size for at, size in zip(inside, unit.patch.shape, strict=True)):
                     shares[each] = float(unit.products[inside])
             assert (reader is None) == (not shares)
-            if shares:
+            if reader:
                 assert shares[reader] == max(shares.values())
 
 

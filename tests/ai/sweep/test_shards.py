@@ -6,10 +6,10 @@ import shutil
 
 import numpy as np
 import pytest
+from ai.copilot.critic import critic_beside
 
 from ai.agent.agent import DeepQAgent
 from ai.copilot import measurement
-from ai.copilot.critic import critic_beside
 from ai.copilot.measurement import one_pad, three_pads
 from ai.sweep import copilot_table
 from ai.sweep import shards as module

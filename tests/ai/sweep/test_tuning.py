@@ -13,6 +13,7 @@ from contextlib import contextmanager
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -40,6 +41,7 @@ NEW = ["--env", "CartPole-v1", "--knobs", "learning_rate,tau", "--seeds", "2", "
 def nodes():
     """A cluster of two nodes with a core each."""
     program = [sys.executable, "-m", "tests.support.ray_nodes"]
+    process: Any  # which also says its address
     with subprocess.Popen(program, cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
         process.address = process.stdout.readline().strip()
         assert process.address.startswith("127.0.0.1:")
@@ -52,8 +54,8 @@ def nodes():
 def sweep(folder, *options, **started):
     """Run `sweep` on a study in a folder; end it if a test fails meanwhile."""
     command = [sys.executable, "main.py", "sweep", "--study", f"{folder}/", *options]
-    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
-    with subprocess.Popen(command, cwd=ROOT, text=True, **pipes, **started) as process:
+    started |= {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    with subprocess.Popen(command, cwd=ROOT, text=True, **started) as process:
         try:
             yield process
         finally:

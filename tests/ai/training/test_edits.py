@@ -162,7 +162,8 @@ def test_a_live_run_is_edited_flies_on_without_learning_and_is_as_it_was() -> No
     assert not weights_of(LANDERS, state(told))[1][3].any()
     assert told_of(told, NetworkEdits) == [NetworkEdits(((1, 3),), (), 1, True, True)]
     [change] = told_of(told, SettingChange)
-    assert (change.name, change.before, change.after) == (EDITED, 0, 1)  # type: ignore[attr-defined]
+    assert isinstance(change, SettingChange)
+    assert (change.name, change.before, change.after) == (EDITED, 0, 1)
     edited = state(told)
     flown = [message for _ in range(200) for message in next(run)]
     assert {state.values.tobytes() for state in flown if isinstance(state, NetworkState)} <= {edited}

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from ai.agent.config import PRESETS, Config
+from ai.lander.environment import LanderEnv
 from ai.training.experiments import differences, experiment_of, experiments
 from ai.training.loop import Training
 from ai.training.sabotage import SABOTAGES, sabotaged
@@ -62,8 +63,11 @@ def test_both_begin_with_the_same_decisions():
     for _ in range(10):  # before the first learning step
         for twin in twins:
             twin.advance()
-        assert np.array_equal(*(twin.env.actions for twin in twins))
-        assert np.array_equal(*(twin.env.position for twin in twins))
+        one, two = (twin.env for twin in twins)
+        assert isinstance(one, LanderEnv)
+        assert isinstance(two, LanderEnv)
+        assert np.array_equal(one.actions, two.actions)
+        assert np.array_equal(one.position, two.position)
 
 
 HEALTHY = recorded("modern healthy")

@@ -216,7 +216,7 @@ def watch(adviser: Adviser, run: History, config: Config = MODERN, start: int = 
     for checkpoint in run.checkpoints:
         growing.append(checkpoint)
     for number, row in enumerate(numbers):
-        growing.append(Point(*row[:14].tolist(), parts=tuple(row[14:].tolist())))
+        growing.append(replace(Point(*row[:14].tolist()), parts=tuple(row[14:].tolist())))
         if number >= start:
             shown.append(adviser.advise(growing, config))
     return shown
@@ -253,7 +253,7 @@ def test_the_most_severe_comes_first():
 
 
 def test_an_applied_hint_goes_and_can_be_undone_and_does_not_come_back_at_once():
-    adviser = Adviser(MODERN)
+    adviser: Any = Adviser(MODERN)
     run = history(points(**HOVERS), seconds=40.0 + REST)
     shown = watch(adviser, run)
     assert shown[-1] is not None

@@ -98,6 +98,7 @@ def test_who_is_taught_hard_starts_is_chosen_by_them_too():
     assert other == evaluate(pilot, 40, 3, "random")
     assert replace(taught, hard=None) == other, "what is told of random starts is of those alone"
     nothing = LanderTask(Config(spawn="widening")).evaluate(NoPilot(), 4, 3)
+    assert taught.hard
     assert taught.hard > 0.5
     assert nothing.hard == nothing.success == 0.0
     assert LanderTask(Config()).read_score(taught.to_json()) == taught
@@ -199,6 +200,7 @@ def test_a_curriculum_run_climbs_its_stages():
 
 def test_care_sets_in_over_the_horizon():
     training = Training(SMALL.changed(final_touchdown_limits=0.5, schedule_decisions=1000), evaluate_every=0)
+    assert isinstance(training.env, LanderEnv)
     held = []
     for _ in range(127):
         held.append(training.env.limits.touch_speed / LIMITS.touch_speed)

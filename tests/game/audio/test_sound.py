@@ -2,6 +2,7 @@
 
 import threading
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import pygame
@@ -159,7 +160,7 @@ def test_a_microphone_that_goes_changes_nothing(sound: Sound):
     assert level(ENGINE) > 0.9
 
 
-def test_the_last_device_that_goes_leaves_silence_until_one_comes(sound: Sound, monkeypatch):
+def test_the_last_device_that_goes_leaves_silence_until_one_comes(sound: Any, monkeypatch):
     monkeypatch.setenv("SDL_AUDIODRIVER", "nonesuch")
     sound.handle_event(REMOVED)
     assert not sound.ready
@@ -176,7 +177,7 @@ def test_the_last_device_that_goes_leaves_silence_until_one_comes(sound: Sound, 
 
 def test_no_device_is_silence_with_a_reason_and_the_next_look_finds_one(monkeypatch):
     monkeypatch.setenv("SDL_AUDIODRIVER", "nonesuch")
-    sound = Sound(INSTRUMENTS)
+    sound: Any = Sound(INSTRUMENTS)
     assert not sound.open()
     assert sound.problem
     sound.play("bell")

@@ -117,7 +117,7 @@ def test_a_room_answers_both_ears_differently_and_dies_away():
     assert heard[0] == pytest.approx([1, 1])  # the sound itself comes first, untouched
     echo = heard[1:]
     assert (echo**2).sum() == pytest.approx(2 * 0.8**2, rel=0.01)
-    assert abs(np.corrcoef(echo.T)[0, 1]) < 0.2
+    assert abs(np.corrcoef(*echo.T)[0, 1]) < 0.2
     tenths = [(echo[begin : begin + RATE // 10] ** 2).sum() for begin in range(0, len(echo), RATE // 10)]
     assert tenths == sorted(tenths, reverse=True)
 

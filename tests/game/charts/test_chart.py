@@ -46,7 +46,7 @@ def settle(chart: Chart, steps: int = 200) -> None:
 
 
 def chart_of(y: object, x: object = None, **options: object) -> Chart:
-    chart = Chart(BOX, "LOSS", **options)  # type: ignore[arg-type]
+    chart = Chart(BOX, "LOSS", **options)
     values = np.asarray(y, float)
     place = np.arange(len(values), dtype=float) if x is None else np.asarray(x, float)
     chart.set([Series(place, values, "this run")], (0.0, max(1.0, len(values) - 1.0)))
@@ -236,12 +236,13 @@ def test_the_cursor_reads_the_nearest_point_of_each_run(canvas: Canvas, monkeypa
 
 def test_the_readout_stays_inside_the_box(canvas: Canvas, monkeypatch: pytest.MonkeyPatch) -> None:
     from game.charts import chart as module
+    from game.charts.tooltip import draw_tooltip
 
     boxes = []
-    original = module.draw_tooltip
+    original = draw_tooltip
 
     def draw(*arguments: object) -> pygame.FRect:
-        boxes.append(original(*arguments))  # type: ignore[arg-type]
+        boxes.append(original(*arguments))
         return boxes[-1]
 
     monkeypatch.setattr(module, "draw_tooltip", draw)

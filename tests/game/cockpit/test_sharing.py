@@ -42,7 +42,7 @@ class Falls(Wants):
 
 
 def shared(network: Wants | None = None, assist: float = 0.5, **kinds: object) -> Flight:
-    flight = Flight(1, network or Wants(), **kinds)  # type: ignore[arg-type]
+    flight = Flight(1, network or Wants(), **kinds)
     flight.help(assist, Mode.TOLERANCE)
     return flight
 

@@ -38,7 +38,7 @@ def test_the_last_few_are_kept(tmp_path: Path):
     kept, read = Kept[str](most=2), []
     for name in "abcab":
         (tmp_path / name).touch()
-        kept.get(tmp_path / name, lambda name=name: read.append(name) or name)
+        kept.get(tmp_path / name, lambda name=name: read.append(name) or name)  # type: ignore[misc]
     assert read == ["a", "b", "c", "a", "b"]
     kept.get(tmp_path / "a", lambda: read.append("again") or "a")
     assert len(read) == 5

@@ -2,18 +2,19 @@ import errno
 import json
 import os
 import shutil
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
+import platformdirs
 import pytest
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.config import Config
 from ai.training.checkpoints import resume_run, save_run
 from ai.training.loop import Training
-from game.core import collection as module
 from game.core import copying, texts
 from game.core.collection import UNSAVED
 from game.core.names import LONGEST_NAME, LibraryError, is_valid_name
@@ -178,7 +179,7 @@ def test_what_was_just_thrown_away_is_what_comes_back_although_the_clock_was_set
     library: Library, monkeypatch: pytest.MonkeyPatch
 ):
     clock = iter(range(2 * 10**18, 0, -(10**16)))
-    monkeypatch.setattr(module.time, "time_ns", lambda: next(clock))
+    monkeypatch.setattr(time, "time_ns", lambda: next(clock))
     for number in range(12):
         add(library, f"run {number}")
         library.delete(f"run {number}")
@@ -327,7 +328,7 @@ def test_an_export_is_a_whole_run_and_replaces_nothing(library: Library, trained
 def test_without_a_folder_an_export_goes_to_the_documents(
     library: Library, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
-    monkeypatch.setattr(module.platformdirs, "user_documents_dir", lambda: str(tmp_path / "Documents"))
+    monkeypatch.setattr(platformdirs, "user_documents_dir", lambda: str(tmp_path / "Documents"))
     add(library, "run")
     assert library.export("run") == tmp_path / "Documents" / "Tranquility" / "run"
 
@@ -345,7 +346,7 @@ def test_a_full_disk_is_said_and_leaves_nothing_half_done(
         target.mkdir()
         raise error
 
-    monkeypatch.setattr(module.shutil, "copytree", full)
+    monkeypatch.setattr(shutil, "copytree", full)
     with pytest.raises(LibraryError, match=r"run could not be exported: .*No space left on device"):
         library.export("run", tmp_path / "out")
     assert list((tmp_path / "out").iterdir()) == []

@@ -134,8 +134,8 @@ def test_writing_leaves_no_temporary_file(tmp_path: Path):
 
 def test_a_huge_file_and_a_pipe_are_put_aside_unread(tmp_path: Path):
     path = tmp_path / FILE_NAME
-    with path.open("wb") as file:
-        file.truncate(200_000_000)
+    with path.open("wb") as huge:
+        huge.truncate(200_000_000)
     for _ in range(2):
         file = SettingsFile(tmp_path)
         settings = file.load()

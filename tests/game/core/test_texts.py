@@ -6,6 +6,7 @@ import string
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from shutil import copytree
+from typing import Any
 
 import pytest
 from babel.messages.catalog import Catalog, Message
@@ -61,8 +62,9 @@ def uses(source: str) -> Iterator[tuple[str, ...]]:
     """Yield the texts that a module uses: a name, or a name and the key that it writes down."""
 
     def name(node: ast.AST) -> str:
-        named = isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "texts"
-        return node.attr if named and node.attr.isupper() else ""
+        if not isinstance(node, ast.Attribute) or not node.attr.isupper():
+            return ""
+        return node.attr if isinstance(node.value, ast.Name) and node.value.id == "texts" else ""
 
     for node in ast.walk(ast.parse(source)):
         if text := name(node):
@@ -172,7 +174,7 @@ def test_what_is_filled_in_has_a_name():
 # What the game reads
 
 
-def contents(texts: Catalog) -> dict[object, object]:
+def contents(texts: Catalog) -> dict[Any, Any]:
     found = {}
     for message in texts:
         context = message.context

@@ -22,7 +22,8 @@ def strangers():
 
 @pytest.fixture
 def contest(classifier, strangers):
-    return QuizGame(classifier, *strangers, np.random.default_rng(0))
+    images, labels = strangers
+    return QuizGame(classifier, images, labels, np.random.default_rng(0))
 
 
 def draw(contest, strangers, digit):

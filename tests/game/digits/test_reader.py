@@ -72,7 +72,7 @@ def test_who_is_surer_never_sounds_less_sure(reader: Reader, monkeypatch: pytest
     canvas = Canvas(pygame.Surface((1280, 720)))
     said: dict[str, list[float]] = {}
 
-    def text(_: Canvas, string: str, *__: object, **___: object) -> pygame.FRect:
+    def text(canvas: Canvas, string: str, *__: object, **___: object) -> pygame.FRect:
         word, _, share = string.partition(", ")
         if share.endswith("%") and not word.startswith("or"):
             said.setdefault(word, []).append(float(share.removesuffix(" %")))

@@ -10,7 +10,7 @@ def painted(kept: PaintCache, canvas: Canvas, *shown: object) -> list[object]:
     """Return what of `shown` had to be painted."""
     seen: list[object] = []
     for each in shown:
-        kept.draw(canvas, (10, 20, 30, 40), each, lambda _, each=each: seen.append(each))
+        kept.draw(canvas, (10, 20, 30, 40), each, lambda _, each=each: seen.append(each))  # type: ignore[misc]
     return seen
 
 

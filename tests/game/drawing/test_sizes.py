@@ -1,6 +1,7 @@
 """At any size of the window, the picture is sharp and the mouse meets what it sees."""
 
 from itertools import product
+from typing import Any
 
 import pygame
 import pytest
@@ -87,12 +88,12 @@ def test_a_click_meets_the_switch_it_sees_and_none_beside_it(open_game, context:
         game.click(place)
         assert context.settings.reduced_motion is not before
     for place in ((box.left - 8, box.top + 2), (box.right + 8, box.centery)):
-        before = context.settings.to_dict()
+        saved = context.settings.to_dict()
         game.click(place)
-        assert context.settings.to_dict() == before
+        assert context.settings.to_dict() == saved
 
 
-def test_full_screen_and_back_keeps_size_and_mouse(open_game, context: Context):
+def test_full_screen_and_back_keeps_size_and_mouse(open_game, context: Any):
     game: Driver = open_game(SettingsScene)
     game.resize((1000, 700))
     for _ in range(3):

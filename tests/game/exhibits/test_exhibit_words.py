@@ -219,7 +219,7 @@ def test_every_sentence_of_an_exhibit_can_be_said(subtests: pytest.Subtests):
         with subtests.test(name=name):
             states = set()
             for hands, seconds in ((0, 3.0), (6, 1.0)):
-                exhibit = EXHIBITS[name](EARTH)
+                exhibit: Any = EXHIBITS[name](EARTH)
                 for _ in life(exhibit, seconds, hands):
                     states.add(exhibit.state)
             if name in ("bounce", "drag"):

@@ -153,9 +153,9 @@ def test_a_rebound_begins_with_nothing_and_ends_with_an_impulse():
     assert first is not None
     assert first.before[0] == 0
     assert first.after[0] > 1
-    code = dict(source_of(pieces["impulses"].function).lines)  # type: ignore[union-attr]
+    code = dict(source_of(pieces["impulses"].function).lines)
     assert "velocity[self.index]" in code[pieces["impulses"].line or 0]
-    assert "rows.effect" in dict(source_of(pieces["memory"].function).lines)[pieces["memory"].line or 0]  # type: ignore[union-attr]
+    assert "rows.effect" in dict(source_of(pieces["memory"].function).lines)[pieces["memory"].line or 0]
 
 
 def test_a_hand_that_pulls_is_part_of_the_step():

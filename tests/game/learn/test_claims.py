@@ -1,7 +1,6 @@
 """What chapters 7 to 9 claim, on the real runs that they show; `benchmarks.small_runs` prints more seeds of them."""
 
 import numpy as np
-import pytest
 
 from ai.lander.environment import LIMITS, PARAMS
 from ai.lander.rewards import FEET_STEPS_PAID, RewardWeights

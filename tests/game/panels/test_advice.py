@@ -1,6 +1,7 @@
 """The hint on the training screen, with a run that flew better before."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pygame
@@ -48,7 +49,7 @@ def test_every_hint_has_room_in_its_frame(growth: float) -> None:
 
 def test_while_something_else_waits_no_hint_asks(context: Context, monkeypatch: pytest.MonkeyPatch) -> None:
     form = Form(context)
-    advice = Advice(form, pygame.Rect(868, 612, 384, 60), lambda *_: None, lambda _: None)
+    advice: Any = Advice(form, pygame.Rect(868, 612, 384, 60), lambda *_: None, lambda _: None)
     monkeypatch.setattr(advice.adviser, "advise", lambda *_: Hint("overfed", {"num_envs": 256}))
     advice.follow(History(), MODERN)
     assert advice.shown

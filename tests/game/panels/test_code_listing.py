@@ -1,6 +1,7 @@
 """Listing of code: it shows the lines of the function that runs, and keeps the current one in sight."""
 
 import inspect
+from typing import Any
 
 import pygame
 import pytest
@@ -30,7 +31,7 @@ def test_a_function_without_a_source_has_none():
 def test_the_current_line_is_in_sight_however_little_room_there_is(room):
     source = source_of(DeepQAgent.train_step)
     for number, _ in source.lines:
-        canvas = Canvas(pygame.Surface((1280, 720)))
+        canvas: Any = Canvas(pygame.Surface((1280, 720)))
         written = []
         canvas.text = lambda string, *_, **__: written.append(string)  # noqa: B023
         draw_listing(canvas, (40, 40, 500, room), source, number)

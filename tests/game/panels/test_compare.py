@@ -74,7 +74,7 @@ def test_a_short_run_beside_a_long_one_can_be_measured_so_that_it_is_seen(axis: 
     training_charts.measure_by(axis)
     look(training_charts, short, [EarlierRun("long", run_of(367.0, 4e6), 1)])
     for chart in training_charts.charts.charts:
-        assert chart.x_range == (0.0, pytest.approx(end))
+        assert chart.x_range == pytest.approx((0.0, end))
         assert chart.runs[0].x[-1] == pytest.approx(reach)
         assert chart.read_x(end) == texts.TRAIN_AXIS[axis].format(end)
 

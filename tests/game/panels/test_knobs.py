@@ -75,7 +75,7 @@ class Panel(FormPage):
 @pytest.fixture
 def panel(open_game: Callable[..., Driver]) -> tuple[Driver, Panel]:
     driver = open_game(Panel)
-    return driver, driver.top  # type: ignore[return-value]
+    return driver, driver.top
 
 
 def turn_to(game: Driver, scene: Panel, page: str) -> None:

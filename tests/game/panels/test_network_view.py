@@ -104,7 +104,7 @@ def test_edges_follow_what_is_to_be_shown() -> None:
     plan = NetworkPlan(network, [0.0, 2.0, -1.0], 12)
 
     def drawn(show: str) -> list[tuple[int, int, bool]]:
-        return [(edge.start, edge.end, edge.positive) for edge in plan.edges(show, 12)]  # type: ignore[arg-type]
+        return [(edge.start, edge.end, edge.positive) for edge in plan.edges(show, 12)]
 
     assert drawn("weights") == [(2, 0, True), (1, 1, False), (0, 0, True)]
     assert drawn("activations") == [(2, 0, False), (1, 1, False)]  # an input of 0 sends nothing
@@ -279,7 +279,7 @@ def test_damaged_numbers_are_drawn_and_marked(canvas: Canvas, bad: float) -> Non
 @pytest.mark.parametrize("observation", [None, np.ones(4), np.ones((3, 9)), np.zeros(0)])
 def test_without_a_fitting_observation_the_weights_are_drawn(canvas: Canvas, observation: object) -> None:
     view = NetworkView(BOX, FEATURE_NAMES, ACTION_NAMES)
-    view.set(network_of(), observation)  # type: ignore[arg-type]
+    view.set(network_of(), observation)
     play(view, canvas, 3)
     assert view.edges
     assert not any(column.damaged.any() for column in view.columns)

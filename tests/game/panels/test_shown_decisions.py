@@ -129,7 +129,7 @@ def test_the_co_pilots_panel_draws_what_a_network_that_flies_alone_decides(
     flight, drawn = Flight(5, agent), Drawn(monkeypatch)
     copilot_panel = CopilotPanel(flight.env.ground)
     flight.hand_over()
-    while not flight.over:
+    while True:
         if len(flight.recording.actions) % DECISION_STEPS == 0:
             sensed = flight.env.observe()
         flight.step(0)
@@ -155,7 +155,7 @@ def test_the_co_pilots_panel_draws_the_shared_decision_and_its_words_say_why(
     flight.help(0.5, mode)
     rng = np.random.default_rng(1)
     titles, held = set(), 0
-    while not flight.over and len(flight.recording.actions) < 900:
+    while len(flight.recording.actions) < 900:
         if len(flight.recording.actions) % 7 == 0:
             held = int(rng.choice([0, 0, 1, 2, 3, 4, 5]))
         flight.step(held)

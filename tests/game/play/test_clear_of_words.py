@@ -46,7 +46,7 @@ def drawn(monkeypatch: pytest.MonkeyPatch, *kinds: str) -> list[tuple[float, flo
 
 def note(draw: Callable[..., None], places: list[tuple[float, float]], at: int) -> Callable[..., None]:
     def noted(canvas: Canvas, *args: object, **more: object) -> None:
-        places.append(args[at])  # type: ignore[arg-type]
+        places.append(args[at])
         draw(canvas, *args, **more)
 
     return noted

@@ -1,6 +1,7 @@
 """The first ten flights: the ladder, the offer of help, a craft that hangs after every interruption, and the rescue."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pygame
@@ -286,7 +287,7 @@ HANDS: dict[str, Callable[[Flight], int]] = {
 
 @pytest.mark.parametrize("hands", HANDS)
 def test_who_tries_to_crash_is_brought_down_by_the_network_that_comes_with_the_game(hands: str):
-    tutorial = Tutorial()
+    tutorial: Any = Tutorial()
     dial = tutorial.dial(Settings())
     agent = DeepQAgent.load(MODELS_DIR / "lander" / "modern")
     while tutorial.lesson.name != "dial":
@@ -315,7 +316,7 @@ def test_a_rescue_that_does_not_come_down_is_landed_by_the_network(open_game: Op
     assert challenge.words(flight, controls).startswith(first)
     for _ in range(1000):  # whatever it does up there
         challenge.follow(flight)
-    assert flight.hand is StickHolder.NETWORK
+    assert flight.hand.name == "NETWORK"
     assert challenge.words(flight, controls) == texts.TUTORIAL_BROUGHT
     flight.hand_over()  # the player may still take it back
     challenge.follow(flight)

@@ -136,7 +136,7 @@ def test_a_true_claim_is_said_to_be_true(open_game: Open, record: Record, writte
     driver.post(pygame.DROPTEXT, text=sharing.code(record))
     claimed = page(driver).claimed
     driver.frames(2)
-    assert claimed.true is None
+    assert page(driver).claimed.true is None
     assert claimed.words.startswith(texts.FRIEND_CHECKING.partition("{")[0])
     driver.frames(200)
     assert claimed.true

@@ -33,7 +33,7 @@ def duel(open_game: Open, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Driv
 
     def begin(rival: object, seed: int = 12) -> Driver:
         driver = open_game(MenuScene)
-        play = PlayScene(driver.app.context, seed, rival=rival, rival_name="checkpoint 14 s")  # type: ignore[arg-type]
+        play = PlayScene(driver.app.context, seed, rival=rival, rival_name="checkpoint 14 s")
         driver.app.scenes.apply(Push(play))
         driver.frames(1)
         return driver

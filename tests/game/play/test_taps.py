@@ -1,6 +1,7 @@
 """A tap counts, even if a slow frame brings the press and the release at once."""
 
 from collections.abc import Callable
+from typing import Any
 
 import pygame
 import pytest
@@ -12,7 +13,7 @@ from tests.support.flights import play
 
 Open = Callable[..., Driver]
 pytestmark = pytest.mark.usefixtures("scripted_network")
-PAIRS = {
+PAIRS: dict[str, list[tuple[int, dict[str, Any]]]] = {
     "key": [(pygame.KEYDOWN, {"key": pygame.K_UP, "mod": 0}), (pygame.KEYUP, {"key": pygame.K_UP, "mod": 0})],
     "pad": [
         (pygame.CONTROLLERBUTTONDOWN, {"button": pygame.CONTROLLER_BUTTON_A, "instance_id": 0}),

@@ -51,7 +51,7 @@ def raced(replay: ReplayScene) -> PlayScene:
 
 
 def flown_on(context: Context, **more: object) -> PlayScene:
-    replay = recorded(context, **more)  # type: ignore[arg-type]
+    replay = recorded(context, **more)
     flight_replay = FlightReplay(replay.record)
     flight_replay.scout(40)
     flight_replay.seek(30)

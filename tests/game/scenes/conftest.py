@@ -23,7 +23,7 @@ def beside(open_game: Callable[..., Driver], small_run: tuple[type[Scene], objec
     scene, config = small_run
     driver = open_game(scene)
     driver.frames(2)
-    driver.top.knobs.set_config(config, 3)  # type: ignore[attr-defined]
+    driver.top.knobs.set_config(config, 3)
     return driver
 
 

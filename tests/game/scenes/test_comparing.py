@@ -81,7 +81,7 @@ def test_the_mouse_over_a_name_emphasises_its_line_and_a_click_asks(train: Drive
     colours = [run.series.colour for run in train.top.training_charts.charts.charts[0].runs]
     train.move((1100, 300))
     train.frames(30)
-    assert legend.emphasised is None
+    assert train.the(RunLegend).emphasised is None
     plain = [run.series.colour for run in train.top.training_charts.charts.charts[0].runs]
     assert colours[0] == plain[0]
     assert all(dimmed != colour for dimmed, colour in zip(colours[1:], plain[1:], strict=True))

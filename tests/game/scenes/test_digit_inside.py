@@ -2,6 +2,7 @@
 
 import dataclasses
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pygame
@@ -81,7 +82,8 @@ def test_all_figures_of_the_sum_are_written(inside: Driver, monkeypatch, number:
     inside.keys(*[pygame.K_n] * (number + 1), pygame.K_b)
     inside.frames(1)
     unit = walk.unit
-    part = unit.products[:, :, walk.channel if unit.weights is not None else 0]
+    part: Any = unit.products
+    part = part[:, :, walk.channel if unit.weights is not None else 0]
     for value in part.ravel():
         assert figure(float(value)) in words
     assert figure(unit.output, 3) in words
@@ -183,13 +185,14 @@ def test_the_code_beside_each_stage_is_that_of_its_layer(inside: Driver, monkeyp
     inside.key(pygame.K_c)
     walk, found = scene(inside).walk, []
     for _ in walk.stages:
-        listing, line = code_of(walk)
+        listing, line = code_of(walk) or pytest.fail("no code")
         found.append(listing.name.rpartition(".")[2])
         assert dict(listing.lines)[line].strip()
         inside.frames(2)
         inside.key(pygame.K_n)
     assert found == ["correlate", "_maximum", "_relu", "correlate", "_maximum", "_relu", "predict", "_relu", "predict"]
-    assert "softmax" in dict(code_of(walk)[0].lines)[code_of(walk)[1]]
+    listing, line = code_of(walk) or pytest.fail("no code")
+    assert "softmax" in dict(listing.lines)[line]
     words = words_written(monkeypatch)
     monkeypatch.setattr(patch_code, "source_of", lambda _: None)
     inside.frames(2)
@@ -294,6 +297,8 @@ def test_what_is_said_of_ink_is_true(why_not: Driver, modern, monkeypatch):
 def test_places_are_named_within_the_ink(why_not: Driver):
     why_not.key(pygame.K_7)
     seen = measured(why_not).seen
+    assert seen
+    assert seen.take
     for row, place in ((12, 1), (18, 4), (25, 7), (2, 1)):  # the last lies above the ink, nearest to its top
         at = dataclasses.replace(seen, ink=((10, 27), (5, 22)), take=dataclasses.replace(seen.take, row=row, column=13))
         assert texts.WHY_NOT_PLACES[place] in sentences(at)[0]

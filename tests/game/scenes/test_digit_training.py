@@ -5,6 +5,7 @@ from collections.abc import Callable
 from dataclasses import fields
 from multiprocessing import active_children
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pygame
@@ -20,10 +21,7 @@ from ai.digits.validation import Confusion, HeldOutScore
 from game.charts.scrubber import Scrubber
 from game.core import texts
 from game.core.worker import WorkerState
-from game.scenes.dialog import NameDialog, QuestionDialog
 from game.scenes.digit_training import DIGITS, DigitTrainingScene
-from game.scenes.dream import DreamScene
-from game.scenes.quiz import QuizScene
 from game.training.digit_run import DigitCurves, DigitRun
 from game.training.knob_descriptions import knob_descriptions
 from game.training.run_settings import RunSettings
@@ -116,7 +114,7 @@ def test_a_run_is_named_dreams_and_is_quizzed(train: Driver, tmp_path: Path, mon
     train.key(pygame.K_RETURN)
     wait(train, lambda: scene.digit_run.curves.points)
     train.click(scene.save_button.box.center)
-    assert isinstance(train.top, NameDialog)
+    assert train.top_name == "NameDialog"
     train.key(pygame.K_RETURN)
     assert train.top is scene
     kept = tmp_path / "user" / "digits" / "runs" / texts.DIGIT_RUN_NAME.format(preset="Classic")
@@ -125,10 +123,10 @@ def test_a_run_is_named_dreams_and_is_quizzed(train: Driver, tmp_path: Path, mon
     train.click(scene.stop_button.box.center)
     wait(train, lambda: not scene.digit_run.alive and scene.digit_run.kept)
     train.click(scene.dream_button.box.center)
-    assert isinstance(train.top, DreamScene)
+    assert train.top_name == "DreamScene"
     train.key(pygame.K_ESCAPE)
     train.click(scene.quiz_button.box.center)
-    assert isinstance(train.top, QuizScene)
+    assert train.top_name == "QuizScene"
 
 
 @pytest.mark.parametrize(
@@ -138,7 +136,7 @@ def test_a_nameless_run_is_asked_about_before_a_new_one(train: Driver, tmp_path:
     scene, runs = train.top, tmp_path / "user" / "digits" / "runs"
     save_digit_run(DigitTraining(SMALL, 3), runs / ".training")
     train.key(pygame.K_RETURN)
-    assert isinstance(train.top, QuestionDialog)
+    assert train.top_name == "QuestionDialog"
     if answer:
         train.click(next(word for word in train.top.form.widgets if word.label == answer).box.center)
     else:
@@ -191,7 +189,7 @@ def test_a_new_run_puts_the_last_one_aside(tmp_path: Path):
 
 
 def test_looking_for_an_unfinished_run_leaves_alone_what_is_being_written(tmp_path: Path):
-    digit_run = DigitRun(tmp_path)
+    digit_run: Any = DigitRun(tmp_path)
     digit_run.begin(SMALL, 0)
     half = tmp_path / f".{digit_run.unsaved.name}.old"  # between the two renames of a save
     half.mkdir()

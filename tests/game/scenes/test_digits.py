@@ -215,7 +215,7 @@ def test_a_switch_shows_picture_and_answer_before_and_after_for_a_moment(drawing
 def test_another_drawing_ends_the_comparison_and_no_ink_begins_none(drawing: Driver):
     digits, switch = scene(drawing), drawing.widget("pen")
     drawing.click(switch.box.center)
-    assert digits.before_after.compared is None
+    assert scene(drawing).before_after.compared is None
     draw(drawing, strokes(3))
     drawing.click(switch.box.center)
     assert digits.before_after.compared

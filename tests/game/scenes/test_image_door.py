@@ -84,7 +84,7 @@ def test_another_image_of_the_same_batch_keeps_the_frame_and_the_last_is_followe
             train.button(pygame.CONTROLLER_BUTTON_X)
         else:
             train.key(pygame.K_r)
-        train.wait(lambda row=row: train.top.lesson.step.row == row % DIGITS.batch_size)
+        train.wait(lambda row=row: train.top.lesson.step.row == row % DIGITS.batch_size)  # type: ignore[misc]
         lesson = train.top.lesson
         assert train.top.current == 3
         assert lesson.taken == first.taken, "a paused run stays where it is"

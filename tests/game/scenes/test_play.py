@@ -34,7 +34,7 @@ class Steady:
 @pytest.fixture
 def flown_by(monkeypatch: pytest.MonkeyPatch) -> Callable[[object], None]:
     def use(policy: object) -> None:
-        monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", policy))  # type: ignore[arg-type]
+        monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", policy))
 
     return use
 

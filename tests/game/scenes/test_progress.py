@@ -148,7 +148,7 @@ def test_a_key_mutes_everywhere_and_says_so(open_game: Open, context: Context, s
 def test_mute_on_the_page_follows_the_key(open_game: Open, context: Context):
     settle(context)
     game = open_game(SettingsScene)
-    (toggle,) = [widget for widget in game.form.widgets if widget.label == texts.SOUND_MUTE.format(key="F10")]
+    toggle = game.widget(texts.SOUND_MUTE.format(key="F10"))
     game.key(pygame.K_F10)
     game.frames(2)
     assert toggle.value

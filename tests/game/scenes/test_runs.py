@@ -5,12 +5,12 @@ from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
 
+import platformdirs
 import pygame
 import pytest
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.config import Config
-from game.core import collection as collection_module
 from game.core import texts
 from game.core.scene import Pop, Push
 from game.scenes.menu import MenuScene
@@ -44,7 +44,7 @@ UP, DOWN, LEFT, RIGHT, ENTER, ESCAPE = (
 @pytest.fixture
 def library(context: Context, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Library:
     context.models_dir = tmp_path / "shipped"
-    monkeypatch.setattr(collection_module.platformdirs, "user_documents_dir", lambda: str(tmp_path / "Documents"))
+    monkeypatch.setattr(platformdirs, "user_documents_dir", lambda: str(tmp_path / "Documents"))
     write(context.models_dir / "lander" / "modern")
     return Library(context.user_dir)
 
@@ -70,7 +70,7 @@ def three(library: Library) -> Library:
 def open_runs(open_game: Open, library: Library) -> Callable[..., Driver]:
     def begin(**arguments: object) -> Driver:
         driver = open_game(MenuScene)
-        driver.app.scenes.apply(Push(NetworksScene(driver.app.context, **arguments)))  # type: ignore[arg-type]
+        driver.app.scenes.apply(Push(NetworksScene(driver.app.context, **arguments)))
         driver.frames(2)
         return driver
 

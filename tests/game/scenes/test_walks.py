@@ -1,6 +1,6 @@
 """Ways through several screens, by a gamepad alone and by the keyboard alone: real events, no window."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import pygame
 import pytest
@@ -25,7 +25,7 @@ NO_SCREENS = {"PlayScene", "ErrorScene", "Dialog", "MenuBackground"}
 @pytest.fixture(params=DEVICES)
 def open_screen(
     request: pytest.FixtureRequest, open_game: Callable[..., Driver], context: Context
-) -> Iterator[Callable[..., Player]]:
+) -> Callable[..., Player]:
     def open_it(make: Callable[[Context], Scene]) -> Player:
         settle(context)
         player = Player(open_game(make), request.param)

@@ -1,13 +1,14 @@
 import gc
 import signal
 import weakref
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 
 import pygame
 import pytest
 
-from game.core.scene import Pop, Push, Quit, Replace, Scene
+from game.core.scene import Pop, Push, Quit, Replace, Scene, Transition
 from game.core.settings import Settings, SettingsFile
 from game.scenes import scene_of
 from game.scenes.menu import MenuScene
@@ -29,7 +30,7 @@ class Probe(Scene):
         self.events: list[pygame.event.Event] = []
         self.updates = self.draws = self.entered = self.left = 0
         self.alphas: list[float] = []
-        self.next = None
+        self.next: Transition | None = None
         self.fails_in = ""
 
     def fail(self, where: str) -> None:
@@ -246,7 +247,8 @@ def test_closing_the_window_closes_every_scene_whatever_fails(open_game):
     game = open_game(held[0])
     for scene in held[1:]:
         game.app.scenes.apply(Push(scene))
-    held[1].close = lambda: 1 / 0
+    held[1].close = partial(held[1].fail, "close")
+    held[1].fails_in = "close"
     held[2].fails_in = "exit"
     game.app.close()
     assert [scene.closed for scene in held] == [1, 0, 1]

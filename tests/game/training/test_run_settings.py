@@ -162,7 +162,7 @@ def test_an_impossible_value_changes_nothing_and_is_explained(run_settings: RunS
     assert run_settings.problem.startswith("Learning rate lies between")
     assert not heard
     run_settings.turn("learning_rate", 0.01)
-    assert not run_settings.problem
+    assert run_settings.problem == ""
     run_settings.load(("classic", ""))
     run_settings.turn("replay_size", 500)
     assert run_settings.problem == "Forget at once is at most Replay, 500, not 1000"

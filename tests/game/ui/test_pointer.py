@@ -21,7 +21,7 @@ from tests.support.flights import NOON, fly_out
 from tests.support.player import DEVICES, Player
 
 Open = Callable[..., Driver]
-Take = Callable[[object], Player]
+Take = Callable[..., Player]
 
 
 @pytest.fixture(params=DEVICES)

@@ -20,7 +20,8 @@ from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.listing import shortened
 from game.ui.widget import PointsManager
-from game.ui.widgets import CHOICE_GAP, Choice, Slider, TextButton, Toggle
+from game.ui.widgets import Choice, Slider, TextButton, Toggle
+from game.ui.words import GAP
 from tests.support.driver import Driver
 from tests.support.form_page import FormPage
 
@@ -33,7 +34,7 @@ class Page(FormPage):
     def __init__(self, context: Context) -> None:
         super().__init__(context)
         form, manager, log = self.form, self.form.manager, self.log
-        self.word = form.add(TextButton(manager, (64, 100, 120, 32), "Go", lambda: log.append("go")))  # type: ignore[func-returns-value]
+        self.word = form.add(TextButton(manager, (64, 100, 120, 32), "Go", lambda: log.append("go")))
         self.toggle = form.add(Toggle(manager, (64, 150, 400, 32), "Switch", False, log.append))
         self.slider = form.add(
             Slider(manager, (64, 200, 400, 24), "Rate", 0.5, (0.0, 1.0), log.append, step=0.1, figure_width=60)
@@ -44,7 +45,7 @@ class Page(FormPage):
 @pytest.fixture
 def page(open_game: Callable[..., Driver]) -> tuple[Driver, Page]:
     driver = open_game(Page)
-    return driver, driver.top  # type: ignore[return-value]
+    return driver, driver.top
 
 
 def test_arrows_follow_a_column_round_and_cross_to_the_next(subtests: pytest.Subtests):
@@ -183,7 +184,7 @@ def test_a_line_that_fits_the_largest_screen_is_drawn_whole():
     while canvas.text_width(line + "m", size=SMALL) < VIEW_SIZE[0]:
         line += "m"
     canvas.text(line, (0, 360), size=SMALL, colour=INK)
-    inked = pygame.surfarray.array3d(canvas.surface).any(axis=(1, 2)).nonzero()[0]
+    inked = np.flatnonzero(pygame.surfarray.array3d(canvas.surface).any(axis=(1, 2)))
     assert inked[-1] >= canvas.text_width(line, size=SMALL) * canvas.scale - 3 * canvas.scale
 
 
@@ -231,15 +232,16 @@ def test_texts_are_kept_and_forgotten_with_the_size(tmp_path: Path):
 
 def test_a_choice_of_many_goes_on_pages_that_keys_and_mouse_turn():
     names = [f"network {number}" for number in range(30)]
-    choice = Choice(PointsManager(), (64, 250, 400, 20), "", names, 0, lambda _: None)
+    manager = PointsManager()
+    choice = Choice(manager, (64, 250, 400, 20), "", names, 0, lambda _: None)
     pages = choice.row.pages
     assert [number for page in pages for number in page] == list(range(30))
     for page in pages:
         last = choice.row.lefts[page[-1]] + typeface.width(names[page[-1]], 15, "regular")
-        assert last <= 464 - CHOICE_GAP + 1
+        assert last <= 464 - GAP + 1
 
     def click(x: float) -> None:
-        choice.ui_manager.mouse_position = (int(x), 260)
+        manager.mouse_position = (int(x), 260)
         choice.press()
 
     click(460)
@@ -259,7 +261,7 @@ def test_the_hint_names_the_keys_that_change_what_is_in_focus(open_game: Callabl
     driver.frames(2)
     if scene is ChoicesScene:
         driver.key(pygame.K_c)
-    assert isinstance(driver.top, scene)
+    assert driver.top_name == scene.__name__
     form = driver.top.form
     seen = set()
     for widget in form.widgets:

@@ -6,6 +6,7 @@ import numpy as np
 import pygame
 import pytest
 
+from ai.flights.recording import AREA
 from ai.lander.edges import NEAR, near_edges
 from ai.lander.environment import LIMITS, LanderEnv, Outcome
 from ai.lander.ground import hilly
@@ -13,7 +14,7 @@ from ai.lander.rules import AREAS
 from game.audio.flight_sounds import FlightSound
 from game.cockpit.surroundings import surroundings
 from game.drawing.canvas import Canvas
-from game.flight.flight import AREA, Flight, Recording
+from game.flight.flight import Flight, Recording
 from game.flight.replay import ReplayedFlight
 from game.world.camera import View
 from game.world.edges import draw_edges
@@ -57,8 +58,8 @@ def test_people_have_more_room_and_old_recordings_the_room_they_had():
     assert all(new > old for new, old in zip(AREAS[AREA], AREAS[0], strict=True))
     assert LanderEnv(1, 0).limits == LIMITS  # networks are trained in the first area
     for area, (half_width, ceiling) in enumerate(AREAS):
-        flight = ReplayedFlight(Recording(3, "random", area=area))
-        assert (flight.env.limits.half_width, flight.env.limits.ceiling) == (half_width, ceiling)
+        limits = ReplayedFlight(Recording(3, "random", area=area)).env.limits
+        assert (limits.half_width, limits.ceiling) == (half_width, ceiling)
     old, new = (Flight(3, area=area) for area in range(2))
     for flight in (old, new):
         flight.env.place(np.ones(1, bool), np.array([[21.5, 12.0, 3.0, 0, 0, 0]]))

@@ -22,7 +22,7 @@ def look(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Drawn]:
     canvas, drawn, write = Canvas(pygame.Surface((1280, 720))), {}, Canvas.text
 
     def noted(self: Canvas, string: str, *args: object, **more: object) -> pygame.FRect:
-        box = write(self, string, *args, **more)  # type: ignore[arg-type]
+        box = write(self, string, *args, **more)
         drawn[string] = box, more["alpha"]
         return box
 
