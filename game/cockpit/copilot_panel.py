@@ -1,4 +1,4 @@
-"""Co-pilot panel: what a shared decision weighs, Q-values or where the network still lands, and whose action is flown."""
+"""Co-pilot panel: what a shared decision weighs, Q-values or landings ahead, and whose action is flown."""
 
 from __future__ import annotations
 

@@ -43,8 +43,9 @@ class Worker:
     Every turn of the generator yields an iterable of messages; `poll` returns them here. A class of messages may
     say `newest_only = True`: of these only the latest comes across; or `may_thin = True`: of these some may be
     left out when nobody asks for long. The first turn is taken at once. A command that is sent makes a turn of
-    its own, also while paused. After a turn that yields None, the next is that of a command. Nothing but `close` ever waits, and the process ends with the window, however
-    that ends. The reasons are in docs/adr/0011-training-in-a-process-of-its-own.md.
+    its own, also while paused. After a turn that yields None, the next is that of a command. Nothing but `close`
+    ever waits, and the process ends with the window, however that ends. The reasons are in
+    docs/adr/0011-training-in-a-process-of-its-own.md.
     """
 
     def __init__(self, function: Function, *args: Any, **kwargs: Any) -> None:

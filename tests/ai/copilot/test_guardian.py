@@ -152,7 +152,7 @@ def test_what_is_asked_for_where_all_lands_is_flown_and_what_the_network_asks_fo
 def test_the_dial_at_nothing_never_acts(agent, monkeypatch):
     monkeypatch.setattr(Lookahead, "plans", lambda *_: pytest.fail("a future was flown"))
     env = flights(3)
-    overridden, held = guarded(agent, env, lambda env, _: np.full(3, 1), 0.0)
+    overridden, _ = guarded(agent, env, lambda env, _: np.full(3, 1), 0.0)
     assert overridden.sum() == 0
 
 
