@@ -108,7 +108,9 @@ def test_a_route_leads_on_from_its_nearest_point_and_ends_over_the_goal():
     assert route.length == 8
     assert route.nearest(np.array([1.0, 6.0])) == 1
     assert route.nearest(np.array([9.0, 7.0])) == 6
-    across, up = route.velocity(np.array([1.0, 6.0])) or (0.0, 0.0)
+    velocity = route.velocity(np.array([1.0, 6.0]))
+    assert velocity is not None
+    across, up = velocity
     assert across > 0 > up  # on, and back to the route
     assert route.velocity(np.array([4.0, 8.9])) is None
     plain = LanderEnv(1, 0)
