@@ -27,8 +27,8 @@ class World:
     Bodies live in fixed slots, the same in every world; `active` masks, not shorter lists, take one out.
     `gravity` may be reassigned at any time to (2,) or (batch, 2), and so may `iterations` of the solver and
     `restitution_threshold`, the closing speed (m/s) from which bodies rebound; each raises ValueError for a value
-    without physical sense. After a step, `contacts` holds what touched in it (or would have, but for 2 mm), with closing
-    speeds and impulses.
+    without physical sense. After a step, `contacts` holds what touched in it (or would have, but for 2 mm), with
+    closing speeds and impulses.
 
     Unless `sleeping` is off, what lies still falls asleep and costs nothing, until something about it changes. So
     that it comes to lie still, impulses pass over to the points that take the place of others, and overlaps of
