@@ -218,7 +218,7 @@ class Rows:
         change, pushed = space.change, total[:2]
         motion = velocity.take(self.index, out=space.motion, mode="clip")
         np.multiply(self.jacobian, motion, out=space.products)
-        speed = np.add.reduce(space.products, 1, out=space.speed)
+        speed = np.add.reduce(space.products, axis=1, out=space.speed)
         pushes = self.push(np.subtract(wanted, space.closing, out=space.lacking), pushed)
         np.subtract(pushes, pushed, out=space.pushed)
         if friction is not None:
