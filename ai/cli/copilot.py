@@ -84,8 +84,9 @@ def _table(arguments: argparse.Namespace) -> int:
         agent = _lander(arguments.model, (LANDER,))
         agents = {"one_pad": agent, "three_pads": agent, "other_worlds": _lander(arguments.anywhere, (ANYWHERE,))}
         asked = parts(agents, arguments.good == "scripted", helps, arguments.episodes, arguments.seed)
-        guarded = sum(len(part.names) for part in asked) * (1 + len(arguments.assist)) * arguments.episodes
-        minutes = seconds(agent, guarded) / 60 / (arguments.workers or 1)
+        slots = max(len(part.names) for part in asked) * arguments.episodes
+        rounds = len(asked) * (1 + len(arguments.assist))
+        minutes = rounds * seconds(agent, slots) / 60 / (arguments.workers or 1)
         print(
             f"this takes about {minutes:.0f} minutes" if minutes > 1 else "this takes about a minute", file=sys.stderr
         )

@@ -135,7 +135,7 @@ class CoPilot:
         self.reward_scale = config.reward_scale if reward_scale is None else reward_scale
         self.infers_intent = infers_intent
         self._intent = Intent(self.reward_scale)
-        self.lookahead = Lookahead(agent, route)
+        self.lookahead = Lookahead(agent, route)  # type: ignore[arg-type]  # futures ask for a pilot; values do not
         self.guardians: list[Guardian] = []
         self._rules: tuple[object, ...] = ()  # of the environment that the plans are for
 

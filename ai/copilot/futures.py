@@ -279,7 +279,7 @@ class Lookahead:
             pushed[: len(opening), index] = opening
         start = moment.take(np.array([row for row, _, _ in asked]))
         start.target[:] = [pad for _, _, pad in asked]
-        actions, shares = np.zeros((_MOST, count), dtype=np.int8), np.zeros((_MOST, count, 2))
+        actions, shares = np.zeros((_MOST, count), dtype=np.intp), np.zeros((_MOST, count, 2))
         states = np.empty((_MOST + 1, count, 6))
         ends, landed = np.zeros((2, count), dtype=np.intp)
         env, future = self._begin(start, np.arange(count))  # future (n,) of every slot, fewer than there are slots
@@ -307,11 +307,10 @@ class Lookahead:
                 env, future = self._begin(Moment.of(env).take(left), future[left])
                 flies = np.arange(env.num_envs) < len(left)
         plans: list[Plan | None] = [None] * count
-        for index in np.flatnonzero(landed):
-            flown, pad = slice(ends[index]), asked[index][2]
-            kept = (part[flown, index].copy() for part in (actions, shares))
-            path = states[: ends[index] + 1, index].copy()
-            plans[index] = Plan(int(start.steps[index]), start.fall(index), pad, *kept, path)
+        for row in np.flatnonzero(landed).tolist():
+            end = ends[row]
+            plans[row] = Plan(int(start.steps[row]), start.fall(row), asked[row][2], actions[:end, row].copy(),
+                              shares[:end, row].copy(), states[: end + 1, row].copy())  # fmt: skip
         return plans
 
     def _choose(self, env: LanderEnv) -> tuple[Ints, Doubles]:

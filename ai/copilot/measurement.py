@@ -30,8 +30,7 @@ Help = tuple[str, float]  # alone, or how the co-pilot helps; and how much
 GUARD: Final[Help] = (Mode.GUARDIAN, 0.04)  # there must be a landing after one decision of an action
 HELPS: Final[tuple[Help, ...]] = ((ALONE, 0.0), (Mode.TOLERANCE, 0.4), (VALUES, 0.4), GUARD)
 _STARTS: Final = 0x5AFE7AB1E  # beside the seed, so that no start is one that anything was trained with
-_SAMPLE: Final = 24  # futures by which the machine's speed is told
-_FUTURES: Final = 320.0  # that a guarded flight takes: the shares of a batch, measured
+_BATCHES: Final = 300  # of futures as long as those from a start, that flights with a guardian take
 
 
 @dataclass(frozen=True)
@@ -76,15 +75,15 @@ TABLES: Final[dict[str, tuple[MakeEnv, tuple[str, ...]]]] = {
 }
 
 
-def seconds(agent: DeepQAgent, flights: int) -> float:
-    """Return about how long so many flights take with a guardian, in seconds on this machine: a few are timed."""
-    env = LanderEnv(_SAMPLE, 0)
+def seconds(agent: DeepQAgent, slots: int) -> float:
+    """Return about how long it takes to fly so many slots at once with a guardian, in seconds: one batch is timed."""
+    env = LanderEnv(slots, 0)
     env.reset()
-    lookahead, asked = Lookahead(agent), [(slot, KEYS[0]) for slot in range(_SAMPLE)]
-    lookahead.futures(Moment.of(env), asked)
+    lookahead, moment, asked = Lookahead(agent), Moment.of(env), [(slot, KEYS[0]) for slot in range(slots)]
+    lookahead.futures(moment, asked[:1])
     begun = time.perf_counter()
-    lookahead.futures(Moment.of(env), asked)
-    return flights * _FUTURES / _SAMPLE * (time.perf_counter() - begun)
+    lookahead.futures(moment, asked)
+    return _BATCHES * (time.perf_counter() - begun)
 
 
 def rows(
@@ -120,10 +119,11 @@ def _measure(
     found = []
     for number, name in enumerate(names):
         mine = slice(number * episodes, (number + 1) * episodes)
-        _, *shares = (float((env.outcome[mine] == outcome).mean()) for outcome in Outcome)
+        _, success, crash, gone, late = (float((env.outcome[mine] == outcome).mean()) for outcome in Outcome)
         changed = float(overridden[mine].sum() / decisions[mine].sum())
-        more = (float(each[mine].mean()) for each in (own, held, held & ~landed))
-        found.append(AssistedFlights(name, str(mode), assist, episodes, *shares, changed, *more))
+        on_own, planned, lost = (float(each[mine].mean()) for each in (own, held, held & ~landed))
+        found.append(AssistedFlights(name, str(mode), assist, episodes, success, crash, gone, late, changed, on_own,
+                                     planned, lost))  # fmt: skip
     return found
 
 

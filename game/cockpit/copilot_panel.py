@@ -78,7 +78,7 @@ class CopilotPanel:
 
     def _explain(self, decision: SharedDecision, pad: int) -> None:
         """Show a shared decision by its Q-values for one of the pads as the goal."""
-        from ai.copilot.copilot import ActionSource
+        from ai.copilot.guardian import ActionSource
 
         self._likely = decision.likely[0].tolist()
         if decision.held is not None:
@@ -154,7 +154,8 @@ def shared_values(decision: SharedDecision, pad: int) -> QValues:
 
 def why(decision: SharedDecision, values: QValues) -> Why:
     """Explain whose action is flown, and why, by the figures that decided it."""
-    from ai.copilot.copilot import ActionSource, Mode
+    from ai.copilot.copilot import Mode
+    from ai.copilot.guardian import ActionSource
 
     source, asked = ActionSource(int(decision.source[0])), values.asked
     if asked is None:

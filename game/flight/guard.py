@@ -41,7 +41,8 @@ class Taps:
     """What was pressed since the last decision: an engine that was tapped between two decisions counts in the next."""
 
     def __init__(self) -> None:
-        self._before = self._tapped = (0.0, 0.0)
+        self._before: tuple[float, ...] = (0.0, 0.0)
+        self._tapped: tuple[float, ...] = (0.0, 0.0)
 
     def follow(self, push: Push) -> None:
         """Follow one step's stick."""

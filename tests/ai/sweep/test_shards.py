@@ -6,11 +6,10 @@ import shutil
 
 import numpy as np
 import pytest
-from ai.copilot.critic import critic_beside
 
 from ai.agent.agent import DeepQAgent
 from ai.copilot import measurement
-from ai.copilot.measurement import one_pad, three_pads
+from ai.lander.environment import LanderEnv
 from ai.sweep import copilot_table
 from ai.sweep import shards as module
 from ai.sweep.cluster import each
@@ -75,18 +74,15 @@ def test_a_worker_flies_one_shard_after_another_with_the_same_network(monkeypatc
     assert fly(parts[0]) == fly(parts[0])
 
 
-@pytest.mark.slow
 def test_the_copilots_table_is_the_same_in_parts(monkeypatch):
-    monkeypatch.setattr(measurement, "ONE_PAD", measurement.ONE_PAD[:2])  # the rest takes long
-    monkeypatch.setattr(measurement, "THREE_PADS", measurement.THREE_PADS[:2])
-    monkeypatch.setattr(measurement, "INTENT_PILOTS", ("laggy",))
-    monkeypatch.setattr(measurement, "GROUNDS", 2)
-    monkeypatch.setattr(measurement, "PILOTS", {name: measurement.PILOTS[name] for name in ("laggy", "noisy")})
-    asked = parts(AGENT, False, 3, 2)
+    names, helps = ("laggy", "noisy"), (("alone", 0.0),)
+    table = (lambda slots, rng: LanderEnv(slots, rng, "rung_1"), names)
+    monkeypatch.setattr(measurement, "TABLES", {"one_pad": table})
+    monkeypatch.setattr(copilot_table, "_PILOTS", 1)
+    asked = parts({"one_pad": AGENT}, False, helps, 3, 2)
+    assert len(asked) == 2
     done = {index: copilot_table.fly(part) for index, part in reversed([*enumerate(asked)])}
-    tables = tables_of(asked, done)
-    assert tables["one_pad"] == list(one_pad(AGENT, AGENT, 3, 2))
-    assert tables["three_pads"] == list(three_pads(AGENT, AGENT, 3, 2))
+    assert tables_of(asked, done)["one_pad"] == list(measurement.rows(AGENT, AGENT, "one_pad", names, helps, 3, 2))
 
 
 def test_evaluating_a_model_sends_what_was_read_and_leaves_nothing_behind(monkeypatch, tmp_path, capsys):
@@ -117,11 +113,7 @@ def test_evaluating_a_model_sends_what_was_read_and_leaves_nothing_behind(monkey
     assert not list((tmp_path / "temporary").iterdir())
 
 
-def test_an_agent_that_was_sent_flies_with_the_same_guardian():
-    sent, critic = packed_agent(pack_agent(AGENT)), critic_beside(AGENT)[0]
-    there = critic_beside(sent)[0]
-    assert critic is not None
-    assert there is not None
-    assert np.array_equal(there.network.values, critic.network.values)
+def test_an_agent_that_was_sent_flies_alike():
+    sent = packed_agent(pack_agent(AGENT))
     assert np.array_equal(sent.network.values, AGENT.network.values)
     assert not sent.folder.exists()
