@@ -51,7 +51,7 @@ def sentence(decision: SharedDecision) -> str:
 
 def why_saved(decision: SharedDecision, landings: Landings) -> Why:
     """Explain whose action a guardian flies, by the futures that decided it."""
-    from ai.copilot.copilot import ActionSource
+    from ai.copilot.guardian import ActionSource
 
     source = ActionSource(int(decision.source[0]))
     title = texts.COPILOT_PANEL_WHY[source.name][0]

@@ -361,7 +361,11 @@ class Gone(io.StringIO):
     def write(self, _):
         raise OSError(errno.EIO, "Input/output error")
 
-    flush = isatty = lambda self: True
+    def flush(self) -> None:
+        pass
+
+    def isatty(self) -> bool:
+        return True
 
 
 def test_whoever_does_not_listen_has_the_run_kept_all_the_same(tmp_path, monkeypatch):

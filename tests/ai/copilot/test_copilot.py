@@ -3,7 +3,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ai.copilot.copilot import GUARDIAN_MARGIN, ActionSource, CoPilot, Mode
+from ai.copilot.copilot import GUARDIAN_MARGIN, CoPilot, Mode
+from ai.copilot.guardian import ActionSource
 from ai.lander.pilots import COAST
 
 
