@@ -1,0 +1,157 @@
+"""Flights guarded by futures: what was seen to land is flown, whatever is asked for."""
+
+import time
+
+import numpy as np
+import pytest
+
+from ai.agent.agent import DeepQAgent
+from ai.copilot.futures import KEYS, Lookahead, Moment, Push
+from ai.flights.starts import begun
+from ai.flights.stick import thrust
+from ai.lander.environment import Outcome
+from game.core.assets import MODELS_DIR
+from game.flight.flight import Flight, StickHolder
+from game.flight.futures import FuturesProcess
+from game.flight.guard import Guard, Taps, nearest, push_of, shares_of
+
+GUARD = 0.04  # of the dial: one decision ahead
+
+
+class AtOnce:
+    """Flies futures at once, in this process; nothing is known of what is `late`."""
+
+    def __init__(self):
+        self.problem = ""
+        self.late = set()
+
+    def ask(self, moment, before, asked, decisions, policy, route):
+        self._lookahead = Lookahead(policy, route)
+        self._moment, self._before, self._decisions, self._wished = moment, before, decisions, {asked}
+
+    def hint(self, asked):
+        self._wished.add(asked)
+
+    def known(self):
+        pushes = [push for push in {*self._wished, KEYS[0]} if push not in self.late]
+        found = self._lookahead.futures(self._moment, [(0, push) for push in pushes], self._decisions, self._before)
+        return dict(zip(pushes, found, strict=True))
+
+
+@pytest.fixture(scope="module")
+def agent():
+    return DeepQAgent.load(MODELS_DIR / "lander" / "modern")
+
+
+def guarded(agent, seed=0, assist=GUARD):
+    flight = Flight(seed, agent, "rung_1")
+    flight.guard = Guard(flight, AtOnce())
+    flight.help(assist, "guardian")
+    flight.guard.hang(0)
+    return flight
+
+
+def fly(flight, ask, most):
+    while not flight.over and len(flight.recording.actions) < most:
+        flight.step(*ask(len(flight.recording.actions)))
+    return flight
+
+
+def land(flight):
+    flight.hand_over()
+    return fly(flight, lambda _: (0, None), most=900)
+
+
+def test_a_held_key_and_a_weak_stick_land_and_their_recording_flies_again(agent):
+    for name, stick in {"held right": (2, None), "a weak stick": (3, (5, 0))}.items():
+        flight = land(fly(guarded(agent), lambda _, stick=stick: stick, most=80))
+        assert flight.outcome is Outcome.LANDED, name
+        again = begun(flight.recording)
+        for step, action in enumerate(flight.recording.actions):
+            again.fly(np.array([action]), thrust(flight.recording.shares.get(step)))
+        assert (again.position == flight.env.position).all(), name
+        assert again.outcome[0] == Outcome.LANDED
+
+
+def test_what_is_decided_lasts_for_four_steps_and_a_tap_counts_at_the_next(agent):
+    flight = fly(guarded(agent), lambda step: (2 if step == 1 else 0, None), most=12)
+    assert flight.recording.actions[:4] == [0] * 4
+    assert set(flight.recording.actions[4:8]) == {2} or flight.guard.saves
+    assert len(set(flight.recording.actions[8:12])) == 1
+    taps = Taps()
+    for main, side in ((0, 0), (1, 0), (0, 0), (0, -1)):
+        taps.follow(Push.of(main, side))
+    assert taps.take() == KEYS[4]  # main was tapped, left is held
+    taps.follow(KEYS[1])
+    assert taps.take() == KEYS[1]
+
+
+def test_what_was_not_flown_ahead_in_time_is_late_and_the_plan_flies_on(agent):
+    flight = guarded(agent)
+    flight.guard.ahead.late = {KEYS[1]}
+    fly(flight, lambda step: (1 if step > 3 else 0, None), most=24)
+    assert flight.guard.late == 5
+    assert not flight.guard.saves
+    assert flight.guard.safe
+    assert flight.overridden
+    assert flight.recording.hands[-1] is StickHolder.NETWORK
+
+
+def test_a_hand_over_and_another_network_leave_the_plan(agent):
+    flight = fly(guarded(agent), lambda _: (2, None), most=10)
+    flight.hand_over()
+    flight.change_network(DeepQAgent.load(MODELS_DIR / "lander" / "modern"))
+    assert flight.guard.safe
+    fly(flight, lambda _: (0, None), most=30)
+    assert flight.guard.safe
+    flight.hand_over()
+    assert fly(flight, lambda _: (1, None), most=90).guard.safe
+    assert land(flight).outcome is Outcome.LANDED
+
+
+def test_a_change_of_gravity_voids_the_plan_and_another_is_found(agent):
+    flight = fly(guarded(agent), lambda _: (2, None), most=8)
+    flight.set_gravity(0.9)
+    fly(flight, lambda _: (2, None), most=12)
+    assert not flight.guard.safe
+    assert fly(flight, lambda _: (2, None), most=60).guard.safe
+    assert land(flight).outcome is Outcome.LANDED
+
+
+def test_without_its_process_or_at_nought_nothing_is_guarded(agent):
+    for assist, problem in ((0.0, ""), (GUARD, "no process")):
+        flight = guarded(agent, assist=assist)
+        flight.guard.ahead.problem = problem
+        fly(flight, lambda _: (2, None), most=8)
+        assert not flight.guard.safe
+        assert flight.guard.decisions == 0
+    assert FuturesProcess(cores=1).problem
+
+
+def test_a_position_of_the_stick_is_replaced_by_the_nearest_that_was_flown_ahead():
+    known = dict.fromkeys((Push.of(0.5, 0.0), KEYS[0]))
+    assert nearest(Push.of(0.4375, 0.0625), known) == Push.of(0.5, 0.0)
+    assert nearest(Push.of(0.5, 1.0), known) == Push.of(0.5, 1.0)  # too far
+    assert nearest(KEYS[3], known) == KEYS[3]
+    for action, shares in ((3, (5, 0)), (4, (16, -3)), (2, None)):
+        assert shares_of(push_of(action, shares)) == shares
+
+
+@pytest.mark.slow
+def test_the_process_flies_what_is_asked_for_first_and_then_every_key(agent):
+    ahead = FuturesProcess()
+    try:
+        flight = Flight(0, agent, "rung_1")
+        flight.guard = Guard(flight, ahead)
+        flight.help(GUARD, "guardian")
+        flight.guard.hang(2)
+        until = time.monotonic() + 60
+        while len(ahead.known()) < len(KEYS) and time.monotonic() < until:
+            time.sleep(0.01)
+        assert next(iter(ahead.known())) == KEYS[2]
+        assert set(ahead.known()) == set(KEYS)
+        (here,) = Lookahead(agent).futures(Moment.of(flight.env), [(0, KEYS[2])])
+        assert here.plan is not None
+        assert (ahead.known()[KEYS[2]].plan.actions == here.plan.actions).all()
+    finally:
+        ahead.close()
