@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
+    from ai.copilot.futures import FlownAhead
     from game.core.scene import Route
-    from game.flight.futures import FlownAhead
 
 _HINTS: Final[dict[str, str]] = {
     "PYGAME_HIDE_SUPPORT_PROMPT": "1",

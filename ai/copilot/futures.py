@@ -7,9 +7,9 @@ bits; so a plan is flown as it is written down, and never decided anew.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
-from typing import Any, Final, NamedTuple
+from typing import Any, Final, NamedTuple, Protocol
 
 import numpy as np
 
@@ -215,6 +215,28 @@ class Futures:
         for (slot, push), future in zip(asked, found, strict=True):
             plans[slot][push.action], lasts[slot, push.action] = future.plan, future.passes
         return cls(np.array([[plan is not None for plan in row] for row in plans]), lasts, plans)
+
+
+class FlownAhead(Protocol):
+    """Protocol of what flies the futures of one lander's next decision, while the present one is flown."""
+
+    @property
+    def problem(self) -> str:
+        """Text that says why there are none; empty while there are."""
+
+    def ask(
+        self, moment: Moment, before: Opening, asked: Push, decisions: int, pilot: Pilot, route: Route | None
+    ) -> None:
+        """Ask for the futures of a moment, after what is pushed `before`, and forget older ones.
+
+        `asked` is what the stick asks for now, and `decisions`, `pilot` and `route` are those of `Lookahead`.
+        """
+
+    def hint(self, asked: Push) -> None:
+        """Say what the stick asks for now."""
+
+    def known(self) -> Mapping[Push, Future]:
+        """Return what is known by now of the moment asked for; never waits."""
 
 
 class Lookahead:

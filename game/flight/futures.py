@@ -9,18 +9,18 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping
-from typing import Final, NamedTuple, Protocol
+from typing import Final, NamedTuple
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.config import Config
 from ai.agent.normalizer import Normalizer
 from ai.common.environment import Floats
 from ai.copilot.futures import KEYS, Future, Lookahead, Moment, Opening, Push
+from ai.lander.pilots import Pilot
 from ai.lander.route import Route
 from game.core import texts
 from game.core.worker import Worker, WorkerState
 from game.core.worker_process import Turns
-from game.flight.networks import Policy
 
 _CORES: Final = 2  # with fewer, the futures would take the time that the window needs
 
@@ -69,25 +69,6 @@ class Found(NamedTuple):
     future: Future
 
 
-class FlownAhead(Protocol):
-    """Protocol of what flies futures ahead of a flight's decisions."""
-
-    @property
-    def problem(self) -> str:
-        """Text that says why there are none; empty while there are."""
-
-    def ask(
-        self, moment: Moment, before: Opening, asked: Push, decisions: int, policy: Policy, route: Route | None
-    ) -> None:
-        """Ask for the futures of a moment of one lander, after what is pushed `before`, and forget the older ones."""
-
-    def hint(self, asked: Push) -> None:
-        """Say what the stick asks for now."""
-
-    def known(self) -> Mapping[Push, Future]:
-        """Return what is known by now of the moment asked for; never waits."""
-
-
 class FuturesProcess:
     """A process that flies futures ahead; it begins with the first request, and is kept from flight to flight."""
 
@@ -97,21 +78,21 @@ class FuturesProcess:
         self._number = 0
         self._known: dict[Push, Future] = {}
         self._asked: Push | None = None
-        self._flies: tuple[Policy, Route | None] | None = None  # the network and the route that the process has
+        self._flies: tuple[Pilot, Route | None] | None = None  # the network and the route that the process has
 
     def ask(
-        self, moment: Moment, before: Opening, asked: Push, decisions: int, policy: Policy, route: Route | None
+        self, moment: Moment, before: Opening, asked: Push, decisions: int, pilot: Pilot, route: Route | None
     ) -> None:
         """Ask for the futures of a moment of one lander, after what is pushed `before`, and forget the older ones."""
-        if self.problem or not isinstance(policy, DeepQAgent):
+        if self.problem or not isinstance(pilot, DeepQAgent):
             return
         if self._worker is None:
             self._worker = Worker(fly_ahead)
         self._number += 1
         self._known, self._asked = {}, asked
-        same = self._flies is not None and self._flies[0] is policy and self._flies[1] is route
-        self._flies = policy, route
-        flyer = None if same else (Flyer.of(policy), route)
+        same = self._flies is not None and self._flies[0] is pilot and self._flies[1] is route
+        self._flies = pilot, route
+        flyer = None if same else (Flyer.of(pilot), route)
         self._worker.send(Request(self._number, moment, before, asked, decisions, flyer))
         self._poll()
 

@@ -18,7 +18,7 @@ from game.drawing.tokens import VIEW_SIZE
 from game.input.controls import Controls
 
 if TYPE_CHECKING:
-    from game.flight.futures import FlownAhead
+    from ai.copilot.futures import FlownAhead
 
 
 def _ignore(text: str) -> None:

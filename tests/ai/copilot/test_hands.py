@@ -1,5 +1,7 @@
 """Hands do what they are said to do."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -73,7 +75,8 @@ def test_keys_are_held_and_a_weak_stick_pushes_less(agent):
     asked = np.array([each.act(seen) for _ in range(60)])
     assert (asked.reshape(4, 15, 5) == asked.reshape(4, 15, 5)[:, :1]).all()
     assert len(np.unique(asked)) > 2
-    assert STUBBORN["thrust 0.3"](5, rng, agent).shares(np.array([0, 1, 5])).tolist() == [[0, 0], [0, -1], [0.3, 1]]
+    weak: Any = STUBBORN["thrust 0.3"](5, rng, agent)
+    assert weak.shares(np.array([0, 1, 5])).tolist() == [[0, 0], [0, -1], [0.3, 1]]
 
 
 def test_an_adversary_asks_for_the_worst_that_passes(agent):

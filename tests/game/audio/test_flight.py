@@ -106,7 +106,7 @@ def test_warnings_know_the_gravity_of_the_flight(height: float, share: float, wa
 
 def test_two_warnings_take_turns():
     heard = over_the_pad(4.5, fall=5.0, angle=0.8)
-    heard.flight.env.world.gravity[:] = 0
+    heard.flight.env.world.gravity = (0.0, 0.0)
     heard.step(number=45)
     assert [key for key in heard.sound.heard() if key.startswith("too")] == ["too_fast", "too_tilted"]
 

@@ -14,28 +14,9 @@ from game.core.assets import MODELS_DIR
 from game.flight.flight import Flight, StickHolder
 from game.flight.futures import FuturesProcess
 from game.flight.guard import Guard, Taps, nearest, push_of, shares_of
+from tests.support.futures import AtOnce
 
 GUARD = 0.04  # of the dial: one decision ahead
-
-
-class AtOnce:
-    """Flies futures at once, in this process; nothing is known of what is `late`."""
-
-    def __init__(self):
-        self.problem = ""
-        self.late = set()
-
-    def ask(self, moment, before, asked, decisions, policy, route):
-        self._lookahead = Lookahead(policy, route)
-        self._moment, self._before, self._decisions, self._wished = moment, before, decisions, {asked}
-
-    def hint(self, asked):
-        self._wished.add(asked)
-
-    def known(self):
-        pushes = [push for push in {*self._wished, KEYS[0]} if push not in self.late]
-        found = self._lookahead.futures(self._moment, [(0, push) for push in pushes], self._decisions, self._before)
-        return dict(zip(pushes, found, strict=True))
 
 
 @pytest.fixture(scope="module")

@@ -17,6 +17,7 @@ from game.core.settings import TOP_RUNG, Settings
 from game.flight import networks
 from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Entry
+from game.flight.guard import Guard
 from game.flight.logbook import Records, best
 from game.flight.replay import FlightReplay
 from game.flight.skill import Skill
@@ -27,6 +28,7 @@ from game.scenes.play import PlayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import fly_out, kept, play
+from tests.support.futures import AtOnce
 from tests.support.player import DEVICES, Player
 from tests.support.reading import Weighs
 from tests.support.slow_hands import fly_slowly
@@ -285,6 +287,7 @@ HANDS: dict[str, Callable[[Flight], int]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("hands", HANDS)
 def test_who_tries_to_crash_is_brought_down_by_the_network_that_comes_with_the_game(hands: str):
     tutorial: Any = Tutorial()
@@ -297,6 +300,7 @@ def test_who_tries_to_crash_is_brought_down_by_the_network_that_comes_with_the_g
     dial.assist = 0.4
     assert not tutorial.holds
     flight.help(dial.assist, dial.copilot)
+    flight.guard = Guard(flight, AtOnce())
     for _ in range(60 * 40):
         flight.step(HANDS[hands](flight))
         tutorial.follow(flight)

@@ -1,0 +1,23 @@
+"""Futures for guarded flights, without a process of their own."""
+
+from ai.copilot.futures import KEYS, Lookahead
+
+
+class AtOnce:
+    """Flies futures at once, in this process; nothing is known of what is `late`."""
+
+    def __init__(self):
+        self.problem = ""
+        self.late = set()
+
+    def ask(self, moment, before, asked, decisions, policy, route):
+        self._lookahead = Lookahead(policy, route)
+        self._moment, self._before, self._decisions, self._wished = moment, before, decisions, {asked}
+
+    def hint(self, asked):
+        self._wished.add(asked)
+
+    def known(self):
+        pushes = [push for push in {*self._wished, KEYS[0]} if push not in self.late]
+        found = self._lookahead.futures(self._moment, [(0, push) for push in pushes], self._decisions, self._before)
+        return dict(zip(pushes, found, strict=True))
