@@ -18,7 +18,7 @@ from threading import Thread
 from typing import Any, Final
 
 from game.core import texts
-from game.core.worker_process import CREDIT, Function, MessageBatch, serve
+from game.core.worker_process import CREDIT, NICENESS, Function, MessageBatch, serve
 
 PATIENCE: Final = 30.0  # seconds without an answer after which a process counts as hung
 STOP_SECONDS: Final = 3.0  # seconds to end after a request to stop
@@ -48,6 +48,8 @@ class Worker:
     docs/adr/0011-training-in-a-process-of-its-own.md.
     """
 
+    niceness = NICENESS
+
     def __init__(self, function: Function, *args: Any, **kwargs: Any) -> None:
         self.problem = ""
         self.patience = PATIENCE
@@ -63,7 +65,7 @@ class Worker:
         context = get_context("spawn")
         payload = pickle.dumps((function, args, kwargs))
         connection, theirs = context.Pipe()
-        self._process = context.Process(target=serve, args=(theirs, payload), daemon=True)
+        self._process = context.Process(target=serve, args=(theirs, payload, self.niceness), daemon=True)
         threads = (
             Thread(target=_read, args=(connection, self._inbox), daemon=True),
             Thread(target=_write, args=(connection, self._orders), daemon=True),

@@ -24,7 +24,7 @@ GRACE: Final = 3.0  # seconds to end in once the window has closed
 CREDIT: Final = 2  # bundles requested ahead: with one, every other turn would pass while the request is under way
 MOST_WAITING: Final = 2000  # waiting messages above which some of those with `may_thin` are dropped
 MOST_AT_ONCE: Final = 250
-_NICENESS: Final = 5  # the window goes first
+NICENESS: Final = 5  # the window goes first
 _LONGEST: Final = 300  # characters of a problem: an error's text can have any length
 
 Order = tuple[str, Any]
@@ -77,9 +77,9 @@ class MessageQueue:
         return taken
 
 
-def serve(connection: Connection, payload: bytes) -> None:
+def serve(connection: Connection, payload: bytes, niceness: int = NICENESS) -> None:
     """Run the pickled (function, args, kwargs) to its end, and send its messages through `connection`."""
-    _settle()
+    _settle(niceness)
     service = _Service(connection)
     signal.signal(signal.SIGTERM, lambda *_: service.terminate())
     bundle = MessageBatch(ended=True)
@@ -101,7 +101,7 @@ def serve(connection: Connection, payload: bytes) -> None:
             connection.send(MessageBatch([], True, bundle.problem or _in_words(error), bundle.trace))
 
 
-def _settle() -> None:
+def _settle(niceness: int) -> None:
     """Configure the process to spare the window: one core, lower priority; what ends the window is left to it."""
     for library in ("OPENBLAS", "OMP", "MKL"):
         os.environ[f"{library}_NUM_THREADS"] = "1"
@@ -109,7 +109,7 @@ def _settle() -> None:
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), signal.SIG_IGN)
     with suppress(AttributeError, OSError):
-        os.nice(_NICENESS)
+        os.nice(niceness)
 
 
 def _in_words(error: Exception) -> str:

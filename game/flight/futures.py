@@ -69,6 +69,10 @@ class Found(NamedTuple):
     future: Future
 
 
+class _Ahead(Worker):
+    niceness = 0  # what it finds is needed within four steps
+
+
 class FuturesProcess:
     """A process that flies futures ahead; it begins with the first request, and is kept from flight to flight."""
 
@@ -87,7 +91,7 @@ class FuturesProcess:
         if self.problem or not isinstance(pilot, DeepQAgent):
             return
         if self._worker is None:
-            self._worker = Worker(fly_ahead)
+            self._worker = _Ahead(fly_ahead)
         self._number += 1
         self._known, self._asked = {}, asked
         same = self._flies is not None and self._flies[0] is pilot and self._flies[1] is route
