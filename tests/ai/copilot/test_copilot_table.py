@@ -26,6 +26,7 @@ def few(monkeypatch):
     monkeypatch.setattr(measurement, "TABLES", dict.fromkeys(TABLES, (near, ("holds right", "thrust 0.3"))))
 
 
+@pytest.mark.slow
 def test_the_co_pilot_helps(agent, few):
     found = rows(agent, agent, "one_pad", ("laggy", "holds right"), ((ALONE, 0.0), (VALUES, 0.4), GUARD), 3, 1)
     assert [(row.pilot, row.mode) for row in found] == [

@@ -43,6 +43,7 @@ def land(flight):
     return fly(flight, lambda _: (0, None), most=900)
 
 
+@pytest.mark.slow
 def test_a_held_key_and_a_weak_stick_land_and_their_recording_flies_again(agent):
     for name, stick in {"held right": (2, None), "a weak stick": (3, (5, 0))}.items():
         flight = land(fly(guarded(agent), lambda _, stick=stick: stick, most=80))
