@@ -101,7 +101,8 @@ class FuturesProcess:
         self._poll()
 
     def hint(self, asked: Push) -> None:
-        """Say what the stick asks for now."""
+        """Say what the stick asks for now; call it in every step, so that answers are fetched as they come."""
+        self._poll()
         if self._worker and asked != self._asked and asked not in self._known:
             self._asked = asked
             self._worker.send(asked)
