@@ -1,4 +1,4 @@
-"""One door: files that a user may name are opened by `ai.nn.files` alone, and no file's word becomes code."""
+"""One door: files that a user may name are opened by `ai.files.reading` alone, and no file's word becomes code."""
 
 import ast
 from functools import cache
@@ -17,8 +17,8 @@ STARTING = {
 }  # fmt: skip
 # Calls that a module makes all the same, and why no file of a stranger's is behind them.
 OPENED = {
-    "ai.nn.files": ({"os.open", "archive.open", "temporary.open", "path.open", "zipfile.ZipFile"}, "the door"),
-    "ai.nn.lock": ({"os.open"}, "a lock, of which nothing is read"),
+    "ai.files.reading": ({"os.open", "archive.open", "temporary.open", "path.open", "zipfile.ZipFile"}, "the door"),
+    "ai.files.lock": ({"os.open"}, "a lock, of which nothing is read"),
     "ai.cli.command_line": ({"os.open"}, "the null device"),
     "ai.sweep.trial": ({"zipfile.ZipFile", "reader.extractall", "path.read_bytes"}, "bytes; its own code for a hash"),
     "game.audio.mixer": ({"self.open"}, "the sound device"),
@@ -72,7 +72,7 @@ def unexpected(names, allowed):
 def test_no_module_but_the_door_opens_a_file_that_a_user_may_name():
     own = {"read_text", "read_bytes"}  # the door's own functions, imported by name
     strangers = {module: more - own for module, more in unexpected(OPENING, OPENED).items() if more - own}
-    assert not strangers, f"read with ai.nn.files, or say here why not: {strangers}"
+    assert not strangers, f"read with ai.files.reading, or say here why not: {strangers}"
 
 
 def test_no_name_that_a_file_gives_becomes_code():

@@ -7,11 +7,11 @@ from dataclasses import dataclass, fields
 from typing import Any, Final
 
 from ai.common.knobs import Knobs, is_number, knob
+from ai.files.reading import shown
 from ai.lander.rewards import RewardWeights
 from ai.lander.spawns import CURRICULA, RUNGS, SPAWNS
 from ai.nn import OPTIMIZERS
 from ai.nn.activations import ACTIVATIONS
-from ai.nn.files import shown
 
 LANDER: Final = "lander"
 ANYWHERE: Final = "lander-anywhere"  # our lander at random sites, with what is around it as further inputs

@@ -14,9 +14,9 @@ from ai.digits.classifier import KIND, DigitClassifier
 from ai.digits.config import DIGIT_PRESETS, DigitConfig
 from ai.digits.mnist import TEST, load_part
 from ai.digits.training import DigitTraining, accuracy
+from ai.files.reading import inside, problem_in, read_arrays, read_json
+from ai.files.schema import Count, Duration, OneOf, Seed, Share, Sized, read_as
 from ai.nn import ModelFormatError, atomic_folder
-from ai.nn.files import inside, problem_in, read_arrays, read_json
-from ai.nn.schema import Count, Duration, OneOf, Seed, Share, Sized, read_as
 
 TRAINING_FILE: Final = "training.json"
 LAST_FILE: Final = "last.npz"  # as long as there are epochs to come

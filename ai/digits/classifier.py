@@ -11,12 +11,12 @@ import numpy.typing as npt
 
 from ai.digits.mnist import MnistError, load_mnist, load_part
 from ai.digits.preprocessing import SIDE, Image, Stages, preprocess, preprocess_strokes, stages
+from ai.files.folder import CONFIG, FolderKind
+from ai.files.folder import NETWORK as NETWORK_KIND
+from ai.files.reading import inside, read_json
+from ai.files.schema import check_header
 from ai.nn import ModelFormatError, NeuralNetwork, atomic_folder, recover_folder
 from ai.nn.costs import softmax
-from ai.nn.files import inside, read_json
-from ai.nn.folder import CONFIG, FolderKind
-from ai.nn.folder import NETWORK as NETWORK_KIND
-from ai.nn.schema import check_header
 
 __all__ = [
     "DigitClassifier", "Image", "MnistError", "Stages", "load_mnist", "load_part", "preprocess",

@@ -3,10 +3,10 @@
 To read it in building order: parameter, activations, costs, layers, images, dropout, optimizers, storage, network.
 """
 
+from ai.files.folder import atomic_folder, recover_folder
 from ai.nn.activations import Activation, ActivationFunctions
 from ai.nn.costs import Cost, CostFunctions, softmax
 from ai.nn.dropout import DropoutLayer
-from ai.nn.folder import atomic_folder, recover_folder
 from ai.nn.images import ConvolutionLayer, FlattenLayer, MaxPoolingLayer
 from ai.nn.layers import ActivationLayer, DuelingLayer, FullyConnectedLayer, Layer, LayerNormalisation
 from ai.nn.network import NeuralNetwork

@@ -8,10 +8,10 @@ from typing import Any, Literal, Self
 import numpy as np
 import numpy.typing as npt
 
+from ai.files.folder import atomic_folder
 from ai.nn.budget import check_budget
 from ai.nn.costs import Cost, CostFunction
 from ai.nn.dropout import DropoutLayer
-from ai.nn.folder import atomic_folder
 from ai.nn.layers import ActivationLayer, Layer, check_fit
 from ai.nn.optimizers import SGD, Optimizer
 from ai.nn.parameter import Array, pack

@@ -12,16 +12,16 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from ai.files.folder import CONFIG, NETWORK, recover_folder
+from ai.files.reading import brief, inside, read_array, read_json, shown
+from ai.files.schema import check_header
 from ai.nn.activations import ACTIVATIONS, Activation
 from ai.nn.budget import MOST_LAYERS, check_budget
 from ai.nn.costs import COSTS, Cost
 from ai.nn.dropout import DropoutLayer
-from ai.nn.files import brief, inside, read_array, read_json, shown
-from ai.nn.folder import CONFIG, NETWORK, recover_folder
 from ai.nn.images import ConvolutionLayer, FlattenLayer, MaxPoolingLayer
 from ai.nn.layers import ActivationLayer, DuelingLayer, FullyConnectedLayer, Layer, LayerNormalisation, check_fit
 from ai.nn.parameter import Array, Parameter
-from ai.nn.schema import check_header
 
 T = TypeVar("T")
 L = TypeVar("L", bound=Layer)

@@ -19,12 +19,12 @@ from ai.agent.config import Config
 from ai.agent.n_step import NStep
 from ai.agent.replay import MemoryCell
 from ai.common.environment import Bools, Floats
+from ai.files.reading import brief, read_json, write_text
+from ai.files.schema import OneOf, SchemaError, Sized, Within, check_header, read_as, sound_fields
 from ai.lander.environment import NUM_ACTIONS, LanderEnv, Outcome
 from ai.lander.ground import hilly
 from ai.lander.pilots import Pilot
 from ai.lander.spawns import SPAWNS
-from ai.nn.files import brief, read_json, write_text
-from ai.nn.schema import OneOf, SchemaError, Sized, Within, check_header, read_as, sound_fields
 
 FORMAT: Final = "tranquility demonstrations"
 VERSION: Final = 1

@@ -1,6 +1,6 @@
 """Edits of a network by hand, while it flies: weights that are set, units that are silenced, and the way back.
 
-Layers are counted as `ai.nn.inspection.links` has them: layer 0 leads from the inputs to the first hidden units.
+Layers are counted as `ai.explain.inspection.links` has them: layer 0 leads from the inputs to the first hidden units.
 """
 
 from __future__ import annotations

@@ -12,12 +12,12 @@ from typing import Final
 
 import numpy as np
 
-from ai.agent.lesson import Before, Flown, Lesson, explain
 from ai.agent.n_step import NStep
 from ai.agent.replay import MemoryCell
 from ai.common.environment import Floats, Ints, StepResult
-from ai.common.learning_step import line_of
-from ai.common.recorder import Recorder
+from ai.explain.agent_lesson import Before, Flown, Lesson, explain
+from ai.explain.learning_step import line_of
+from ai.explain.recorder import Recorder
 from ai.training.loop import Training
 
 _MOST_KEPT: Final = 40  # moments of a run; with twice as many, every second one is dropped

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ai.agent.config import Config
-from ai.agent.lesson import Lesson
 from ai.agent.schedule import InForce
 from ai.common.environment import Floats
+from ai.explain.agent_lesson import Lesson
 from ai.training.edits import EditCommand, NetworkEdits
 from ai.training.history import Checkpoint, Point, SettingChange, Validation
 

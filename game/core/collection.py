@@ -13,9 +13,9 @@ from typing import Final, Generic, TypeVar
 
 import platformdirs
 
-from ai.nn.files import brief
-from ai.nn.folder import NEW, STALE, aside_for, moved_aside, recover_folder
-from ai.nn.lock import Lock, lock_of, take
+from ai.files.folder import NEW, STALE, aside_for, moved_aside, recover_folder
+from ai.files.lock import Lock, lock_of, take
+from ai.files.reading import brief
 from game.core import texts
 from game.core.copying import copy_folder
 from game.core.folders import looks_like_item, there

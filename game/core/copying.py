@@ -7,8 +7,8 @@ import shutil
 from pathlib import Path
 from typing import Final
 
-from ai.nn.files import beside, brief
-from ai.nn.folder import NEW
+from ai.files.folder import NEW
+from ai.files.reading import beside, brief
 from game.core import texts
 from game.core.names import LibraryError
 

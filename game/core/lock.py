@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from ai.nn.lock import take
+from ai.files.lock import take
 
 
 @contextmanager

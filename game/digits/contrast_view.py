@@ -8,8 +8,8 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from ai.digits.contrast import SQUARE, Contrast, InkChange
 from ai.digits.preprocessing import SIDE, Image
+from ai.explain.contrast import SQUARE, Contrast, InkChange
 from game.core import texts
 from game.digits.patch_sums import figure
 from game.digits.pictures import SIGNED, Numbers, mosaic, picture, tiling

@@ -7,8 +7,8 @@ from typing import Final
 
 import numpy as np
 
+from ai.explain.unit_sums import Place
 from ai.nn import ConvolutionLayer, FullyConnectedLayer, MaxPoolingLayer
-from ai.nn.unit_sums import Place
 from game.core import texts
 from game.digits.cell_picker import CellPicker
 from game.digits.map_pickers import MapPicker, TilesPicker

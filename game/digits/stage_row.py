@@ -7,7 +7,7 @@ from typing import Final
 
 import pygame
 
-from ai.nn.unit_sums import Kind, Stage
+from ai.explain.unit_sums import Kind, Stage
 from game.core import texts
 from game.digits.patch_sums import figure
 from game.digits.unit_walk import UnitWalk

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ai.nn.unit_sums import Box, Place, Stage, UnitSum, receptive_field, stages
+from ai.explain.unit_sums import Box, Place, Stage, UnitSum, receptive_field, stages
 
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier

@@ -13,7 +13,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from ai.common.recorder import RETURN, Event, Recorder
+from ai.explain.recorder import RETURN, Event, Recorder
 from engine import Polygon
 from engine.broad_phase import BroadPhase
 from engine.collide import collide_circles, collide_polygon_circle, collide_polygons, deepest_face

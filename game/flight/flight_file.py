@@ -15,6 +15,8 @@ from itertools import groupby
 from pathlib import Path
 from typing import Annotated, Any, Final
 
+from ai.files.reading import brief, parse_json, read_text, write_text
+from ai.files.schema import OneOf, Seed, Share, Sized, Within, check_header, read_as
 from ai.flights.easing import AS_IT_IS, Easing
 from ai.flights.places import COURSES
 from ai.flights.recording import LONGEST, Recording, StickHolder
@@ -24,8 +26,6 @@ from ai.lander.environment import NUM_ACTIONS, Outcome
 from ai.lander.missions import MISSIONS
 from ai.lander.rules import AREAS
 from ai.lander.spawns import RUNGS, SPAWNS
-from ai.nn.files import brief, parse_json, read_text, write_text
-from ai.nn.schema import OneOf, Seed, Share, Sized, Within, check_header, read_as
 from game.core import texts
 from game.core.settings import GRAVITY_SHARES
 

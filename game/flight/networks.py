@@ -10,9 +10,9 @@ from typing import Final, Protocol, runtime_checkable
 
 from ai.common.decision import Decision
 from ai.common.environment import Floats, Ints
+from ai.files.reading import brief
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.lander.sensing import SURROUNDINGS
-from ai.nn.files import brief
 from game.core import texts
 from game.core.folders import looks_like_item
 from game.core.kept import Kept

@@ -7,6 +7,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Final
 
+from ai.files.reading import read_text
 from ai.flights.code import CodeError, code_of, codes_in, flight_of
 from ai.flights.places import DAILY, DESCENT, day_of, in_its_place
 from ai.flights.recording import StickHolder
@@ -15,7 +16,6 @@ from ai.flights.verification import Earned
 from ai.lander.environment import Outcome
 from ai.lander.rules import tenths
 from ai.lander.spawns import LADDER, RUNGS
-from ai.nn.files import read_text
 from engine import DT
 from game.core import texts
 from game.flight import flight_file

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Annotated, Final
 
 from ai.agent.config import LANDER
-from ai.nn.files import brief, inside, read_json
-from ai.nn.schema import Count, Share, Sized, read_as
+from ai.files.reading import brief, inside, read_json
+from ai.files.schema import Count, Share, Sized, read_as
 from game.core import texts
 
 STUDIES: Final = "studies"  # folder of the studies, in the player's

@@ -11,8 +11,8 @@ import pygame
 
 from ai.digits.classifier import DIGITS, DigitClassifier
 from ai.digits.mnist import MnistError, bright
+from ai.explain.inspection import traces
 from ai.nn import SGD, Array, FullyConnectedLayer, ModelFormatError, NeuralNetwork
-from ai.nn.inspection import traces
 from game.core import texts
 from game.core.scene import Route
 from game.digits.kept import classifier_in, mnist_test

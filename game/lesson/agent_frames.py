@@ -6,8 +6,8 @@ from typing import Final
 
 import numpy as np
 
-from ai.agent.lesson import Lesson, functions
 from ai.agent.network import build_network
+from ai.explain.agent_lesson import Lesson, functions
 from ai.lander.environment import ACTION_NAMES
 from game.core import texts
 from game.lesson.after_frame import AfterFrame

@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 import pygame
 
-from ai.common.learning_step import Line, Value
+from ai.explain.learning_step import Line, Value
 from game.charts.tooltip import TooltipRow, draw_tooltip
 from game.core import texts
 from game.core.source import Source, source_of

@@ -10,7 +10,7 @@ import pygame
 
 from ai.common.environment import Floats
 from ai.digits.config import build_digit_network
-from ai.digits.lesson import DigitLesson, digit_functions
+from ai.explain.digit_lesson import DigitLesson, digit_functions
 from game.core import texts
 from game.drawing.canvas import Canvas, Point
 from game.drawing.paint import mix

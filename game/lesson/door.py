@@ -7,8 +7,8 @@ from typing import Final, Generic, TypeVar
 
 import pygame
 
-from ai.agent.lesson import Lesson
-from ai.digits.lesson import DigitLesson
+from ai.explain.agent_lesson import Lesson
+from ai.explain.digit_lesson import DigitLesson
 from ai.training.session import CAREFUL
 from game.core import texts
 from game.core.scene import Transition, push

@@ -9,8 +9,8 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.agent.lesson import Lesson
 from ai.common.environment import Doubles
+from ai.explain.agent_lesson import Lesson
 from ai.nn.costs import COSTS, Cost
 from game.core import texts
 from game.drawing.canvas import Canvas

@@ -10,8 +10,8 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.agent.lesson import Lesson
 from ai.common.environment import Doubles, Floats
+from ai.explain.agent_lesson import Lesson
 from ai.lander.environment import ACTION_NAMES, OBSERVATION_SCALE, PARAMS, Outcome
 from game.core import texts
 from game.drawing.canvas import Canvas

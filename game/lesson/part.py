@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
-from ai.common.learning_step import Line
+from ai.explain.learning_step import Line
 from game.lesson.code import CodeWalk
 from game.lesson.frame import Frame
 

@@ -9,10 +9,10 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from ai.common.learning_step import Step
+from ai.explain.inspection import Link, links
+from ai.explain.learning_step import Step
 from ai.nn import ActivationLayer, Array, DuelingLayer, FullyConnectedLayer, Layer, LayerNormalisation, NeuralNetwork
 from ai.nn.dropout import DropoutLayer
-from ai.nn.inspection import Link, links
 
 _SUM, _NORMALISED, _DROPPED = "sum", "normalised", "dropout"
 # What optimizers remember of the slopes so far, by its name in `Optimizer.remembers`.

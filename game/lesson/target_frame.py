@@ -8,9 +8,9 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.agent.lesson import Lesson
 from ai.common.decision import in_points
 from ai.common.environment import Floats
+from ai.explain.agent_lesson import Lesson
 from game.core import texts
 from game.drawing import typeface
 from game.drawing.canvas import Canvas

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from ai.digits.session import DigitSettingChanged
+from ai.training.digit_session import DigitSettingChanged
 from ai.training.history import REVERTED
 from game.charts.chart import Chart, Series, Tick, draw_legend
 from game.charts.charts import Charts

@@ -13,8 +13,8 @@ from typing import Final
 import numpy as np
 import pygame
 
+from ai.explain.inspection import links
 from ai.nn import NeuralNetwork
-from ai.nn.inspection import links
 from ai.training.edits import EditNetwork, LearnOn, SetWeight, SilenceUnit, UndoEdit
 from game.core import texts
 from game.drawing import typeface

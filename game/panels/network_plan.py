@@ -9,8 +9,8 @@ from typing import Any, Final, Literal
 import numpy as np
 import numpy.typing as npt
 
+from ai.explain.inspection import Link, links, traces
 from ai.nn import NeuralNetwork
-from ai.nn.inspection import Link, links, traces
 
 Show = Literal["weights", "activations", "gradients"]
 Indices = npt.NDArray[np.intp]

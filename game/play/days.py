@@ -12,10 +12,10 @@ from datetime import date, datetime
 from pathlib import Path
 from typing import Annotated, Final
 
+from ai.files.reading import parse_json, read_end
+from ai.files.schema import Count, OneOf, Sized, read_as
 from ai.flights.places import DAILY
 from ai.lander.environment import Outcome
-from ai.nn.files import parse_json, read_end
-from ai.nn.schema import Count, OneOf, Sized, read_as
 from game.core import texts
 from game.flight.flight_file import Entry, Record
 from game.flight.logbook import Records

@@ -6,8 +6,8 @@ from typing import Final
 
 import pygame
 
-from ai.agent.lesson import Lesson
-from ai.digits.lesson import DigitLesson
+from ai.explain.agent_lesson import Lesson
+from ai.explain.digit_lesson import DigitLesson
 from game.core import texts
 from game.core.scene import Transition
 from game.drawing.canvas import Canvas

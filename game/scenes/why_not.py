@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import pygame
 
-from ai.digits.contrast import Contrast
+from ai.explain.contrast import Contrast
 from game.core import texts
 from game.core.scene import Transition, push
 from game.digits.answer import LEFT, DigitRow, best_two, percent

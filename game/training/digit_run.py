@@ -10,8 +10,11 @@ from typing import Final
 from ai.digits.checkpoints import LAST_FILE, read_summary
 from ai.digits.config import DigitConfig
 from ai.digits.filters import FilterMoment
-from ai.digits.lesson import DigitLesson
-from ai.digits.session import (
+from ai.digits.validation import Confusion, HeldOutScore
+from ai.explain.digit_lesson import DigitLesson
+from ai.files.folder import CONFIG
+from ai.files.reading import brief
+from ai.training.digit_session import (
     DigitPoint,
     DigitRunSaved,
     DigitRunStarted,
@@ -21,9 +24,6 @@ from ai.digits.session import (
     RestoreBest,
     live_digits,
 )
-from ai.digits.validation import Confusion, HeldOutScore
-from ai.nn.files import brief
-from ai.nn.folder import CONFIG
 from ai.training.history import REVERTED, TURNING_SECONDS
 from ai.training.messages import Refused, Save
 from game.core import texts

@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from ai.agent.config import Config
-from ai.agent.lesson import Lesson
 from ai.agent.schedule import InForce
+from ai.explain.agent_lesson import Lesson
 from ai.nn import ModelFormatError
 from ai.training.edits import EditCommand, NetworkEdits
 from ai.training.history import Checkpoint, History, Point, SettingChange, Validation

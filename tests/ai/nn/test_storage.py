@@ -9,6 +9,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from ai.files.folder import NETWORK, FolderKind
 from ai.nn import (
     ActivationFunctions,
     ActivationLayer,
@@ -24,7 +25,6 @@ from ai.nn import (
     NeuralNetwork,
     atomic_folder,
 )
-from ai.nn.folder import NETWORK, FolderKind
 from ai.nn.storage import LAYERS
 
 X = np.random.default_rng(0).normal(size=(7, 3))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ai.agent.config import PRESETS
-from ai.agent.lesson import Lesson
+from ai.explain.agent_lesson import Lesson
 from ai.training.history import Point
 from ai.training.messages import Explain, NetworkState, Refused
 from ai.training.session import live

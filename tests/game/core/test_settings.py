@@ -9,8 +9,8 @@ from threading import Event, Thread, current_thread
 
 import pytest
 
-from ai.nn.files import write_text
-from ai.nn.lock import take
+from ai.files.lock import take
+from ai.files.reading import write_text
 from game.core.lock import held
 from game.core.settings import DAMAGED_NAME, FILE_NAME, Settings, SettingsFile
 from game.core.settings_writer import SettingsWriter

@@ -283,7 +283,7 @@ def test_a_run_killed_at_any_moment_can_be_loaded(start, tmp_path):
     keep = tmp_path / "run"
     rng = np.random.default_rng(5)
     decisions = []
-    for _ in range(3):  # tests/ai/nn/test_faults.py kills a writer at every step it takes on the disk
+    for _ in range(3):  # tests/ai/files/test_faults.py kills a writer at every step it takes on the disk
         run = start(chores.eager, TINY, 0, keep)
         polled(run, lambda told: keep.exists() and sum(isinstance(each, Checkpoint) for each in told) > 0)
         moment = time.monotonic() + float(rng.uniform(0.0, 0.3))

@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from ai.files.schema import read_as
 from ai.lander.descent import LegStart
 from ai.lander.environment import Outcome
 from ai.lander.missions import MISSIONS
 from ai.lander.pilots import ScriptedPilot
-from ai.nn.schema import read_as
 from game.core import texts
 from game.flight import flight_file
 from game.flight import logbook as records

@@ -15,9 +15,9 @@ from ai.digits.checkpoints import save_digit_run
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS, DigitConfig, build_digit_network
 from ai.digits.filters import FilterMoment
-from ai.digits.session import DigitPoint
 from ai.digits.training import DigitTraining
 from ai.digits.validation import Confusion, HeldOutScore
+from ai.training.digit_session import DigitPoint
 from game.charts.scrubber import Scrubber
 from game.core import texts
 from game.core.worker import WorkerState

@@ -8,8 +8,8 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.agent.lesson import Lesson, functions
 from ai.common.decision import in_points
+from ai.explain.agent_lesson import Lesson, functions
 from ai.nn.costs import COSTS
 from game.core import texts
 from game.core.source import source_of

@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import pytest
 
-from ai.agent.lesson import Lesson
-from ai.digits.lesson import digit_functions
+from ai.explain.agent_lesson import Lesson
+from ai.explain.digit_lesson import digit_functions
 from game.charts.tooltip import TooltipRow
 from game.core import texts
 from game.core.source import source_of

@@ -4,7 +4,7 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.nn.inspection import links
+from ai.explain.inspection import links
 from ai.training.edits import NetworkEdits, UndoEdit
 from game.core import texts
 from game.core.worker import WorkerState

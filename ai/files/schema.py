@@ -16,7 +16,7 @@ from itertools import islice
 from types import NoneType, UnionType
 from typing import Annotated, Any, Final, TypeVar, Union, get_args, get_origin, get_type_hints
 
-from ai.nn.files import MOST, brief, count_of, number_of, shown
+from ai.files.reading import MOST, brief, count_of, number_of, shown
 
 T = TypeVar("T")
 Rule = Callable[[Any], object]  # raises ValueError for a value of the right type that is not allowed

@@ -11,7 +11,10 @@ import numpy as np
 import numpy.typing as npt
 
 from ai.common.environment import Floats
-from ai.common.learning_step import (
+from ai.digits.classifier import DigitClassifier
+from ai.digits.config import DigitConfig, build_digit_network
+from ai.digits.training import DigitTraining
+from ai.explain.learning_step import (
     MOST_PARAMETERS,
     Line,
     Step,
@@ -21,10 +24,7 @@ from ai.common.learning_step import (
     of_row,
     recorded_step,
 )
-from ai.common.recorder import Function, Recorder
-from ai.digits.classifier import DigitClassifier
-from ai.digits.config import DigitConfig, build_digit_network
-from ai.digits.training import DigitTraining
+from ai.explain.recorder import Function, Recorder
 from ai.nn import OPTIMIZERS
 from ai.nn.costs import softmax
 

@@ -3,6 +3,7 @@ import pytest
 
 from ai.agent.config import Config
 from ai.agent.network import build_network
+from ai.explain.inspection import dead_units, links, traces
 from ai.nn import (
     ActivationFunctions,
     ActivationLayer,
@@ -12,7 +13,6 @@ from ai.nn import (
     FullyConnectedLayer,
     NeuralNetwork,
 )
-from ai.nn.inspection import dead_units, links, traces
 
 OBSERVATION = np.linspace(-1, 1, 9).astype(np.float32)
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from ai.digits.config import DIGIT_PRESETS
-from ai.digits.lesson import digit_functions, explain_digit
-from ai.digits.session import ExplainImage, live_digits
 from ai.digits.training import DigitTraining
+from ai.explain.digit_lesson import digit_functions, explain_digit
+from ai.training.digit_session import ExplainImage, live_digits
 from ai.training.messages import Refused
 
 

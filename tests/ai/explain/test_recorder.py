@@ -4,7 +4,7 @@ import sys
 
 import numpy as np
 
-from ai.common.recorder import LARGE, RETURN, Recorder, Row
+from ai.explain.recorder import LARGE, RETURN, Recorder, Row
 
 
 def scaled(numbers, factor):

@@ -19,8 +19,8 @@ from ai.agent.network import build_network, make_optimizer
 from ai.agent.normalizer import Normalizer
 from ai.agent.replay import MemoryCell, ReplayBuffer
 from ai.common.environment import Floats, Ints
-from ai.common.learning_step import MOST_PARAMETERS, Line, Step, kept_by, network_functions, recorded_step
-from ai.common.recorder import RETURN, Function, Recorder
+from ai.explain.learning_step import MOST_PARAMETERS, Line, Step, kept_by, network_functions, recorded_step
+from ai.explain.recorder import RETURN, Function, Recorder
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from ai.digits.classifier import DigitClassifier
-from ai.digits.contrast import Contrast
 from ai.digits.mnist import load_part
+from ai.explain.contrast import Contrast
 from ai.nn import CostFunctions, FullyConnectedLayer, LayerNormalisation, NeuralNetwork
 from game.core.assets import MODELS_DIR
 

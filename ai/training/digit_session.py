@@ -12,9 +12,9 @@ import numpy as np
 from ai.digits.checkpoints import resume_digit_run, save_digit_run
 from ai.digits.config import DigitConfig
 from ai.digits.filters import FilterMoment, first_filters, next_moment
-from ai.digits.lesson import DigitLesson, explain_digit
 from ai.digits.training import DigitTraining
 from ai.digits.validation import Confusion, HeldOutScore, ValidationReading
+from ai.explain.digit_lesson import DigitLesson, explain_digit
 from ai.nn import Array
 from ai.training.history import REVERTED
 from ai.training.messages import ChangeSetting, Refused, Save, Saved, problem_of

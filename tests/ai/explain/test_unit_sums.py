@@ -8,6 +8,7 @@ import pytest
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS, build_digit_network
 from ai.digits.mnist import load_part
+from ai.explain.unit_sums import receptive_field, stages
 from ai.nn import (
     ActivationFunctions,
     ActivationLayer,
@@ -19,7 +20,6 @@ from ai.nn import (
     MaxPoolingLayer,
     NeuralNetwork,
 )
-from ai.nn.unit_sums import receptive_field, stages
 from game.core.assets import MODELS_DIR
 
 EPSILON = float(np.finfo(np.float32).eps)

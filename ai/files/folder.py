@@ -14,8 +14,8 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Final
 
-from ai.nn.files import beside, brief, read_json, synchronise
-from ai.nn.lock import take_folder
+from ai.files.lock import take_folder
+from ai.files.reading import beside, brief, read_json, synchronise
 
 CONFIG = "config.json"  # what every model's folder holds
 OLD: Final = ".old"  # the end of the name of a folder that was moved aside for a new one

@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 
 from ai.common.environment import Floats
-from ai.common.recorder import RETURN, Event, Function, Recorder, Row
+from ai.explain.recorder import RETURN, Event, Function, Recorder, Row
 from ai.nn import NeuralNetwork
 from ai.nn.optimizers import Optimizer
 

@@ -4,13 +4,15 @@ from itertools import count
 import numpy as np
 import pytest
 
-from ai.digits import session as digit_live
 from ai.digits.checkpoints import resume_digit_run
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS
 from ai.digits.filters import FilterMoment, first_filters, next_moment
 from ai.digits.mnist import load_part
-from ai.digits.session import (
+from ai.digits.training import DigitTraining, confusion
+from ai.digits.validation import EXAMPLES, Confusion, HeldOutScore
+from ai.training import digit_session as digit_live
+from ai.training.digit_session import (
     DigitPoint,
     DigitRunSaved,
     DigitRunStarted,
@@ -19,8 +21,6 @@ from ai.digits.session import (
     RestoreBest,
     live_digits,
 )
-from ai.digits.training import DigitTraining, confusion
-from ai.digits.validation import EXAMPLES, Confusion, HeldOutScore
 from ai.training.history import REVERTED
 from ai.training.messages import ChangeSetting, Refused, Save
 
