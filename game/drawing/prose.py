@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Callable
+from functools import lru_cache
 from typing import Final
 
 from game.drawing import typeface
 from game.drawing.canvas import Canvas, Point
 from game.drawing.tokens import INK, SMALL, Colour
+from game.drawing.typeface import Weight
 
 _LONGEST: Final = 4000  # characters: more than fit on a screen
 
@@ -31,6 +34,29 @@ def _broken(text: str, width: float, measure: Callable[[str], float]) -> list[st
         else:
             lines[-1] = longer
     return lines
+
+
+@lru_cache(maxsize=1024)
+def lines(text: str, size: float, weight: Weight, width: float, scale: float) -> tuple[str, ...]:
+    """Break a text that flows into lines no wider than `width`, as they are written at `scale` pixels a point.
+
+    A word that is wider than a line is broken as well: nothing leaves its column.
+    """
+
+    def measure(line: str) -> float:
+        return typeface.reach(line, round(size * scale, 2), weight) / scale
+
+    found: list[str] = []
+    for part in text.split("\n"):
+        for line in _broken(part, width, measure):
+            begun = 0
+            while len(line) - begun > 1 and measure(line[begun:]) > width:
+                ends = range(begun, len(line))
+                most = bisect_right(ends, width, key=lambda end, begun=begun, line=line: measure(line[begun:end])) - 1
+                found.append(line[begun : begun + max(1, most)])
+                begun += max(1, most)
+            found.append(line[begun:])
+    return tuple(found)
 
 
 def draw_wrapped(

@@ -28,10 +28,10 @@ from game.play.days import Attempt, Days
 from game.play.descent import Descent
 from game.play.race import race
 from game.scenes.chapter import ChapterScene
-from game.scenes.dialog import ListDialog, NameDialog, QuestionDialog
 from game.scenes.digit_inside import DigitInsideScene
 from game.scenes.dream import DreamScene
 from game.scenes.lesson import LessonScene
+from game.scenes.menus.dialogs import ListDialog, NameDialog, QuestionDialog
 from game.scenes.physics import PhysicsScene
 from game.scenes.physics_step import PhysicsStepScene
 from game.scenes.play import PlayScene

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from game.drawing.canvas import PAGE, Canvas
 from game.drawing.tokens import VIEW_SIZE
-from game.scenes.settings import SettingsScene
+from game.scenes.menus.settings import SettingsScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 

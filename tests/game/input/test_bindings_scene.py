@@ -5,7 +5,7 @@ import pytest
 
 from game.core import texts
 from game.input.bindings import Command, Held
-from game.scenes.bindings import BindingsScene
+from game.scenes.menus.keys import BindingsScene
 from tests.support.driver import Driver
 
 A, B, X, START = (

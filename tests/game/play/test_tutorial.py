@@ -15,10 +15,10 @@ from game.flight.outcomes import crash_reason
 from game.input.bindings import Held
 from game.play.tutorial import Tutorial
 from game.play.tutorial_lessons import LESSONS, NEED_COPILOT
-from game.scenes.menu import MenuScene
+from game.scenes.menus.menu import MenuScene
+from game.scenes.menus.settings import SettingsScene
 from game.scenes.missions import MissionsScene
 from game.scenes.play import PlayScene
-from game.scenes.settings import SettingsScene
 from game.ui.context import Context
 from game.ui.listing import Listing
 from tests.support.drawn import Drawn

@@ -9,7 +9,7 @@ import pytest
 from ai.training.history import History
 from game.core import texts
 from game.panels.run_legend import RunLegend
-from game.scenes.dialog import NameDialog, QuestionDialog
+from game.scenes.menus.dialogs import NameDialog, QuestionDialog
 from game.scenes.train import TrainScene
 from game.training.training_run import put_beside
 from game.ui.entry import Entry

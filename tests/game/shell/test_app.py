@@ -11,9 +11,9 @@ import pytest
 from game.core.scene import Pop, Push, Quit, Replace, Scene, Transition
 from game.core.settings import Settings, SettingsFile
 from game.scenes import scene_of
-from game.scenes.menu import MenuScene
+from game.scenes.menus.menu import MenuScene
+from game.scenes.menus.settings import SettingsScene
 from game.scenes.pause import PauseScene
-from game.scenes.settings import SettingsScene
 from game.shell.app import LOG_NAME, App, log_to
 from game.shell.window import NoDisplayError
 from game.start import play

@@ -12,8 +12,8 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK, SMALL, VIEW_SIZE
 from game.input.controls import Command
 from game.scenes.choices import ChoicesScene
+from game.scenes.menus.settings import SettingsScene
 from game.scenes.play import PlayScene
-from game.scenes.settings import SettingsScene
 from game.ui import focus
 from game.ui.actions import hints_of
 from game.ui.context import Context
