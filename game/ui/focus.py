@@ -13,8 +13,10 @@ LEFT: Direction = (-1, 0)
 RIGHT: Direction = (1, 0)
 
 
-def neighbour(boxes: Sequence[pygame.Rect], current: int, direction: Direction) -> int:
+def neighbour(boxes: Sequence[pygame.Rect], current: int, direction: Direction, *, in_order: bool = False) -> int:
     """Return the index of the nearest box in a direction; up and down wrap around.
+
+    With `in_order`, the lower end of a column leads to the next box in order, the first one of the next column.
 
     A sideways distance counts double, so that a column is followed to its end before another is entered; left and right
     leave a row only at its end.
@@ -42,6 +44,8 @@ def neighbour(boxes: Sequence[pygame.Rect], current: int, direction: Direction) 
         forward = row or [index for index in forward if beyond(boxes[index])]
     if forward:
         return min(forward, key=lambda index: ahead(boxes[index]) + 2 * aside(boxes[index]))
+    if direction[1] and in_order:
+        return (current + direction[1]) % len(boxes)
     if direction[1] and others:
         return min([current, *others], key=lambda index: ahead(boxes[index]) + 2 * aside(boxes[index]))
     return current

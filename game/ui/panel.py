@@ -64,9 +64,7 @@ class Column:
         """Add a title."""
         self.text(words, size=size, weight=weight)
 
-    def text(
-        self, words: Words, *, size: float = TEXT, colour: Colour = INK, weight: Weight = "regular"
-    ) -> None:
+    def text(self, words: Words, *, size: float = TEXT, colour: Colour = INK, weight: Weight = "regular") -> None:
         """Add a paragraph."""
         self.add(lambda cursor: _write(cursor, cursor.in_style(size, colour, weight), words))
 
@@ -197,6 +195,7 @@ class Panel(Column):
 
     def __init__(self, form: Form) -> None:
         super().__init__(form)
+        form.in_order = True
         self.box = pygame.FRect(0, 0, 0, 0)
         self.height = self.scrolled = 0.0
         self._shown: Widget | None = None  # the widget that was in focus when it was last laid out
@@ -213,7 +212,7 @@ class Panel(Column):
         focused = self._form.focused
         if focused is not self._shown or not same:
             self._shown = focused
-            if focused and self.overflows:
+            if focused and self.overflows and not self._form.controls.mouse_in_use:  # nothing moves below the mouse
                 self._reveal(pygame.FRect(focused.box), focused)
                 self._measure(scale)
         self.scroll(0.0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Final
 
 import pygame
@@ -27,7 +28,7 @@ _ENDS: Final = 0.07  # of its height, above and below
 _WIDEST: Final = VIEW_SIZE[0] - 2.0 * MARGIN  # points between the margins; a wider window has wider margins
 
 
-class PanelScene(FormScene):
+class PanelScene(FormScene, ABC):
     """Scene with a panel and a row of hints below it.
 
     A subclass describes its rows in `describe`, and calls `build` at the end of its constructor, and whenever there are
@@ -48,9 +49,9 @@ class PanelScene(FormScene):
         self.panel = Panel(self.form)
         self._sky = NightSky(context.rng, ember=0.5, stars=70)
 
+    @abstractmethod
     def describe(self, panel: Panel) -> None:
         """Add the rows."""
-        raise NotImplementedError
 
     def build(self) -> None:
         """Describe the rows anew; the focus stays where it was, or near it, and so does what is seen."""

@@ -48,9 +48,9 @@ FLIGHTS = 2
 def scene_types() -> list[type[Scene]]:
     """Return the classes of all scenes there are, in the modules of `game.scenes`."""
     found = []
-    for module in pkgutil.iter_modules(game.scenes.__path__):
-        for each in vars(importlib.import_module(f"game.scenes.{module.name}")).values():
-            here = isclass(each) and each.__module__ == f"game.scenes.{module.name}"
+    for module in pkgutil.walk_packages(game.scenes.__path__, "game.scenes."):
+        for each in vars(importlib.import_module(module.name)).values():
+            here = isclass(each) and each.__module__ == module.name
             if here and not each.__name__.startswith("_") and issubclass(each, Scene) and not isabstract(each):
                 found.append(each)
     return found

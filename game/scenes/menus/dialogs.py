@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Final
 
@@ -49,9 +50,9 @@ class Dialog(PanelScene):
         panel.gap(10)
         self.add_answers(panel)
 
+    @abstractmethod
     def add_answers(self, panel: Panel) -> None:
         """Add what there is to choose from."""
-        raise NotImplementedError
 
     def room(self, canvas: Canvas) -> pygame.FRect:
         """Return the room of the rows: as high as they are, in the middle of the window."""

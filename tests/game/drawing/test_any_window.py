@@ -205,7 +205,8 @@ def test_scenes_with_a_world_fill_the_window_and_pages_do_not():
 
     assert all(map(fills, (PlayScene, WatchScene)))
     assert MenuScene.flows
-    assert not (Scene.fills or Scene.flows)
+    assert not Scene.fills
+    assert not Scene.flows
     assert hud.COLUMNS[0] == MARGIN
 
 

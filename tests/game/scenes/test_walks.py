@@ -20,7 +20,7 @@ from tests.support.screens import OVER_OTHERS, SCREENS, flown, settle
 from tests.support.tour import scene_types
 
 # Flown rather than walked, shown once something has failed, or a part of others.
-NO_SCREENS = {"PlayScene", "ErrorScene", "Dialog", "MenuBackground"}
+NO_SCREENS = {"PlayScene", "ErrorScene"}
 
 
 @pytest.fixture(params=DEVICES)
