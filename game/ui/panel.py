@@ -33,6 +33,7 @@ W = TypeVar("W", bound=RowWidget)
 Write = Callable[[Cursor], None]
 Words = str | Callable[[], str]  # a function for words that change
 _ABOVE: Final = 24.0  # points kept above and below the widget in focus while the panel scrolls
+_WORDS: Final = 28.0  # points between two words side by side
 _WHEEL: Final = 48.0  # points for one notch of the mouse's wheel
 
 
@@ -126,6 +127,12 @@ class Column:
                 self._form.manager, label, press, partial(_said, aside), partial(_said, figure), size, weight, colour
             )
         )
+
+    def words(self, words: Sequence[tuple[str, OnPress]]) -> list[ButtonRow]:
+        """Add words to press, side by side on as many lines as they need."""
+        buttons = [self._form.add(ButtonRow(self._form.manager, label, press)) for label, press in words]
+        self.add(partial(_write_words, buttons))
+        return buttons
 
     def toggle(self, label: str, value: bool, change: Callable[[bool], None], aside: str = "") -> ToggleRow:
         """Add a switch."""
@@ -270,6 +277,18 @@ def _clipped(canvas: Canvas, box: pygame.FRect) -> Iterator[None]:
         yield
     finally:
         canvas.surface.set_clip(before)
+
+
+def _write_words(buttons: Sequence[ButtonRow], cursor: Cursor) -> None:
+    left, below = cursor.left, cursor.y
+    for button in buttons:
+        width = min(button.measured(cursor), cursor.width)
+        if left > cursor.left and left + width > cursor.right:
+            left, cursor.y = cursor.left, below
+        place = replace(cursor, left=left, width=width)
+        button.lay(place)
+        left, below = left + width + _WORDS, max(below, place.y)
+    cursor.y = below
 
 
 def _said(words: Words) -> str:

@@ -34,7 +34,7 @@ class RowWidget(Widget):
 
     Attributes:
         pad: points above and below what it says.
-        reach: how far from the left it is pressed, in points; 0 for the whole column.
+        reach: how far from the left its ring reaches, in points; 0 for the whole column.
         seen: the part of its panel that is not scrolled away.
 
     """
@@ -46,17 +46,15 @@ class RowWidget(Widget):
         """Lay it out, or paint it: the first time without a canvas."""
         top = cursor.y
         if cursor.canvas and self.ringed and self.warmth > 0.02:
-            cursor.canvas.outline(self.box.inflate(24, 2), 8, INK, 1, 0.4 * self.warmth)
+            ring = pygame.Rect(self.box.topleft, (round(self.reach) or self.box.width, self.box.height))
+            cursor.canvas.outline(ring.inflate(24, 2), 8, INK, 1, 0.4 * self.warmth)
         cursor.gap(self.pad)
         self.write(cursor)
         cursor.gap(self.pad)
         if cursor.canvas is None:
             self.seen = cursor.seen
-            width = min(self.reach or cursor.width, cursor.width)
-            box = pygame.Rect(round(cursor.left), round(top), round(width), round(cursor.y - top))
+            box = pygame.Rect(round(cursor.left), round(top), round(cursor.width), round(cursor.y - top))
             self.rect = self.relative_rect = box
-        else:
-            cursor.canvas.cover(cursor.canvas.rect(*self.box))
 
     def write(self, cursor: Cursor) -> None:
         """Write what it says, and go on below."""
@@ -88,6 +86,10 @@ class ButtonRow(RowWidget, TextButton):
     ) -> None:
         super().__init__(manager, _NOWHERE, label, press, size=size, weight=weight, colour=colour)
         self._aside, self._figure = aside, figure
+
+    def measured(self, cursor: Cursor) -> float:
+        """Return the width of its words on one line, with something to spare."""
+        return cursor.in_style(self._size, weight=self._weight).measured(self.label) + 1
 
     def write(self, cursor: Cursor) -> None:
         """Write the words, the line under them, the figure and the explanation."""
@@ -132,7 +134,9 @@ class ToggleRow(RowWidget, Toggle):
         words.colour = mix(mix(MUTE, INK, 0.6), INK, self.warmth)
         if cursor.canvas:
             top = cursor.y + LEADING * cursor.size / 2 - _SWITCH[1] / 2
-            draw_switch(cursor.canvas, (cursor.right - _SWITCH[0], top, *_SWITCH), self._slid)
+            box = (cursor.right - _SWITCH[0], top, *_SWITCH)
+            draw_switch(cursor.canvas, box, self._slid)
+            cursor.canvas.cover(cursor.canvas.rect(*box))
         words.text(self.label)
         if self._hint:
             words.gap(2)
@@ -169,6 +173,7 @@ class SliderRow(RowWidget, Slider):
         middle, right = words.y + LEADING * cursor.size / 2, cursor.right - _FIGURES
         if canvas := cursor.canvas:
             canvas.bar((left, middle - 1, right - left, 2), self.fraction, self._colour)
+            canvas.cover(canvas.rect(left, middle - 8, right - left, 16))
             canvas.dot((left + self.fraction * (right - left), middle), 5 + self.warmth, INK)
             place = (cursor.right, words.baseline)
             canvas.text(self._figure(self.value), place, colour=self._colour, align="right", tabular=True)

@@ -89,8 +89,7 @@ class QuestionDialog(Dialog):
 
     def add_answers(self, panel: Panel) -> None:
         """Add a word for each answer."""
-        for label, answer in self._answers:
-            panel.button(label, _closing(answer))
+        panel.words([(label, _closing(answer)) for label, answer in self._answers])
 
 
 class NameDialog(Dialog):
@@ -107,8 +106,7 @@ class NameDialog(Dialog):
     def add_answers(self, panel: Panel) -> None:
         """Add the line to type in, and the words that end it."""
         self._entry = panel.entry(self._suggestion, self._done, Pop, LONGEST_NAME, fitting)
-        panel.button(texts.NAMING_KEEP, self._keep)
-        panel.button(texts.NAMING_LEAVE, Pop)
+        panel.words([(texts.NAMING_KEEP, self._keep), (texts.NAMING_LEAVE, Pop)])
 
     def _keep(self) -> Transition | None:
         return self._done(self._entry.text.strip())

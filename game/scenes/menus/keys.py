@@ -155,6 +155,7 @@ class BindingsScene(PanelScene):
         self.said = ""
         self._half = 0
         self.build()
+        self.form.focus(self.form.widgets[1])  # the first key
 
     def describe(self, panel: Panel) -> None:
         """Add the two halves' names, what came of the last change, and the table of one half."""

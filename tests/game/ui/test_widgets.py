@@ -257,7 +257,7 @@ def test_a_choice_of_many_goes_on_pages_that_keys_and_mouse_turn():
 
 @pytest.mark.parametrize("scene", [SettingsScene, ChoicesScene])
 def test_the_hint_names_the_keys_that_change_what_is_in_focus(open_game: Callable[..., Driver], scene: type):
-    driver = open_game(SettingsScene) if scene is SettingsScene else open_game(PlayScene, seed=1)
+    driver = open_game(SettingsScene, "sound") if scene is SettingsScene else open_game(PlayScene, seed=1)
     driver.frames(2)
     if scene is ChoicesScene:
         driver.key(pygame.K_c)
