@@ -72,7 +72,6 @@ class Forecast:
         for _ in range(decisions):
             if not self._places:
                 ahead.restore(env.snapshot())
-                ahead.gravity, ahead.limits = env.gravity, env.limits
             self._places.append(ahead.position[0].copy())
             if self._arrived():
                 self.path, self._places = np.array(self._places), []
