@@ -6,8 +6,7 @@ Its replay buffers and its random generator are not kept.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
@@ -15,9 +14,10 @@ import numpy as np
 
 from ai.agent.config import AgentConfig
 from ai.common.environment import Floats
-from ai.files import NETWORK, FolderKind, check_header, count_of, inside, problem_in, read_arrays, read_json
+from ai.files import NETWORK, FolderKind, check_header, count_of, inside, read_arrays, read_json
 from ai.nn import ModelFormatError, NeuralNetwork, Optimizer, atomic_folder, recover_folder
-from ai.nn.budget import WIDEST
+from ai.nn.layers import WIDEST
+from ai.nn.storage import noted
 
 if TYPE_CHECKING:
     from ai.agent.agent import DeepQAgent
@@ -74,33 +74,20 @@ def read_agent(folder: str | Path, make: Callable[[int, int, AgentConfig], A]) -
     folder = Path(folder)
     recover_folder(folder)
     problems: list[str] = []
-    with _noted(problems, AGENT_FILE):
+    with noted(problems, AGENT_FILE):
         agent = _read_description(folder, make)
     if problems:
         raise ModelFormatError(folder, problems)
     for name in ("online", "target"):
-        with _noted(problems, name):
+        with noted(problems, name):
             setattr(agent, name, _read_network(inside(folder, name), getattr(agent, name)))
-    with _noted(problems, OPTIMIZER_FILE):
+    with noted(problems, OPTIMIZER_FILE):
         state = _read_state(inside(folder, OPTIMIZER_FILE), agent.optimizer, agent.online.values)
         agent.optimizer.load_state(state, agent.online.values)
     if problems:
         raise ModelFormatError(folder, problems)
     agent.folder = folder
     return agent
-
-
-@contextmanager
-def _noted(problems: list[str], place: str) -> Iterator[None]:
-    """Add to `problems` what is wrong at a place, instead of raising it."""
-    try:
-        yield
-    except ModelFormatError as error:
-        problems += [f"{place}: {problem}" for problem in error.problems]
-    except OSError as error:
-        problems.append(f"{place}: {error.strerror or error}")
-    except (KeyError, TypeError, ValueError, ArithmeticError) as error:
-        problems.append(f"{place}: {problem_in(error)}")
 
 
 def _read_description(folder: Path, make: Callable[[int, int, AgentConfig], A]) -> A:
