@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from datetime import date
 
-from ai.flights.places import DAILY
+from ai.flights.verification import DAILY
 from ai.lander.environment import Outcome
 from game.core import texts
 from game.flight.flight import Flight

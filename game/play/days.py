@@ -14,7 +14,7 @@ from typing import Annotated, Final
 
 from ai.files.reading import parse_json, read_end
 from ai.files.schema import Count, OneOf, Sized, read_as
-from ai.flights.places import DAILY
+from ai.flights.verification import DAILY
 from ai.lander.environment import Outcome
 from game.core import texts
 from game.flight.flight_file import Entry, Record
