@@ -17,8 +17,7 @@ from typing import Annotated, Final
 
 import numpy as np
 
-from ai.files.reading import parse_json
-from ai.files.schema import OneOf, Sized, Within, read_as
+from ai.files import OneOf, Sized, Within, parse_json, read_as
 from ai.flights.recording import (
     LONGEST,
     STEPS,

@@ -9,7 +9,7 @@ from typing import Annotated, Any, Final, Self
 import numpy as np
 
 from ai.common.environment import Doubles
-from ai.files.schema import OneOf, Seed, Sized, Within
+from ai.files import OneOf, Seed, Sized, Within
 from ai.lander.descent import MOST_LEGS, TANK, LegStart
 from ai.lander.environment import Outcome
 from ai.lander.missions import MISSIONS, STARTS, Mission

@@ -174,7 +174,10 @@ def test_a_start_or_a_claim_that_no_flight_can_have_is_refused(subtests):
         with subtests.test(name=name):
             assert refusal(sealed(deflated(json.dumps(told | {name: value}).encode() + b"\n" + inputs))) == ""
     changes = [{name: value} for name, values in wrong.items() for value in values]
-    changes += [{"leg": [2, 1.0, False]} | more for more in ({"pads": 3}, {"mission": "fall"}, {"gravity": [[0, 0.7]]})]
+    changes += [
+        {"leg": [2, 1.0, False], name: value}
+        for name, value in (("pads", 3), ("mission", "fall"), ("gravity", [[0, 0.7]]))
+    ]
     for change in changes:
         with subtests.test(change=change):
             assert refusal(sealed(deflated(json.dumps(told | change).encode() + b"\n" + inputs))) == "nonsense"
