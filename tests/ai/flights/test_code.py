@@ -5,6 +5,7 @@ import json
 import tracemalloc
 import zlib
 from dataclasses import replace
+from string import ascii_letters
 
 import numpy as np
 from hypothesis import given, settings
@@ -150,7 +151,8 @@ def test_what_is_no_flight_is_refused_with_the_reason(subtests):
 def test_a_wrong_sign_is_found_wherever_it_is():
     code = code_of(shared([0] * 40 + [3] * 90 + [4] * 3))
     for place in range(len(BEGIN), len(code) - len(END)):
-        for other in "A+."[: 1 + (place % 7 == 0) * 2]:
+        last = place == len(code) - len(END) - 1
+        for other in ascii_letters if last else "A.":
             if other != code[place]:
                 assert refusal(code[:place] + other + code[place + 1 :]) == "damaged"
 
@@ -181,6 +183,14 @@ def test_a_start_or_a_claim_that_no_flight_can_have_is_refused(subtests):
     for change in changes:
         with subtests.test(change=change):
             assert refusal(sealed(deflated(json.dumps(told | change).encode() + b"\n" + inputs))) == "nonsense"
+
+
+def test_a_code_whose_content_has_no_end_is_refused():
+    told, inputs = content_of(shared([0, 3, 4] * 20))
+    content = deflated(json.dumps(told).encode() + b"\n" + inputs)
+    assert refusal(sealed(content)) == ""
+    for left_out in range(1, 9):
+        assert refusal(sealed(content[:-left_out])) == "nonsense"
 
 
 def test_sticks_move_within_their_ways_and_in_every_step(subtests):
@@ -221,7 +231,7 @@ def test_a_flight_changed_on_purpose_is_a_flight_or_is_refused(flight, data):
 
 def test_a_code_that_unfolds_to_more_than_the_longest_flight_costs_no_more():
     told, _ = content_of(shared([0, 3]))
-    for times, kind in ((LONGEST // 21, ""), (LONGEST, "nonsense"), (10**7, "nonsense")):
+    for times, kind in ((LONGEST // 21, ""), (LONGEST // 21 + 1, "nonsense"), (10**7, "nonsense")):
         code = sealed(deflated(json.dumps(told).encode() + b"\n" + bytes([240]) * times))
         tracemalloc.start()
         assert refusal(code) == kind
