@@ -15,16 +15,26 @@ from typing import Annotated, Any, Final
 import numpy as np
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.config import Config
 from ai.agent.n_step import NStep
-from ai.agent.replay import MemoryCell
+from ai.agent.replay import Transition
 from ai.common.environment import Bools, Floats
-from ai.files.reading import brief, read_json, write_text
-from ai.files.schema import OneOf, SchemaError, Sized, Within, check_header, read_as, sound_fields
+from ai.files import (
+    OneOf,
+    SchemaError,
+    Sized,
+    Within,
+    brief,
+    check_header,
+    read_as,
+    read_json,
+    sound_fields,
+    write_text,
+)
 from ai.lander.environment import NUM_ACTIONS, LanderEnv, Outcome
 from ai.lander.ground import hilly
 from ai.lander.pilots import Pilot
 from ai.lander.spawns import SPAWNS
+from ai.training.config import Config
 
 FORMAT: Final = "tranquility demonstrations"
 VERSION: Final = 1
@@ -91,13 +101,13 @@ def demonstrate(pilot: Pilot, count: int, seed: int = 0, spawn: str = "random") 
     return found
 
 
-def relive(demonstrations: Sequence[Demonstration], config: Config) -> list[MemoryCell | None]:
+def relive(demonstrations: Sequence[Demonstration], config: Config) -> list[Transition | None]:
     """Fly demonstrations again, and return the transitions of each as `config` would have remembered them.
 
     None for one that doesn't land, as one made under other rules may not. A transition is a decision of
     `config.frame_skip` physics steps with the action that was held longest in it.
     """
-    found: list[MemoryCell | None] = [None] * len(demonstrations)
+    found: list[Transition | None] = [None] * len(demonstrations)
     places: dict[tuple[str, int | None], list[int]] = {}
     for number, demonstration in enumerate(demonstrations):
         places.setdefault((demonstration.spawn, demonstration.ground), []).append(number)
@@ -113,7 +123,7 @@ def teach(agent: DeepQAgent, demonstrations: Sequence[Demonstration]) -> int:
 
     The agent learns from the list in a second pass of its own, if `config.success_pass` is on, as `taught` has it.
     """
-    landings = [cells for cells in relive(demonstrations, agent.config) if cells is not None]
+    landings = [cells for cells in relive(demonstrations, Config.of(agent)) if cells is not None]
     for cells in landings:
         agent.replay.add(cells)
         agent.successes.add(cells)
@@ -154,7 +164,7 @@ def _stream(seed: int) -> np.random.Generator:
 
 def _fly_together(
     demonstrations: Sequence[Demonstration], spawn: str, ground: int | None, config: Config
-) -> Iterator[MemoryCell | None]:
+) -> Iterator[Transition | None]:
     """Fly demonstrations over the same ground side by side; give the transitions of each, or None."""
     count, skip = len(demonstrations), config.frame_skip
     hills = None if ground is None else hilly(np.random.default_rng(ground))
@@ -185,11 +195,11 @@ def _fly_together(
 
 def _transitions(
     demonstration: Demonstration, decisions: Sequence[tuple[Any, ...]], slot: int, config: Config
-) -> MemoryCell | None:
+) -> Transition | None:
     """Return what one of the flights is remembered as; None if nothing of it is an example."""
-    steps, parts, skip = NStep(config.n_step, config.discount), list[MemoryCell](), config.frame_skip
+    steps, parts, skip = NStep(config.n_step, config.discount), list[Transition](), config.frame_skip
     for number in range(-(-demonstration.begins // skip), -(-len(demonstration.actions) // skip)):
         longest = np.bincount(demonstration.actions[number * skip : (number + 1) * skip]).argmax()
         before, *after = (part[slot : slot + 1] for part in decisions[number])
         parts.append(steps.add(before, np.array([longest]), *after)[0])
-    return MemoryCell(*(np.concatenate(column) for column in zip(*parts, strict=True))) if parts else None
+    return Transition(*(np.concatenate(column) for column in zip(*parts, strict=True))) if parts else None

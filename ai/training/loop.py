@@ -17,12 +17,12 @@ from typing import Any
 import numpy as np
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.config import Config
 from ai.agent.network import make_optimizer
 from ai.agent.normalizer import Normalizer
 from ai.agent.replay import make_replay
 from ai.agent.schedule import exploration, exploration_of_each
 from ai.common.environment import Env, Floats, StepResult
+from ai.training.config import Config
 from ai.training.lander_task import LANDER_SYMMETRY, Evaluation, evaluate
 from ai.training.statistics import EpisodeStatistics
 from ai.training.task import TEST_SEED, VALIDATION_SEED, Score, Task
@@ -114,7 +114,7 @@ class Training:
         agent, statistics = self.agent, self.statistics
         before, epsilon = agent.decisions, self.epsilon
         self.task.update_env(agent.decisions, self.env)
-        each = exploration_of_each(agent.config, epsilon)
+        each = exploration_of_each(agent.config, epsilon, self.env.num_envs)
         actions, result = agent.train_step(self.env, self.observation, each, self._held)
         statistics.add(result)
         if self.on_step is not None:
@@ -127,7 +127,7 @@ class Training:
         self._held = np.where(result.ended, 0, actions)
         evaluation = self.evaluate() if passed(before, agent.decisions, self.evaluate_every or 0) else None
         return Progress(
-            agent.decisions, agent.decisions * self.config.frame_skip, agent.train_count, self.episodes,
+            agent.decisions, agent.decisions * self.config.frame_skip, agent.gradient_steps, self.episodes,
             statistics.success, statistics.mean_return, agent.loss, agent.mean_q, epsilon, self.env.stage, self._pace(),
             statistics.shares, statistics.parts, evaluation, self.best,
         )  # fmt: skip
@@ -172,12 +172,12 @@ class Training:
 
     def best_agent(self) -> DeepQAgent:
         """Return an agent that flies with the best network found so far."""
-        agent = self._new_agent(self.agent.config)
+        agent = self._new_agent(self.config)
         if self.best_values is None:
             agent.restore(self.agent.network.values, deepcopy(self.agent.normalizer))
         else:
             agent.restore(self.best_values, deepcopy(self.best_normalizer))
-        agent.decisions, agent.train_count = self.agent.decisions, self.agent.train_count
+        agent.decisions, agent.gradient_steps = self.agent.decisions, self.agent.gradient_steps
         return agent
 
     def restore_best(self) -> None:
@@ -187,7 +187,7 @@ class Training:
 
     def last_agent(self) -> DeepQAgent:
         """Return a copy of the agent that learns, with an empty replay buffer."""
-        agent = self._new_agent(self.agent.config)
+        agent = self._new_agent(self.config)
         agent.copy_from(self.agent)
         return agent
 

@@ -10,14 +10,14 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.config import Config
-from ai.agent.replay import MemoryCell, PrioritisedReplayBuffer, ReplayBuffer
+from ai.agent.replay import PrioritisedReplayBuffer, ReplayBuffer, Transition
 from ai.agent.schedule import exploration
 from ai.common.decision import in_points
 from ai.common.environment import Bools, Doubles, Floats, Ints
 from ai.lander.environment import Outcome
 from ai.lander.one_engine import OneEngineEnv
 from ai.lander.rewards import RewardWeights
+from ai.training.config import Config
 
 # Plain deep Q-learning: a hard copy of the target network every 100 gradient steps, as Mnih et al. 2015 had it.
 SMALL_RUN: Final = Config(
@@ -60,7 +60,7 @@ class Memory:
 
     """
 
-    cells: MemoryCell
+    cells: Transition
     first: int
     oldest: int
     drawn: Ints
@@ -113,7 +113,7 @@ class WatchedReplay(ReplayBuffer):
 
     drawn: Ints = np.zeros(0, dtype=np.intp)
 
-    def sample(self, count: int, rng: np.random.Generator) -> tuple[MemoryCell, Ints, Floats]:
+    def sample(self, count: int, rng: np.random.Generator) -> tuple[Transition, Ints, Floats]:
         """Draw as the buffer does, and keep the rows."""
         cells, self.drawn, weights = super().sample(count, rng)
         return cells, self.drawn, weights

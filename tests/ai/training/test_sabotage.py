@@ -3,8 +3,8 @@ from typing import Any
 
 import pytest
 
-from ai.agent.config import PRESETS, Config
 from ai.agent.schedule import exploration_of_each
+from ai.training.config import PRESETS, Config
 from ai.training.loop import Training
 from ai.training.sabotage import SABOTAGES, sabotaged
 
@@ -34,7 +34,7 @@ def test_each_is_a_configuration_that_learns(subtests: pytest.Subtests):
             training = Training(sabotaged(small, name), evaluate_every=0)
             for _ in range(120 if training.env.num_envs == 1 else 30):
                 training.advance()
-            assert training.agent.train_count > 0
+            assert training.agent.gradient_steps > 0
 
 
 def test_taken_away_twice_is_gone_no_more_than_once(subtests: pytest.Subtests):
@@ -62,7 +62,7 @@ def test_no_replay_keeps_one_batch():
 def test_without_exploration_nothing_is_random():
     training = Training(sabotaged(Config(num_envs=4, epsilon_spread=1.0), "no_exploration"), evaluate_every=0)
     assert training.advance().epsilon == 0.0
-    assert not exploration_of_each(training.config, training.epsilon).any()
+    assert not exploration_of_each(training.config, training.epsilon, training.config.num_envs).any()
 
 
 def test_an_unknown_name_is_a_key_error():

@@ -65,7 +65,7 @@ def test_toggles_are_heard_and_the_end_of_a_slider_is_not(sound: Listener, open_
     assert sound.heard() == ["adjust"]
     game.key(RIGHT)  # it is on already, so the arrow leads on
     assert sound.heard() == ["move"]
-    game: Driver = open_game(SettingsScene, "sound")
+    game = open_game(SettingsScene, "sound")
     focus(game, texts.SOUND_GROUPS["interface"])
     sound.heard()
     for heard in [["adjust"]] * 3 + [[]]:  # clicks, from 70 % up to all there is

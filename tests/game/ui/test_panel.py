@@ -15,6 +15,7 @@ from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.panel import Panel
 from game.ui.panel_scene import PanelScene
+from game.ui.rows import ChoiceRow
 from tests.support.driver import Driver
 from tests.support.screens import settle
 from tests.support.written import Written
@@ -68,7 +69,7 @@ def test_a_cursor_measures_exactly_what_it_draws():
         cursor.text(LONG)
         cursor.pair("a label that is far too long to stand beside", "123.4")
         cursor.bar(0.3)
-        cursor.beside([lambda column: column.text(LONG), lambda column: column.aside("short")], (2, 1), 60)
+        cursor.beside([lambda column: column.pair(LONG, "1"), lambda column: column.aside("short")], (2, 1), 60)
         ends.append(cursor.y)
     assert ends[0] == ends[1] > 300
 
@@ -169,7 +170,7 @@ def test_every_widget_is_clicked_where_it_stands(page: Driver):
 
 
 def test_a_word_of_a_choice_is_chosen_by_a_click_on_it_alone(page: Driver):
-    choice = page.form.widgets[0]
+    choice = page.the(ChoiceRow)
     page.click(choice._places[2].center)
     page.click((choice.box.right - 5, choice.box.centery))  # beside all words
     page.click(choice._places[1].center)
