@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import lru_cache
 from typing import Final
 
@@ -46,17 +45,17 @@ def lines(text: str, size: float, weight: Weight, width: float, scale: float) ->
     def measure(line: str) -> float:
         return typeface.reach(line, round(size * scale, 2), weight) / scale
 
-    found: list[str] = []
-    for part in text.split("\n"):
-        for line in _broken(part, width, measure):
-            begun = 0
-            while len(line) - begun > 1 and measure(line[begun:]) > width:
-                ends = range(begun, len(line))
-                most = bisect_right(ends, width, key=lambda end, begun=begun, line=line: measure(line[begun:end])) - 1
-                found.append(line[begun : begun + max(1, most)])
-                begun += max(1, most)
-            found.append(line[begun:])
-    return tuple(found)
+    broken = (line for part in text.split("\n") for line in _broken(part, width, measure))
+    return tuple(piece for line in broken for piece in _pieces(line, width, measure))
+
+
+def _pieces(word: str, width: float, measure: Callable[[str], float]) -> Iterator[str]:
+    """Yield the parts of a word that fit into a line."""
+    while len(word) > 1 and measure(word) > width:
+        most = next(length for length in range(len(word) - 1, 0, -1) if length == 1 or measure(word[:length]) <= width)
+        yield word[:most]
+        word = word[most:]
+    yield word
 
 
 def draw_wrapped(

@@ -16,7 +16,8 @@ RIGHT: Direction = (1, 0)
 def neighbour(boxes: Sequence[pygame.Rect], current: int, direction: Direction, *, in_order: bool = False) -> int:
     """Return the index of the nearest box in a direction; up and down wrap around.
 
-    With `in_order`, the lower end of a column leads to the next box in order, the first one of the next column.
+    With `in_order`, distances up and down are between edges, so that of two columns side by side the first one comes
+    first, and the lower end of a column leads to the next box in order, which is the first one of the next column.
 
     A sideways distance counts double, so that a column is followed to its end before another is entered; left and right
     leave a row only at its end.
@@ -24,6 +25,8 @@ def neighbour(boxes: Sequence[pygame.Rect], current: int, direction: Direction, 
     here = boxes[current]
 
     def ahead(box: pygame.Rect) -> float:
+        if direction[1] and in_order:
+            return box.top - here.bottom + 1 if direction[1] > 0 else here.top - box.bottom + 1
         return direction[0] * (box.centerx - here.centerx) + direction[1] * (box.centery - here.centery)
 
     def aside(box: pygame.Rect) -> float:
