@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 from typing import Any, Final
 
 from ai.common.knobs import Knobs, is_number, knob
-from ai.files.reading import shown
+from ai.files import shown
 from ai.lander.rewards import RewardWeights
 from ai.lander.spawns import CURRICULA, RUNGS, SPAWNS
 from ai.nn import OPTIMIZERS

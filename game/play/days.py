@@ -12,8 +12,7 @@ from datetime import date, datetime
 from pathlib import Path
 from typing import Annotated, Final
 
-from ai.files.reading import parse_json, read_end
-from ai.files.schema import Count, OneOf, Sized, read_as
+from ai.files import Count, OneOf, Sized, parse_json, read_as, read_end
 from ai.flights.places import DAILY
 from ai.lander.environment import Outcome
 from game.core import texts

@@ -9,8 +9,7 @@ from typing import Annotated, Any, Final
 
 from ai.agent.config import LANDER
 from ai.agent.storage import LAST
-from ai.files.reading import brief, inside, read_json
-from ai.files.schema import Share, Within, read_as
+from ai.files import Share, Within, brief, inside, read_as, read_json
 from ai.training.checkpoints import TRAINING_FILE
 from game.core import texts
 from game.core.collection import Collection, ItemKind

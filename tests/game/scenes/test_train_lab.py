@@ -10,7 +10,7 @@ import pygame
 import pytest
 
 from ai.agent.config import Config
-from ai.files.reading import read_json
+from ai.files import read_json
 from ai.training.history import History
 from ai.training.loop import Training
 from game.core import texts
