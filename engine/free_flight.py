@@ -41,7 +41,7 @@ class FreeFlight:
     def __init__(self, world: World, body: int, sway: float = 0.0) -> None:
         self._world, self.body, self._sway = world, body, sway
         self._seen: tuple[int, bytes] | None = None  # what tells whether fixed bodies are as they were when read
-        params, shapes = world.params, world.detector.shapes
+        params, shapes = world.params, world.shape_table
         if shapes.is_circle.any():
             raise ValueError("free flight knows polygons alone")
         self._inverse_mass, _, self._inverse_inertia = params.inverse_mass[body].tolist()
@@ -60,7 +60,7 @@ class FreeFlight:
 
     def _look_around(self) -> list[Fixed]:
         """Read where fixed bodies are, and how high the highest reaches."""
-        shapes, state = self._world.detector.shapes, self._world.state
+        shapes, state = self._world.shape_table, self._world.state
         fixed = np.flatnonzero((shapes.body != self.body) & state.active[0, shapes.body])
         body = shapes.body[fixed]
         sway = np.array([2 * self._sway, 0.0])  # what is at one end of its way now may go to the other
@@ -113,7 +113,7 @@ class FreeFlight:
         """Return the fixed shapes whose boxes the body might touch, however it is turned."""
         world = self._world
         # What sways is everywhere at once, and is moved about all the time.
-        seen = (0 if self._sway else world.detector.broad.version, world.state.active.tobytes())
+        seen = (0 if self._sway else world.fixed_version, world.state.active.tobytes())
         if self._fixed is None or self._seen != seen:
             self._fixed, self._seen = self._look_around(), seen
         x, y, reach = self.x, self.y, self._reach

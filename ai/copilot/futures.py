@@ -20,7 +20,7 @@ from ai.lander.ground import Ground
 from ai.lander.pilots import Pilot
 from ai.lander.route import Route
 from ai.lander.rules import ACTION_SHARES, nearest_action
-from engine import DT
+from engine import DT, memory_of_worlds
 
 DECISION_STEPS: Final = 4  # physics steps of a decision, whatever rate a network was trained with
 LONGEST: Final = 30.0  # seconds after which a future that has not landed counts as one that does not
@@ -92,7 +92,7 @@ class Moment:
         """Return the moment of the landers `rows` (m,), each of them as often as it is named."""
         counters = {name: value[rows] for name, value in self.state["counters"].items()}
         bodies = {name: value[rows] for name, value in self.state["bodies"].items()}
-        state = {"counters": counters, "bodies": bodies, "contacts": self.state["contacts"].of_worlds(rows)}
+        state = {"counters": counters, "bodies": bodies, "contacts": memory_of_worlds(self.state["contacts"], rows)}
         return Moment(
             _taken(self.params, rows),
             _taken(self.limits, rows),

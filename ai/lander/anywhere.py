@@ -148,7 +148,7 @@ class AnywhereEnv(LanderEnv):
         self._told = LIMITS
         self._sites: Doubles = np.tile(np.array(Site()), (num_envs, 1))
         self.world.params.quadratic_drag = np.tile(self.world.params.quadratic_drag, (num_envs, 1, 1))
-        self._air: Doubles = self.world.movers.quadratic_drag  # (n, 1, 3), the lander's
+        self._air: Doubles = self.world.params.quadratic_drag[:, self.lander.index]  # (n, 3), a view
         self._settle()
 
     def reset(self, mask: Bools | None = None) -> Floats:
@@ -183,7 +183,7 @@ class AnywhereEnv(LanderEnv):
         """Let gravity, engine, air, limits, conditions and pads be those of the slots' sites."""
         site = Site(*self._sites.T.copy())
         self.world.gravity = np.stack([np.zeros(self.num_envs), -site.gravity], axis=1)
-        self._air[:, 0, :2] = np.array(site.air)[:, None]
+        self._air[:, :2] = np.array(site.air)[:, None]
         self.params = replace(PARAMS, main_thrust=site.thrust, quadratic_drag=site.air)
         self._told = replace(LIMITS, touch_speed=site.touch_speed, slide_speed=site.slide_speed, time=site.time)
         self.limits = self._told.stricter(self.strictness)

@@ -191,7 +191,7 @@ class Craft:
         shift, velocity = self.conditions.shift(self.time)
         state.pose[:, bodies, 0] = self.ground.middles[:, 0] + shift[:, None]
         state.velocity[:, bodies, 0] = velocity[:, None]
-        self.world.detector.broad.forget_boxes(bodies)
+        self.world.forget_boxes(bodies)
 
     def leave_pads(self) -> None:
         """Put moving pads where a step of the world leaves them that has begun now: moved on by that step."""

@@ -189,7 +189,7 @@ class LanderEnv(ObservedCraft):
         state = self.world.state
         arrays = {name: getattr(self, name).copy() for name in (*_COUNTERS, "target")}
         bodies = {field.name: getattr(state, field.name).copy() for field in fields(state)}
-        return {"counters": arrays, "bodies": bodies, "contacts": self.world.detector.memory()}
+        return {"counters": arrays, "bodies": bodies, "contacts": self.world.memory()}
 
     def restore(self, snapshot: dict[str, Any]) -> None:
         """Go back to a snapshot of this environment, or of one with as many slots."""
@@ -197,7 +197,7 @@ class LanderEnv(ObservedCraft):
             setattr(self, name, value.copy())
         for name, value in snapshot["bodies"].items():
             setattr(self.world.state, name, value.copy())
-        self.world.detector.recall_memory(snapshot["contacts"])
+        self.world.recall(snapshot["contacts"])
         self._started = True
         if self._alone:
             self._alone.forget()

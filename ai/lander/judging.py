@@ -43,8 +43,8 @@ class JudgedCraft(Craft):
         self._still: Ints = np.zeros(num_envs, dtype=np.intp)  # physics steps at rest on both feet, up to now
         self.feet_steps: Ints = np.zeros(num_envs, dtype=np.intp)
         self.tilted_steps: Ints = np.zeros(num_envs, dtype=np.intp)
-        # Rows of the detector's pairs: which part of the craft touches, and whether it is the pad it touches.
-        pairs = self.world.detector.pairs
+        # Rows of the world's pairs: which part of the craft touches, and whether it is the pad it touches.
+        pairs = self.world.pairs
         self._pair_part = pairs.min(axis=1)  # 0 hull, 1 left foot, 2 right foot
         self._pair_pad = pairs.max(axis=1) - 3  # the pad's number; the plain and its hills come after the pads
         self._pair_on_pad = self._pair_pad < len(self.ground.pads)
@@ -116,8 +116,8 @@ class JudgedCraft(Craft):
         self.contacts[world[foot], part[foot] - 1] = True
         self.touched[world[foot]] = self._pair_pad[touches.pair[foot]]
         felt = np.zeros((self.num_envs, 3))
-        np.maximum.at(felt[:, 0], world, touches.approach[:2].max(axis=0))
-        np.maximum.at(felt[:, 1], world, np.abs(touches.approach[2]))
+        np.maximum.at(felt[:, 0], world, touches.approach[:, :2].max(axis=1))
+        np.maximum.at(felt[:, 1], world, np.abs(touches.approach[:, 2]))
         felt[world, 2] = self.tilt[world]
         self.impact = np.maximum(self.impact, felt)
         wrong_part, wrong_place = np.zeros((2, self.num_envs), dtype=bool)

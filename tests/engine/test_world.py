@@ -264,7 +264,7 @@ def test_contacts_name_the_bodies_from_a_to_b():
     run(world, 2)
     contacts = world.contacts
     assert sorted(contacts.body[0].tolist()) == [0, 1]
-    upwards = contacts.manifold.normal[0, 1] * (contacts.body[0, 1] - contacts.body[0, 0])
+    upwards = contacts.normal[0, 1] * (contacts.body[0, 1] - contacts.body[0, 0])
     assert upwards == pytest.approx(1.0)
 
 
@@ -274,11 +274,11 @@ def test_stepping_on_from_a_copied_state_and_memory_repeats_the_flight():
         world.add(BOX, (0.2 * i, 0.6 + 1.1 * i), 0.1 * i)
     run(world, 60)
     state = {name: getattr(world.state, name).copy() for name in ("pose", "velocity", "cos", "sin")}
-    memory = world.detector.memory()
+    memory = world.memory()
     run(world, 60)
     first = world.state.pose.copy()
     for name, value in state.items():
         setattr(world.state, name, value)
-    world.detector.recall_memory(memory)
+    world.recall(memory)
     run(world, 60)
     assert world.state.pose.tobytes() == first.tobytes()
