@@ -26,37 +26,43 @@ STEPS: Final = 30  # for which it has to be still, half a second
 
 
 class Rest:
-    """Which bodies of every world sleep.
+    """Which bodies of every world sleep; if it is not `allowed`, none ever does.
 
     Attributes:
         asleep: whether each body sleeps, (batch, bodies).
+        awake: whether each body moves, or was moved by hand, and so may run into others; None if no body sleeps.
 
     """
 
-    def __init__(self, params: BodyParams, state: BodyState, gravity: Array) -> None:
+    def __init__(self, params: BodyParams, state: BodyState, gravity: Array, allowed: bool) -> None:
+        self._allowed = allowed
         self._dynamic, self._moving = params.dynamic, span(params.dynamic)
         self.asleep: Bools = np.zeros(state.active.shape, dtype=bool)
+        self.awake: Bools | None = None
         self._place: Array = state.pose[:, self._moving].copy()  # where each moving body was when it came to be still
         self._still: Ints = np.zeros(self._place.shape[:2], dtype=np.intp)  # for how many steps it has been
         self._note(state, gravity)
 
-    def _note(self, state: BodyState, gravity: Array) -> None:
-        """Keep what the next step is compared with."""
-        self._pose, self._velocity, self._active = state.pose.copy(), state.velocity.copy(), state.active.copy()
-        self._gravity = gravity
+    def wake_disturbed(self, state: BodyState, gravity: Array, contacts: Contacts | None) -> None:
+        """Wake what is not as the last step left it, and all that the last step's `contacts` link to it."""
+        if self.awake is None:
+            return
+        differs = (state.pose != self._pose) | (state.velocity != self._velocity) | (state.force != 0)
+        disturbed = differs.any(axis=2) | (state.active != self._active)
+        disturbed |= self.asleep & np.any(gravity != self._gravity, axis=-1, keepdims=True)
+        if disturbed.any():
+            self.wake(disturbed, state, contacts)
 
-    def wake_disturbed(self, state: BodyState, gravity: Array, contacts: Contacts | None) -> Bools | None:
-        """Wake what is not as the last step left it; return which bodies are awake, None if all are.
-
-        A body that forces do not move is awake if it moves by itself or was moved: it may run into those that sleep.
-        """
-        if not self.asleep.any():
-            return None
-        disturbed = (state.pose != self._pose) | (state.velocity != self._velocity) | (state.force != 0)
-        changed = disturbed.any(axis=2) | (state.active != self._active)
-        changed |= self.asleep & np.any(gravity != self._gravity, axis=-1, keepdims=True)
-        self.wake(changed, state, contacts)
-        return self._dynamic & ~self.asleep | ~self._dynamic & (changed | state.velocity.any(axis=2))
+    def wake_touched(self, found: Contacts | None, state: BodyState, contacts: Contacts | None) -> bool:
+        """Wake sleeping bodies that this step has `found` to be touched; return whether there were any."""
+        if self.awake is None or found is None:
+            return False
+        places = found.world[:, None], found.body
+        touched = np.zeros_like(self.asleep)
+        touched[places] = self.asleep[places]
+        if touched.any():
+            self.wake(touched, state, contacts)
+        return bool(touched.any())
 
     def wake(self, chosen: Bools, state: BodyState, contacts: Contacts | None) -> None:
         """Wake the chosen bodies (batch, bodies) and their islands; a fixed body wakes what lies on it."""
@@ -64,7 +70,9 @@ class Rest:
         self._find_sleepers(state, contacts, chosen)
 
     def settle(self, state: BodyState, gravity: Array, contacts: Contacts | None) -> None:
-        """Let fall asleep what has been still for long enough, and wake what something that moves has touched."""
+        """Let fall asleep what has been still for long enough."""
+        if not self._allowed:
+            return
         pose, velocity = state.pose[:, self._moving], state.velocity[:, self._moving]
         still = ((np.abs(velocity) < STILL) & (np.abs(pose - self._place) < DRIFT)).all(axis=2)
         self._place[~still] = pose[~still]
@@ -74,27 +82,35 @@ class Rest:
             state.velocity[self.asleep] = 0.0
         self._note(state, gravity)
 
+    def _note(self, state: BodyState, gravity: Array) -> None:
+        """Keep what the next step is compared with."""
+        self._pose, self._velocity, self._active = state.pose.copy(), state.velocity.copy(), state.active.copy()
+        self._gravity = gravity
+
     def _find_sleepers(self, state: BodyState, contacts: Contacts | None, disturbed: Bools) -> None:
-        """Let sleep every island that lies on something, and has no body that is not still."""
+        """Let sleep every island that lies on something, and has no body that moves or is disturbed."""
         moves = disturbed | ~self._dynamic & state.velocity.any(axis=2)
         moves[:, self._moving] |= self._still < STEPS
         held = ~self._dynamic & ~moves
         if contacts is None:
-            self.asleep[:] = False
+            self.asleep = np.zeros_like(moves)
         else:
-            self.asleep = self._dynamic & self._spread(held, contacts) & ~self._spread(moves, contacts)
+            self.asleep = self._dynamic & _spread(held, contacts, self._dynamic)
+            self.asleep &= ~_spread(moves, contacts, self._dynamic)
+        self.awake = ~self.asleep & (self._dynamic | moves) if self.asleep.any() else None
 
-    def _spread(self, chosen: Bools, contacts: Contacts) -> Bools:
-        """Return the chosen bodies (batch, bodies), and all that contacts link to them.
 
-        Bodies that no force can move link to others only if they are chosen.
-        """
-        world, (a, b) = contacts.world, contacts.body.T
-        links = chosen | self._dynamic
-        reached, before = chosen.copy(), -1
-        while before < (count := int(reached.sum())):
-            before = count
-            met = np.flatnonzero(reached[world, a] | reached[world, b])
-            reached[world[met], a[met]] = reached[world[met], b[met]] = True
-            reached &= links
-        return reached
+def _spread(chosen: Bools, contacts: Contacts, dynamic: Bools) -> Bools:
+    """Return the chosen bodies (batch, bodies), and all that contacts link to them.
+
+    Bodies that are not dynamic (bodies,) link to others only if they are chosen.
+    """
+    world, (a, b) = contacts.world, contacts.body.T
+    links = chosen | dynamic
+    reached, before = chosen.copy(), -1
+    while before < (count := int(reached.sum())):
+        before = count
+        met = np.flatnonzero(reached[world, a] | reached[world, b])
+        reached[world[met], a[met]] = reached[world[met], b[met]] = True
+        reached &= links
+    return reached

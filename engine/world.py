@@ -153,31 +153,31 @@ class World:
         """
         self._prepare()
         state, params, movers, gravity, rest = self.state, self.params, self.movers, self.gravity, self._rest
-        awake = rest.wake_disturbed(state, gravity, self.contacts) if rest else None
-        contacts = None
-        if touching:
-            world, pair = self._broad_phase.near(state, awake)
+        rest.wake_disturbed(state, gravity, self.contacts)
+        contacts, solver = None, None
+        while touching:
+            world, pair = self._broad_phase.near(state, rest.awake)
             contacts = self._narrow_phase.touching(state, world, pair)
-        solver = None
+            if not rest.wake_touched(contacts, state, self.contacts):
+                break  # else contacts of what has woken are to be found, too
         if contacts:
             self._narrow_phase.warm_start(contacts, self._impulses, self._weaker(), pass_on=self.sleeping)
             solver = Solver(state, params, contacts)
-        integrate_velocity(state, params, movers, gravity, DT, awake)
+        integrate_velocity(state, params, movers, gravity, DT, rest.awake)
         if solver:
             solver.solve_velocities(state, self.iterations, self.restitution_threshold, DT)
-        integrate_position(state, movers, DT, awake)
+        integrate_position(state, movers, DT, rest.awake)
         if solver:
             solver.correct_positions(state, max(2, self.iterations // 3), DT, lenient=self.sleeping)
         state.refresh_rotation(movers)
         state.force[:] = 0.0
-        self._keep(contacts, awake)
-        if rest:
-            rest.settle(state, gravity, self.contacts)
+        self._keep(contacts)
+        rest.settle(state, gravity, self.contacts)
 
-    def _keep(self, contacts: Contacts | None, awake: Bools | None) -> None:
-        """Remember a step's contacts, and those of bodies that it let sleep on."""
-        slept = None
-        if awake is not None and self.contacts:
+    def _keep(self, contacts: Contacts | None) -> None:
+        """Remember a step's contacts, and those of bodies that slept in it."""
+        slept, awake = None, self._rest.awake
+        if self.contacts and awake is not None:
             slept = self.contacts.take(~awake[self.contacts.world[:, None], self.contacts.body].any(axis=1))
             slept.approach[:] = 0.0
         self.contacts = self._impulses = contacts.with_others(slept) if contacts else slept or None
@@ -203,7 +203,7 @@ class World:
         self._shape_table = ShapeTable(self.shapes, self._shape_bodies, self.params.dynamic)
         self._broad_phase = BroadPhase(self.params, self._shape_table, MARGIN)
         self._narrow_phase = NarrowPhase(self.params, self._shape_table, self._broad_phase.pairs)
-        self._rest = Rest(self.params, self.state, self.gravity) if self.sleeping else None
+        self._rest = Rest(self.params, self.state, self.gravity, self.sleeping)
         self._movers = self._impulses = None
 
     @property
@@ -230,14 +230,13 @@ class World:
     def asleep(self) -> Bools:
         """Whether each body sleeps, (batch, bodies)."""
         self._prepare()
-        return self._rest.asleep.copy() if self._rest else np.zeros(self.state.active.shape, dtype=bool)
+        return self._rest.asleep.copy()
 
     def wake(self, chosen: Bools | None = None) -> None:
         """Wake the chosen bodies (batch, bodies) and all that they lie with, or every body in every world."""
         self._prepare()
-        if self._rest:
-            every = np.ones(self.state.active.shape, dtype=bool)
-            self._rest.wake(every if chosen is None else chosen, self.state, self.contacts)
+        every = np.ones(self.state.active.shape, dtype=bool)
+        self._rest.wake(every if chosen is None else chosen, self.state, self.contacts)
 
     def moved(self, body: int, worlds: Bools | None = None) -> None:
         """Take note that a body was put elsewhere by hand, in these worlds or in all: its contacts no longer apply."""
@@ -274,7 +273,7 @@ class World:
         """
         self._prepare()
         contacts = vars(self._impulses) if self._impulses else {}
-        rest = {"rest": copy.deepcopy(vars(self._rest))} if self._rest else {}
+        rest = {"rest": copy.deepcopy(vars(self._rest))} if self.sleeping else {}
         return {"gravity": self._gravity_before, "contacts": dict(contacts), **rest}
 
     def recall(self, memory: Mapping[str, Any]) -> None:
@@ -283,8 +282,7 @@ class World:
         contacts = memory["contacts"]
         self.contacts = self._impulses = Contacts(**contacts) if contacts else None
         self._gravity_before = memory["gravity"]
-        if self._rest:
-            vars(self._rest).update(copy.deepcopy(memory["rest"]))
+        vars(self._rest).update(copy.deepcopy(memory.get("rest", {})))
         self.forget_boxes()
 
 
