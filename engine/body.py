@@ -118,11 +118,14 @@ class Body:
         push = np.broadcast_to(finite("force", force), (self.world.batch, 2))
         if point is not None:
             self.apply_torque(cross(finite("point", point) - self.position, push))
-        self.world.state.force[:, self.index, :2] += push
+        if not self.static:
+            self.world.state.force[:, self.index, :2] += push
 
     def apply_torque(self, torque: object) -> None:
         """Add a torque, one or (batch,), in newton metres for the next step."""
-        self.world.state.force[:, self.index, 2] += finite("torque", torque)
+        turn = finite("torque", torque)
+        if not self.static:
+            self.world.state.force[:, self.index, 2] += turn
 
     def set(
         self,

@@ -4,7 +4,8 @@ What moves is boxed by a circle, which needs no trigonometry; what is fixed by i
 hundreds of bodies, comparing all moving boxes with all boxes in one go is faster in NumPy than any tree. Bodies are
 compared first, then the shapes of bodies that are near.
 
-A box is four numbers: low x, low y, high x, high y. Arrays of boxes lead with these four.
+A box is four numbers: low x, low y, high x, high y. Arrays of boxes lead with these four, and end with the batch: NumPy
+is quickest along the last axis, and that is the longest one.
 """
 
 from __future__ import annotations
@@ -32,8 +33,8 @@ class BroadPhase:
         self._reach = np.zeros(len(params.group))  # of bodies, from the centre of mass
         far = np.sqrt(shapes.centre[:, 0] ** 2 + shapes.centre[:, 1] ** 2) + self._shape_reach
         np.maximum.at(self._reach, shapes.body, far)
-        self._boxes: Array | None = None  # (4, batch, bodies)
-        self._shape_boxes = np.zeros((4, 0, 0))  # (4, batch, shapes); only those of fixed bodies are filled
+        self._boxes: Array | None = None  # (4, bodies, batch)
+        self._shape_boxes = np.zeros((4, 0, 0))  # (4, shapes, batch); only those of fixed bodies are filled
         self._stale = self._fixed.copy()  # fixed bodies (bodies,) whose boxes are to be computed anew
         self.version = 0  # of where fixed bodies are
         self._movers_first, self._first, self._count = _meeting_pairs(params, shapes)
@@ -52,15 +53,17 @@ class BroadPhase:
         Given which bodies are `awake`, (batch, bodies), pairs without any are left out.
         """
         boxes = self._body_boxes(state)
-        overlap = _overlap(boxes[:, :, self._moving, None], boxes[:, :, None, :])
-        overlap &= self._count > 0
+        overlap = _overlap(boxes[:, self._moving, None], boxes[:, None])  # (moving, bodies, batch)
+        overlap &= self._count[..., None] > 0
         if not state.active.all():
-            overlap &= state.active[:, self._moving, None] & state.active[:, None, :]
+            overlap &= (state.active[:, self._moving, None] & state.active[:, None]).transpose(1, 2, 0)
         if awake is not None:
-            overlap &= awake[:, self._moving, None] | awake[:, None, :]
-        world, mover, other = overlap.nonzero()
+            overlap &= (awake[:, self._moving, None] | awake[:, None]).transpose(1, 2, 0)
+        mover, other, world = overlap.nonzero()
         if not len(world):
             return world, world
+        order = np.argsort(world, kind="stable")
+        mover, other, world = mover[order], other[order], world[order]
         # From pairs of bodies to the pairs of their shapes, which stand one after another in `pairs`.
         count = self._count[mover, other]
         last = count.cumsum()
@@ -71,33 +74,30 @@ class BroadPhase:
 
     def _body_boxes(self, state: BodyState) -> Array:
         if self._boxes is None:
-            self._boxes = np.empty((4, *state.active.shape))
-            self._shape_boxes = np.zeros((4, len(state.pose), len(self._shapes)))
+            batch, bodies = state.active.shape
+            self._boxes, self._shape_boxes = np.empty((4, bodies, batch)), np.zeros((4, len(self._shapes), batch))
         boxes = self._boxes
         if self._stale.any():
             self._box_fixed(state, boxes, np.flatnonzero(self._stale))
             # A lift has other boxes in the next step.
             self._stale = self._fixed & state.velocity.any(axis=(0, 2))
-        centre, reach = state.pose[:, self._moving, :2], self._reach[self._moving]
-        for axis in (0, 1):
-            boxes[axis][:, self._moving] = centre[..., axis] - reach
-            boxes[2 + axis][:, self._moving] = centre[..., axis] + reach
+        centre, reach = state.pose[:, self._moving, :2].transpose(2, 1, 0), self._reach[self._moving, None]
+        boxes[:2, self._moving], boxes[2:, self._moving] = centre - reach, centre + reach
         return boxes
 
     def _box_fixed(self, state: BodyState, boxes: Array, bodies: Ints) -> None:
         """Box some fixed bodies, in ascending order, and their shapes."""
         shapes = np.flatnonzero(np.isin(self._shapes.body, bodies))
         low, high = self._shapes.bounds(state, shapes)
-        self._shape_boxes[:2, :, shapes] = np.moveaxis(low, 2, 0)
-        self._shape_boxes[2:, :, shapes] = np.moveaxis(high, 2, 0)
+        self._shape_boxes[:2, shapes], self._shape_boxes[2:, shapes] = low.T, high.T
         first = self._shapes.body[shapes].searchsorted(bodies)  # a body's shapes stand side by side
-        boxes[:2, :, bodies] = np.minimum.reduceat(self._shape_boxes[:2, :, shapes], first, axis=2)
-        boxes[2:, :, bodies] = np.maximum.reduceat(self._shape_boxes[2:, :, shapes], first, axis=2)
+        boxes[:2, bodies] = np.minimum.reduceat(low.T, first, axis=1)
+        boxes[2:, bodies] = np.maximum.reduceat(high.T, first, axis=1)
 
     def _shapes_near(self, state: BodyState, world: Ints, pair: Ints) -> Bools:
         """Whether the boxes of pairs of shapes overlap, (n,)."""
         mine, other = self._movers_first[pair].T
-        theirs = self._shape_boxes[:, world, other]
+        theirs = self._shape_boxes[:, other, world]
         loose = np.flatnonzero(~self._shapes.fixed[other])
         if len(loose):
             theirs[:, loose] = self._box_moving(state, world[loose], other[loose])

@@ -21,7 +21,7 @@ def integrate_velocity(
     """
     velocity = state.velocity[:, movers]
     per_force = params.inverse_mass[movers] * dt
-    fall = np.where(params.dynamic[movers, None], gravity[..., None, :] * dt, 0.0)
+    fall = gravity[..., None, :] * (dt * params.dynamic[movers, None])
     moving = _moving(state, movers, awake)
     if moving is not None:
         per_force, fall = per_force * moving, fall * moving

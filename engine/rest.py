@@ -41,15 +41,16 @@ class Rest:
         self.awake: Bools | None = None
         self._place: Array = state.pose[:, self._moving].copy()  # where each moving body was when it came to be still
         self._still: Ints = np.zeros(self._place.shape[:2], dtype=np.intp)  # for how many steps it has been
-        self._note(state, gravity)
+        self._seen = state.pose, state.velocity, state.active, gravity  # after the last step in which a body slept
 
     def wake_disturbed(self, state: BodyState, gravity: Array, contacts: Contacts | None) -> None:
         """Wake what is not as the last step left it, and all that the last step's `contacts` link to it."""
         if self.awake is None:
             return
-        differs = (state.pose != self._pose) | (state.velocity != self._velocity) | (state.force != 0)
-        disturbed = differs.any(axis=2) | (state.active != self._active)
-        disturbed |= self.asleep & np.any(gravity != self._gravity, axis=-1, keepdims=True)
+        pose, velocity, active, gravity_before = self._seen
+        differs = (state.pose != pose) | (state.velocity != velocity) | (state.force != 0)
+        disturbed = differs.any(axis=2) | (state.active != active)
+        disturbed |= self.asleep & np.any(gravity != gravity_before, axis=-1, keepdims=True)
         if disturbed.any():
             self.wake(disturbed, state, contacts)
 
@@ -80,12 +81,8 @@ class Rest:
         if (self._still >= STEPS).any():
             self._find_sleepers(state, contacts, np.zeros_like(self.asleep))
             state.velocity[self.asleep] = 0.0
-        self._note(state, gravity)
-
-    def _note(self, state: BodyState, gravity: Array) -> None:
-        """Keep what the next step is compared with."""
-        self._pose, self._velocity, self._active = state.pose.copy(), state.velocity.copy(), state.active.copy()
-        self._gravity = gravity
+        if self.awake is not None:
+            self._seen = state.pose.copy(), state.velocity.copy(), state.active.copy(), gravity
 
     def _find_sleepers(self, state: BodyState, contacts: Contacts | None, disturbed: Bools) -> None:
         """Let sleep every island that lies on something, and has no body that moves or is disturbed."""

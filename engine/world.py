@@ -170,7 +170,7 @@ class World:
         if solver:
             solver.correct_positions(state, max(2, self.iterations // 3), DT, lenient=self.sleeping)
         state.refresh_rotation(movers)
-        state.force[:] = 0.0
+        state.force[:, movers] = 0.0
         self._keep(contacts)
         rest.settle(state, gravity, self.contacts)
 

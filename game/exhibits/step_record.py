@@ -188,7 +188,7 @@ class StepRecord:
         self.calls: dict[str, list[Call]] = {}
         self._mending = 0  # number of the first call of `relax` that mends overlaps
         self._read_calls(recorder.events)
-        self.boxes: Array = self.call(BroadPhase.near).values["boxes"][:, 0].T
+        self.boxes: Array = self.call(BroadPhase.near).values["boxes"][..., 0].T
         self.fallen = self._of_movers(self.call(integrate_velocity).values["velocity"], self.before[1])
         self.steps = self._of_movers(self.call(integrate_position).values["step"], np.zeros_like(self.fallen))
         self.pairs = list(self._read_pairs())
