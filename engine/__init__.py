@@ -17,7 +17,6 @@ from engine.body import Body
 from engine.collide import Manifold, collide
 from engine.shapes import Circle, Polygon, Shape
 from engine.sprite import Sprite
-from engine.free_flight import FreeFlight
 from engine.world import DT, World, memory_of_worlds
 
-__all__ = ["DT", "Body", "Circle", "FreeFlight", "Manifold", "Polygon", "Shape", "Sprite", "World", "collide", "memory_of_worlds"]
+__all__ = ["DT", "Body", "Circle", "Manifold", "Polygon", "Shape", "Sprite", "World", "collide", "memory_of_worlds"]

@@ -61,7 +61,7 @@ __all__ = [
     "CONFIG", "CONTROLS", "MOST", "NETWORK", "NEW", "STALE", "Above", "Count", "Duration", "FolderKind", "Lock",
     "OneOf", "SchemaError", "Seed", "Share", "Sized", "Within", "aside_for", "atomic_folder", "beside", "brief",
     "check_folder", "check_header", "claimed_folder", "count_of", "described", "free_folder", "inside", "lock_of",
-    "moved_aside", "number_of", "open_file", "parse_json", "problem_in", "read_array", "read_arrays", "read_as", "read_bytes",
-    "read_end", "read_json", "read_standard_input", "read_text", "recover_folder", "shown", "sound_fields",
-    "synchronise", "take", "take_folder", "write_bytes", "write_text",
+    "moved_aside", "number_of", "open_file", "parse_json", "problem_in", "read_array", "read_arrays", "read_as",
+    "read_bytes", "read_end", "read_json", "read_standard_input", "read_text", "recover_folder", "shown",
+    "sound_fields", "synchronise", "take", "take_folder", "write_bytes", "write_text",
 ]  # fmt: skip

@@ -12,10 +12,11 @@ from collections.abc import Iterable, Mapping
 from typing import Final, NamedTuple
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.config import Config
+from ai.agent.config import AgentConfig
 from ai.agent.normalizer import Normalizer
 from ai.common.environment import Floats
-from ai.copilot.futures import KEYS, Future, Lookahead, Moment, Opening, Push
+from ai.copilot.futures import KEYS, Future, Lookahead, Opening, Push
+from ai.lander.moment import Moment
 from ai.lander.pilots import Pilot
 from ai.lander.route import Route
 from game.core import texts
@@ -30,7 +31,7 @@ class Flyer(NamedTuple):
 
     num_features: int
     num_actions: int
-    config: Config
+    config: AgentConfig
     values: Floats  # (parameters,)
     normalizer: Normalizer | None
 

@@ -122,7 +122,7 @@ CASES = {
     Cause.HARD: ((0, 6, 0, -3, 0, 0), "Touched down at {0:.1f} m/s; 2.0 is the limit."),
     Cause.TILTED: ((0, 3.2, 0, -0.5, 0.6, 0), "Tilted {2:.0f}° at contact; 29° is the limit."),
     Cause.SLIDING: ((-2, 2.6, 3.5, -0.3, 0, 0), "Slid across the ground at {1:.1f} m/s; 2.0 is the limit."),
-    Cause.HULL: ((0, 3.5, 0, -0.5, np.pi, 0), texts.CAUSES["HULL"]),
+    Cause.HULL: ((0, 3.5, 0, -0.5, np.pi, 0), "Tipped over to {2:.0f}°, and then came down at {0:.1f} m/s."),
     Cause.TERRAIN: ((10, 2.2, 0, -0.5, 0, 0), texts.CAUSES["TERRAIN"]),
 }
 # Beside the pad, nothing but speed and tilt break a craft.
@@ -163,6 +163,18 @@ def test_a_hard_touch_beside_the_pad_breaks_by_its_speed_or_tilt(cause: Cause):
     speed, slide, tilt = flight.env.impact[0]
     assert card.reason == words.format(speed, slide, np.degrees(tilt))
     assert card.advice == texts.ADVICE[cause.name]
+
+
+def test_a_craft_that_tipped_over_in_the_gust_is_told_of_that_and_not_of_its_speed():
+    flight = Flight(1)
+    place(flight.env, 0, 12, 1.0, -1.0, 1.2, 1.5)
+    while not flight.over:
+        flight.step(3)
+    card, (speed, _, tilt) = outcome_card(flight.env, 1.0), flight.env.impact[0]
+    assert flight.env.cause[0] != Cause.TILTED
+    assert speed > LIMITS.touch_speed
+    assert card.reason == texts.TIPPED_OVER.format(tilt=f"{np.degrees(tilt):.0f}", speed=f"{speed:.1f}")
+    assert card.advice == texts.ADVICE["TILTED"]
 
 
 def test_a_soft_touch_beside_the_pad_leaves_the_craft_whole_without_points():
@@ -302,3 +314,38 @@ def test_a_forecast_is_flown_under_the_gravity_of_the_flight(share: float):
     for _ in range(10 * DECISION_STEPS):
         flight.step(0)
     assert np.array_equal(forecast.path[10], flight.poses.now[0, :2])
+
+
+class TrainedAtSeven(ScriptedPilot):
+    """Pilot of a network that was trained with seven steps to a decision, and counts its decisions."""
+
+    run_settings: dict[str, object] = {"frame_skip": 7}  # noqa: RUF012
+    asked = 0
+
+    def act(self, observation, *, held=None):
+        self.asked += 1
+        return super().act(observation, held=held)
+
+
+def test_a_network_decides_as_often_as_it_was_trained_to_wherever_it_flies():
+    pilot = TrainedAtSeven()
+    flight = Flight(3, pilot)
+    flight.hand_over()
+    for _ in range(70):
+        flight.step(0)
+    assert pilot.asked == 10
+    swarm = Swarm(1, 3, pilot := TrainedAtSeven())
+    for _ in range(70):
+        swarm.step()
+    assert swarm.decided[0] == pilot.asked == 10
+    forecast = Forecast(pilot := TrainedAtSeven())
+    forecast.follow(flight.env, 5)
+    assert forecast._ahead.frame_skip == 7
+
+
+def test_what_a_network_says_of_its_rate_is_not_believed_without_a_look():
+    for said in (0, -3, "4", None, 2.5):
+        pilot = TrainedAtSeven()
+        pilot.run_settings = {"frame_skip": said}
+        assert networks.decision_steps(pilot) == networks.DECISION_STEPS, said
+    assert networks.decision_steps(None) == networks.DECISION_STEPS
