@@ -36,7 +36,6 @@ class BroadPhase:
         self._boxes: Array | None = None  # (4, bodies, batch)
         self._shape_boxes = np.zeros((4, 0, 0))  # (4, shapes, batch); only those of fixed bodies are filled
         self._stale = self._fixed.copy()  # fixed bodies (bodies,) whose boxes are to be computed anew
-        self.version = 0  # of where fixed bodies are
         self._movers_first, self._first, self._count = _meeting_pairs(params, shapes)
         a, b = self._movers_first.T
         turned = shapes.is_circle[a] & ~shapes.is_circle[b]
@@ -45,7 +44,6 @@ class BroadPhase:
     def forget_boxes(self, bodies: Span = ALL) -> None:
         """Discard the kept boxes of fixed bodies, which were put elsewhere."""
         self._stale[bodies] = self._fixed[bodies]
-        self.version += 1
 
     def near(self, state: BodyState, awake: Bools | None = None) -> tuple[Ints, Ints]:
         """Return world and row of `pairs`, each (n,), where boxes overlap; sorted by world, then by row.

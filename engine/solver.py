@@ -46,13 +46,13 @@ class Solver:
         self._rows = Rows.build(state, self._inverse_mass, contacts, self._impulse)
         self._approach = self._rows.speeds(state.velocity.reshape(-1))
         self._approach[:2] *= -1
-        contacts.approach = self._approach.T
+        contacts.approach, contacts.impulse = self._approach.T, self._impulse.T  # views: the solver fills them
         ends = np.bincount(contacts.colour).cumsum().tolist()
         self._spans = [slice(start, end) for start, end in zip([0, *ends], ends, strict=False)]
         self._colours = [self._rows.part(span) for span in self._spans]
 
     def solve_velocities(self, state: BodyState, iterations: int, restitution_threshold: float, dt: float) -> None:
-        """Apply normal impulses, with restitution, and friction to the velocities; write them into the contacts."""
+        """Apply normal impulses, with restitution, and friction to the velocities; add them to the contacts'."""
         contacts, closing = self._contacts, self._approach[:2]
         rebound = np.where(closing > restitution_threshold, contacts.restitution * closing, 0.0)
         # Where there still is a gap, this step may use it up.
@@ -61,7 +61,6 @@ class Solver:
         for rows, span in zip(self._colours, self._spans, strict=True):
             velocity[rows.index] += rows.effect(self._impulse[:, span])
         self._iterate(velocity, self._impulse, target, contacts.friction, iterations)
-        contacts.impulse = self._impulse.T
 
     def correct_positions(self, state: BodyState, iterations: int, dt: float, lenient: bool = False) -> None:
         """Move bodies out of overlaps by a velocity that lasts for this step alone, and so adds no energy.

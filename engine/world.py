@@ -31,8 +31,8 @@ class World:
     physical sense.
 
     Unless `sleeping` is off, what lies still falls asleep and costs little, until something about it changes. So that
-    it comes to lie still, impulses pass over to the points that take the place of others, and overlaps of up to 1.5 cm are
-    left alone. Off, each step computes everything anew, as a flight needs that was recorded so.
+    it comes to lie still, impulses pass over to the points that take the place of others, and overlaps of up to 1.5 cm
+    are left alone. Off, each step computes everything anew, as a flight needs that was recorded so.
     """
 
     def __init__(
@@ -254,12 +254,6 @@ class World:
         self._movers = None
         if self._version == self.params.version:
             self._broad_phase.forget_boxes(bodies)
-
-    @property
-    def fixed_version(self) -> int:
-        """One more each time that static bodies were put elsewhere."""
-        self._prepare()
-        return self._broad_phase.version
 
     def untouched(self) -> None:
         """Take note that nothing touched in the latest step, which was not taken here."""
