@@ -46,8 +46,8 @@ def _touch(env: LanderEnv, flying: Bools) -> Bools:
     env.contacts[world[foot], part[foot] - 1] = True
     env.touched[world[foot]] = pad[foot]
     felt = np.zeros((env.num_envs, 3))
-    np.maximum.at(felt[:, 0], world, touches.approach[:2].max(axis=0))
-    np.maximum.at(felt[:, 1], world, np.abs(touches.approach[2]))
+    np.maximum.at(felt[:, 0], world, touches.approach[:, :2].max(axis=1))
+    np.maximum.at(felt[:, 1], world, np.abs(touches.approach[:, 2]))
     felt[world, 2] = env.tilt[world]
     env.impact = np.maximum(env.impact, felt)
     wrong_part, wrong_place = np.zeros((2, env.num_envs), dtype=bool)
