@@ -38,7 +38,7 @@ class Contacts(Manifold):
     def __len__(self) -> int:
         return len(self.world)
 
-    def take(self, rows: Ints | Bools) -> Contacts:
+    def take(self, rows: Ints) -> Contacts:
         """Return these contacts alone."""
         return Contacts(*(table[rows] for table in vars(self).values()))
 
@@ -73,7 +73,7 @@ class NarrowPhase:
         rows = rows[order]
         world, pair = world[rows], pair[rows]
         return Contacts(
-            *(table[rows] for table in vars(manifold).values()),
+            **{name: table[rows] for name, table in vars(manifold).items()},
             world=world,
             pair=pair,
             body=self._body[pair],
@@ -122,8 +122,8 @@ class NarrowPhase:
         # There is one friction for both points: it stays if all of the points have.
         rubs = same.all(axis=1) | (same.any(axis=1) & (valid.sum(axis=1) == 1))
         contacts.impulse = impulse * np.column_stack([same, rubs])
-        lost = np.flatnonzero(known & ~(rubs & (same == valid).all(axis=1))) if pass_on else []
-        if len(lost):
+        lost = np.flatnonzero(known & ~(rubs & (same == valid).all(axis=1)))
+        if pass_on and len(lost):
             old, same = row[lost], same[lost]
             alike = dot(last.normal[old], contacts.normal[lost]) > _ALIKE
             new, gone = valid[lost] & ~same, there[lost] & ~same & alike[:, None]

@@ -117,11 +117,11 @@ class Solver:
         It ends early only where a further iteration would change no bit, so a world is the same alone and among others.
         """
         parts = [
-            (rows, total[:, span], target[:, span], None if friction is None else friction[span])
+            (rows, (total[:, span], target[:, span], None if friction is None else friction[span]))
             for rows, span in zip(self._colours, self._spans, strict=True)
         ]
         for _ in range(iterations):
-            changed = [rows.relax(velocity, *part) for rows, *part in parts]
+            changed = [rows.relax(velocity, *part) for rows, part in parts]
             if not any(changed):
                 return
 

@@ -178,7 +178,8 @@ class World:
         """Remember a step's contacts, and those of bodies that slept in it."""
         slept, awake = None, self._rest.awake
         if self.contacts and awake is not None:
-            slept = self.contacts.take(~awake[self.contacts.world[:, None], self.contacts.body].any(axis=1))
+            met = awake[self.contacts.world[:, None], self.contacts.body]
+            slept = self.contacts.take(np.flatnonzero(~met.any(axis=1)))
             slept.approach[:] = 0.0
         self.contacts = self._impulses = contacts.with_others(slept) if contacts else slept or None
         self._gravity_before = self.gravity
@@ -247,7 +248,7 @@ class World:
             gone = (self._impulses.body == body).any(axis=1)
             if worlds is not None:
                 gone &= worlds[self._impulses.world]
-            self._impulses = self._impulses.take(~gone)
+            self._impulses = self._impulses.take(np.flatnonzero(~gone))
 
     def forget_boxes(self, bodies: Span = ALL) -> None:
         """Take note that static bodies were put elsewhere, or were given a velocity, by writing into `state`."""
