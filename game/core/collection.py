@@ -13,9 +13,7 @@ from typing import Final, Generic, TypeVar
 
 import platformdirs
 
-from ai.files.folder import NEW, STALE, aside_for, moved_aside, recover_folder
-from ai.files.lock import Lock, lock_of, take
-from ai.files.reading import brief
+from ai.files import NEW, STALE, Lock, aside_for, brief, lock_of, moved_aside, recover_folder, take
 from game.core import texts
 from game.core.copying import copy_folder
 from game.core.folders import looks_like_item, there
