@@ -11,8 +11,8 @@ the game; processor time is that of this process alone, so that others lengthen 
 Live flights take as long as in the game, with futures from a process of their own, and a machine that does nothing
 else is needed for figures that say something. Of the decisions, those are *late* in which the plan was flown on only
 because what was asked for was not flown ahead in time, and those *wait* in which a new wish was not, so that the one
-before counted once more. *Known* is how many of the six actions were flown ahead. The *delay* is from a change of the stick to the decision
-that goes by it, *first* and *all* how old answers are when they are there. The window looks 60 times a second.
+before counted once more. *Known* is how many of the six actions were flown ahead. The *delay* is from a change of the
+stick to the decision that goes by it, *first* and *all* how old answers are when they are there. The window looks 60 times a second.
 """
 
 import os
@@ -193,11 +193,11 @@ def promises(agent: DeepQAgent, names: list[str], dials: list[float], flights: i
     )
     (network,) = rows(agent, agent, "one_pad", ["good"], helps[:1], flights, seed)
     print(f"| the network alone | | {network.success:.1%} | {network.crash:.1%} | | | |")
-    for name in names:
-        for row in rows(agent, agent, "one_pad", [name], helps, flights, seed):
+    for help_ in helps:  # all hands at once: futures of many flights take little longer than those of a few
+        for row in rows(agent, agent, "one_pad", names, [help_], flights, seed):
             dial = "" if row.mode == ALONE else decisions_of(row.assist)
-            print(f"| {name} | {dial} | {row.success:.1%} | {row.crash:.1%} | {row.overridden:.1%} | {row.held:.1%} |"
-                  f" {row.lost_held:.1%} |", flush=True)  # fmt: skip
+            print(f"| {row.pilot} | {dial} | {row.success:.1%} | {row.crash:.1%} | {row.overridden:.1%} |"
+                  f" {row.held:.1%} | {row.lost_held:.1%} |", flush=True)  # fmt: skip
 
 
 def main() -> None:

@@ -71,7 +71,7 @@ class Guard:
         saves: whether something else is flown now because what was asked for was seen not to land.
         decisions: decisions so far.
         late: those in which something else was flown only because what was asked for was not flown ahead in time.
-        waits: whether what is asked for now was not flown ahead in time, and what was asked for before counts once more.
+        waits: whether what is asked for now was not flown ahead in time, so that what was asked for before counts.
         waited: decisions in which that was so.
 
     """

@@ -43,6 +43,8 @@ def fly(flight, ask, most):
 
 
 def land(flight):
+    """Let the plan fly on to its end: nothing else is flown ahead any more."""
+    flight.guard.ahead.late = None
     flight.hand_over()
     return fly(flight, lambda _: (0, None), most=900)
 
