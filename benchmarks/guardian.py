@@ -12,7 +12,8 @@ Live flights take as long as in the game, with futures from a process of their o
 else is needed for figures that say something. Of the decisions, those are *late* in which the plan was flown on only
 because what was asked for was not flown ahead in time, and those *wait* in which a new wish was not, so that the one
 before counted once more. *Known* is how many of the six actions were flown ahead. The *delay* is from a change of the
-stick to the decision that goes by it, *first* and *all* how old answers are when they are there. The window looks 60 times a second.
+stick to the decision that goes by it, *first* and *all* how old answers are when they are there. The window looks 60
+times a second.
 """
 
 import os
