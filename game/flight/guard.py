@@ -141,7 +141,7 @@ class Guard:
         stick = self._taps.asked if by is StickHolder.HUMAN else push_of(flight.ask_network())
         held = self.safe
         self._wish = wish = self._wished(nearest(stick, known), known) if by is StickHolder.HUMAN else stick
-        seen, around = flight.env.observe_pads(flight.network), flight.env.around_pads()
+        seen, around = flight.seen()
         pilot, pushed = np.array([wish.action]), np.array([wish[1:]])
         self._decision = decision = flight.copilot.decide(seen, pilot, around, pushed, flight.env, [known])
         self.push = Push(int(decision.action[0]), *decision.shares[0].tolist())

@@ -9,6 +9,7 @@ from ai.agent.agent import DeepQAgent
 from ai.copilot.futures import KEYS, Lookahead, Moment, Push
 from ai.flights.starts import begun
 from ai.flights.stick import thrust
+from ai.lander.descent import LegStart
 from ai.lander.environment import Outcome
 from game.core import texts
 from game.core.assets import MODELS_DIR
@@ -46,7 +47,7 @@ def land(flight):
     """Let the plan fly on to its end: nothing else is flown ahead any more."""
     flight.guard.ahead.late = None
     flight.hand_over()
-    return fly(flight, lambda _: (0, None), most=900)
+    return fly(flight, lambda _: (0, None), most=1800)
 
 
 @pytest.mark.slow
@@ -157,3 +158,13 @@ def test_help_that_changed_nothing_takes_no_record_away_and_help_that_did_is_nam
         assert (flight.share < 1) is changed
         assert credit.bar == ("helped" if changed else "")
         assert credit.notice == (texts.NOT_COUNTED["helped"] if changed else texts.HELP_IS_ON)
+
+
+@pytest.mark.slow
+def test_a_leg_of_a_descent_is_guarded_along_its_route(agent):
+    flight = Flight(0, agent, leg=LegStart())
+    flight.guard = Guard(flight, AtOnce())
+    flight.help(GUARD, "guardian")
+    flight.guard.hang(0)
+    assert fly(flight, lambda _: (2, None), most=24).guard.safe
+    assert land(flight).outcome is Outcome.LANDED
