@@ -34,11 +34,12 @@ import numpy as np
 from ai.agent.agent import DeepQAgent
 from ai.copilot import futures
 from ai.copilot.copilot import Mode
-from ai.copilot.futures import DECISION_STEPS, KEYS, Future, Lookahead, Moment, Push
+from ai.copilot.futures import DECISION_STEPS, KEYS, Future, Lookahead, Push
 from ai.copilot.guardian import decisions_of
 from ai.copilot.measurement import ALONE, PILOTS, rows
-from ai.flights.stick import STEPS, Shares
+from ai.flights.recording import STEPS, Shares
 from ai.lander.environment import LanderEnv, Outcome
+from ai.lander.moment import Moment
 from engine import DT
 from game.flight.flight import Flight
 from game.flight.futures import FuturesProcess

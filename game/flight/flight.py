@@ -8,16 +8,14 @@ import numpy as np
 
 from ai.common.decision import Decision
 from ai.common.environment import Doubles, Floats
-from ai.flights.easing import AS_IT_IS, Easing
-from ai.flights.recording import AREA, Recording, StickHolder
-from ai.flights.starts import begun
-from ai.flights.stick import Shares, thrust
+from ai.flights.recording import AREA, AS_IT_IS, Easing, Recording, Shares, StickHolder, thrust
+from ai.flights.verification import begun
 from ai.lander.descent import LegStart, leg_of
 from ai.lander.environment import Outcome
 from ai.lander.pilots import COAST, ScriptedPilot
 from ai.lander.route import Route
 from game.flight.handicap import OWN, Handicap
-from game.flight.networks import Policy, QPolicy, decide
+from game.flight.networks import DECISION_STEPS, Policy, QPolicy, decide, decision_steps
 from game.flight.poses import Poses
 
 if TYPE_CHECKING:
@@ -26,8 +24,6 @@ if TYPE_CHECKING:
 
 __all__ = ["DECISION_STEPS", "Flight", "Recording", "StickHolder"]
 
-# Physics steps per decision of a network, here as in training.
-DECISION_STEPS: Final = 4
 _STEERING: Final = ScriptedPilot()  # fires the jets for a person who flies with one switch
 
 
@@ -141,20 +137,19 @@ class Flight:
         self.recording.actions[:] = source.actions[:step]
         self.recording.hands[:] = source.hands[:step]
         self._yours = self.recording.hands.count(StickHolder.HUMAN)
-        self.recording.gravity[:] = [change for change in source.gravity if change[0] <= step]
+        self.recording.gravity = tuple(change for change in source.gravity if change[0] <= step)
         self.recording.shares = {at: shares for at, shares in source.shares.items() if at < step}
         self._pull(self.recording.gravity_at(step))
         self.rest()
 
     def set_gravity(self, share: float) -> None:
         """Set gravity to a share of the normal one, from the next step on."""
-        step, gravity = len(self.recording.actions), self.recording.gravity
-        if share == self.recording.gravity_at(step):
+        recording, step = self.recording, len(self.recording.actions)
+        if share == recording.gravity_at(step):
             return
-        if gravity and gravity[-1][0] == step:  # changed twice within one step
-            gravity.pop()
-        if share != self.recording.gravity_at(step):
-            gravity.append((step, share))
+        recording.gravity = tuple(change for change in recording.gravity if change[0] < step)
+        if share != recording.gravity_at(step):
+            recording.gravity += ((step, share),)
         self._pull(share)
 
     def _pull(self, share: float) -> None:
@@ -167,7 +162,7 @@ class Flight:
 
     def change_network(self, network: Policy | None) -> None:
         """Set the network that can take or share the stick from now on; with None, the person has the stick."""
-        self.network = network
+        self.network, self._network_steps = network, decision_steps(network)
         self._held_for, self.decision, self.alone = 0, None, None
         if network is None:
             self.hand = StickHolder.HUMAN
@@ -251,7 +246,7 @@ class Flight:
             env, network = self.env, self.network
             seen = self.route.observe(env, network) if self.route else env.observe_for(network)
             self.alone = decide(network, seen, env.actions)
-        self._held_for = (self._held_for + 1) % DECISION_STEPS
+        self._held_for = (self._held_for + 1) % self._network_steps
         return int(self.alone.action[0])
 
     def _ask_copilot(self) -> int:
@@ -263,7 +258,7 @@ class Flight:
             self.decision = decision = self.copilot.decide(seen, np.array([self.asked]), around)
             self._held_for = 0
             self.aim(decision.likely[0])
-        self._held_for = (self._held_for + 1) % DECISION_STEPS
+        self._held_for = (self._held_for + 1) % self._network_steps
         return int(decision.action[0])
 
     def aim(self, likely: Doubles | float = 0.0) -> None:

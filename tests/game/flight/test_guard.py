@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from ai.agent.agent import DeepQAgent
-from ai.copilot.futures import KEYS, Lookahead, Moment, Push
-from ai.flights.starts import begun
-from ai.flights.stick import thrust
+from ai.copilot.futures import KEYS, Lookahead, Push
+from ai.flights.recording import thrust
+from ai.flights.verification import begun
 from ai.lander.descent import LegStart
 from ai.lander.environment import Outcome
+from ai.lander.moment import Moment
 from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.core.settings import Settings
