@@ -8,7 +8,7 @@ from __future__ import annotations
 import argparse
 import json
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -86,9 +86,17 @@ def _advance(seconds: float | None, training: DigitTraining, output: Path, stop:
         best = f", held out {progress.best:.2%}" if progress.best is not None else ""
         return progress.step, f"epoch {progress.epoch:.1f}, loss {progress.loss:.3f}{best}"
 
-    def checkpoint(progress: DigitProgress) -> Callable[[Path], object] | None:
-        ended = progress.step % training.steps_per_epoch == 0 and not training.done
-        return partial(save_digit_run, training) if ended else None
+    problems = [""]
+
+    def checkpoint(progress: DigitProgress) -> str:
+        if progress.step % training.steps_per_epoch or training.done:
+            return ""
+        problems.append("")
+        try:
+            save_digit_run(training, output)
+        except OSError as error:
+            problems[-1] = error.strerror or str(error)
+        return problems[-1] if problems[-1] != problems[-2] else ""
 
     show_progress(steps(), training.steps, training.step, shown, checkpoint, output, stop)
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -92,13 +91,15 @@ def _train(arguments: argparse.Namespace) -> int:
 
     def resume(folder: Path) -> Training:
         training = resume_run(folder, env=arguments.env)
+        if training.lost:
+            fail(f"{folder}: {training.lost}")
         if arguments.validation is not None:
             training.validation_episodes = arguments.validation
         return training
 
     return train(arguments, RunCommand(
         KIND, partial(config_of, arguments), begin, resume, partial(_used_up, clock), partial(_advance, clock),
-        save_run, lambda training, _: str(training.best),
+        partial(save_run, state=True), lambda training, _: str(training.best),
     ))  # fmt: skip
 
 
@@ -114,7 +115,7 @@ def _used_up(clock: TrainingClock, training: Training) -> str:
 def _advance(clock: TrainingClock, training: Training, output: Path, stop: list[int]) -> None:
     """Train until the clock or the user says stop, with a progress bar, keeping the work now and then."""
     from ai.agent.config import ANYWHERE, LANDER
-    from ai.training.checkpoints import save_run
+    from ai.training.checkpoints import Keeper
 
     def shown(progress: Progress) -> tuple[int, str]:
         best = f" best {progress.best.figure}" if progress.best else ""
@@ -123,10 +124,15 @@ def _advance(clock: TrainingClock, training: Training, output: Path, stop: list[
         words = f"{recent} of the last 100, ε {progress.epsilon:.2f}, {progress.decisions:,} decisions{best}"
         return int(clock.share(training) * 1000), words
 
-    def checkpoint(_: Progress) -> Callable[[Path], None] | None:
-        return partial(save_run, training) if clock.checkpoint_due() else None
+    keeper = Keeper(training, output)
 
-    show_progress(clock.run(training), 1000, 0, shown, checkpoint, output, stop)
+    def checkpoint(_: Progress) -> str:
+        return "".join(told.problem for told in keeper.go_on(training.clock()))
+
+    try:
+        show_progress(clock.run(training), 1000, 0, shown, checkpoint, output, stop)
+    finally:
+        keeper.wait()
 
 
 def _evaluate(arguments: argparse.Namespace) -> int:

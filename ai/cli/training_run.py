@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import argparse
+import time
 from collections.abc import Callable, Iterable
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -21,7 +22,6 @@ from ai.cli.command_line import (
     fail_diverged,
     folder,
     keep,
-    keep_checkpoint,
     progress_bar,
     readable,
     reason,
@@ -33,6 +33,7 @@ from ai.cli.command_line import (
 if TYPE_CHECKING:
     from ai.files.folder import FolderKind
 
+_LINE_SECONDS: Final = 20.0  # between two lines where there is no terminal
 _BAR: Final = "{desc} {percentage:3.0f}%|{bar}| {elapsed}<{remaining} {postfix}"
 
 
@@ -162,25 +163,27 @@ def show_progress(
     total: int,
     initial: int,
     shown: Callable[[Any], tuple[int, str]],
-    checkpoint: Callable[[Any], Callable[[Path], object] | None],
+    checkpoint: Callable[[Any], str],
     output: Path,
     stop: list[int],
 ) -> None:
-    """Take steps of a run, with a progress bar, until there are no more or `stop` has an entry.
+    """Take steps of a run until there are no more or `stop` has an entry; show how it goes.
 
-    `shown` gives, for what a step yields, how much of `total` is done and what is written behind the bar;
-    `checkpoint` what saves one now, or None when none is due. A checkpoint that cannot be written is reported once.
+    That is a progress bar on a terminal, and elsewhere a line now and then. `shown` gives, for what a step yields, how
+    much of `total` is done and what is written behind the bar; `checkpoint` keeps the run if it is time, and returns
+    why an earlier attempt did not succeed, once.
     """
-    trouble = ""
+    line_at = time.monotonic() + _LINE_SECONDS
     with progress_bar(total, "training", initial=initial, bar_format=_BAR) as bar:
         for progress in steps:
             done, words = shown(progress)
             bar.update(done - bar.n)
             bar.set_postfix_str(words, refresh=False)
+            if bar.disable and time.monotonic() >= line_at:
+                line_at = time.monotonic() + _LINE_SECONDS
+                print(f"training {done / total:.0%}: {words}", file=Unheard(), flush=True)
             if stop:
                 break
-            if save := checkpoint(progress):
-                new = keep_checkpoint(save, output)
-                if new and new != trouble:
-                    bar.write(readable(new), file=Unheard())
-                trouble = new
+            if problem := checkpoint(progress):
+                said = f"could not write to {output}: {problem}; training goes on"
+                bar.write(readable(said), file=Unheard())

@@ -11,12 +11,14 @@ from ai.agent.config import Config
 from ai.agent.schedule import touchdown_limits
 from ai.agent.symmetry import Symmetry
 from ai.common.environment import Env
+from ai.files.reading import array_like
 from ai.lander.anywhere import SITES, AnywhereEnv
 from ai.lander.environment import MIRROR_ACTIONS, MIRROR_FEATURES, MIRROR_SIGNS, NUM_FEATURES
 from ai.lander.pilots import Pilot
 from ai.lander.sensing import SURROUNDINGS, SURROUNDINGS_MIRROR
 from ai.lander.spawns import CURRICULA
 from ai.training.lander_task import Evaluation, LanderTask, flown
+from ai.training.state import State
 
 ANYWHERE_SYMMETRY: Final = Symmetry(
     np.concatenate([MIRROR_SIGNS, SURROUNDINGS_MIRROR]),
@@ -45,6 +47,21 @@ class AnywhereTask(LanderTask):
         """Tighten the limits of a touchdown over the schedule, from those that are told to a share of them."""
         if isinstance(env, AnywhereEnv):
             env.strictness = touchdown_limits(self.config, decisions)
+
+    def env_state(self, env: Env) -> State:
+        """Return all that the landers and their sites go on from."""
+        assert isinstance(env, AnywhereEnv)
+        return super().env_state(env) | {"sites": env.settled.copy(), "kind": env.kind.copy()}
+
+    def restore_env(self, env: Env, state: State) -> str:
+        """Let new landers go on from what `env_state` gave, at the same sites."""
+        assert isinstance(env, AnywhereEnv)
+        sites = state["sites"]
+        if not isinstance(sites, np.ndarray) or sites.shape != env.settled.shape or np.isnan(sites).any():
+            raise ValueError("sites are not those of the landers")
+        env.settle(sites)
+        env.kind = array_like(env.kind, state["kind"], "kinds of sites")
+        return super().restore_env(env, state)
 
     def trial(self, pilot: Pilot, episodes: int, seed: int) -> Generator[None, None, Evaluation]:
         """Fly so many flights at once from random spawns, one decision at a time."""

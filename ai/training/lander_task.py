@@ -12,6 +12,7 @@ from ai.agent.config import Config
 from ai.agent.schedule import touchdown_limits
 from ai.agent.symmetry import Symmetry
 from ai.common.environment import Doubles, Env, Ints
+from ai.files.reading import count_of
 from ai.lander.environment import (
     LIMITS,
     MIRROR_ACTIONS,
@@ -25,6 +26,7 @@ from ai.lander.environment import (
 )
 from ai.lander.pilots import Pilot
 from ai.lander.spawns import CURRICULA, SPAWNS, TEACH_HARD
+from ai.training.state import State, plain, rebuilt
 from ai.training.task import checked_score
 
 LANDER_SYMMETRY: Final = Symmetry(MIRROR_SIGNS, MIRROR_FEATURES, MIRROR_ACTIONS)
@@ -187,6 +189,29 @@ class LanderTask:
         """Tighten the limits of a touchdown over the schedule, from the real ones to a share of them."""
         if isinstance(env, LanderEnv):
             env.limits = LIMITS.stricter(touchdown_limits(self.config, decisions))
+
+    def env_state(self, env: Env) -> State:
+        """Return all that the landers go on from."""
+        assert isinstance(env, LanderEnv)
+        streams = [rng.bit_generator.state for rng in env._rngs]
+        return {"flights": plain(env.snapshot()), "landings": env.landings, "streams": streams}
+
+    def restore_env(self, env: Env, state: State) -> str:
+        """Let new landers go on from what `env_state` gave; they can be restored whole."""
+        assert isinstance(env, LanderEnv)
+        lengths: set[int] = set()
+        snapshot = rebuilt(env.snapshot(), state["flights"], lengths)
+        touching = snapshot["contacts"].impulses.key
+        pairs = env.num_envs * len(env.world.detector.pairs)
+        if len(lengths) > 1 or (touching < 0).any() or (touching >= pairs).any():
+            raise ValueError("contacts are of none of the landers")
+        if not np.isin(snapshot["counters"]["outcome"], tuple(Outcome)).all():
+            raise ValueError("outcomes are none of those of a flight")
+        env.restore(snapshot)
+        env.landings = count_of(state["landings"])
+        for rng, stream in zip(env._rngs, state["streams"], strict=True):
+            rng.bit_generator.state = stream
+        return ""
 
     def evaluate(self, pilot: Pilot, episodes: int, seed: int) -> Evaluation:
         """Fly what `trial` says to its end."""

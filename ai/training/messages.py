@@ -24,6 +24,7 @@ class RunStarted:
     config: Config
     seed: int
     decisions: int  # so far; 0 for a new run
+    lost: str = ""  # what could not be restored of a run that goes on, in words
 
 
 @dataclass(frozen=True, eq=False)

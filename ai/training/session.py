@@ -13,10 +13,10 @@ import numpy as np
 from ai.agent.config import Config
 from ai.agent.schedule import InForce, in_force
 from ai.common.environment import Ints, StepResult
+from ai.files.reading import count_of
 from ai.lander.environment import LanderEnv
-from ai.training.autosave import Autosave
-from ai.training.checkpoints import restore_checkpoint, resume_run
-from ai.training.demonstrations import Demonstration, read, taught, teach
+from ai.training.checkpoints import Keeper, restore_checkpoint, resume_run
+from ai.training.demonstrations import read, taught, teach
 from ai.training.edits import EDITED, EditCommand, NetworkEditor
 from ai.training.explanations import Explanations
 from ai.training.history import (
@@ -46,6 +46,7 @@ from ai.training.messages import (
     SwarmState,
     problem_of,
 )
+from ai.training.state import State, broken
 from ai.training.validation_flights import ValidationFlights
 
 POINT_DECISIONS: Final = 256  # at least so many between two points
@@ -75,7 +76,13 @@ def live(
     if resume is None:
         run = _LiveRun(Training(config, seed), History(), keep, clock)
     else:
-        run = _LiveRun(resume_run(resume), History.read(resume), keep, clock)
+        training, history = resume_run(resume), History.read(resume)
+        try:
+            run = _LiveRun(training, history, keep, clock)
+        except (KeyError, TypeError, ValueError) as error:
+            if isinstance(training.env, LanderEnv):
+                raise broken(resume, error) from error
+            raise
     try:
         told = run.begin()
         while True:
@@ -100,7 +107,7 @@ class _LiveRun:
         training.on_step = self._on_step
         training.evaluate_every = 0  # that is done here, bit by bit, so that the landers never stand still for it
         self._validation = ValidationFlights(training)
-        self._autosave = Autosave(training, history, keep)
+        self._keeper = Keeper(training, keep, history, self._state)
         self._explanations = Explanations(training)
         self._editor = NetworkEditor(training.agent)
         self._swarm_state = self._swarm_state_of(self.env.outcome)
@@ -109,8 +116,23 @@ class _LiveRun:
         self._checkpoint_at = training.agent.decisions + self._checkpoint_every
         self._began_learning = training.agent.train_count
         self._turned_at: dict[str, float] = {}  # by the clock, when each knob was turned last
-        self._learned_from: set[Demonstration] = set()
+        self._learned_from: set[str] = set()  # digests of demonstrations
         self._messages: list[Message] = []
+        if training.around:
+            self._load_state(training.around)
+
+    def _state(self) -> State:
+        """Return what this goes on from, besides the run."""
+        return {
+            "point_at": self._point_at, "checkpoint_at": self._checkpoint_at, "began_learning": self._began_learning,
+            "learned_from": sorted(self._learned_from), "validation": self._validation.state(),
+        }  # fmt: skip
+
+    def _load_state(self, state: State) -> None:
+        self._point_at, self._checkpoint_at = count_of(state["point_at"]), count_of(state["checkpoint_at"])
+        self._began_learning = count_of(state["began_learning"])
+        self._learned_from = set(state["learned_from"])
+        self._validation.load_state(state["validation"])
 
     @property
     def _checkpoint_every(self) -> int:
@@ -121,7 +143,7 @@ class _LiveRun:
         """Say how the run begins."""
         training = self.training
         self._messages = [
-            RunStarted(training.config, training.seed, training.agent.decisions),
+            RunStarted(training.config, training.seed, training.agent.decisions, training.lost),
             self._swarm_state,
             *self._state_messages(),
         ]
@@ -149,7 +171,7 @@ class _LiveRun:
             self._checkpoint_at = progress.decisions + self._checkpoint_every
         self._explanations.keep()
         if not training.agent.held:  # what is edited is only looked at, until it learns on from there
-            self._messages += self._autosave.go_on(now)
+            self._messages += self._keeper.go_on(now)
         return self._flush()
 
     def carry_out(self, command: Command) -> tuple[Message, ...]:
@@ -164,16 +186,17 @@ class _LiveRun:
             case Explain():
                 self._explain(command)
             case AutosaveTo(folder):
-                self._autosave.move_to(folder)
+                self._keeper.move_to(folder)
             case Save(folder):
                 self._record_validation(self._validation.finish())
-                self._messages.append(self._autosave.save(folder))
+                self._messages.append(self._keeper.save(folder))
             case _:
                 self._edit(command)
         return self._flush()
 
     def restore_last_checkpoint(self) -> None:
         """Restore the networks from the last checkpoint, when training has diverged since."""
+        self.training.diverged = True
         self._editor.forget()
         restore_checkpoint(self.training.agent, self.history.checkpoints[-1])
 
@@ -181,7 +204,7 @@ class _LiveRun:
         """Save what has not been saved, without an edit that was only looked at; wait until it is on the disk."""
         if self.training.agent.held:
             self._editor.restore()
-        self._autosave.end()
+        self._keeper.end()
 
     def _flush(self) -> tuple[Message, ...]:
         told, self._messages = tuple(self._messages), []
@@ -264,12 +287,12 @@ class _LiveRun:
     def _teach(self, command: AddDemonstrations) -> None:
         agent = self.training.agent
         try:
-            new = [each for each in read(command.path) if each not in self._learned_from]
+            new = [each for each in read(command.path) if each.digest not in self._learned_from]
             used = teach(agent, new)
         except (OSError, ValueError) as error:
             self._messages.append(Refused(command, problem_of(error)))
             return
-        self._learned_from.update(new)
+        self._learned_from.update(each.digest for each in new)
         if not used:
             self._messages.append(Refused(command, "there are no landings that this run has not learnt from already"))
             return

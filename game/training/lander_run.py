@@ -179,9 +179,10 @@ class LanderRun(TrainingRun):
                 self.config = _turned(self.config, name, after)
                 if name == TAUGHT:
                     return texts.TRAIN_TAUGHT.format(count=after)
-            case RunStarted(config, seed, _):
+            case RunStarted(config, seed, _, lost):
                 self.config, self.seed, self.begun = config, seed, True
                 self.history.reward_scale = config.reward_scale
+                return str(lost)
             case Saved(folder, problem) if problem:
                 return texts.TRAIN_NOT_SAVED.format(problem=problem)
             case Saved(folder, _) if folder != self.library.unsaved:

@@ -132,10 +132,10 @@ def looking_around():
 
 def eager(config, seed, keep):
     """A live run that saves itself all the time."""
-    from ai.training import autosave
+    from ai.training import checkpoints
     from ai.training.session import live
 
-    vars(autosave)["KEEP_SECONDS"] = 0.0
+    vars(checkpoints)["KEEP_SECONDS"] = 0.0
     yield from live(config, seed, keep=keep)
 
 

@@ -249,7 +249,8 @@ def full(*_, **__):
 
 
 def test_a_disk_that_is_full_for_a_while_ends_no_training(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(ai.training.checkpoints, "CHECKPOINT_SECONDS", -1.0)
+    monkeypatch.setattr(ai.training.checkpoints, "FIRST_SECONDS", 0.0)
+    monkeypatch.setattr(ai.training.checkpoints, "KEEP_SECONDS", 0.0)
     advance = Training.advance
 
     def filling(training):

@@ -9,10 +9,11 @@ import pytest
 from ai.agent.agent import DeepQAgent
 from ai.agent.config import Config
 from ai.agent.schedule import exploration_of_each
+from ai.files.folder import remove_state
 from ai.lander.environment import Outcome
 from ai.lander.rewards import RewardWeights
 from ai.nn import ModelFormatError
-from ai.training import autosave
+from ai.training import checkpoints
 from ai.training.checkpoints import agent_of, resume_run
 from ai.training.history import PARTS, REVERTED, Checkpoint, History, Point, SettingChange, Validation
 from ai.training.lander_task import LanderTask
@@ -62,7 +63,7 @@ def of(kind, told):
 def test_without_commands_it_is_the_training_it_would_be_headless(begin, tmp_path, changes, monkeypatch):
     monkeypatch.setattr(LanderTask, "evaluate_every", 640)
     monkeypatch.setattr(LanderTask, "validation_episodes", 5)
-    monkeypatch.setattr(autosave, "KEEP_SECONDS", 0.0)
+    monkeypatch.setattr(checkpoints, "KEEP_SECONDS", 0.0)
     config = TINY.changed(**changes)
     run, headless = begin(config, 3, keep=tmp_path / "keep"), Training(config, 3)
     told = told_in(run, 1)
@@ -294,8 +295,8 @@ def test_a_run_that_is_closed_has_kept_itself(begin, tmp_path):
 
 def test_it_keeps_itself_by_the_clock(tmp_path):
     training = Training(TINY, clock=(clock := Clock()))
-    saving = autosave.Autosave(training, History(), tmp_path / "keep")
-    for seconds, kept in ((9.9, 0), (0.2, 2), (9.9, 2), (0.2, 4)):
+    saving = checkpoints.Keeper(training, tmp_path / "keep", History())
+    for seconds, kept in ((1.4, 0), (0.2, 2), (9.9, 2), (0.2, 4)):
         clock.now += seconds
         training.advance()
         assert saving.go_on(clock.now) == []
@@ -310,7 +311,7 @@ def full(*_):
 
 
 def test_a_full_disk_is_told_once_and_training_goes_on(begin, tmp_path, monkeypatch):
-    monkeypatch.setattr(autosave, "KEEP_SECONDS", 0.0)
+    monkeypatch.setattr(checkpoints, "KEEP_SECONDS", 0.0)
     run = begin(TINY, keep=tmp_path / "keep")
     told_in(run, 10)
     assert of(Saved, run.send(Save(tmp_path / "run"))) == [Saved(tmp_path / "run")]
@@ -390,17 +391,44 @@ def test_a_save_that_was_cut_between_its_two_renames_is_put_back(begin, tmp_path
     assert resume_run(tmp_path / "run").agent.decisions == 4 * 32
 
 
-def test_a_run_that_goes_on_draws_no_spike(begin, tmp_path):
+def told_of(entries):
+    """Entries of a history without what the clock says."""
+    alike = [replace(each, seconds=0.0, steps_per_second=0.0) if isinstance(each, Point) else each for each in entries]
+    return [repr(each) for each in alike if isinstance(each, Point | Validation | SettingChange)]
+
+
+def test_a_run_that_goes_on_is_the_run_that_never_stopped(begin, tmp_path, monkeypatch):
+    monkeypatch.setattr(LanderTask, "evaluate_every", 1600)
+    monkeypatch.setattr(LanderTask, "validation_episodes", 5)
+    straight, run = begin(seed=3), begin(seed=3)
+    whole, pieces = told_in(straight, 260), told_in(run, 103)  # in the midst of validation flights
+    for turns in (1, 80, 76):
+        run.send(Save(tmp_path / "run"))
+        run = begin(resume=tmp_path / "run")
+        assert of(RunStarted, next(run))[0].lost == ""
+        pieces += told_in(run, turns)
+    assert told_of(pieces) == told_of(whole)
+    assert len(of(Validation, whole)) == 5
+    for each, folder in ((straight, "straight"), (run, "pieces")):
+        each.send(Save(tmp_path / folder))
+    alike = [resume_run(tmp_path / folder) for folder in ("straight", "pieces")]
+    assert np.array_equal(alike[0].agent.online.values, alike[1].agent.online.values)
+    assert np.array_equal(alike[0].best_values, alike[1].best_values)
+    assert alike[0].statistics.mean_return == alike[1].statistics.mean_return
+
+
+def test_without_its_state_a_run_goes_on_and_draws_no_spike(begin, tmp_path):
     run = begin()
     before = of(Point, told_in(run, 250))
     assert np.isnan(before[0].mean_return), "no flight had ended"
     assert np.isnan(before[0].loss)
     assert before[-1].mean_return < -50
     run.send(Save(tmp_path / "run"))
-    after = of(Point, told_in(begin(resume=tmp_path / "run"), 60))
-    assert after[0].mean_return == before[-1].mean_return, "of the hundred flights before"
-    assert after[0].landed == before[-1].landed
-    assert after[0].parts == before[-1].parts
+    remove_state(tmp_path / "run")
+    told = told_in(begin(resume=tmp_path / "run"), 60)
+    assert "empty memory" in of(RunStarted, told)[0].lost
+    after = of(Point, told)
+    assert after[0].mean_return != 0.0, "of the hundred flights before"
     assert np.isnan([after[0].loss, after[0].mean_q]).all(), "it has not learnt since"
     assert np.isfinite([after[-1].loss, after[-1].mean_q]).all()
 
@@ -409,6 +437,7 @@ def test_a_run_saved_before_flights_were_kept_goes_on(begin, tmp_path):
     run = begin()
     told_in(run, 250)
     run.send(Save(tmp_path / "run"))
+    remove_state(tmp_path / "run")
     file = tmp_path / "run" / "training.json"
     described = json.loads(file.read_text())
     flights = described.pop("flights")

@@ -186,7 +186,6 @@ def test_the_clock_stops_at_the_decisions_asked_for():
     clock = TrainingClock(decisions=80)
     assert [progress.decisions for progress in clock.run(training)][-1] == 80
     assert clock.share(training) == 1.0
-    assert not clock.checkpoint_due()
 
 
 def test_a_curriculum_run_climbs_its_stages():
