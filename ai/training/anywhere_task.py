@@ -7,8 +7,6 @@ from typing import Final
 
 import numpy as np
 
-from ai.agent.config import Config
-from ai.agent.schedule import touchdown_limits
 from ai.agent.symmetry import Symmetry
 from ai.common.environment import Env
 from ai.files.reading import array_like
@@ -17,7 +15,9 @@ from ai.lander.environment import MIRROR_ACTIONS, MIRROR_FEATURES, MIRROR_SIGNS,
 from ai.lander.pilots import Pilot
 from ai.lander.sensing import SURROUNDINGS, SURROUNDINGS_MIRROR
 from ai.lander.spawns import CURRICULA
+from ai.training.config import Config
 from ai.training.lander_task import Evaluation, LanderTask, flown
+from ai.training.schedule import touchdown_limits
 from ai.training.state import State
 
 ANYWHERE_SYMMETRY: Final = Symmetry(

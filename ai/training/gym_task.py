@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from ai.agent.config import Config
 from ai.agent.symmetry import Symmetry
 from ai.common.environment import SUCCESS, Bools, Doubles, Env, Floats, Ints, StepResult
 from ai.files.reading import count_of
 from ai.lander.pilots import Pilot
+from ai.training.config import Config
 from ai.training.state import State
 from ai.training.task import checked_score
 

@@ -10,7 +10,6 @@ from typing import Annotated, Any, ClassVar, Final
 
 import numpy as np
 
-from ai.agent.config import Config
 from ai.agent.normalizer import Normalizer
 from ai.common.environment import Doubles, Floats
 from ai.files.reading import MOST, inside, parse_json, problem_in, read_arrays, read_json
@@ -18,6 +17,7 @@ from ai.files.reading import described as array_said
 from ai.files.schema import Above, Count, OneOf, Sized, Within, read_as
 from ai.lander.rewards import REWARDS
 from ai.nn import ModelFormatError
+from ai.training.config import Config
 
 COLUMNS: Final = (
     "seconds", "decisions", "episodes", "success", "mean_return", "loss", "mean_q", "epsilon", "stage",

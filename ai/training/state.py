@@ -162,7 +162,7 @@ class StateWriter:
             raise
 
     def clear(self, prepared: PreparedState | None) -> None:
-        """Delete all files but those of a state, or all: once the run's folder is of its moment, the others are left."""
+        """Delete all files but those of a state, or all of them, once the run's folder is of its moment."""
         if prepared is None:
             shutil.rmtree(self._folder, ignore_errors=True)
             return
@@ -207,9 +207,7 @@ def restore_buffer(folder: str | Path, buffer: ReplayBuffer, told: Any, num_acti
 
     Raises OSError, KeyError, TypeError or ValueError for what no such buffer can have been.
     """
-    start, size = (
-        count_of(told[name], 0, most) for name, most in (("start", buffer.capacity - 1), ("size", buffer.capacity))
-    )
+    start, size = count_of(told["start"], 0, buffer.capacity - 1), count_of(told["size"], 0, buffer.capacity)
     added, kept = count_of(told["added"]), count_of(told["kept"], 0, size)
     if added < size:
         raise ValueError("fewer transitions were added than are held")

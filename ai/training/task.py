@@ -6,11 +6,11 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ai.agent.config import Config
 from ai.agent.symmetry import Symmetry
 from ai.common.environment import Doubles, Env
 from ai.files.reading import number_of, shown
 from ai.lander.pilots import Pilot
+from ai.training.config import Config
 from ai.training.state import State
 
 VALIDATION_SEED = 1_000_003  # episodes that choose the best checkpoint

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Final
 
-from ai.agent.config import LANDER
 from ai.files.reading import brief, inside, read_json
 from ai.files.schema import Count, Share, Sized, read_as
+from ai.training.config import LANDER
 from game.core import texts
 
 STUDIES: Final = "studies"  # folder of the studies, in the player's

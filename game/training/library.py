@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Final
 
-from ai.agent.config import LANDER
 from ai.agent.storage import LAST
 from ai.files.reading import brief, inside, read_json
 from ai.files.schema import Share, Within, read_as
 from ai.training.checkpoints import TRAINING_FILE
+from ai.training.config import LANDER
 from game.core import texts
 from game.core.collection import Collection, ItemKind
 from game.core.folders import leads_nowhere, there

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.config import Config
 from ai.agent.schedule import exploration_of_each
 from ai.files.folder import remove_state
 from ai.lander.environment import Outcome
@@ -15,6 +14,7 @@ from ai.lander.rewards import RewardWeights
 from ai.nn import ModelFormatError
 from ai.training import checkpoints
 from ai.training.checkpoints import agent_of, resume_run
+from ai.training.config import Config
 from ai.training.history import PARTS, REVERTED, Checkpoint, History, Point, SettingChange, Validation
 from ai.training.lander_task import LanderTask
 from ai.training.loop import Training
@@ -139,7 +139,7 @@ def test_what_flights_earned_is_the_sum_of_its_parts(begin):
 
 
 def test_the_careful_lander_acts_at_random_the_least():
-    spread = exploration_of_each(TINY.changed(epsilon_spread=0.7), 0.3)
+    spread = exploration_of_each(TINY.changed(epsilon_spread=0.7), 0.3, TINY.num_envs)
     assert spread.argmin() == CAREFUL
     assert (spread[CAREFUL] < np.delete(spread, CAREFUL)).all()
 
@@ -392,9 +392,9 @@ def test_a_save_that_was_cut_between_its_two_renames_is_put_back(begin, tmp_path
 
 
 def told_of(entries):
-    """Entries of a history without what the clock says."""
+    """Entries of a history by kind, without what the clock says."""
     alike = [replace(each, seconds=0.0, steps_per_second=0.0) if isinstance(each, Point) else each for each in entries]
-    return [repr(each) for each in alike if isinstance(each, Point | Validation | SettingChange)]
+    return [[repr(each) for each in alike if isinstance(each, kind)] for kind in (Point, Validation, SettingChange)]
 
 
 def test_a_run_that_goes_on_is_the_run_that_never_stopped(begin, tmp_path, monkeypatch):
@@ -403,7 +403,7 @@ def test_a_run_that_goes_on_is_the_run_that_never_stopped(begin, tmp_path, monke
     straight, run = begin(seed=3), begin(seed=3)
     whole, pieces = told_in(straight, 260), told_in(run, 103)  # in the midst of validation flights
     for turns in (1, 80, 76):
-        run.send(Save(tmp_path / "run"))
+        pieces += run.send(Save(tmp_path / "run"))  # which flies what is left of them
         run = begin(resume=tmp_path / "run")
         assert of(RunStarted, next(run))[0].lost == ""
         pieces += told_in(run, turns)
