@@ -408,7 +408,7 @@ def test_a_run_that_goes_on_is_the_run_that_never_stopped(begin, tmp_path, monke
         assert of(RunStarted, next(run))[0].lost == ""
         pieces += told_in(run, turns)
     assert told_of(pieces) == told_of(whole)
-    assert len(of(Validation, whole)) == 5
+    assert len(of(Validation, whole)) == 4
     for each, folder in ((straight, "straight"), (run, "pieces")):
         each.send(Save(tmp_path / folder))
     alike = [resume_run(tmp_path / folder) for folder in ("straight", "pieces")]
