@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from ai.cli.command_line import readable
-from ai.files.reading import brief, read_standard_input, read_text
+from ai.files import brief, read_standard_input, read_text
 from ai.flights.shared import SharedFlight
 from ai.flights.verification import Earned, is_true, verified
 from game.core import texts

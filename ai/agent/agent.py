@@ -54,7 +54,7 @@ from ai.agent.storage import SavedAgent, read_agent, save_agent
 from ai.agent.symmetry import Symmetry
 from ai.common.decision import Decision, decide
 from ai.common.environment import Bools, Doubles, Env, Floats, Ints, StepResult
-from ai.files.reading import array_like, count_of, number_of
+from ai.files import array_like, count_of, number_of
 from ai.nn import NeuralNetwork
 from ai.nn.optimizers import Optimizer
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ai.agent.replay import MemoryCell
 from ai.common.environment import Bools, Floats, Ints
-from ai.files.reading import array_like, count_of
+from ai.files import array_like, count_of
 
 _KEPT: Final = ("_states", "_actions", "_returns", "_ages", "_open")
 

@@ -16,9 +16,7 @@ from ai.agent.config import AgentConfig
 from ai.agent.network import build_network, make_optimizer
 from ai.agent.normalizer import Normalizer
 from ai.common.environment import Floats
-from ai.files.folder import NETWORK, FolderKind
-from ai.files.reading import count_of, inside, problem_in, read_arrays, read_json
-from ai.files.schema import check_header
+from ai.files import NETWORK, FolderKind, check_header, count_of, inside, problem_in, read_arrays, read_json
 from ai.nn import ModelFormatError, NeuralNetwork, atomic_folder, recover_folder
 from ai.nn.budget import WIDEST
 from ai.nn.optimizers import Optimizer

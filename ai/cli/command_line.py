@@ -93,7 +93,7 @@ def readable(line: str, longest: int = LONGEST) -> str:
 
 def folder(text: str) -> Path:
     """Return the path of a folder that the user named; raises ArgumentTypeError for one that cannot be, or be shown."""
-    from ai.files.reading import CONTROLS
+    from ai.files import CONTROLS
 
     try:
         os.fsencode(text)
@@ -161,7 +161,7 @@ def keep(save: Callable[[Path], Kept], output: Path) -> tuple[Path, Kept]:
     If something else was put there meanwhile, that stays, and the run is saved beside it. Raises OSError if it
     cannot be written.
     """
-    from ai.files.folder import free_folder
+    from ai.files import free_folder
 
     try:
         return output, save(output)

@@ -248,7 +248,7 @@ def _study(arguments: argparse.Namespace) -> int:
     try:
         study = Study.load(_place(arguments))
         if arguments.html:
-            from ai.files.reading import write_text
+            from ai.files import write_text
             from ai.sweep.page import page
 
             write_text(arguments.html, page(study))

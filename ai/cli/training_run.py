@@ -31,7 +31,7 @@ from ai.cli.command_line import (
 )
 
 if TYPE_CHECKING:
-    from ai.files.folder import FolderKind
+    from ai.files import FolderKind
 
 _LINE_SECONDS: Final = 20.0  # between two lines where there is no terminal
 _BAR: Final = "{desc} {percentage:3.0f}%|{bar}| {elapsed}<{remaining} {postfix}"
@@ -102,7 +102,7 @@ def add_run_options(train: argparse.ArgumentParser, example: str) -> None:
 
 def train(arguments: argparse.Namespace, command: RunCommand[Run]) -> int:
     """Begin or resume a run, train, keep what comes of it, and return the exit code."""
-    from ai.files.folder import claimed_folder
+    from ai.files import claimed_folder
 
     output = arguments.output or arguments.resume
     with ExitStack() as claims:

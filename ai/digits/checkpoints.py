@@ -14,8 +14,7 @@ from ai.digits.classifier import KIND, DigitClassifier
 from ai.digits.config import DIGIT_PRESETS, DigitConfig
 from ai.digits.mnist import TEST, load_part
 from ai.digits.training import DigitTraining, accuracy
-from ai.files.reading import inside, problem_in, read_arrays, read_json
-from ai.files.schema import Count, Duration, OneOf, Seed, Share, Sized, read_as
+from ai.files import Count, Duration, OneOf, Seed, Share, Sized, inside, problem_in, read_arrays, read_as, read_json
 from ai.nn import ModelFormatError, atomic_folder
 
 TRAINING_FILE: Final = "training.json"

@@ -11,10 +11,8 @@ import numpy.typing as npt
 
 from ai.digits.mnist import MnistError, load_mnist, load_part
 from ai.digits.preprocessing import SIDE, Image, Stages, preprocess, preprocess_strokes, stages
-from ai.files.folder import CONFIG, FolderKind
-from ai.files.folder import NETWORK as NETWORK_KIND
-from ai.files.reading import inside, read_json
-from ai.files.schema import check_header
+from ai.files import CONFIG, FolderKind, check_header, inside, read_json
+from ai.files import NETWORK as NETWORK_KIND
 from ai.nn import ModelFormatError, NeuralNetwork, atomic_folder, recover_folder
 from ai.nn.costs import softmax
 

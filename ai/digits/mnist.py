@@ -12,7 +12,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ai.files.reading import described, problem_in, read_arrays
+from ai.files import described, problem_in, read_arrays
 
 FOLDER: Final = Path(__file__).parents[2] / "assets" / "mnist"
 SIDE: Final = 28  # pixels along an image

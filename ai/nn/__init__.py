@@ -3,7 +3,7 @@
 To read it in building order: parameter, activations, costs, layers, images, dropout, optimizers, storage, network.
 """
 
-from ai.files.folder import atomic_folder, recover_folder
+from ai.files import atomic_folder, recover_folder
 from ai.nn.activations import Activation, ActivationFunctions
 from ai.nn.costs import Cost, CostFunctions, softmax
 from ai.nn.dropout import DropoutLayer

@@ -8,7 +8,7 @@ from typing import Any, Literal, Self
 import numpy as np
 import numpy.typing as npt
 
-from ai.files.folder import atomic_folder
+from ai.files import atomic_folder
 from ai.nn.budget import check_budget
 from ai.nn.costs import Cost, CostFunction
 from ai.nn.dropout import DropoutLayer

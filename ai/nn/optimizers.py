@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ai.files.reading import MOST
+from ai.files import MOST
 from ai.nn.parameter import Array
 
 

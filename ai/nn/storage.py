@@ -12,9 +12,7 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from ai.files.folder import CONFIG, NETWORK, recover_folder
-from ai.files.reading import brief, inside, read_array, read_json, shown
-from ai.files.schema import check_header
+from ai.files import CONFIG, NETWORK, brief, check_header, inside, read_array, read_json, recover_folder, shown
 from ai.nn.activations import ACTIVATIONS, Activation
 from ai.nn.budget import MOST_LAYERS, check_budget
 from ai.nn.costs import COSTS, Cost

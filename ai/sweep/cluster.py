@@ -18,7 +18,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
-from ai.files.reading import brief
+from ai.files import brief
 
 MISSING: Final = 'this needs Ray and Optuna: pip install -e ".[sweep]"'
 LOOPBACK: Final = "127.0.0.1"

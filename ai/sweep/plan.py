@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Annotated, Any, Final
 
-from ai.files.schema import Count, OneOf, Seed, Sized, Within
+from ai.files import Count, OneOf, Seed, Sized, Within
 from ai.sweep.metric import JUDGES, Metric
 from ai.sweep.runs import AGENT, DIGITS, read_config
 from ai.sweep.space import Space, read_dimension

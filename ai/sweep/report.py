@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-from ai.files.reading import brief
+from ai.files import brief
 from ai.sweep.importance import Importance, importances
 from ai.sweep.study import Study
 from ai.sweep.table import settings

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, field
 from typing import Annotated, Any, Self
 
-from ai.files.schema import Count, Duration, Seed, Share, Sized, read_as
+from ai.files import Count, Duration, Seed, Share, Sized, read_as
 from ai.sweep.metric import Point
 
 _Words = Annotated[str, Sized(2000)]

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ai.common.knobs import Knobs, field_problem, is_number
-from ai.files.reading import read_json, shown
+from ai.files import read_json, shown
 
 Space = dict[str, "Dimension"]
 

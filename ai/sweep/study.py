@@ -23,10 +23,7 @@ from typing import Annotated, Any, Final, Self
 
 from ai.agent.storage import KIND
 from ai.digits.classifier import KIND as DIGITS_KIND
-from ai.files.folder import NEW
-from ai.files.lock import take_folder
-from ai.files.reading import beside, brief, read_json, write_text
-from ai.files.schema import Count, OneOf, Sized, read_as
+from ai.files import NEW, Count, OneOf, Sized, beside, brief, read_as, read_json, take_folder, write_text
 from ai.sweep.metric import Metric
 from ai.sweep.plan import FORMAT, VERSION, Plan
 from ai.sweep.results import FinishedTrial

@@ -17,7 +17,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from ai.files.reading import read_bytes
+from ai.files import read_bytes
 from ai.sweep.metric import Metric, Point
 from ai.sweep.plan import Plan
 from ai.sweep.results import FinishedTrial, SeedResult

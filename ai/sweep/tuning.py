@@ -23,8 +23,7 @@ from ray import tune
 from ray.tune.schedulers import ASHAScheduler, FIFOScheduler, TrialScheduler
 from ray.tune.search import Searcher
 
-from ai.files.reading import brief
-from ai.files.schema import read_as
+from ai.files import brief, read_as
 from ai.nn import ModelFormatError
 from ai.sweep.metric import Metric
 from ai.sweep.plan import POPULATION, Plan

@@ -9,7 +9,7 @@ import numpy as np
 
 from ai.agent.symmetry import Symmetry
 from ai.common.environment import Env
-from ai.files.reading import array_like
+from ai.files import array_like
 from ai.lander.anywhere import SITES, AnywhereEnv
 from ai.lander.environment import MIRROR_ACTIONS, MIRROR_FEATURES, MIRROR_SIGNS, NUM_FEATURES
 from ai.lander.pilots import Pilot

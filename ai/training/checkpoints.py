@@ -14,7 +14,7 @@ from ai.agent.agent import DeepQAgent
 from ai.agent.normalizer import Normalizer
 from ai.agent.storage import KIND, LAST, write_agent
 from ai.common.knobs import nearest_preset
-from ai.files.reading import count_of, inside, number_of, problem_in, read_json
+from ai.files import count_of, inside, number_of, problem_in, read_json
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.nn import ModelFormatError, atomic_folder
 from ai.training.config import ANYWHERE, LANDER, LANDS_ANYWHERE, PRESETS, Config, load_agent

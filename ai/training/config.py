@@ -11,7 +11,7 @@ from ai.agent.agent import DeepQAgent
 from ai.agent.config import AgentConfig
 from ai.agent.storage import AGENT_FILE
 from ai.common.knobs import is_number, knob
-from ai.files.reading import brief, problem_in, shown
+from ai.files import brief, problem_in, shown
 from ai.lander.rewards import RewardWeights
 from ai.lander.spawns import CURRICULA, RUNGS, SPAWNS
 from ai.nn import ModelFormatError

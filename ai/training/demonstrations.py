@@ -19,8 +19,18 @@ from ai.agent.agent import DeepQAgent
 from ai.agent.n_step import NStep
 from ai.agent.replay import MemoryCell
 from ai.common.environment import Bools, Floats
-from ai.files.reading import brief, read_json, write_text
-from ai.files.schema import OneOf, SchemaError, Sized, Within, check_header, read_as, sound_fields
+from ai.files import (
+    OneOf,
+    SchemaError,
+    Sized,
+    Within,
+    brief,
+    check_header,
+    read_as,
+    read_json,
+    sound_fields,
+    write_text,
+)
 from ai.lander.environment import NUM_ACTIONS, LanderEnv, Outcome
 from ai.lander.ground import hilly
 from ai.lander.pilots import Pilot

@@ -11,7 +11,7 @@ import numpy as np
 
 from ai.agent.symmetry import Symmetry
 from ai.common.environment import SUCCESS, Bools, Doubles, Env, Floats, Ints, StepResult
-from ai.files.reading import count_of
+from ai.files import count_of
 from ai.lander.pilots import Pilot
 from ai.training.config import Config
 from ai.training.state import State

@@ -12,9 +12,21 @@ import numpy as np
 
 from ai.agent.normalizer import Normalizer
 from ai.common.environment import Doubles, Floats
-from ai.files.reading import MOST, inside, parse_json, problem_in, read_arrays, read_json
-from ai.files.reading import described as array_said
-from ai.files.schema import Above, Count, OneOf, Sized, Within, read_as
+from ai.files import (
+    MOST,
+    Above,
+    Count,
+    OneOf,
+    Sized,
+    Within,
+    inside,
+    parse_json,
+    problem_in,
+    read_arrays,
+    read_as,
+    read_json,
+)
+from ai.files import described as array_said
 from ai.lander.rewards import REWARDS
 from ai.nn import ModelFormatError
 from ai.training.config import Config

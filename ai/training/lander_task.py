@@ -10,7 +10,7 @@ import numpy as np
 
 from ai.agent.symmetry import Symmetry
 from ai.common.environment import Doubles, Env, Ints
-from ai.files.reading import count_of
+from ai.files import count_of
 from ai.lander.environment import (
     LIMITS,
     MIRROR_ACTIONS,

@@ -23,7 +23,7 @@ from ai.agent.normalizer import Normalizer
 from ai.agent.replay import ReplayBuffer, make_replay
 from ai.agent.schedule import exploration, exploration_of_each
 from ai.common.environment import Env, Floats, StepResult
-from ai.files.reading import array_like, count_of, number_of
+from ai.files import array_like, count_of, number_of
 from ai.training.config import Config
 from ai.training.lander_task import LANDER_SYMMETRY, Evaluation, evaluate
 from ai.training.state import State, StateWriter, broken, restore_buffer

@@ -11,7 +11,7 @@ from typing import Any, Final
 import numpy as np
 
 from ai.common.environment import Ints, StepResult
-from ai.files.reading import count_of
+from ai.files import count_of
 from ai.lander.environment import LanderEnv
 from ai.training.checkpoints import Keeper, restore_checkpoint, resume_run
 from ai.training.config import Config

@@ -23,8 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ai.agent.replay import MemoryCell, PrioritisedReplayBuffer, ReplayBuffer
-from ai.files.folder import state_folder
-from ai.files.reading import (
+from ai.files import (
     array_like,
     count_of,
     inside,
@@ -33,6 +32,7 @@ from ai.files.reading import (
     problem_in,
     read_array,
     read_arrays,
+    state_folder,
     write_bytes,
 )
 from ai.nn import ModelFormatError

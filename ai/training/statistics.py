@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 
 from ai.common.environment import SUCCESS, Doubles, StepResult
-from ai.files.reading import array_like
+from ai.files import array_like
 
 RECENT: Final = 100
 OUTCOMES: Final = 4  # an environment has that many at the most; 0, going on, is not counted

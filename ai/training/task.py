@@ -8,7 +8,7 @@ import numpy as np
 
 from ai.agent.symmetry import Symmetry
 from ai.common.environment import Doubles, Env
-from ai.files.reading import number_of, shown
+from ai.files import number_of, shown
 from ai.lander.pilots import Pilot
 from ai.training.config import Config
 from ai.training.state import State

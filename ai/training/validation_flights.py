@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import repeat
 
 from ai.agent.normalizer import Normalizer
-from ai.files.reading import array_like, count_of
+from ai.files import array_like, count_of
 from ai.training.history import Validation
 from ai.training.lander_task import Evaluation, LanderTask
 from ai.training.loop import Training, passed

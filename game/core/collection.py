@@ -13,9 +13,19 @@ from typing import Final, Generic, TypeVar
 
 import platformdirs
 
-from ai.files.folder import NEW, STALE, aside_for, move_state, moved_aside, recover_folder, remove_state
-from ai.files.lock import Lock, lock_of, take
-from ai.files.reading import brief
+from ai.files import (
+    NEW,
+    STALE,
+    Lock,
+    aside_for,
+    brief,
+    lock_of,
+    move_state,
+    moved_aside,
+    recover_folder,
+    remove_state,
+    take,
+)
 from game.core import texts
 from game.core.copying import copy_folder
 from game.core.folders import looks_like_item, there

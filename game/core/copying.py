@@ -7,8 +7,7 @@ import shutil
 from pathlib import Path
 from typing import Final
 
-from ai.files.folder import NEW
-from ai.files.reading import beside, brief
+from ai.files import NEW, beside, brief
 from game.core import texts
 from game.core.names import LibraryError
 

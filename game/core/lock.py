@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from ai.files.lock import take
+from ai.files import take
 
 
 @contextmanager

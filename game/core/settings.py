@@ -9,8 +9,7 @@ from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
 from typing import Annotated, Any, Final
 
-from ai.files.reading import parse_json, read_text, write_text
-from ai.files.schema import Share, Within, sound_fields
+from ai.files import Share, Within, parse_json, read_text, sound_fields, write_text
 from game.core import texts
 from game.core.lock import held
 

@@ -11,7 +11,7 @@ from typing import Final
 from ai.digits.checkpoints import TRAINING_FILE, read_summary
 from ai.digits.fix import Fixed, FixStep, fix
 from ai.digits.preprocessing import Image
-from ai.files.folder import CONFIG
+from ai.files import CONFIG
 from game.core import texts
 from game.core.worker import Worker, WorkerState
 from game.training.digit_models import PATIENCE, models_by_name

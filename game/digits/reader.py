@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from ai.digits.filters import MOST_FILTERS, first_filters
 from ai.digits.preprocessing import SIDE, Image, Stages, stages, stroke_stages
-from ai.files.reading import brief
+from ai.files import brief
 from game.digits.kept import classifier_in
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ import numpy.typing as npt
 import pygame
 from font_manrope import font_files
 
-from ai.files.reading import CONTROLS
+from ai.files import CONTROLS
 from game.drawing.glyphs import SIGN, draw_sign, sign_width
 from game.drawing.tokens import GROWS, Colour
 

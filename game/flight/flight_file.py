@@ -15,8 +15,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Annotated, Any, Final
 
-from ai.files.reading import brief, parse_json, read_text, write_text
-from ai.files.schema import OneOf, Seed, Share, Sized, Within, check_header, read_as
+from ai.files import OneOf, Seed, Share, Sized, Within, brief, check_header, parse_json, read_as, read_text, write_text
 from ai.flights.easing import AS_IT_IS, Easing
 from ai.flights.places import COURSES
 from ai.flights.recording import LONGEST, Recording, StickHolder

@@ -14,8 +14,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any, Final
 
-from ai.files.reading import brief, parse_json, read_end
-from ai.files.schema import read_as
+from ai.files import brief, parse_json, read_as, read_end
 from ai.flights.places import DESCENT
 from ai.flights.score import landing_score
 from game.core import texts

@@ -10,7 +10,7 @@ from typing import Final, Protocol, runtime_checkable
 
 from ai.common.decision import Decision
 from ai.common.environment import Floats, Ints
-from ai.files.reading import brief
+from ai.files import brief
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.lander.sensing import SURROUNDINGS
 from game.core import texts

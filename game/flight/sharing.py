@@ -7,7 +7,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Final
 
-from ai.files.reading import read_text
+from ai.files import read_text
 from ai.flights.code import CodeError, code_of, codes_in, flight_of
 from ai.flights.places import DAILY, DESCENT, day_of, in_its_place
 from ai.flights.recording import StickHolder

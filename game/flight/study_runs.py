@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Final
 
-from ai.files.reading import brief, inside, read_json
-from ai.files.schema import Count, Share, Sized, read_as
+from ai.files import Count, Share, Sized, brief, inside, read_as, read_json
 from ai.training.config import LANDER
 from game.core import texts
 

@@ -13,8 +13,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any, Final
 
-from ai.files.reading import parse_json, read_bytes, read_text, write_bytes, write_text
-from ai.files.schema import sound_fields
+from ai.files import parse_json, read_bytes, read_text, sound_fields, write_bytes, write_text
 from game.core import texts
 from game.core.names import LibraryError, free_path, library_errors
 from game.core.settings import Settings

@@ -7,7 +7,7 @@ from typing import Final
 
 import pygame
 
-from ai.files.reading import brief
+from ai.files import brief
 from ai.sweep.results import FinishedTrial
 from ai.sweep.runs import DIGITS
 from ai.sweep.study import Study, StudyError

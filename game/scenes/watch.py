@@ -10,7 +10,7 @@ from typing import Final
 import pygame
 
 from ai.common.decision import Decision
-from ai.files.reading import brief
+from ai.files import brief
 from game.cockpit import hud
 from game.cockpit.decision_panel import PANEL, draw_decision
 from game.cockpit.map_legend import draw_legend

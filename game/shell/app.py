@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 
 import pygame
 
-from ai.files.reading import write_bytes
+from ai.files import write_bytes
 from game.core import texts
 from game.core.clock import FixedStep
 from game.core.scene import Push, Route

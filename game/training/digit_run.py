@@ -12,8 +12,7 @@ from ai.digits.config import DigitConfig
 from ai.digits.filters import FilterMoment
 from ai.digits.validation import Confusion, HeldOutScore
 from ai.explain.digit_lesson import DigitLesson
-from ai.files.folder import CONFIG
-from ai.files.reading import brief
+from ai.files import CONFIG, brief
 from ai.training.digit_session import (
     DigitPoint,
     DigitRunSaved,

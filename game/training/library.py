@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import Annotated, Any, Final
 
 from ai.agent.storage import LAST
-from ai.files.reading import brief, inside, read_json
-from ai.files.schema import Share, Within, read_as
+from ai.files import Share, Within, brief, inside, read_as, read_json
 from ai.training.checkpoints import TRAINING_FILE
 from ai.training.config import LANDER
 from game.core import texts

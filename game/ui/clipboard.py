@@ -7,7 +7,7 @@ from typing import Final
 
 import pygame
 
-from ai.files.reading import write_text
+from ai.files import write_text
 from game.core import texts
 from game.core.names import free_path
 from game.ui.context import Context

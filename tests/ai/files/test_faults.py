@@ -21,9 +21,18 @@ import pytest
 from ai.agent.agent import DeepQAgent
 from ai.agent.storage import KIND, write_agent
 from ai.digits.classifier import DigitClassifier
-from ai.files.folder import claimed_folder, recover_folder
-from ai.files.lock import take, take_folder
-from ai.files.reading import inside, parse_json, read_arrays, read_bytes, read_json, write_text
+from ai.files import (
+    claimed_folder,
+    inside,
+    parse_json,
+    read_arrays,
+    read_bytes,
+    read_json,
+    recover_folder,
+    take,
+    take_folder,
+    write_text,
+)
 from ai.nn import (
     ActivationFunctions,
     ActivationLayer,
@@ -466,7 +475,7 @@ def test_what_is_put_into_a_run_meanwhile_is_kept_and_so_is_the_run(tmp_path, mo
 def test_the_second_training_of_a_folder_is_told(tmp_path, capsys):
     command = ["train", "--decisions", "9", "--set", "num_envs=2", "--output", str(tmp_path / "run")]
     with take_folder(tmp_path / "run"):
-        holder = "from ai.files.lock import take_folder; import sys; take_folder(sys.argv[1])"
+        holder = "from ai.files import take_folder; import sys; take_folder(sys.argv[1])"
         other = subprocess.run(
             [sys.executable, "-c", holder, str(tmp_path / "run")], cwd=ROOT, capture_output=True, text=True, check=False
         )
@@ -491,7 +500,7 @@ def test_a_lock_that_was_let_go_is_free_at_once_and_leaves_nothing(tmp_path):
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no pipes")
 def test_a_pipe_in_place_of_a_lock_lets_nobody_wait(tmp_path):
     os.mkfifo(tmp_path / ".run.lock")
-    waiter = "from ai.files.lock import take_folder; import sys; take_folder(sys.argv[1]).release()"
+    waiter = "from ai.files import take_folder; import sys; take_folder(sys.argv[1]).release()"
     subprocess.run([sys.executable, "-c", waiter, tmp_path / "run"], check=True, timeout=300)
 
 

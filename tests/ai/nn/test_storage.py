@@ -9,7 +9,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from ai.files.folder import NETWORK, FolderKind
+from ai.files import NETWORK, FolderKind
 from ai.nn import (
     ActivationFunctions,
     ActivationLayer,

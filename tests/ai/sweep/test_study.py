@@ -12,7 +12,7 @@ from ai.agent.storage import LAST
 from ai.digits.checkpoints import save_digit_run
 from ai.digits.config import DIGIT_PRESETS
 from ai.digits.training import DigitTraining
-from ai.files.reading import read_arrays
+from ai.files import read_arrays
 from ai.sweep import study as study_module
 from ai.sweep.plan import Plan
 from ai.sweep.report import report, told

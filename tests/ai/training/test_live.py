@@ -8,7 +8,7 @@ import pytest
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.schedule import exploration_of_each
-from ai.files.folder import remove_state
+from ai.files import remove_state
 from ai.lander.environment import Outcome
 from ai.lander.rewards import RewardWeights
 from ai.nn import ModelFormatError

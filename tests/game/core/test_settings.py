@@ -9,8 +9,7 @@ from threading import Event, Thread, current_thread
 
 import pytest
 
-from ai.files.lock import take
-from ai.files.reading import write_text
+from ai.files import take, write_text
 from game.core.lock import held
 from game.core.settings import DAMAGED_NAME, FILE_NAME, Settings, SettingsFile
 from game.core.settings_writer import SettingsWriter

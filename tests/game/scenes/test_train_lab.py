@@ -9,7 +9,7 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.files.reading import read_json
+from ai.files import read_json
 from ai.training.config import Config
 from ai.training.history import History
 from ai.training.loop import Training
