@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from ai.agent import DeepQAgent
-from ai.digits.checkpoints import resume_digit_run
 from ai.digits.config import DigitConfig
 from ai.training.checkpoints import resume_run
 from ai.training.config import Config, load_agent
+from ai.training.digit_run import resume_digit_run
 from ai.training.history import History, SettingChange
+from ai.training.lander_session import live
 from ai.training.messages import ChangeSetting
-from ai.training.session import live
 from game.flight import flight_file
 from game.flight.replay import FlightReplay
 

@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import json
-import time
-from collections.abc import Callable, Iterator
-from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -20,40 +17,14 @@ from ai.nn import ModelFormatError, atomic_folder
 from ai.training.config import ANYWHERE, LANDER, LANDS_ANYWHERE, PRESETS, Config, load_agent
 from ai.training.gym_task import gym_config
 from ai.training.history import Checkpoint, History
-from ai.training.loop import Progress, Training
-from ai.training.messages import Saved, problem_of
-from ai.training.state import PreparedState, State, StateWriter, read_state
+from ai.training.keeping import save
+from ai.training.loop import Training
+from ai.training.run import RunKind
+from ai.training.state import read_state
 from ai.training.statistics import EpisodeStatistics
 from ai.training.task import TEST_SEED, Score
 
 TRAINING_FILE: Final = "training.json"
-FIRST_SECONDS: Final = 1.5  # after which a run is kept for the first time
-KEEP_SECONDS: Final = 10.0  # between two times
-_SHARE: Final = 0.01  # of a run's time that keeping it may take, at most
-
-
-class TrainingClock:
-    """Ends a run after so many seconds of training or so many decisions.
-
-    Both are counted from the run's own beginning, however often it was interrupted in between.
-    """
-
-    def __init__(self, seconds: float | None = None, decisions: int | None = None) -> None:
-        self.seconds, self.decisions = seconds, decisions
-
-    def share(self, training: Training) -> float:
-        """Return the share of its time or decisions that a run has used up, from 0 to 1, whichever is more."""
-        elapsed = training.seconds / self.seconds if self.seconds else 0.0
-        taken = training.agent.decisions / self.decisions if self.decisions else 0.0
-        return min(1.0, max(elapsed, taken))
-
-    def run(self, training: Training) -> Iterator[Progress]:
-        """Advance until the time or the decisions are used up."""
-        while self.share(training) < 1.0:
-            before = time.monotonic()
-            progress = training.advance()
-            training.seconds += time.monotonic() - before
-            yield progress
 
 
 @dataclass(frozen=True)
@@ -75,11 +46,15 @@ class Snapshot:
             (temporary / TRAINING_FILE).write_text(json.dumps(self.described, indent=2) + "\n", encoding="utf-8")
 
 
-def snapshot(training: Training, history: History | None = None) -> Snapshot:
+def snapshot(training: Training, history: History | None = None, final: bool = False) -> Snapshot:
     """Copy what is to be kept of a run. One that has not been evaluated yet has its latest network for its best.
 
-    This measures nothing: the clock may decide when it is called, but never which network is best.
+    This measures nothing: the clock may decide when it is called, but never which network is best. But a `final` one
+    considers the latest network for the best too, and measures the best one on test spawns, which neither trained nor
+    chose it.
     """
+    if final:
+        training.conclude()
     agent, config = training.agent, training.config
     if config.env == LANDER:
         presets = PRESETS
@@ -99,125 +74,22 @@ def snapshot(training: Training, history: History | None = None) -> Snapshot:
         "best": training.best.to_json() if training.best else None,
         "flights": training.statistics.to_json(),
     }
-    return Snapshot(
-        described, training.best_agent(), training.last_agent(), None if history is None else history.copy()
-    )
-
-
-class Keeper:
-    """Keeps a run in its own folder now and then, and in any other when asked: its network, and the state beside it.
-
-    A thread writes, while training goes on; the run stands still for what is copied, for a hundredth of its time at
-    most. Without a folder of its own (None), a run is kept only where that is asked for. `around` gives what whoever
-    leads the run keeps in its state, for `Training.around`.
-    """
-
-    def __init__(
-        self, training: Training, folder: Path | None, history: History | None = None,
-        around: Callable[[], State] = dict,
-    ) -> None:  # fmt: skip
-        self._training, self._folder, self._history, self._around = training, folder, history, around
-        self._saved_at = training.agent.decisions  # as on the disk
-        self._due = training.clock() + FIRST_SECONDS
-        self._problem = ""
-        self._thread = ThreadPoolExecutor(max_workers=1)
-        self._writing: Future[None] | None = None
-
-    def move_to(self, folder: Path) -> None:
-        """Keep it in another folder from now on, the first time as soon as possible."""
-        self.wait()
-        self._folder, self._saved_at, self._due = folder, -1, self._training.clock()
-
-    def go_on(self, now: float) -> list[Saved]:
-        """Start to write when it is time, by the clock; return a message when that did not succeed, once."""
-        if self._folder is None:
-            return []
-        told = []
-        if self._writing is not None and self._writing.done():
-            problem, self._writing = _outcome_of(self._writing), None
-            if problem and problem != self._problem:
-                told.append(Saved(self._folder, problem))
-            self._problem = problem
-        if self._writing is None and now >= self._due:
-            began = time.monotonic()
-            self._writing = self._write(self._folder)
-            self._due = now + max(KEEP_SECONDS, (time.monotonic() - began) / _SHARE)
-        return told
-
-    def save(self, folder: Path) -> Saved:
-        """Keep it in a folder, and wait until it is done."""
-        self.wait()
-        return Saved(folder, _outcome_of(self._write(folder)))
-
-    def wait(self) -> None:
-        """Wait until what is being written is on the disk."""
-        if self._writing is not None:
-            _outcome_of(self._writing)
-
-    def end(self) -> None:
-        """Keep what has not been kept, and wait until it is on the disk."""
-        if self._folder is not None and self._saved_at != self._training.agent.decisions:
-            self.save(self._folder)
-        self._thread.shutdown()
-
-    def _write(self, folder: Path) -> Future[None]:
-        training = self._training
-        if folder == self._folder:
-            self._saved_at = training.agent.decisions
-        kept = snapshot(training, self._history)
-        return self._thread.submit(_save, kept, folder, *_prepared(training, folder, self._around()))
-
-
-def _prepared(training: Training, folder: Path, around: State) -> tuple[StateWriter, PreparedState | None]:
-    """Copy the state of a run, with what is kept around it; None if there is none to go on from."""
-    if training.states is None or training.states.folder != folder:
-        states = StateWriter(folder)
-        if training.states:
-            states.take_over(training.states)
-        training.states = states
-    if training.diverged:
-        return training.states, None
-    state = training.state() | {"around": around}
-    return training.states, training.states.prepare(training.agent.decisions, state, training.buffers)
-
-
-def _save(kept: Snapshot, folder: Path, states: StateWriter, prepared: PreparedState | None) -> None:
-    """Write the state first, then the network's folder, and at last delete the state before."""
-    if prepared:
-        states.write(prepared)
-    kept.save(folder)
-    states.clear(prepared)
-
-
-def _outcome_of(writing: Future[None]) -> str:
-    """Wait for what is written, and return why that failed, if it did."""
-    try:
-        writing.result()
-    except (OSError, ValueError) as error:
-        return problem_of(error)
-    return ""
-
-
-def save_run(training: Training, folder: str | Path, final: bool = False, *, state: bool = False) -> None:
-    """Save the best network of a run and the last one, whole or not at all; with `state`, all that it goes on from.
-
-    `final` considers the latest network for the best too, and measures the best one on test spawns, which neither
-    trained nor chose it; the state is that of before. Raises OSError if it cannot be written, and ValueError, with the
-    disk left as it was, if the numbers of the network are not finite.
-    """
-    folder = Path(folder)
-    states, prepared = _prepared(training, folder, training.around) if state else (StateWriter(folder), None)
+    best = training.best_agent()
     if final:
-        training.conclude()
-    kept = snapshot(training)
-    if final:
-        score = training.task.evaluate(kept.best, training.task.test_episodes, TEST_SEED)
-        kept.described["evaluation"] = score.to_json()
-    _save(kept, folder, states, prepared)
+        described["evaluation"] = training.task.evaluate(best, training.task.test_episodes, TEST_SEED).to_json()
+    return Snapshot(described, best, training.last_agent(), None if history is None else history.copy())
+
+
+AGENTS: Final = RunKind(KIND, snapshot)
+
+
+def save_run(training: Training, folder: str | Path, final: bool = False, *, state: bool = False) -> dict[str, Any]:
+    """Save a run of an agent as `ai.training.keeping.save` does, by default its networks alone."""
+    return save(training, AGENTS, folder, final=final, state=state)
 
 
 def resume_run(folder: str | Path, *, env: str | None = None) -> Training:
-    """Resume a run that was kept: the very same, if its state lies beside its folder, else with an empty memory.
+    """Resume a run of an agent: the very same, if its state lies beside its folder, else with an empty memory.
 
     `Training.lost` says what is missing. Raises ModelFormatError for anything else. `env` is the environment as the
     user names it, without which "module:Name" is refused: see `load_agent`.

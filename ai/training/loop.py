@@ -24,7 +24,7 @@ from ai.agent.replay import ReplayBuffer, make_replay
 from ai.agent.schedule import exploration, exploration_of_each
 from ai.common.environment import Env, Floats, StepResult
 from ai.files import array_like, count_of, number_of
-from ai.training.config import Config
+from ai.training.config import LANDER, Config
 from ai.training.lander_task import LANDER_SYMMETRY, Evaluation, evaluate
 from ai.training.state import State, StateWriter, broken, restore_buffer
 from ai.training.statistics import EpisodeStatistics
@@ -55,11 +55,12 @@ class Progress:
     parts: tuple[float, ...]  # of the mean return, what each part of the reward brought
     evaluation: Score | None = None  # when one was due
     best: Score | None = None
+    env: str = LANDER
 
 
 @dataclass
 class Training:
-    """Training run of the lander, or of another task: all state that changes as it goes on."""
+    """Training run of the lander, or of another task (`ai.training.run.Run`): all state that changes as it goes on."""
 
     config: Config
     seed: int = 0
@@ -136,7 +137,7 @@ class Training:
         return Progress(
             agent.decisions, agent.decisions * self.config.frame_skip, agent.train_count, self.episodes,
             statistics.success, statistics.mean_return, agent.loss, agent.mean_q, epsilon, self.env.stage, self._pace(),
-            statistics.shares, statistics.parts, evaluation, self.best,
+            statistics.shares, statistics.parts, evaluation, self.best, self.config.env,
         )  # fmt: skip
 
     def _pace(self) -> float:
@@ -188,6 +189,20 @@ class Training:
         return agent
 
     # What it goes on from
+
+    @property
+    def moment(self) -> int:
+        """Decisions so far, of single landers."""
+        return self.agent.decisions
+
+    @property
+    def steps(self) -> None:
+        """How many decisions there will be in all: it goes on without end."""
+
+    @property
+    def done(self) -> bool:
+        """Whether there is nothing left to train; there always is."""
+        return False
 
     @property
     def buffers(self) -> dict[str, ReplayBuffer]:

@@ -72,9 +72,8 @@ class EpisodeStatistics:
             raise ValueError("the last flights have outcomes, returns and parts of different numbers")
         if not np.isfinite([*returns, *(part for each in parts for part in each)]).all():
             raise ValueError("the last flights have returns that are no numbers")
-        for kept, told_of in ((self._outcomes, outcomes), (self._returns, returns), (self._parts, parts)):
-            kept.clear()
-            kept.extend(told_of)
+        self._outcomes, self._returns = deque(outcomes, maxlen=RECENT), deque(returns, maxlen=RECENT)
+        self._parts = deque(parts, maxlen=RECENT)
         if outcomes:
             self._sum_up()
 

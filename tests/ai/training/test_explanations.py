@@ -8,8 +8,8 @@ import pytest
 from ai.explain.agent_lesson import Lesson
 from ai.training.config import PRESETS
 from ai.training.history import Point
+from ai.training.lander_session import live
 from ai.training.messages import Explain, NetworkState, Refused
-from ai.training.session import live
 
 CONFIG = replace(PRESETS["modern"], num_envs=6, batch_size=16, gradient_steps=1, learning_starts=48, n_step=4,
                  hidden=(16,), replay_size=5000, spawn="near")  # fmt: skip

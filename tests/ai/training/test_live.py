@@ -12,10 +12,11 @@ from ai.files import remove_state
 from ai.lander.environment import Outcome
 from ai.lander.rewards import RewardWeights
 from ai.nn import ModelFormatError
-from ai.training import checkpoints
-from ai.training.checkpoints import agent_of, resume_run
+from ai.training import keeping
+from ai.training.checkpoints import AGENTS, agent_of, resume_run
 from ai.training.config import Config
 from ai.training.history import PARTS, REVERTED, Checkpoint, History, Point, SettingChange, Validation
+from ai.training.lander_session import CAREFUL, live
 from ai.training.lander_task import LanderTask
 from ai.training.loop import Training
 from ai.training.messages import (
@@ -28,7 +29,6 @@ from ai.training.messages import (
     Saved,
     SwarmState,
 )
-from ai.training.session import CAREFUL, live
 
 TINY = Config(
     hidden=(8,), num_envs=32, learning_starts=64, batch_size=16, gradient_steps=1, replay_size=2000, spawn="near"
@@ -63,7 +63,7 @@ def of(kind, told):
 def test_without_commands_it_is_the_training_it_would_be_headless(begin, tmp_path, changes, monkeypatch):
     monkeypatch.setattr(LanderTask, "evaluate_every", 640)
     monkeypatch.setattr(LanderTask, "validation_episodes", 5)
-    monkeypatch.setattr(checkpoints, "KEEP_SECONDS", 0.0)
+    monkeypatch.setattr(keeping, "KEEP_SECONDS", 0.0)
     config = TINY.changed(**changes)
     run, headless = begin(config, 3, keep=tmp_path / "keep"), Training(config, 3)
     told = told_in(run, 1)
@@ -295,7 +295,7 @@ def test_a_run_that_is_closed_has_kept_itself(begin, tmp_path):
 
 def test_it_keeps_itself_by_the_clock(tmp_path):
     training = Training(TINY, clock=(clock := Clock()))
-    saving = checkpoints.Keeper(training, tmp_path / "keep", History())
+    saving = keeping.Keeper(training, AGENTS, tmp_path / "keep", History())
     for seconds, kept in ((1.4, 0), (0.2, 2), (9.9, 2), (0.2, 4)):
         clock.now += seconds
         training.advance()
@@ -311,7 +311,7 @@ def full(*_):
 
 
 def test_a_full_disk_is_told_once_and_training_goes_on(begin, tmp_path, monkeypatch):
-    monkeypatch.setattr(checkpoints, "KEEP_SECONDS", 0.0)
+    monkeypatch.setattr(keeping, "KEEP_SECONDS", 0.0)
     run = begin(TINY, keep=tmp_path / "keep")
     told_in(run, 10)
     assert of(Saved, run.send(Save(tmp_path / "run"))) == [Saved(tmp_path / "run")]

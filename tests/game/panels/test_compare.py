@@ -10,7 +10,7 @@ from ai.training.history import History
 from game.charts.series import run_style
 from game.core import texts
 from game.panels.training_charts import TrainingCharts
-from game.training.training_run import EarlierRun, put_beside, rename_beside, take_away
+from game.training.beside import EarlierRun, put_beside, rename_beside, take_away
 from tests.ai.training.test_hints import HEALTHY
 
 
@@ -62,7 +62,7 @@ def test_lines_of_many_runs_differ_in_colour_or_dashes_and_neighbours_in_both():
     assert run_style(25) == run_style(1)
 
 
-def look(training_charts: TrainingCharts, history: History, beside: list[EarlierRun[History]]) -> None:
+def look(training_charts: TrainingCharts, history: History, beside: list[EarlierRun]) -> None:
     for _ in range(12):
         training_charts.look(history, beside)
 

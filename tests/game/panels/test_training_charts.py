@@ -5,14 +5,14 @@ import pytest
 
 from ai.training.config import PRESETS, Config
 from ai.training.history import COLUMNS, History, Point
+from ai.training.lander_session import live
 from ai.training.messages import RunStarted
-from ai.training.session import live
 from game.charts.chart import Chart, Series
 from game.core import texts
 from game.panels.training_charts import TrainingCharts
-from game.training.lander_run import LanderRun
+from game.training.beside import EarlierRun
 from game.training.library import Library
-from game.training.training_run import EarlierRun
+from game.training.run import TrainingRun
 
 
 def run(config: Config, points: float) -> History:
@@ -20,7 +20,7 @@ def run(config: Config, points: float) -> History:
     history = History()
     history.reward_scale = config.reward_scale
     for second in range(20):
-        values = dict.fromkeys(COLUMNS, 1.0) | {"seconds": float(second), "mean_q": points * config.reward_scale}
+        values = dict.fromkeys([column.name for column in COLUMNS[:10]], 1.0) | {"seconds": float(second), "mean_q": points * config.reward_scale}
         history.append(Point(**values))
     return history
 
@@ -55,7 +55,7 @@ def test_a_run_says_in_which_unit_it_counts(preset: str, tmp_path, monkeypatch: 
             return tuple(message for message in told if isinstance(message, RunStarted))
 
     monkeypatch.setattr("game.training.lander_run.Worker", Tells)
-    lander_run = LanderRun(Library(tmp_path))
+    lander_run = TrainingRun(Library(tmp_path))
     lander_run.begin(config, 0)
     lander_run.poll()
     assert lander_run.history.reward_scale == config.reward_scale
