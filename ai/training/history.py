@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from copy import copy
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Final, NamedTuple
 
@@ -166,7 +166,7 @@ class SettingChange:
     before: Any
     after: Any
     amends: bool = False
-    seconds: float = 0.0  # of training
+    seconds: float = field(default=0.0, compare=False)  # of training
 
 
 @dataclass(frozen=True)
@@ -180,7 +180,7 @@ class Validation:
     success: float
     mean_return: float
     best: bool  # of the run so far
-    seconds: float = 0.0  # of training
+    seconds: float = field(default=0.0, compare=False)  # of training
 
 
 # What a file holds of it

@@ -24,7 +24,6 @@ class Run(Protocol):
 
     Attributes:
         config, seed: what all of it follows from.
-        clock: counts seconds.
         seconds: spent in training, as the caller counts them.
         lost: what could not be restored of a run that goes on, in words; empty for the very same run.
         diverged: whether its networks were put back after that: then there is no state to go on from.
@@ -35,12 +34,15 @@ class Run(Protocol):
 
     config: Any
     seed: int
-    clock: Callable[[], float]
     seconds: float
     lost: str
     diverged: bool
     around: dict[str, Any]
     states: Any
+
+    @property
+    def clock(self) -> Callable[[], float]:
+        """Counts seconds."""
 
     @property
     def moment(self) -> int:

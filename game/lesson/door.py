@@ -38,7 +38,7 @@ class Door:
 
     def answer(self) -> Lesson | DigitLesson | None:
         """Return the lesson that was asked for, once it has come; None before and afterwards. Call it once a frame."""
-        lesson = self._run.lesson
+        lesson: Lesson | DigitLesson | None = self._run.lesson
         if not self._asked:
             return None
         if lesson is None or lesson is self._shown:

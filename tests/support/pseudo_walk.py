@@ -44,7 +44,8 @@ from game.scenes.error_screen import ErrorScene
 from game.scenes.lesson import LessonScene
 from game.scenes.play import PlayScene
 from game.shell.app import App
-from game.training.beside import TrainingRun, put_beside, rename_beside
+from game.training.beside import put_beside, rename_beside
+from game.training.run import TrainingRun
 from game.ui.context import Context
 from game.ui.widgets import Choice
 from tests.support import inline_worker

@@ -18,6 +18,7 @@ from ai.cli.command_line import configured
 from ai.training.config import PRESETS
 from ai.training.lander_task import Evaluation, LanderTask
 from ai.training.loop import Training
+from ai.training.state import StateWriter
 from ai.training.task import VALIDATION_SEED
 from main import main
 
@@ -117,6 +118,7 @@ def test_whoever_ends_a_run_by_a_signal_keeps_the_work(tmp_path, name, code, cap
 
 TELLING = """
 import sys
+from ai.training.state import StateWriter
 from ai.training.loop import Training
 from main import main
 
@@ -153,13 +155,13 @@ def test_a_pause_past_a_checkpoint_changes_nothing_that_is_kept(tmp_path, monkey
     changes = ["num_envs=8", "hidden=[8]", "batch_size=16", "learning_starts=32", "gradient_steps=1"]
     monkeypatch.setattr(LanderTask, "evaluate_every", 320)
     saves = []
-    written = ai.training.keeping.StateWriter.write
+    written = StateWriter.write
 
     def write(states, prepared):
         saves.append(prepared.name)
         written(states, prepared)
 
-    monkeypatch.setattr(ai.training.keeping.StateWriter, "write", write)
+    monkeypatch.setattr(StateWriter, "write", write)
 
     def kept(name, decisions, pauses):
         now, folder = [0.0], tmp_path / name

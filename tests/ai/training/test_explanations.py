@@ -29,7 +29,7 @@ def test_the_memory_lies_in_the_replay_buffer():
     session = run()
     for _ in range(120):
         next(session)
-    replay = session.gi_frame.f_locals["run"].training.agent.replay
+    replay = session.gi_frame.f_locals["session"].training.agent.replay
     for slot in range(6):
         lesson = ask(session, slot)
         assert isinstance(lesson, Lesson)
@@ -98,7 +98,7 @@ def test_a_network_that_has_diverged_is_refused_and_not_lost():
     session = run()
     for _ in range(60):
         next(session)
-    agent = session.gi_frame.f_locals["run"].training.agent
+    agent = session.gi_frame.f_locals["session"].training.agent
     before = agent.online.values.copy()
     agent.online.values[0] = np.inf
     answer = ask(session, 0)

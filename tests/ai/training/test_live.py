@@ -217,7 +217,7 @@ def test_every_live_knob_makes_a_difference(begin, name):
     if name.startswith("success"):
         told_in(run, 5), told_in(quiet, 5)
         for each in (run, quiet):  # there are no landings yet to learn from: give it some
-            training = each.gi_frame.f_locals["run"].training
+            training = each.gi_frame.f_locals["session"].training
             rng = np.random.default_rng(0)
             cells = training.agent.replay.cells
             picked = [part[:64].copy() for part in cells]
@@ -226,7 +226,7 @@ def test_every_live_knob_makes_a_difference(begin, name):
     told_in(run, 10), told_in(quiet, 10)
     assert isinstance(run.send(ChangeSetting(name, value))[0], SettingChange)
     told_in(run, 25), told_in(quiet, 25)
-    ours, theirs = (each.gi_frame.f_locals["run"].training for each in (run, quiet))
+    ours, theirs = (each.gi_frame.f_locals["session"].training for each in (run, quiet))
     assert getattr(ours.agent.config, name) == value
     same = np.array_equal(ours.observation, theirs.observation)
     assert not (same and np.array_equal(ours.agent.network.values, theirs.agent.network.values))
@@ -343,7 +343,7 @@ def until_it_fails(run, told):
 def test_numbers_that_run_away_stop_the_run_and_the_last_good_network_is_kept(begin, tmp_path):
     run = begin(TINY, keep=tmp_path / "keep")
     told = told_in(run, 120)
-    run.gi_frame.f_locals["run"].training.agent.replay.cells.reward[:] = np.nan
+    run.gi_frame.f_locals["session"].training.agent.replay.cells.reward[:] = np.nan
     with pytest.raises(FloatingPointError, match=r"learning step \d+; most likely the learning rate of 0.0"):
         until_it_fails(run, told)
     good = of(Checkpoint, told)[-1]
@@ -358,7 +358,7 @@ def test_numbers_that_run_away_stop_the_run_and_the_last_good_network_is_kept(be
 def test_no_checkpoint_and_no_save_holds_what_is_not_finite(begin, tmp_path):
     run = begin(TINY, keep=tmp_path / "keep")
     told = told_in(run, 78)
-    inside = run.gi_frame.f_locals["run"]
+    inside = run.gi_frame.f_locals["session"]
     assert of(Saved, run.send(Save(tmp_path / "keep"))) == [Saved(tmp_path / "keep")]
     inside.training.agent.target.values[3] = np.nan  # behind the back of every check
     inside.training.agent.learn = lambda: None
@@ -481,9 +481,9 @@ def test_a_knob_that_is_dragged_leaves_one_mark_with_its_last_value(begin):
     turn("discount", 0.9)
     turn("discount", 0.9)
     turn("discount", 0.9)  # nothing is turned
-    kept = run.gi_frame.f_locals["run"].history
+    kept = run.gi_frame.f_locals["session"].history
     assert kept.setting_changes == history.setting_changes
-    assert run.gi_frame.f_locals["run"].training.config.discount == 0.9
+    assert run.gi_frame.f_locals["session"].training.config.discount == 0.9
 
 
 class Clock:

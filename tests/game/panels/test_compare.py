@@ -23,9 +23,9 @@ def run_of(seconds: float, decisions: float) -> History:
 
 
 def test_a_run_keeps_its_style_as_others_come_and_go():
-    runs: list[EarlierRun[str]] = []
+    runs: list[EarlierRun] = []
     for number in range(12):
-        put_beside(runs, f"run {number}", "curves")
+        put_beside(runs, f"run {number}", History())
     styles = {each.name: each.style for each in runs}
     assert len(set(styles.values())) == 12
     assert 0 not in styles.values(), "that is the run that goes on"
@@ -33,17 +33,18 @@ def test_a_run_keeps_its_style_as_others_come_and_go():
     assert {each.name: each.style for each in runs} == {
         name: style for name, style in styles.items() if name != "run 3"
     }
-    put_beside(runs, "new", "curves")
-    assert runs[0] == EarlierRun("new", "curves", styles["run 3"])
-    put_beside(runs, "run 7", "again")
-    assert runs[0] == EarlierRun("run 7", "again", styles["run 7"])
+    new, again = History(), History()
+    put_beside(runs, "new", new)
+    assert runs[0] == EarlierRun("new", new, styles["run 3"])
+    put_beside(runs, "run 7", again)
+    assert runs[0] == EarlierRun("run 7", again, styles["run 7"])
     assert len(runs) == 12
 
 
 def test_a_run_beside_is_renamed_but_not_to_the_name_of_another():
-    runs: list[EarlierRun[str]] = []
+    runs: list[EarlierRun] = []
     for name in ("a", "b"):
-        put_beside(runs, name, name)
+        put_beside(runs, name, History())
     style = runs[0].style
     assert rename_beside(runs, style, "a") == texts.COMPARE_NAME_TAKEN
     assert rename_beside(runs, style, "") == texts.COMPARE_NAME_EMPTY

@@ -12,7 +12,9 @@ from game.core import texts
 from game.panels.training_charts import TrainingCharts
 from game.training.beside import EarlierRun
 from game.training.library import Library
-from game.training.run import TrainingRun
+from game.training.run import LANDERS, TrainingRun
+
+NUMBERS = [column.name for column in COLUMNS[:10]]
 
 
 def run(config: Config, points: float) -> History:
@@ -20,7 +22,10 @@ def run(config: Config, points: float) -> History:
     history = History()
     history.reward_scale = config.reward_scale
     for second in range(20):
-        values = dict.fromkeys([column.name for column in COLUMNS[:10]], 1.0) | {"seconds": float(second), "mean_q": points * config.reward_scale}
+        values = dict.fromkeys(NUMBERS, 1.0) | {
+            "seconds": float(second),
+            "mean_q": points * config.reward_scale,
+        }
         history.append(Point(**values))
     return history
 
@@ -54,8 +59,8 @@ def test_a_run_says_in_which_unit_it_counts(preset: str, tmp_path, monkeypatch: 
         def poll(self) -> tuple[object, ...]:
             return tuple(message for message in told if isinstance(message, RunStarted))
 
-    monkeypatch.setattr("game.training.lander_run.Worker", Tells)
-    lander_run = TrainingRun(Library(tmp_path))
+    monkeypatch.setattr("game.training.run.Worker", Tells)
+    lander_run = TrainingRun(LANDERS, Library(tmp_path))
     lander_run.begin(config, 0)
     lander_run.poll()
     assert lander_run.history.reward_scale == config.reward_scale

@@ -220,11 +220,10 @@ def test_a_short_history_of_which_little_is_known_or_fits_is_rewound(
     for decisions in (300.0, 600.0):
         history.append(
             Point(
-                **{
-                    **dict.fromkeys([column.name for column in COLUMNS[:10]], np.nan),
-                    "seconds": decisions / 100,
-                    "decisions": decisions,
-                }
+                **(
+                    dict.fromkeys([column.name for column in COLUMNS[:10]], np.nan)
+                    | {"seconds": decisions / 100, "decisions": decisions}
+                )
             )
         )
     if values is not None:  # a checkpoint of another network

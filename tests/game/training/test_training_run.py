@@ -63,7 +63,7 @@ def wait(learner: Notebook, until: Callable[[], object]) -> list[str]:
 
 def test_the_next_run_begins_when_the_one_before_has_ended_and_nobody_waits(notebook: Notebook):
     notebook.note = "at once"
-    assert notebook.begin("one", 50) == "at once"
+    assert notebook.begin("one", 5) == "at once"
     wait(notebook, lambda: notebook.state is WorkerState.RUNNING)
     notebook.note = "later"
     assert notebook.begin("two", 0) == ""
