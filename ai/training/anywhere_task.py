@@ -48,19 +48,10 @@ class AnywhereTask(LanderTask):
         if isinstance(env, AnywhereEnv):
             env.strictness = touchdown_limits(self.config, decisions)
 
-    def env_state(self, env: Env) -> State:
-        """Return all that the landers and their sites go on from."""
-        assert isinstance(env, AnywhereEnv)
-        return super().env_state(env) | {"sites": env.settled.copy(), "kind": env.kind.copy()}
-
     def restore_env(self, env: Env, state: State) -> str:
         """Let new landers go on from what `env_state` gave, at the same sites."""
         assert isinstance(env, AnywhereEnv)
-        sites = state["sites"]
-        if not isinstance(sites, np.ndarray) or sites.shape != env.settled.shape or np.isnan(sites).any():
-            raise ValueError("sites are not those of the landers")
-        env.settle(sites)
-        env.kind = array_like(env.kind, state["kind"], "kinds of sites")
+        env.settle(array_like(env.settled, state["flights"]["landers"]["settled"], "sites", finite=False))
         return super().restore_env(env, state)
 
     def trial(self, pilot: Pilot, episodes: int, seed: int) -> Generator[None, None, Evaluation]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ai.agent.symmetry import Symmetry
 from ai.common.environment import Doubles, Env, Ints
-from ai.files import count_of
+from ai.files import MOST
 from ai.lander.environment import (
     LIMITS,
     MIRROR_ACTIONS,
@@ -26,9 +26,11 @@ from ai.lander.pilots import Pilot
 from ai.lander.spawns import CURRICULA, SPAWNS, TEACH_HARD
 from ai.training.config import Config
 from ai.training.schedule import touchdown_limits
-from ai.training.state import State, plain, rebuilt
+from ai.training.state import State, rebuilt
 from ai.training.task import checked_score
 
+# What changes of landers as they fly; the rest of their snapshot follows from the settings, and from their sites.
+_CHANGED: Final = ("landers", "bodies", "contacts", "gravity", "strictness", "landings")
 LANDER_SYMMETRY: Final = Symmetry(MIRROR_SIGNS, MIRROR_FEATURES, MIRROR_ACTIONS)
 
 
@@ -193,24 +195,33 @@ class LanderTask:
     def env_state(self, env: Env) -> State:
         """Return all that the landers go on from."""
         assert isinstance(env, LanderEnv)
-        streams = [rng.bit_generator.state for rng in env._rngs]
-        return {"flights": plain(env.snapshot()), "landings": env.landings, "streams": streams}
+        snapshot = env.snapshot()
+        return {
+            "flights": {name: snapshot[name] for name in _CHANGED},
+            "streams": [stream.bit_generator.state for stream in env.streams],
+        }
 
     def restore_env(self, env: Env, state: State) -> str:
         """Let new landers go on from what `env_state` gave; they can be restored whole."""
         assert isinstance(env, LanderEnv)
         lengths: set[int] = set()
-        snapshot = rebuilt(env.snapshot(), state["flights"], lengths)
-        touching = snapshot["contacts"].impulses.key
-        pairs = env.num_envs * len(env.world.detector.pairs)
-        if len(lengths) > 1 or (touching < 0).any() or (touching >= pairs).any():
-            raise ValueError("contacts are of none of the landers")
-        if not np.isin(snapshot["counters"]["outcome"], tuple(Outcome)).all():
-            raise ValueError("outcomes are none of those of a flight")
-        env.restore(snapshot)
-        env.landings = count_of(state["landings"])
-        for rng, stream in zip(env._rngs, state["streams"], strict=True):
-            rng.bit_generator.state = stream
+        new = env.snapshot()
+        flights = rebuilt({name: new[name] for name in _CHANGED}, state["flights"], lengths)
+        touching, pairs = flights["contacts"]["impulses"]["key"], flights["contacts"]["pairs"]
+        landers = flights["landers"]
+        if (
+            len(lengths) > 1
+            or (touching < 0).any()
+            or (touching >= env.num_envs * pairs).any()
+            or pairs != new["contacts"]["pairs"]
+            or not np.isin(landers["outcome"], tuple(Outcome)).all()
+            or not np.isin(landers["target"], range(len(env.ground.pads))).all()
+            or not 0 <= flights["landings"] <= MOST
+        ):
+            raise ValueError("flights are of other landers, or of none")
+        env.restore(new | flights)
+        for stream, told in zip(env.streams, state["streams"], strict=True):
+            stream.bit_generator.state = told
         return ""
 
     def evaluate(self, pilot: Pilot, episodes: int, seed: int) -> Evaluation:

@@ -15,7 +15,7 @@ import secrets
 import shutil
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field, fields, is_dataclass, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
@@ -44,31 +44,21 @@ _TEXT: Final = "described"
 State = dict[str, Any]
 
 
-def plain(value: Any) -> Any:
-    """Return a tree of dataclasses and dicts as dicts alone."""
-    if is_dataclass(value):
-        return {each.name: plain(getattr(value, each.name)) for each in fields(value)}
-    return {name: plain(part) for name, part in value.items()} if isinstance(value, dict) else value
+def rebuilt(template: Any, value: Any, lengths: set[int]) -> Any:
+    """Return a value from a file, if it is such a nested dict of arrays and numbers as `template`, which began alike.
 
-
-def rebuilt(like: Any, value: Any, lengths: set[int]) -> Any:
-    """Return what `plain` made a dict of, as it was: with the types of `like`, which is the same thing as it began.
-
-    Arrays have the shapes of those in `like`, but where these have a length of 0: then the one that they have is added
-    to `lengths`. Raises KeyError, TypeError or ValueError for anything else.
+    Arrays have the shapes of those in `template`, but where these have a length of 0: then the one that they have is
+    added to `lengths`. Raises KeyError, TypeError or ValueError for anything else.
     """
-    if is_dataclass(like) and not isinstance(like, type):
-        return replace(like, **{each.name: rebuilt(getattr(like, each.name), value[each.name], lengths)
-                                for each in fields(like)})  # fmt: skip
-    if isinstance(like, dict):
-        return {name: rebuilt(part, value[name], lengths) for name, part in like.items()}
-    if isinstance(like, np.ndarray):
-        shape = tuple(real or length for real, length in zip(like.shape, value.shape, strict=True))
-        lengths.update(length for real, length in zip(like.shape, shape, strict=True) if not real)
-        return array_like(np.empty(shape, like.dtype), value)
-    if like is not None and type(like) is not type(value):
-        raise TypeError(f"{type(value).__name__} in place of {type(like).__name__}")
-    return value
+    if isinstance(template, dict):
+        return {name: rebuilt(part, value[name], lengths) for name, part in template.items()}
+    if isinstance(template, np.ndarray):
+        shape = tuple(real or length for real, length in zip(template.shape, value.shape, strict=True))
+        lengths.update(length for real, length in zip(template.shape, shape, strict=True) if not real)
+        return array_like(np.empty(shape, template.dtype), value, finite=False)
+    if type(template) is not type(value):
+        raise TypeError(f"{type(value).__name__} in place of {type(template).__name__}")
+    return number_of(value)
 
 
 @dataclass

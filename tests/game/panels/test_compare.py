@@ -43,14 +43,15 @@ def test_a_run_keeps_its_style_as_others_come_and_go():
 
 def test_a_run_beside_is_renamed_but_not_to_the_name_of_another():
     runs: list[EarlierRun] = []
-    for name in ("a", "b"):
-        put_beside(runs, name, History())
+    first, second = History(), History()
+    put_beside(runs, "a", first)
+    put_beside(runs, "b", second)
     style = runs[0].style
     assert rename_beside(runs, style, "a") == texts.COMPARE_NAME_TAKEN
     assert rename_beside(runs, style, "") == texts.COMPARE_NAME_EMPTY
     assert rename_beside(runs, style, "b") == ""
     assert rename_beside(runs, style, "bold") == ""
-    assert [(each.name, each.run) for each in runs] == [("bold", "b"), ("a", "a")]
+    assert [(each.name, each.run) for each in runs] == [("bold", second), ("a", first)]
 
 
 def test_lines_of_many_runs_differ_in_colour_or_dashes_and_neighbours_in_both():
