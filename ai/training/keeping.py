@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 FIRST_SECONDS: Final = 1.5  # after which a run is kept for the first time
 KEEP_SECONDS: Final = 10.0  # between two times
-_SHARE: Final = 0.01  # of a run's time that it may stand still for it, at most
+SHARE: Final = 0.01  # of a run's time that it may stand still for it, at most
 
 
 class Keeper:
@@ -58,7 +58,7 @@ class Keeper:
         if self._writing is None and now >= self._due:
             began = time.monotonic()
             self._writing = self._write(self._folder)
-            self._due = now + max(KEEP_SECONDS, (time.monotonic() - began) / _SHARE)
+            self._due = now + max(KEEP_SECONDS, (time.monotonic() - began) / SHARE)
         return told
 
     def save(self, folder: Path, final: bool = False) -> Saved:

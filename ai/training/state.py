@@ -187,9 +187,9 @@ def read_state(folder: str | Path, moment: int) -> State | None:
 
 def broken(folder: str | Path, error: Exception) -> ModelFormatError:
     """Return the error of a state that cannot be gone on from, and what can be done."""
-    return ModelFormatError(
-        state_folder(folder), [f"{problem_in(error)}; without this folder, the run goes on with an empty memory"]
-    )
+    file = f"{Path(error.filename).name}: " if isinstance(error, OSError) and error.filename else ""
+    said = f"{file}{problem_in(error)}; without this folder, the run goes on with an empty memory"
+    return ModelFormatError(state_folder(folder), [said])
 
 
 def restore_buffer(folder: str | Path, buffer: ReplayBuffer, told: Any, num_actions: int) -> bool:

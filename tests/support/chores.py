@@ -135,7 +135,7 @@ def eager(config, seed, keep):
     from ai.training import keeping
     from ai.training.lander_session import live
 
-    vars(keeping)["KEEP_SECONDS"] = 0.0
+    vars(keeping).update(FIRST_SECONDS=0.0, KEEP_SECONDS=0.0, SHARE=float("inf"))
     yield from live(config, seed, keep=keep)
 
 

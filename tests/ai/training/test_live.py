@@ -49,6 +49,12 @@ def begin():
         each.close()
 
 
+def all_the_time(monkeypatch):
+    """Let runs keep themselves as often as they can."""
+    for name, value in {"FIRST_SECONDS": 0.0, "KEEP_SECONDS": 0.0, "SHARE": np.inf}.items():
+        monkeypatch.setattr(keeping, name, value)
+
+
 def told_in(run, turns):
     return [message for _ in range(turns) for message in next(run)]
 
@@ -63,7 +69,7 @@ def of(kind, told):
 def test_without_commands_it_is_the_training_it_would_be_headless(begin, tmp_path, changes, monkeypatch):
     monkeypatch.setattr(LanderTask, "evaluate_every", 640)
     monkeypatch.setattr(LanderTask, "validation_episodes", 5)
-    monkeypatch.setattr(keeping, "KEEP_SECONDS", 0.0)
+    all_the_time(monkeypatch)
     config = TINY.changed(**changes)
     run, headless = begin(config, 3, keep=tmp_path / "keep"), Training(config, 3)
     told = told_in(run, 1)
@@ -311,7 +317,7 @@ def full(*_):
 
 
 def test_a_full_disk_is_told_once_and_training_goes_on(begin, tmp_path, monkeypatch):
-    monkeypatch.setattr(keeping, "KEEP_SECONDS", 0.0)
+    all_the_time(monkeypatch)
     run = begin(TINY, keep=tmp_path / "keep")
     told_in(run, 10)
     assert of(Saved, run.send(Save(tmp_path / "run"))) == [Saved(tmp_path / "run")]
