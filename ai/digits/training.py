@@ -212,7 +212,6 @@ class DigitTraining:
 
     def restore_best(self) -> None:
         """Restore the best network so far, if there is one: training cannot go on from a diverged one."""
-        self.diverged = True
         if self.best_values is not None:
             self.restore(self.best_values)
 

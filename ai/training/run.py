@@ -26,7 +26,7 @@ class Run(Protocol):
         config, seed: what all of it follows from.
         seconds: spent in training, as the caller counts them.
         lost: what could not be restored of a run that goes on, in words; empty for the very same run.
-        diverged: whether its networks were put back after that: then there is no state to go on from.
+        diverged: whether what it remembers may be broken: then there is no state to go on from.
         around: what whoever led it has kept in the state that it goes on from.
         states: has the blocks of that state; None for a new run.
 

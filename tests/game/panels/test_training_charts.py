@@ -9,6 +9,7 @@ from ai.training.lander_session import live
 from ai.training.messages import RunStarted
 from game.charts.chart import Chart, Series
 from game.core import texts
+from game.core.worker import WorkerState
 from game.panels.training_charts import TrainingCharts
 from game.training.beside import EarlierRun
 from game.training.library import Library
@@ -54,6 +55,8 @@ def test_a_run_says_in_which_unit_it_counts(preset: str, tmp_path, monkeypatch: 
     assert History.read(tmp_path / "run").reward_scale == config.reward_scale
 
     class Tells:
+        state = WorkerState.RUNNING
+
         def __init__(self, *_: object, **__: object) -> None: ...
         def set_pace(self, _: object) -> None: ...
         def poll(self) -> tuple[object, ...]:
