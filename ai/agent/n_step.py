@@ -7,7 +7,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from ai.agent.replay import MemoryCell
+from ai.agent.replay import Transition
 from ai.common.environment import Bools, Floats, Ints
 from ai.files import array_like, count_of
 
@@ -26,7 +26,7 @@ class NStep:
 
     def add(
         self, state: Floats, action: Ints, reward: Floats, next_state: Floats, terminal: Bools, ended: Bools
-    ) -> tuple[MemoryCell, Ints]:
+    ) -> tuple[Transition, Ints]:
         """Take one decision of each of n slots; return the m transitions that are now complete, and their slots (m,).
 
         `state` and `next_state` are (n, features), the others (n,). `terminal` marks a next state without value,
@@ -51,7 +51,7 @@ class NStep:
         row, slot = done.nonzero()
         order = np.argsort(-self._ages[row, slot], kind="stable")
         row, slot = row[order], slot[order]
-        cells = MemoryCell(
+        cells = Transition(
             self._states[row, slot],
             next_state[slot],
             self._actions[row, slot],
@@ -92,16 +92,16 @@ class Episodes:
     """Collects each slot's transitions until its episode ends, and passes on those that ended well."""
 
     def __init__(self) -> None:
-        self._parts: dict[int, list[MemoryCell]] = {}
+        self._parts: dict[int, list[Transition]] = {}
 
-    def add(self, cells: MemoryCell, slots: Ints, ended: Bools, success: Bools) -> Iterator[MemoryCell]:
+    def add(self, cells: Transition, slots: Ints, ended: Bools, success: Bools) -> Iterator[Transition]:
         """Take m new transitions with their slots (m,); yield every successful episode that is now whole.
 
         `ended` and `success` (n,) are of all slots.
         """
         for slot in np.unique(slots).tolist():
             mine = slots == slot
-            self._parts.setdefault(slot, []).append(MemoryCell(*(part[mine] for part in cells)))
+            self._parts.setdefault(slot, []).append(Transition(*(part[mine] for part in cells)))
             if ended[slot]:
                 parts = self._parts.pop(slot)
                 if success[slot]:
@@ -131,12 +131,12 @@ class Episodes:
             (0, np.intp),
         )
         like = (np.empty((len(slots), size) if size else len(slots), dtype) for size, dtype in kinds)
-        names = zip(MemoryCell._fields, like, strict=True)
-        cells = MemoryCell(*(array_like(template, state[name], name) for name, template in names))
+        names = zip(Transition._fields, like, strict=True)
+        cells = Transition(*(array_like(template, state[name], name) for name, template in names))
         for slot in dict.fromkeys(slots.tolist()):
-            self._parts[count_of(slot)] = [MemoryCell(*(part[slots == slot] for part in cells))]
+            self._parts[count_of(slot)] = [Transition(*(part[slots == slot] for part in cells))]
 
 
-def joined(parts: Sequence[MemoryCell]) -> MemoryCell:
+def joined(parts: Sequence[Transition]) -> Transition:
     """Return batches of transitions as one."""
-    return MemoryCell(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+    return Transition(*(np.concatenate(column) for column in zip(*parts, strict=True)))

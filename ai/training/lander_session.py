@@ -86,7 +86,7 @@ class LanderSession(Session[Training]):
         self._network_state_at = 0.0
         self._point_at = 0
         self._checkpoint_at = training.agent.decisions + self._checkpoint_every
-        self._began_learning = training.agent.train_count
+        self._began_learning = training.agent.gradient_steps
         self._learned_from: set[str] = set()  # digests of demonstrations
 
     @property
@@ -194,7 +194,7 @@ class LanderSession(Session[Training]):
     def _point(self, progress: Progress) -> Point:
         flown = 1.0 if self.training.statistics.known else np.nan
         agent = self.training.agent
-        learnt = 1.0 if agent.train_count > self._began_learning and not agent.held else np.nan
+        learnt = 1.0 if agent.gradient_steps > self._began_learning and not agent.held else np.nan
         landed, crashed, out_of_bounds, timed_out = (flown * share for share in progress.shares)
         return Point(
             self.training.seconds, progress.decisions, progress.episodes, flown * progress.success_rate,
@@ -208,7 +208,7 @@ class LanderSession(Session[Training]):
         values = agent.network.values.copy()
         if not np.isfinite(values).all():
             raise FloatingPointError(
-                f"the network was not finite after learning step {agent.train_count}; "
+                f"the network was not finite after learning step {agent.gradient_steps}; "
                 f"most likely the learning rate of {agent.optimizer.learning_rate:g} is too high"
             )
         normalizer = agent.normalizer.to_json() if agent.normalizer else None

@@ -22,7 +22,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from ai.agent.replay import MemoryCell, PrioritisedReplayBuffer, ReplayBuffer
+from ai.agent.replay import Transition, PrioritisedReplayBuffer, ReplayBuffer
 from ai.files import (
     array_like,
     count_of,
@@ -244,7 +244,7 @@ def _records(buffer: ReplayBuffer, first: int, last: int) -> NDArray[np.uint8]:
     held = max(first, oldest)
     rows = (buffer.start + np.arange(held - oldest, last - oldest)) % buffer.capacity
     taken = buffer.at(rows)
-    for name, part in zip(MemoryCell._fields, taken, strict=True):
+    for name, part in zip(Transition._fields, taken, strict=True):
         packed[name][held - first :] = part
     return packed.view(np.uint8).reshape(last - first, packed.itemsize)
 
@@ -257,7 +257,7 @@ def _fill(buffer: ReplayBuffer, rows: NDArray[np.intp], content: NDArray[np.uint
         raise ValueError("transitions hold numbers that are not finite")
     if (records["action"] >= num_actions).any() or (records["terminal"] > 1).any() or (records["steps"] < 1).any():
         raise ValueError("transitions hold what no decision is")
-    for name, part in zip(MemoryCell._fields, buffer.cells, strict=True):
+    for name, part in zip(Transition._fields, buffer.cells, strict=True):
         part[rows] = records[name]
 
 

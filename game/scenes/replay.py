@@ -11,7 +11,7 @@ from typing import Final
 import pygame
 
 from ai.flights.code import code_of
-from ai.flights.shared import SharedFlight
+from ai.flights.recording import SharedFlight
 from ai.lander.environment import Outcome
 from game.audio.flight_sounds import FlightSound
 from game.cockpit import hud

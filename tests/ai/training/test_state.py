@@ -79,7 +79,7 @@ def test_stopped_and_gone_on_with_at_any_point_it_is_the_straight_run(tmp_path, 
             for stop in (1, 2, 13, 40, 41, 77, 100, 109, TURNS, TURNS):
                 pieces, at = gone_on(on(pieces, stop - at), tmp_path / name), stop
                 assert pieces.lost == ""
-            assert straight.agent.train_count > 0
+            assert straight.agent.gradient_steps > 0
             assert differing(straight, pieces) == []
             for each in (straight, pieces):  # and so they go on
                 each.evaluate()
@@ -178,7 +178,7 @@ def test_numbers_that_no_run_can_have_had_are_refused(tmp_path, subtests):
         "target network": lambda state: state["agent"]["target"].fill(np.nan),
         "optimizer": lambda state: state["agent"]["optimizer"].update(steps=np.array(-1)),
         "n-step": lambda state: state["agent"]["n_step"].update(_ages=np.zeros(3)),
-        "counts": lambda state: state["agent"].update(train_count=-1),
+        "counts": lambda state: state["agent"].update(gradient_steps=-1),
         "best": lambda state: state.update(best={"score": {}, "values": training.agent.online.values}),
         "paid": lambda state: state["statistics"].update(paid=np.full((2, 3), 1.0)),
     }
