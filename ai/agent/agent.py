@@ -303,8 +303,8 @@ class DeepQAgent:
     def state(self) -> dict[str, Any]:
         """Return copies of all that its learning goes on from, besides its settings and replay buffers."""
         return {
-            "decisions": self.decisions, "gradient_steps": self.gradient_steps, "loss": self.loss, "mean_q": self.mean_q,
-            "rng": self.rng.bit_generator.state, "online": self.online.values.copy(),
+            "decisions": self.decisions, "gradient_steps": self.gradient_steps, "loss": self.loss,
+            "mean_q": self.mean_q, "rng": self.rng.bit_generator.state, "online": self.online.values.copy(),
             "target": self.target.values.copy(), "optimizer": self.optimizer.state(),
             "normalizer": self.normalizer.to_json() if self.normalizer else None,
             "n_step": self._n_step.state(), "episodes": self._episodes.state(),

@@ -22,7 +22,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from ai.agent.replay import Transition, PrioritisedReplayBuffer, ReplayBuffer
+from ai.agent.replay import PrioritisedReplayBuffer, ReplayBuffer, Transition
 from ai.files import (
     array_like,
     count_of,
