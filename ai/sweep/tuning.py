@@ -33,8 +33,8 @@ from ai.sweep.searches import AT, VALUE, PopulationSearch, StudySearch
 from ai.sweep.study import Study
 from ai.sweep.table import Table
 from ai.sweep.trial import Asked, Trial, fingerprint
-from ai.training.checkpoints import CHECKPOINT_SECONDS
 
+CHECKPOINT_SECONDS: Final = 20.0  # between two checkpoints of a trial
 TRIES: Final = 4  # of a trial whose worker dies; after that it waits for --resume
 REDUCTION: Final = 3  # ASHA: one trial in three goes on at each rung
 
