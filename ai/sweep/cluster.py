@@ -26,12 +26,6 @@ _ROOT: Final = Path(__file__).parents[2]
 _STORE: Final = 256 << 20  # bytes of Ray's object store on one machine; results are some hundred KB each
 _QUIET: Final = {
     "RAY_USAGE_STATS_ENABLED": "0",  # Ray reports its use by default
-    "RAY_AIR_NEW_OUTPUT": "0",  # with verbose=0, Tune then prints nothing; the table is ours
-    "RAY_TRAIN_ENABLE_V2_MIGRATION_WARNINGS": "0",
-    "TUNE_DISABLE_AUTO_CALLBACK_LOGGERS": "1",  # results are kept once, in the study
-    "TUNE_DISABLE_SIGINT_HANDLER": "1",  # Ctrl-C is ours too
-    "TUNE_GLOBAL_CHECKPOINT_S": "1000000",  # and so is what a killed driver goes on from
-    "TUNE_WARN_THRESHOLD_S": "60",
 }
 # Ray binds its ports to the loopback interface alone only if it takes itself to be on a system without clusters; by
 # itself, "127.0.0.1" is replaced by the machine's address on the network, and the ports are open to all.
@@ -92,8 +86,6 @@ def joined(address: str | None = None, workers: int | None = None) -> Iterator[i
         if address is None and (opened := _opened()):
             raise ConnectionError(f"Ray would listen on {opened}, and not on this machine alone; nothing was started")
         count = int(ray.cluster_resources().get("CPU", 1))
-        # Trials that wait for a worker: one is enough for a search that learns, but fills a large cluster slowly.
-        os.environ["TUNE_MAX_PENDING_TRIALS_PG"] = str(max(1, count // 8))
         yield count
     finally:
         ray.shutdown()

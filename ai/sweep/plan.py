@@ -11,7 +11,7 @@ from ai.sweep.runs import AGENT, DIGITS, read_config
 from ai.sweep.space import Space, read_dimension
 
 FORMAT: Final = "tranquility study"
-VERSION: Final = 1
+VERSION: Final = 2
 TPE, RANDOM, POPULATION = "tpe", "random", "population"
 SEARCHES: Final = (TPE, RANDOM, POPULATION)
 MOST_TRIALS: Final = 100_000

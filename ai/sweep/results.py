@@ -62,6 +62,11 @@ class FinishedTrial:
     problem: _Words = ""
     restarts: Count = 0
 
+    @classmethod
+    def senseless(cls, number: int, params: dict[str, Any], problem: str) -> Self:
+        """Return the result of a trial whose settings make no sense together."""
+        return cls(number, params, None, 0, False, 0.0, (), problem=problem)
+
     @property
     def values(self) -> list[float]:
         """Values of the seeds that have one."""

@@ -1,9 +1,9 @@
-"""Study on disk: its plan, the trials that have begun, and those that are finished, each whole or not there.
+"""Study on disk: its plan, Optuna's journal, and the finished trials, each whole or not there.
 
     study.json            the plan
-    summary.json          the best so far, for lists; made from the rest
-    started/0007.json     what was asked of a trial that is not finished
-    trials/0007/          a finished trial: trial.json, and seed-N/ with the run as `train` keeps it
+    journal.jsonl         Optuna's: every trial that has begun, with its settings (`ai.sweep.journal`)
+    summary.json          the best so far and what matters, for lists; made from the rest
+    trials/0007/          a finished trial: trial.json with its curves, and seed-N/ with the run as `train` keeps it
 
 Only the process that runs a study writes it. It gets results through Ray, so workers need no common disk.
 """
@@ -15,15 +15,15 @@ import json
 import re
 import secrets
 import shutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, Final, Self
 
 from ai.agent.storage import KIND
 from ai.digits.classifier import KIND as DIGITS_KIND
-from ai.files import NEW, Count, OneOf, Sized, beside, brief, read_as, read_json, take_folder, write_text
+from ai.files import NEW, Count, OneOf, Share, Sized, beside, brief, read_as, read_json, take_folder, write_text
 from ai.sweep.metric import Metric
 from ai.sweep.plan import FORMAT, VERSION, Plan
 from ai.sweep.results import FinishedTrial
@@ -52,12 +52,34 @@ class _StudyFile:
 
 
 @dataclass(frozen=True)
-class Begun:
-    """Trial that has begun and is not finished."""
+class Summary:
+    """Summary of a study, for lists of many.
 
-    number: Count
-    params: dict[str, Any]
-    parent: Count | None = None
+    Attributes:
+        finished, trials: trials that are finished, and those asked for.
+        metric: what they are compared by.
+        env: environment of its runs; None for digits.
+        best: value of the best trial, as text; None before there is one.
+        run: folder of the best run, within the study's.
+        importance: share that each knob has in setting the best trials apart, once that is known.
+
+    """
+
+    finished: Count
+    trials: Count
+    metric: Annotated[str, Sized(200)]
+    env: str | None = None
+    best: Annotated[str, Sized(200)] | None = None
+    run: Annotated[str, Sized(200)] | None = None
+    importance: dict[str, Share] | None = None
+
+
+def summary_of(folder: Path) -> Summary | None:
+    """Return the summary of a study; None without one that can be read."""
+    try:
+        return read_as(Summary, read_json(folder / SUMMARY_FILE))
+    except (OSError, ValueError, RecursionError):
+        return None
 
 
 class Study:
@@ -68,8 +90,8 @@ class Study:
         id: hexadecimal digits that no other study has.
         plan: what was asked for.
         trials: finished ones by number.
-        begun: trials that have begun and are not finished, by number.
         damaged: numbers of trials whose files cannot be read.
+        importance: share that each knob has in setting the best trials apart, as it was last known.
 
     """
 
@@ -77,8 +99,8 @@ class Study:
         self.folder, self.id, self.plan = folder, study_id, plan
         self.metric = Metric.named(plan.metric)
         self.trials: dict[int, FinishedTrial] = {}
-        self.begun: dict[int, Begun] = {}
         self.damaged: list[int] = []
+        self.importance: dict[str, float] = {}
 
     @classmethod
     def create(cls, folder: Path, plan: Plan) -> Self:
@@ -95,16 +117,24 @@ class Study:
     def load(cls, folder: Path) -> Self:
         """Read a study; raises StudyError for a folder that is none. Trials that cannot be read are `damaged`."""
         try:
-            told = read_as(_StudyFile, read_json(folder / STUDY_FILE))
+            values = read_json(folder / STUDY_FILE)
+            if isinstance(values, dict) and (values.get("format"), values.get("version")) == (FORMAT, 1):
+                raise StudyError(f"{folder} is a study of an earlier version, which this one does not read")
+            told = read_as(_StudyFile, values)
             told.plan.check()
             if not re.fullmatch(r"[0-9a-f]{32}", told.id):
                 raise ValueError("its id is not 32 hexadecimal digits")
         except OSError as error:
             raise StudyError(f"{folder} is no study: {STUDY_FILE}: {error.strerror or error}") from error
+        except StudyError:
+            raise
         except (ValueError, RecursionError) as error:
             raise StudyError(f"{folder} is no study that can be read: {brief(error)}") from error
         study = cls(folder, told.id, told.plan)
         study._read_trials()
+        summary = summary_of(folder)
+        known = (summary and summary.importance) or {}
+        study.importance = {name: share for name, share in known.items() if name in told.plan.space}
         return study
 
     def _write_plan(self) -> None:
@@ -121,24 +151,24 @@ class Study:
                 self.damaged.append(number)
             else:
                 self.trials[number] = trial
-        for path in _numbered(self.folder / "started", ".json"):
-            if int(path.stem) not in self.trials:
-                with suppress(*_UNREADABLE):
-                    begun = read_as(Begun, read_json(path))
-                    self._check(int(path.stem), begun)
-                    self.begun[begun.number] = begun
 
-    def _check(self, number: int, trial: FinishedTrial | Begun) -> None:
+    def _check(self, number: int, trial: FinishedTrial) -> None:
         """Raise ValueError or TypeError for what a file says of a trial if it cannot be one of this study."""
-        if trial.number != number or set(trial.params) != set(self.plan.space):
-            raise ValueError("of another trial or another study")
-        for name, dimension in self.plan.dimensions().items():
-            dimension.place(trial.params[name])
-        if isinstance(trial, FinishedTrial) and (trial.seeds or trial.value is not None):
+        if trial.number != number:
+            raise ValueError("of another trial")
+        self.check_params(trial.params)
+        if trial.seeds or trial.value is not None:
             if tuple(seed.seed for seed in trial.seeds) != self.plan.seeds:
                 raise ValueError("of other seeds")
             if trial.value is not None and len(trial.values) < len(trial.seeds):
                 raise ValueError("a value without that of a seed")
+
+    def check_params(self, params: dict[str, Any]) -> None:
+        """Raise ValueError or TypeError for settings that are not of this study's space."""
+        if set(params) != set(self.plan.space):
+            raise ValueError("of another study")
+        for name, dimension in self.plan.dimensions().items():
+            dimension.place(params[name])
 
     # Writing
 
@@ -159,19 +189,6 @@ class Study:
         self.plan = plan
         self._write_plan()
 
-    @property
-    def next_number(self) -> int:
-        """Number that no trial has had."""
-        return max([*self.trials, *self.begun, *self.damaged], default=-1) + 1
-
-    def begin(self, number: int, params: dict[str, Any], parent: int | None = None) -> None:
-        """Note that a trial begins. A disk that is full does not keep it from that."""
-        self.begun[number] = Begun(number, params, parent)
-        told = {"number": number, "params": params, "parent": parent}
-        with suppress(OSError):
-            (self.folder / "started").mkdir(exist_ok=True)
-            write_text(self.folder / "started" / f"{number:04}.json", json.dumps(told), flush=False)
-
     def record(self, trial: FinishedTrial, packed: bytes = b"") -> None:
         """Keep a finished trial and the archive of its runs, whole or not at all; raises OSError."""
         target = self.trial_folder(trial.number)
@@ -187,26 +204,19 @@ class Study:
             shutil.rmtree(new, ignore_errors=True)
             raise
         self.trials[trial.number] = trial
-        self.begun.pop(trial.number, None)
         with suppress(OSError):
-            (self.folder / "started" / f"{trial.number:04}.json").unlink(missing_ok=True)
             self.write_summary()
 
-    def write_summary(self, importance: Mapping[str, float] | None = None) -> None:
-        """Write what a list of studies shows, at the end with how much each knob matters; raises OSError."""
+    def write_summary(self) -> None:
+        """Write what a list of studies shows; raises OSError."""
         best = self.best()
         seed = best.best_seed if best else None
-        told = {
-            "finished": len(self.trials),
-            "trials": self.plan.trials,
-            "kind": self.plan.kind,
-            "env": self.plan.settings.get("env"),
-            "metric": self.plan.metric,
-            "best": self.shown(best.value) if best else None,
-            "run": f"trials/{best.number:04}/{seed_folder(seed.seed)}" if best and seed else None,
-            "importance": importance,
-        }
-        write_text(self.folder / SUMMARY_FILE, json.dumps(told, indent=2) + "\n", flush=False)
+        summary = Summary(
+            len(self.trials), self.plan.trials, self.plan.metric, self.plan.settings.get("env"),
+            self.shown(best.value) if best else None,
+            f"trials/{best.number:04}/{seed_folder(seed.seed)}" if best and seed else None, self.importance,
+        )  # fmt: skip
+        write_text(self.folder / SUMMARY_FILE, json.dumps(asdict(summary), indent=2) + "\n", flush=False)
 
     # Reading
 
