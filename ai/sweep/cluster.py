@@ -80,10 +80,10 @@ def joined(address: str | None = None, workers: int | None = None) -> Iterator[i
             if address is not None:
                 _join(address, runtime_env={"env_vars": worker_environment()}, **quiet)
             else:
-                with _environment(worker_environment()):
-                    ray.init(address="local", num_cpus=workers or cores(), include_dashboard=False,
-                             _node_ip_address=LOOPBACK, object_store_memory=_STORE, **quiet)  # fmt: skip
-        if address is None and (opened := _opened()):
+                os.environ.update(worker_environment())
+                ray.init(address="local", num_cpus=workers or cores(), include_dashboard=False,
+                         _node_ip_address=LOOPBACK, object_store_memory=_STORE, **quiet)  # fmt: skip
+        if address is None and (opened := ray.util.get_node_ip_address()) != LOOPBACK:
             raise ConnectionError(f"Ray would listen on {opened}, and not on this machine alone; nothing was started")
         count = int(ray.cluster_resources().get("CPU", 1))
         yield count
@@ -169,29 +169,6 @@ def _tell(news: Mapping[str, Any], ignore_prefix: bool = False) -> None:  # noqa
 def _is_local(address: str) -> bool:
     """Whether an address leads to this machine by its loopback interface."""
     return address.removeprefix("ray://").startswith(("127.", "localhost", "[::1]"))
-
-
-def _opened() -> str:
-    """Return the address that Ray's node has on the network; empty if it is the loopback address."""
-    import ray
-
-    node = ray.util.get_node_ip_address()
-    return "" if node == LOOPBACK else str(node)
-
-
-@contextmanager
-def _environment(values: Mapping[str, str]) -> Iterator[None]:
-    """Set variables of the environment while a block runs; processes started there keep them."""
-    before = {name: os.environ.get(name) for name in values}
-    os.environ.update(values)
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = value
 
 
 def each(

@@ -71,7 +71,7 @@ class Journal(BaseJournalBackend):
         if whole != text:
             write_text(path, whole)
 
-    def read_logs(self, log_number_from: int) -> Iterator[dict[str, Any]]:  # type: ignore[override]
+    def read_logs(self, log_number_from: int) -> Iterator[dict[str, Any]]:
         """Yield the lines from a number on."""
         yield from self._lines[log_number_from:]
 
@@ -144,7 +144,7 @@ class Search:
             return False
         noted = self._trial(trial.number)
         noted.report(trial.value, trial.at // self._study.plan.every)
-        return noted.should_prune()
+        return bool(noted.should_prune())
 
     def tell(self, trial: FinishedTrial) -> None:
         """Note the end of a trial."""

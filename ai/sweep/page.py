@@ -64,7 +64,8 @@ def _importance(study: Study) -> str:
         for row, (name, share) in enumerate(study.importance.items())
     ]
     return (
-        "<h2>Which knobs matter</h2><p>Share of each knob in setting the best tenth of the trials apart (PED-ANOVA).</p>"
+        "<h2>Which knobs matter</h2>"
+        "<p>Share of each knob in setting the best tenth of the trials apart (PED-ANOVA).</p>"
         f'<svg width="720" height="{24 * len(lines)}">{"".join(lines)}</svg>'
     )
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Annotated, Any, Final
 
 from ai.files import Count, OneOf, Seed, Sized, Within
@@ -104,7 +104,3 @@ class Plan:
     def unit(self) -> str:
         """Word for what the budget counts."""
         return "epochs" if self.kind == DIGITS else "decisions"
-
-    def to_json(self) -> dict[str, Any]:
-        """Return it as JSON can hold it."""
-        return asdict(self)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Any, Final
 
 from ai.files import brief
@@ -17,13 +18,13 @@ def report(study: Study) -> dict[str, Any]:
     best = study.best()
     return {
         "study": study.folder.name,
-        "plan": study.plan.to_json(),
+        "plan": asdict(study.plan),
         "finished": len(study.trials),
         "damaged": study.damaged,
         "best": best.number if best else None,
         "importance": study.importance,
         "ranking": [trial.number for trial in ranked],
-        "trials": [trial.to_json() for _, trial in sorted(study.trials.items())],
+        "trials": [asdict(trial) for _, trial in sorted(study.trials.items())],
     }
 
 

@@ -23,16 +23,13 @@ from typing import Annotated, Any, Final, Self
 
 from ai.agent.storage import KIND
 from ai.digits.classifier import KIND as DIGITS_KIND
-from ai.files import NEW, Count, OneOf, Share, Sized, beside, brief, read_as, read_json, take_folder, write_text
+from ai.files import NEW, OneOf, Sized, beside, brief, read_as, read_json, take_folder, write_text
 from ai.sweep.metric import Metric
 from ai.sweep.plan import FORMAT, VERSION, Plan
-from ai.sweep.results import FinishedTrial
+from ai.sweep.results import STUDIES, STUDY_FILE, SUMMARY_FILE, FinishedTrial, Summary, summary_of
 from ai.sweep.runs import DIGITS
 from ai.sweep.trial import archive, seed_folder, unpack
 
-STUDIES: Final = "studies"  # folder of all studies, in the user's
-STUDY_FILE: Final = "study.json"
-SUMMARY_FILE: Final = "summary.json"
 TRIAL_FILE: Final = "trial.json"
 _NAME: Final = re.compile(r"\d{4,6}")
 _MOST: Final = 64_000_000  # bytes of a trial's file
@@ -49,37 +46,6 @@ class _StudyFile:
     version: Annotated[int, OneOf((VERSION,))]
     id: Annotated[str, Sized(32, 32)]
     plan: Plan
-
-
-@dataclass(frozen=True)
-class Summary:
-    """Summary of a study, for lists of many.
-
-    Attributes:
-        finished, trials: trials that are finished, and those asked for.
-        metric: what they are compared by.
-        env: environment of its runs; None for digits.
-        best: value of the best trial, as text; None before there is one.
-        run: folder of the best run, within the study's.
-        importance: share that each knob has in setting the best trials apart, once that is known.
-
-    """
-
-    finished: Count
-    trials: Count
-    metric: Annotated[str, Sized(200)]
-    env: str | None = None
-    best: Annotated[str, Sized(200)] | None = None
-    run: Annotated[str, Sized(200)] | None = None
-    importance: dict[str, Share] | None = None
-
-
-def summary_of(folder: Path) -> Summary | None:
-    """Return the summary of a study; None without one that can be read."""
-    try:
-        return read_as(Summary, read_json(folder / SUMMARY_FILE))
-    except (OSError, ValueError, RecursionError):
-        return None
 
 
 class Study:
@@ -138,14 +104,14 @@ class Study:
         return study
 
     def _write_plan(self) -> None:
-        told = {"format": FORMAT, "version": VERSION, "id": self.id, "plan": self.plan.to_json()}
+        told = {"format": FORMAT, "version": VERSION, "id": self.id, "plan": asdict(self.plan)}
         write_text(self.folder / STUDY_FILE, json.dumps(told, indent=2) + "\n")
 
     def _read_trials(self) -> None:
         for path in _numbered(self.folder / "trials"):
             number = int(path.name)
             try:
-                trial = FinishedTrial.from_json(read_json(path / TRIAL_FILE, _MOST))
+                trial = read_as(FinishedTrial, read_json(path / TRIAL_FILE, _MOST))
                 self._check(number, trial)
             except _UNREADABLE:
                 self.damaged.append(number)
@@ -198,7 +164,7 @@ class Study:
             new.mkdir()
             if packed:
                 unpack(packed, new)
-            write_text(new / TRIAL_FILE, json.dumps(trial.to_json()) + "\n")
+            write_text(new / TRIAL_FILE, json.dumps(asdict(trial)) + "\n")
             new.rename(target)
         except BaseException:
             shutil.rmtree(new, ignore_errors=True)

@@ -62,7 +62,7 @@ def test_a_line_cut_off_by_a_kill_is_left_out(study):
     for cut in (1, 40):
         file.write_text(whole + whole.splitlines()[-1][:-cut])
         assert again(study).left == [1, 2]
-        assert file.read_text() == whole
+        assert file.read_text().startswith(whole)
 
 
 def test_a_full_disk_leaves_no_half_of_a_line(study, monkeypatch):

@@ -4,6 +4,7 @@ import errno
 import json
 import os
 import shutil
+from dataclasses import asdict
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from ai.agent.storage import LAST
 from ai.digits.checkpoints import save_digit_run
 from ai.digits.config import DIGIT_PRESETS
 from ai.digits.training import DigitTraining
-from ai.files import read_arrays
+from ai.files import read_arrays, read_as
 from ai.sweep import study as study_module
 from ai.sweep.plan import Plan
 from ai.sweep.report import report, told
@@ -172,7 +173,7 @@ def test_a_trial_that_goes_on_from_a_checkpoint_ends_as_long_and_says_so():
     assert [[point.at for point in seed.curve] for seed in result.seeds] == [[100, 200, 300, 400]] * 2
     assert (result.restarts, result.parent, result.seeds[0].curve[:2]) == (1, None, so_far.seeds[0].curve)
     assert result.seconds >= so_far.seconds
-    assert FinishedTrial.from_json(json.loads(json.dumps(result.to_json()))) == result
+    assert read_as(FinishedTrial, json.loads(json.dumps(asdict(result)))) == result
 
 
 def test_a_trial_of_digits_goes_on_from_a_checkpoint_as_if_nothing_had_been(tmp_path, monkeypatch):

@@ -90,8 +90,8 @@ def test_study_bears_what_has_broken_it(folders, capsys):
         "no seeds": (("seeds",), []),
         "a huge value": (("value",), 1e308),
         "a huge value of a seed": (("seeds", 0, "value"), -1e308),
-        "a huge return": (("seeds", 0, "curve", 0, 2), 1e308),
-        "a curve that stands still": (("seeds", 0, "curve"), [[0, 0.0, 0.0]]),
+        "a huge return": (("seeds", 0, "curve", 0, "mean_return"), 1e308),
+        "a curve that stands still": (("seeds", 0, "curve"), [{"at": 0, "success": 0.0, "mean_return": 0.0}]),
     }
     for folder in folders:
         for named, (path, new) in cases.items():
