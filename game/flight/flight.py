@@ -235,6 +235,7 @@ class Flight:
 
     def seen(self) -> tuple[Floats, Floats | None]:
         """Return what a co-pilot reads of each pad, and what is around on the way there; on a leg, along its route."""
+        assert self.network is not None
         if self.route:
             return self.route.observe(self.env, self.network), None
         return self.env.observe_pads(self.network), self.env.around_pads()
