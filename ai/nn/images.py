@@ -171,7 +171,10 @@ class ConvolutionLayer(FullyConnectedLayer):
         return self._correlate(input_data, frame, self.kept("output", (len(input_data), *self.outputs), self.dtype))
 
     def predict(self, input_data: Array) -> Array:
-        """Return the same as a new array."""
+        """Return the same as a new array, also for one image without the batch axis."""
+        if input_data.ndim == 3:
+            one: Array = self.predict(input_data[None])[0]
+            return one
         _check_images(self, input_data)
         frame = np.zeros(self._frame(len(input_data)), self.dtype, "F")
         return self._correlate(input_data, frame, np.empty((len(input_data), *self.outputs), self.dtype, "F"))
@@ -236,7 +239,10 @@ class MaxPoolingLayer(HalvedLayer):
         return self._maximum(input_data, self.output)
 
     def predict(self, input_data: Array) -> Array:
-        """Return the same as a new array."""
+        """Return the same as a new array, also for one image without the batch axis."""
+        if input_data.ndim == 3:
+            one: Array = self.predict(input_data[None])[0]
+            return one
         _check_images(self, input_data)
         return self._maximum(input_data, np.empty((len(input_data), *self.outputs), input_data.dtype, "F"))
 
@@ -288,7 +294,10 @@ class FlattenLayer(HalvedLayer):
         return input_data.reshape(-1, self.outputs, order="F")
 
     def predict(self, input_data: Array) -> Array:
-        """Return the same."""
+        """Return the same, also for one image without the batch axis."""
+        if input_data.ndim == 3:
+            one: Array = self.predict(input_data[None])[0]
+            return one
         return self.forward_propagate(input_data)
 
     def input_error(self, output_error: Array) -> Array:

@@ -107,8 +107,6 @@ class NeuralNetwork:
                 step()
             found: Array = answer.copy()
             return found
-        if data.ndim % 2:
-            return self.predict(data[None])[0]
         if data.ndim == 4 and len(data) > IMAGES:
             return np.concatenate([self.predict(part) for part in np.split(data, range(IMAGES, len(data), IMAGES))])
         for layer in self.layers:
@@ -118,8 +116,6 @@ class NeuralNetwork:
     def activations(self, input_data: npt.ArrayLike) -> list[Array]:
         """Return what each layer gives for a batch or one example; the last is what `predict` returns."""
         data: Array = np.asarray(input_data, self.dtype)
-        if data.ndim % 2:
-            return [each[0] for each in self.activations(data[None])]
         return [data := layer.predict(data) for layer in self.layers]
 
     def input_gradient(self, input_data: npt.ArrayLike, output_error: npt.ArrayLike) -> Array:
