@@ -83,10 +83,11 @@ class NeuralNetwork:
         sizes = [size for layer in self.layers for size in (layer.inputs, layer.outputs) if isinstance(size, int)]
         if not sizes or any(isinstance(layer.inputs, tuple) for layer in self.layers):
             return np.empty((0, 0), self.dtype), [], np.empty((0, 0), self.dtype)
-        first = memory = np.ones(sizes[0] + 1, self.dtype)
+        first = memory = np.ones(sizes[0] + 1, self.dtype)  # an example, and a 1 that a bias is multiplied by
         values, steps = self.values, []
         for layer in self.layers:
-            following = np.ones(1 + layer.outputs if isinstance(layer.outputs, int) else len(memory), self.dtype)
+            outputs = layer.outputs if isinstance(layer.outputs, int) else len(memory) - 1
+            following = np.ones(outputs + 1, self.dtype)
             size = sum(parameter.value.size for parameter in layer.parameters)
             steps.append(layer.row_step(memory, values[:size], following[:-1]))
             memory, values = following, values[size:]
