@@ -11,7 +11,7 @@ from ai.agent.config import AgentConfig
 from ai.common.environment import Doubles, Floats, Ints
 
 
-class MemoryCell(NamedTuple):
+class Transition(NamedTuple):
     """One transition, or a batch of them stacked field by field.
 
     With n-step returns, `reward` is the discounted sum over `steps` decisions and `next_state` what came after
@@ -24,6 +24,9 @@ class MemoryCell(NamedTuple):
     reward: Any
     terminal: Any
     steps: Any = 1
+
+
+MemoryCell = Transition  # as the first description of this project calls it
 
 
 class ReplayBuffer:
@@ -60,34 +63,29 @@ class ReplayBuffer:
     def __len__(self) -> int:
         return self.size
 
-    def add(self, cells: MemoryCell) -> Ints:
+    def add(self, cells: Transition) -> Ints:
         """Keep a batch of n transitions, oldest first, and return where they lie, (n,)."""
-        count = len(cells.action)
-        self.added += count
-        if count > self.capacity:
-            cells = MemoryCell(
-                *(
-                    np.broadcast_to(part, (count,))[-self.capacity :] if np.ndim(part) == 0 else part[-self.capacity :]
-                    for part in cells
-                )
-            )
-            count = self.capacity
+        self.added += len(cells.action)
+        new = np.empty(len(cells.action), self.records.dtype)
+        for name, part in zip(Transition._fields, cells, strict=True):
+            new[name] = part
+        new = new[-self.capacity :]
+        count = len(new)
         if self.size + count > self.capacity:
             self._drop(min(self.size, max(self.prune, self.size + count - self.capacity)))
         rows = (self.start + self.size + np.arange(count)) % self.capacity
-        for kept, new in zip(self.cells, cells, strict=True):
-            kept[rows] = new
+        self.records[rows] = new
         self.size += count
         return rows
 
-    def sample(self, count: int, rng: np.random.Generator) -> tuple[MemoryCell, Ints, Floats]:
+    def sample(self, count: int, rng: np.random.Generator) -> tuple[Transition, Ints, Floats]:
         """Draw `count` transitions; return them, the rows where they lie, and their weights in the cost, (count,)."""
         rows = rng.integers(self.size, size=count)
         rows += self.start
         rows %= self.capacity
         return self.at(rows), rows, np.ones(count, dtype=np.float32)
 
-    def at(self, rows: Ints) -> MemoryCell:
+    def at(self, rows: Ints) -> Transition:
         """Return the transitions that lie at `rows`, stacked."""
         return _fields(self.records.take(rows))
 
@@ -99,15 +97,15 @@ class ReplayBuffer:
         self.size -= count
 
 
-def _fields(records: NDArray[np.void]) -> MemoryCell:
+def _fields(records: NDArray[np.void]) -> Transition:
     """Return the fields of records as views."""
-    return MemoryCell(*(records[name] for name in MemoryCell._fields))
+    return Transition(*(records[name] for name in Transition._fields))
 
 
 class PrioritisedReplayBuffer(ReplayBuffer):
     """Prioritised replay: sampling with probability proportional to |error|^exponent (Schaul et al. 2016).
 
-    New ones get the largest priority seen, so that each is drawn soon. `importance`, which the agent raises
+    New ones get the `largest` priority seen, so that each is drawn soon. `importance`, which the agent raises
     towards 1, is the exponent β by which the weights undo the bias that this brings; `exponent` is the paper's α.
     """
 
@@ -117,15 +115,15 @@ class PrioritisedReplayBuffer(ReplayBuffer):
         super().__init__(capacity, num_features, prune)
         self.exponent, self.importance = exponent, importance
         self.tree = SumTree(capacity)
-        self._largest = 1.0
+        self.largest = 1.0
 
-    def add(self, cells: MemoryCell) -> Ints:
+    def add(self, cells: Transition) -> Ints:
         """Keep a batch of n transitions, oldest first, and return where they lie, (n,)."""
         rows = super().add(cells)
-        self.tree.set(rows, np.full(len(rows), self._largest))
+        self.tree.set(rows, np.full(len(rows), self.largest))
         return rows
 
-    def sample(self, count: int, rng: np.random.Generator) -> tuple[MemoryCell, Ints, Floats]:
+    def sample(self, count: int, rng: np.random.Generator) -> tuple[Transition, Ints, Floats]:
         """Draw `count` transitions; return them, the rows where they lie, and their weights in the cost, (count,).
 
         Weights are (size · probability)^-importance, relative to the largest of those drawn.
@@ -140,7 +138,7 @@ class PrioritisedReplayBuffer(ReplayBuffer):
     def update_priorities(self, rows: Ints, errors: Floats) -> None:
         """Set the priorities of the transitions at `rows` by their errors (n,)."""
         priorities = (np.abs(errors).astype(float) + 1e-3) ** self.exponent
-        self._largest = max(self._largest, float(priorities.max()))
+        self.largest = max(self.largest, float(priorities.max()))
         self.tree.set(rows, priorities)
 
     def _drop(self, count: int) -> None:

@@ -17,7 +17,7 @@ from ai.agent.config import AgentConfig
 from ai.agent.n_step import NStep
 from ai.agent.network import build_network, make_optimizer
 from ai.agent.normalizer import Normalizer
-from ai.agent.replay import MemoryCell, ReplayBuffer
+from ai.agent.replay import ReplayBuffer, Transition
 from ai.common.environment import Floats, Ints
 from ai.explain.learning_step import MOST_PARAMETERS, Line, Step, kept_by, network_functions, recorded_step
 from ai.explain.recorder import RETURN, Function, Recorder
@@ -81,7 +81,7 @@ class Lesson:
     config: AgentConfig
     decisions: int
     flown: Flown | None
-    cell: MemoryCell
+    cell: Transition
     state: Floats
     next_state: Floats
     weight: float
@@ -119,7 +119,7 @@ class Before:
     target: Floats
     optimizer: dict[str, Any]
     normalizer: dict[str, Any] | None
-    cells: MemoryCell
+    cells: Transition
     weights: Floats
 
     @classmethod
@@ -138,7 +138,7 @@ def functions(config: AgentConfig) -> dict[str, Function]:
     return Recorder([*_AGENT, *network_functions(network, make_optimizer(config))]).functions
 
 
-def explain(before: Before, cell: MemoryCell, agent: DeepQAgent, flown: Flown | None = None) -> Lesson:
+def explain(before: Before, cell: Transition, agent: DeepQAgent, flown: Flown | None = None) -> Lesson:
     """Take the learning step that follows from `before` with `cell` in its minibatch, and return all of it.
 
     `agent` is one of the same sizes and symmetry, which is not changed. Raises DivergenceError as the step does, and
@@ -191,18 +191,18 @@ _AGENT: Final = (
 class _HandedBatch(ReplayBuffer):
     """Replay buffer that always draws the minibatch that it was handed."""
 
-    def __init__(self, cells: MemoryCell, weights: Floats) -> None:
+    def __init__(self, cells: Transition, weights: Floats) -> None:
         super().__init__(len(weights), cells.state.shape[1])
         self.added, self._drawn = 2**62, (cells, np.arange(len(weights)), weights)
 
-    def sample(self, count: int, rng: np.random.Generator) -> tuple[MemoryCell, Ints, Floats]:  # noqa: ARG002
+    def sample(self, count: int, rng: np.random.Generator) -> tuple[Transition, Ints, Floats]:  # noqa: ARG002
         """Return the minibatch."""
         return self._drawn
 
 
-def _twin(before: Before, cell: MemoryCell, row: int, agent: DeepQAgent) -> DeepQAgent:
+def _twin(before: Before, cell: Transition, row: int, agent: DeepQAgent) -> DeepQAgent:
     """Return an agent that is about to take the learning step, with the memory in a row of its minibatch."""
-    cells = MemoryCell(*(np.array(part) for part in before.cells))
+    cells = Transition(*(np.array(part) for part in before.cells))
     for part, own in zip(cells, cell, strict=True):
         part[row] = own
     config = before.config.changed(gradient_steps=1, success_pass=False, batch_size=len(before.weights))

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Final
 
-from ai.flights.easing import AS_IT_IS
-from ai.flights.score import landing_score
+from ai.flights.recording import AS_IT_IS
+from ai.flights.verification import landing_score
 from game.core.lock import held
 from game.flight.flight import Flight, StickHolder
 

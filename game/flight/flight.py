@@ -8,16 +8,14 @@ import numpy as np
 
 from ai.common.decision import Decision
 from ai.common.environment import Doubles, Floats
-from ai.flights.easing import AS_IT_IS, Easing
-from ai.flights.recording import AREA, Recording, StickHolder
-from ai.flights.starts import begun
-from ai.flights.stick import Shares, thrust
+from ai.flights.recording import AREA, AS_IT_IS, Easing, Recording, Shares, StickHolder, thrust
+from ai.flights.verification import begun
 from ai.lander.descent import LegStart, leg_of
 from ai.lander.environment import Outcome
 from ai.lander.pilots import COAST, ScriptedPilot
 from ai.lander.route import Route
 from game.flight.handicap import OWN, Handicap
-from game.flight.networks import Policy, QPolicy, decide
+from game.flight.networks import DECISION_STEPS, Policy, QPolicy, decide, decision_steps
 from game.flight.poses import Poses
 
 if TYPE_CHECKING:
@@ -26,8 +24,6 @@ if TYPE_CHECKING:
 
 __all__ = ["DECISION_STEPS", "Flight", "Recording", "StickHolder"]
 
-# Physics steps per decision of a network, here as in training.
-DECISION_STEPS: Final = 4
 _STEERING: Final = ScriptedPilot()  # fires the jets for a person who flies with one switch
 
 
@@ -41,7 +37,7 @@ class Flight:
         pads: 1 on a plain, or 3 among hills.
         hands: handicap of the keys, a name of `game.flight.handicap.HANDS`.
         mission: name of one of `ai.lander.missions.STARTS`, which sets the start and the conditions; empty for none.
-        shares: whether the network may share the stick, and not only take it; it never shares a leg's.
+        shares: whether the network may share the stick, and not only take it.
         easing: changes of the rules that give the pilot more room.
         area: version of the area's edges, an index of `ai.lander.rules.AREAS`.
         leg: where a flight of a descent begins, which sets the start and the conditions; None for any other.
@@ -76,7 +72,7 @@ class Flight:
         self.env = begun(self.recording)
         self.route = Route(leg_of(seed, leg).route) if leg else None
         self.observation: Floats = self.env.observe()
-        self.hand, self.shares = StickHolder.HUMAN, shares and leg is None
+        self.hand, self.shares = StickHolder.HUMAN, shares
         self.steered = False
         self.poses = Poses(self.env)
         self.asked, self.overridden = COAST, False
@@ -141,20 +137,19 @@ class Flight:
         self.recording.actions[:] = source.actions[:step]
         self.recording.hands[:] = source.hands[:step]
         self._yours = self.recording.hands.count(StickHolder.HUMAN)
-        self.recording.gravity[:] = [change for change in source.gravity if change[0] <= step]
+        self.recording.gravity = tuple(change for change in source.gravity if change[0] <= step)
         self.recording.shares = {at: shares for at, shares in source.shares.items() if at < step}
         self._pull(self.recording.gravity_at(step))
         self.rest()
 
     def set_gravity(self, share: float) -> None:
         """Set gravity to a share of the normal one, from the next step on."""
-        step, gravity = len(self.recording.actions), self.recording.gravity
-        if share == self.recording.gravity_at(step):
+        recording, step = self.recording, len(self.recording.actions)
+        if share == recording.gravity_at(step):
             return
-        if gravity and gravity[-1][0] == step:  # changed twice within one step
-            gravity.pop()
-        if share != self.recording.gravity_at(step):
-            gravity.append((step, share))
+        recording.gravity = tuple(change for change in recording.gravity if change[0] < step)
+        if share != recording.gravity_at(step):
+            recording.gravity += ((step, share),)
         self._pull(share)
 
     def _pull(self, share: float) -> None:
@@ -167,17 +162,20 @@ class Flight:
 
     def change_network(self, network: Policy | None) -> None:
         """Set the network that can take or share the stick from now on; with None, the person has the stick."""
-        self.network = network
+        self.network, self._network_steps = network, decision_steps(network)
         self._held_for, self.decision, self.alone = 0, None, None
         if network is None:
             self.hand = StickHolder.HUMAN
         before, self.copilot = self.copilot, None
         if self.shares and isinstance(network, QPolicy):
-            from ai.copilot.copilot import CoPilot, Mode
+            from ai.copilot.copilot import CoPilot
 
-            self.copilot = CoPilot(network, before.assist if before else 0.0, before.mode if before else Mode.TOLERANCE)
+            self.copilot = CoPilot(network, route=self.route)
             if before:
+                self.copilot.assist, self.copilot.mode = before.assist, before.mode
                 self.copilot.hold_plans_of(before)
+            else:
+                self.copilot.assist = 0.0
 
     def help(self, assist: float, mode: str) -> None:
         """Set the co-pilot's assist, 0 to 1, and its mode, from the next decision on."""
@@ -235,6 +233,12 @@ class Flight:
             return action, StickHolder.NETWORK, None
         return action, by, shares
 
+    def seen(self) -> tuple[Floats, Floats | None]:
+        """Return what a co-pilot reads of each pad, and what is around on the way there; on a leg, along its route."""
+        if self.route and self.network:
+            return self.route.observe(self.env, self.network), None
+        return self.env.observe_pads(self.network), self.env.around_pads()
+
     def ask_network(self) -> int:
         """Return the network's own action, decided every few steps, as `alone` shows it."""
         if self.alone is None or self._held_for == 0:
@@ -242,7 +246,7 @@ class Flight:
             env, network = self.env, self.network
             seen = self.route.observe(env, network) if self.route else env.observe_for(network)
             self.alone = decide(network, seen, env.actions)
-        self._held_for = (self._held_for + 1) % DECISION_STEPS
+        self._held_for = (self._held_for + 1) % self._network_steps
         return int(self.alone.action[0])
 
     def _ask_copilot(self) -> int:
@@ -250,11 +254,11 @@ class Flight:
         assert self.copilot is not None
         decision = self.decision
         if decision is None or self._held_for == 0 or self.asked != decision.pilot[0]:
-            seen, around = self.env.observe_pads(self.network), self.env.around_pads()
+            seen, around = self.seen()
             self.decision = decision = self.copilot.decide(seen, np.array([self.asked]), around)
             self._held_for = 0
             self.aim(decision.likely[0])
-        self._held_for = (self._held_for + 1) % DECISION_STEPS
+        self._held_for = (self._held_for + 1) % self._network_steps
         return int(decision.action[0])
 
     def aim(self, likely: Doubles | float = 0.0) -> None:

@@ -18,8 +18,7 @@ from ai.lander.environment import PARAMS, LanderEnv
 from ai.lander.ground import Ground
 from engine import DT
 from engine.integrate import integrate_velocity
-from game.flight.flight import DECISION_STEPS
-from game.flight.networks import Policy
+from game.flight.networks import Policy, decision_steps
 from game.flight.surface import surface_height
 
 # Metres above the ground at which to stop: the touchdown itself is not predicted.
@@ -63,7 +62,7 @@ class Forecast:
     def __init__(self, policy: Policy, ground: Ground | None = None) -> None:
         self.path: Doubles = np.empty((0, 2))
         self._policy = policy
-        self._ahead = LanderEnv(1, 0, frame_skip=DECISION_STEPS, ground=ground)
+        self._ahead = LanderEnv(1, 0, frame_skip=decision_steps(policy), ground=ground)
         self._ahead.reset()
         self._places: list[Doubles] = []
 
@@ -116,7 +115,7 @@ def drift(env: LanderEnv) -> Iterator[Doubles]:
         before = velocity.copy()
         if env.conditions.pushes:
             state.force[0, body, 0] = env.conditions.push(np.array(time + (stride + 0.5) * span))
-        integrate_velocity(state, world.movers, world.gravity, span)
+        integrate_velocity(state, world.params, world.movers, world.gravity, span)
         # Closed form of many short steps at constant acceleration, each moved by the speed at its end.
         place += span / 2 * (before + velocity) + DT / 2 * (velocity - before)
         yield place.copy()

@@ -15,8 +15,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from ai.files import brief, parse_json, read_as, read_end
-from ai.flights.places import DESCENT
-from ai.flights.score import landing_score
+from ai.flights.verification import DESCENT, landing_score
 from game.core import texts
 from game.core.names import LibraryError, free_path
 from game.core.trash import Trash

@@ -104,8 +104,8 @@ class TargetChapter(RunsChapter):
         return [
             Code(DeepQAgent.targets, "targets: Floats", {"discount = np": f"γ = {SMALL_RUN.discount:g}"}),
             Code(DeepQAgent._next_value, "self.target.predict", {"self.target.predict": texts.LEARN_TARGET_JUDGE}),
-            Code(DeepQAgent._update_target, "self.train_count %", {
-                "self.train_count %": texts.LEARN_TARGET_EVERY.format(every=every),
+            Code(DeepQAgent._update_target, "self.gradient_steps %", {
+                "self.gradient_steps %": texts.LEARN_TARGET_EVERY.format(every=every),
             }),
         ]  # fmt: skip
 

@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from ai.digits.checkpoints import resume_digit_run, save_digit_run
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS
 from ai.digits.training import DigitTraining
@@ -21,6 +20,7 @@ from ai.training import demonstrations
 from ai.training.checkpoints import resume_run, snapshot
 from ai.training.config import PRESETS
 from ai.training.demonstrations import Demonstration
+from ai.training.digit_run import resume_digit_run, save_digit_run
 from ai.training.history import Checkpoint, History, Point, SettingChange, Validation
 from ai.training.loop import Training
 from game.core.settings import Settings, SettingsFile
@@ -135,7 +135,7 @@ def _read_settings(folder: Path) -> Any:
 
 
 def _flight(folder: Path, version: int) -> None:
-    recording = Recording(version, "random", 1, [0, 3, 3, 1], [StickHolder.HUMAN] * 4)
+    recording = Recording(version, "random", actions=[0, 3, 3, 1], hands=[StickHolder.HUMAN] * 4)
     entry = Entry(1e9, "CRASHED", 1.0, 0.5, 3.0, 1.0, network="modern", file=f"{version}.json")
     with suppress(FileExistsError):
         flight_file.write(folder / "flights" / entry.file, Record(recording, entry, (0.0, 1.0, 0.0)))
