@@ -23,7 +23,7 @@ def hard(slots=6):
     """Landers near the ground with everything about them unusual."""
     params = replace(PARAMS, main_thrust=6.0, quadratic_drag=0.03)
     limits = replace(LIMITS, touch_speed=2.4, time=7.0)
-    env = LanderEnv(slots, 3, "near", 2, params=params, ground=GROUND, limits=limits, conditions=HARD)
+    env = LanderEnv(slots, 3, "near", 4, params=params, ground=GROUND, limits=limits, conditions=HARD)
     env.reset()
     env.target = np.arange(slots) % 2
     env.gravity, env.strictness = 2.5, 0.8
@@ -41,7 +41,7 @@ def plain(value):
 
 
 def test_a_snapshot_is_plain_and_brings_back_everything_but_the_dice(subtests):
-    for name, env in (("lander", hard()), ("anywhere", AnywhereEnv(6, 1, "near", 2))):
+    for name, env in (("lander", hard()), ("anywhere", AnywhereEnv(6, 1, "near", 4))):
         with subtests.test(name=name):
             env.reset()
             flown(env, ACTIONS[:60])
@@ -57,7 +57,7 @@ def test_a_snapshot_is_plain_and_brings_back_everything_but_the_dice(subtests):
 
 
 def test_a_moment_flies_on_in_any_environment_over_the_same_ground():
-    env, other = hard(), LanderEnv(6, 0, frame_skip=2, ground=GROUND)
+    env, other = hard(), LanderEnv(6, 0, frame_skip=4, ground=GROUND)
     flown(env, ACTIONS[:60])
     Moment.of(env).put(other)
     assert other.gravity == 2.5
@@ -65,11 +65,11 @@ def test_a_moment_flies_on_in_any_environment_over_the_same_ground():
 
 
 def test_landers_of_a_moment_fly_on_alone_and_twice():
-    env = AnywhereEnv(6, 2, "near", 2)
+    env = AnywhereEnv(6, 2, "near", 4)
     env.reset()
     flown(env, ACTIONS[:30])
     rows = np.array([4, 1, 1])
-    part = AnywhereEnv(3, 0, frame_skip=2)
+    part = AnywhereEnv(3, 0, frame_skip=4)
     moment = Moment.of(env)
     moment.take(rows).put(part)
     assert [moment.fall(row) for row in range(6)] == (-env.world.gravity[:, 1]).tolist()
