@@ -37,6 +37,7 @@ class BroadPhase:
         self._shape_boxes = np.zeros((4, 0, 0))  # (4, shapes, batch); only those of fixed bodies are filled
         self._stale = self._fixed.copy()  # fixed bodies (bodies,) whose boxes are to be computed anew
         self._movers_first, self._first, self._count = _meeting_pairs(params, shapes)
+        self._meet = self._count[..., None] > 0  # (moving, bodies, 1)
         a, b = self._movers_first.T
         turned = shapes.is_circle[a] & ~shapes.is_circle[b]
         self.pairs = np.where(turned[:, None], self._movers_first[:, ::-1], self._movers_first)
@@ -51,15 +52,15 @@ class BroadPhase:
         Given which bodies are `awake`, (batch, bodies), pairs without any are left out.
         """
         boxes = self._body_boxes(state)
-        overlap = _overlap(boxes[:, self._moving, None], boxes[:, None])  # (moving, bodies, batch)
-        overlap &= self._count[..., None] > 0
+        overlap = _overlap(boxes[:, self._moving, None], boxes[:, None], self._meet)  # (moving, bodies, batch)
         if not state.active.all():
             overlap &= (state.active[:, self._moving, None] & state.active[:, None]).transpose(1, 2, 0)
         if awake is not None:
             overlap &= (awake[:, self._moving, None] | awake[:, None]).transpose(1, 2, 0)
-        mover, other, world = overlap.nonzero()
-        if not len(world):
-            return world, world
+        found = np.flatnonzero(overlap)  # many times as fast as `nonzero` of three axes
+        if not len(found):
+            return found, found
+        mover, other, world = np.unravel_index(found, overlap.shape)
         order = np.argsort(world, kind="stable")
         mover, other, world = mover[order], other[order], world[order]
         # From pairs of bodies to the pairs of their shapes, which stand one after another in `pairs`.
@@ -107,9 +108,9 @@ class BroadPhase:
         return np.concatenate([centre - reach, centre + reach])
 
 
-def _overlap(a: Array, b: Array) -> Bools:
-    """Whether boxes overlap; their arrays are broadcast against each other."""
-    overlap: Bools = a[1] <= b[3]
+def _overlap(a: Array, b: Array, meet: Bools | bool = True) -> Bools:
+    """Whether boxes overlap that may `meet`; all are broadcast against each other."""
+    overlap: Bools = (a[1] <= b[3]) & meet
     for low, high in ((b[1], a[3]), (a[0], b[2]), (b[0], a[2])):
         if overlap.any():
             overlap &= low <= high

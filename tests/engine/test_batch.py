@@ -133,6 +133,20 @@ def test_a_second_landing_owes_nothing_to_the_first():
         assert_same(pair, alone, [0])
 
 
+def test_what_is_set_in_one_world_leaves_the_impulses_of_others_alone():
+    pair, alone = World(gravity=(0, -9.81), batch=2), World(gravity=(0, -9.81))
+    for world in (pair, alone):
+        world.add(Polygon.box(20, 1), (0, -0.5), static=True)
+        for row in range(4):
+            world.add(Polygon.box(1, 1), (0.1 * row, 0.5 + row), friction=0.5)
+        advance(world, 10)
+    for _ in range(20):
+        pair.bodies[1].set(position=(0.0, 0.5), mask=np.array([True, False]))
+        pair.step()
+        alone.step()
+        assert_same(pair, alone, [1])
+
+
 def test_same_start_same_flight():
     twins = [toys(3), toys(3)]
     for world in twins:

@@ -109,6 +109,7 @@ def test_friction_never_leaves_its_cone():
         if world.contacts:
             push, rub = world.contacts.impulse[:, :2], np.abs(world.contacts.impulse[:, 2])
             assert (push >= 0).all()
+            assert not push[~world.contacts.valid].any()
             assert (rub <= world.contacts.friction * push.sum(axis=1) + 1e-12).all()
             touched += len(world.contacts)
     assert touched > 5000
