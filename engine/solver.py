@@ -84,7 +84,13 @@ class Solver:
         """Take back the angular momentum that free bodies gained as overlaps pushed them aside across their motion.
 
         Each pair turns a little about its common centre of mass as if it were one body, like a skater who spreads the
-        arms, so the two move neither apart nor along each other. Where that would add energy, they do so less.
+        arms, so the two move neither apart nor along each other. Where that would add energy, what they move besides
+        becomes so much less.
+
+                  along: how B moves as seen from A
+                  ^
+                  |          momentum about the common centre: reduced · (A→B × along) + both spins' own;
+            A ----B          turning as one body by one radian a second it would be `whole`
         """
         rows = np.flatnonzero((self._inverse_mass[:, :, 0] > 0).all(axis=1) & push[:2].any(axis=0))
         if not len(rows):
@@ -93,17 +99,17 @@ class Solver:
         places = contacts.world[rows, None], contacts.body[rows]
         pose, velocity = state.pose[places], state.velocity[places]
         along, spins = velocity[:, 1, :2] - velocity[:, 0, :2], velocity[..., 2].T
-        turned = -right_of(pose[:, 1, :2] - pose[:, 0, :2])  # how B moves about A when both turn by a radian
+        turned = -right_of(pose[:, 1, :2] - pose[:, 0, :2])  # `along` of a pair that turns as one by 1 rad/s
         share = mass[0] / (mass[0] + mass[1])
-        reduced = share * mass[1]
+        reduced = share * mass[1]  # mass with which the two move against each other
         whole = reduced * dot(turned, turned) + inertia[0] + inertia[1]
         now = reduced * dot(turned, along) + inertia[0] * spins[0] + inertia[1] * spins[1]
         before = now - (push[0, rows] + push[1, rows]) * cross(contacts.normal[rows], along)
-        turn = now / whole
+        turn = now / whole  # as one body; the rest of the motion is their own
         own, own_spins = along - turn[:, None] * turned, spins - turn
-        energy = reduced * dot(own, own) + inertia[0] * own_spins[0] ** 2 + inertia[1] * own_spins[1] ** 2  # twice
+        energy = reduced * dot(own, own) + inertia[0] * own_spins[0] ** 2 + inertia[1] * own_spins[1] ** 2  # of that, twice
         excess = np.divide(before**2 - now**2, whole * energy, out=np.zeros_like(whole), where=energy > 0)
-        less = np.sqrt(np.clip(1.0 - excess, 0.0, 1.0)) - 1.0
+        less = np.sqrt(np.clip(1.0 - excess, 0.0, 1.0)) - 1.0  # change of their own motion, so that energy stays
         turn = before / whole - turn
         change = np.empty_like(velocity)
         pull = turn[:, None] * turned + less[:, None] * own
