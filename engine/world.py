@@ -202,7 +202,7 @@ class World:
             return
         self._version = self.params.version
         self._shape_table = ShapeTable(self.shapes, self._shape_bodies, self.params.dynamic)
-        self._broad_phase = BroadPhase(self.params, self._shape_table, MARGIN)
+        self._broad_phase = BroadPhase(self.params, self._shape_table, self.batch, MARGIN)
         self._narrow_phase = NarrowPhase(self.params, self._shape_table, self._broad_phase.pairs)
         self._rest = Rest(self.params, self.state, self.gravity, self.sleeping)
         self._movers = self._impulses = None
