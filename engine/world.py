@@ -178,9 +178,9 @@ class World:
         """Remember a step's contacts, and those of bodies that slept in it."""
         slept, awake = None, self._rest.awake
         if self.contacts and awake is not None:
-            met = awake[self.contacts.world[:, None], self.contacts.body]
-            slept = self.contacts.take(np.flatnonzero(~met.any(axis=1)))
-            slept.approach[:] = 0.0
+            kept = ~awake[self.contacts.world[:, None], self.contacts.body].any(axis=1)
+            slept = self.contacts if kept.all() else self.contacts.take(np.flatnonzero(kept))
+            slept.approach = np.zeros_like(slept.approach)
         self.contacts = self._impulses = contacts.with_others(slept) if contacts else slept or None
         self._gravity_before = self.gravity
 
