@@ -147,6 +147,7 @@ def _clip(start: Array, end: Array, incident_start: Array, incident_end: Array) 
     """Both ends of the incident edge, cut to lie above the reference edge, (n, 2, 2)."""
     edge = end - start
     tangent = edge / length(edge)[:, None]
+    # Along the reference edge: where the incident edge's ends lie, and where its own do.
     first, last = dot(incident_start - start, tangent), dot(incident_end - start, tangent)
     span = last - first
     span = np.where(np.abs(span) < 1e-12, 1e-12, span)

@@ -14,6 +14,7 @@ worlds and bodies they span.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -48,7 +49,7 @@ class Solver:
         self._approach[:2] *= -1
         contacts.approach, contacts.impulse = self._approach.T, self._impulse.T  # views: the solver fills them
         ends = np.bincount(contacts.colour).cumsum().tolist()
-        self._spans = [slice(start, end) for start, end in zip([0, *ends], ends, strict=False)]
+        self._spans = [slice(start, end) for start, end in pairwise([0, *ends])]  # of each colour
         self._colours = [self._rows.part(span) for span in self._spans]
 
     def solve_velocities(self, state: BodyState, iterations: int, restitution_threshold: float, dt: float) -> None:
@@ -211,11 +212,15 @@ class Rows:
         return bool(change.any())
 
     def push(self, lacking: Array, total: Array) -> Array:
-        """Impulses (2, m) >= 0 that give both points the speed they are `lacking`, or more with no impulse."""
+        """Return impulses p (2, m) ≥ 0 in place of `total`, so that each point gains the speed it is `lacking`.
+
+        With K the 2 × 2 matrix of speed per push, that is p = total + K⁻¹·lacking. Where a point would be pulled, it
+        gets nothing, and may gain more than it lacked.
+        """
         both = total + self.inverse * lacking + self.cross_inverse * lacking[::-1]
         if both.min() >= 0:
             return both
-        # Where that would pull at one point, there is no impulse at it, and the other point has to do alone.
+        # The other point has to do alone, and without what the first has pushed at it until now.
         alone = total + self.mass[:2] * (lacking + self.coupling * total[::-1])
         return np.maximum(np.where(both[::-1] >= 0, both, alone), 0.0)
 
