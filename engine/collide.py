@@ -93,7 +93,7 @@ def collide_polygons(ab: PlacedPolygons, margin: float) -> Manifold:
     corners = _clip(start, end, ab.start[incident, incident_face], ab.end[incident, incident_face])
     depth = -dot(corners - start[:, None], out[:, None])
     normal = np.where(flip[:, None], -out, out)
-    number = (flip * 64 + reference_face) * 64 + incident_face
+    number = (flip * 64 + reference_face) * 64 + incident_face  # up to 64 faces each
     return Manifold(
         normal=normal,
         points=corners + out[:, None] * (depth / 2)[..., None],
