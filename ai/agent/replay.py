@@ -26,6 +26,9 @@ class Transition(NamedTuple):
     steps: Any = 1
 
 
+MemoryCell = Transition  # as the first description of this project calls it
+
+
 class ReplayBuffer:
     """Replay buffer of the last `capacity` transitions. When it is full, the oldest `prune` are dropped at once.
 
