@@ -121,6 +121,24 @@ def recover_folder(target: str | Path) -> None:
             max(aside, key=lambda old: old.stat().st_mtime).rename(path)
 
 
+def state_folder(folder: str | Path) -> Path:
+    """Return the folder of the state that belongs to a run's folder: hidden, and beside it."""
+    folder = Path(folder)
+    return folder.with_name(f".{folder.name}.state")
+
+
+def remove_state(folder: str | Path) -> None:
+    """Delete the state of a run that has ended for good; the network in its folder stays."""
+    shutil.rmtree(state_folder(folder), ignore_errors=True)
+
+
+def move_state(source: Path, target: Path) -> None:
+    """Let the state follow a run's folder to another name."""
+    remove_state(target)
+    with suppress(OSError):
+        state_folder(source).rename(state_folder(target))
+
+
 def aside_for(path: Path) -> str:
     """Return the name of the folder for which this one was moved aside; empty if it was not."""
     if not path.name.startswith(".") or not path.name.endswith(OLD):

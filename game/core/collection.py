@@ -13,7 +13,19 @@ from typing import Final, Generic, TypeVar
 
 import platformdirs
 
-from ai.files import NEW, STALE, Lock, aside_for, brief, lock_of, moved_aside, recover_folder, take
+from ai.files import (
+    NEW,
+    STALE,
+    Lock,
+    aside_for,
+    brief,
+    lock_of,
+    move_state,
+    moved_aside,
+    recover_folder,
+    remove_state,
+    take,
+)
 from game.core import texts
 from game.core.copying import copy_folder
 from game.core.folders import looks_like_item, there
@@ -126,6 +138,7 @@ class Collection(Generic[Item]):
             target = self.new_folder(new)
         with library_errors(texts.LIBRARY_NOT_RENAMED, old):
             source.rename(target)
+        move_state(source, target)
         return target
 
     def export(self, name: str, folder: Path | None = None) -> Path:
@@ -158,8 +171,10 @@ class Collection(Generic[Item]):
     # Deleted items
 
     def delete(self, name: str) -> None:
-        """Delete an item; `undo_delete` restores it."""
-        self._trash.add(self.existing(name), name)
+        """Delete an item; `undo_delete` restores it, without the state of a run that could go on."""
+        source = self.existing(name)
+        self._trash.add(source, name)
+        remove_state(source)
 
     @property
     def last_deleted(self) -> str:
@@ -219,12 +234,14 @@ class Collection(Generic[Item]):
         target = self.new_folder(name)
         with library_errors(texts.LIBRARY_NOT_KEPT, name):
             self.unsaved.rename(target)
+        move_state(self.unsaved, target)
         return self.kind.read(target, target.name)
 
     def discard_rescued(self) -> None:
         """Delete the item without a name, if any; `undo_delete` restores it."""
         if self.left_behind:
             self._trash.add(self.unsaved, self.free_name(self.kind.rescued))
+            remove_state(self.unsaved)
 
     def _recover(self, path: Path) -> None:
         if (name := aside_for(path)) and name[0] != ".":

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 from ai.agent.storage import LAST
-from ai.digits.checkpoints import save_digit_run
 from ai.digits.config import DIGIT_PRESETS
 from ai.digits.training import DigitTraining
 from ai.files import read_arrays, read_as
@@ -22,6 +21,7 @@ from ai.sweep.runs import AgentRun
 from ai.sweep.space import knob_space
 from ai.sweep.study import Study, StudyError, find
 from ai.sweep.trial import Asked, Trial, archive, unpack
+from ai.training.digit_run import save_digit_run
 from main import main
 from tests.support.studies import TINY, finished_study, networks_in, run_alone, tiny_plan
 

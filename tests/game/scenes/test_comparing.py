@@ -11,7 +11,7 @@ from game.core import texts
 from game.panels.run_legend import RunLegend
 from game.scenes.dialog import NameDialog, QuestionDialog
 from game.scenes.train import TrainScene
-from game.training.training_run import put_beside
+from game.training.beside import put_beside
 from game.ui.entry import Entry
 from tests.ai.training.test_hints import HEALTHY
 from tests.support.driver import Driver
