@@ -22,8 +22,8 @@ from ai.sweep.results import FinishedTrial
 from ai.sweep.runs import check_ready, read_config
 from ai.sweep.study import Study
 from ai.sweep.trial import Asked, Trial, fingerprint
-from ai.training.checkpoints import CHECKPOINT_SECONDS
 
+CHECKPOINT_SECONDS: Final = 20.0  # between two checkpoints of a trial
 TRIES: Final = 4  # of a trial whose worker dies; after that it waits for --resume
 _TURN: Final = 0.2  # seconds after which a wait for workers looks around
 

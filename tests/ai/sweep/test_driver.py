@@ -202,7 +202,7 @@ def test_a_trial_goes_on_from_its_last_checkpoint_when_its_worker_is_killed(tmp_
     options = ["--trials", "1", "--decisions", "240000", "--every", "4000", "--workers", "1"]
     with sweep(folder, *NEW, *options) as driver:
         (worker,) = wait_for(lambda: training_workers(driver.pid), driver)
-        from ai.sweep.tuning import CHECKPOINT_SECONDS
+        from ai.sweep.driver import CHECKPOINT_SECONDS
 
         time.sleep(CHECKPOINT_SECONDS + 8)
         os.kill(worker, signal.SIGKILL)
