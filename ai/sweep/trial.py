@@ -152,9 +152,7 @@ class Trial:
             for index, (seed, run) in enumerate(zip(self.plan.seeds, self._runs, strict=True)):
                 folder = Path(temporary, seed_folder(seed))
                 if not self._state.problems[index]:
-                    figures[seed] = run.save(
-                        folder, state=self.plan.generation(self.asked.number) + 1 < self.plan.generations
-                    )
+                    figures[seed] = run.save(folder, goes_on)
                 else:
                     with suppress(ValueError):  # its numbers were never finite after a step
                         run.salvage(folder)

@@ -97,7 +97,7 @@ class LanderSession(Session[Training]):
     @property
     def keeps_still(self) -> bool:
         """Whether a network is edited: that is only looked at, until it learns on from there."""
-        return self.training.agent.held
+        return self.training.agent.paused
 
     def state(self) -> State:
         """Return what this goes on from, besides the run."""
@@ -140,7 +140,7 @@ class LanderSession(Session[Training]):
         if progress.decisions >= self._point_at:
             self._point_at = progress.decisions + POINT_DECISIONS
             self.record(self._point(progress))
-        if progress.decisions >= self._checkpoint_at and not training.agent.held:
+        if progress.decisions >= self._checkpoint_at and not training.agent.paused:
             self.record(self._checkpoint(progress.success_rate))
             self._checkpoint_at = progress.decisions + self._checkpoint_every
         self._explanations.keep()
@@ -158,7 +158,7 @@ class LanderSession(Session[Training]):
 
     def end(self) -> None:
         """Keep what has not been kept, without an edit that was only looked at."""
-        if self.training.agent.held:
+        if self.training.agent.paused:
             self._editor.restore()
         super().end()
 
@@ -194,7 +194,7 @@ class LanderSession(Session[Training]):
     def _point(self, progress: Progress) -> Point:
         flown = 1.0 if self.training.statistics.known else np.nan
         agent = self.training.agent
-        learnt = 1.0 if agent.gradient_steps > self._began_learning and not agent.held else np.nan
+        learnt = 1.0 if agent.gradient_steps > self._began_learning and not agent.paused else np.nan
         landed, crashed, out_of_bounds, timed_out = (flown * share for share in progress.shares)
         return Point(
             self.training.seconds, progress.decisions, progress.episodes, flown * progress.success_rate,

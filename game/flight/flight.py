@@ -235,7 +235,7 @@ class Flight:
 
     def seen(self) -> tuple[Floats, Floats | None]:
         """Return what a co-pilot reads of each pad, and what is around on the way there; on a leg, along its route."""
-        if self.route:
+        if self.route and self.network:
             return self.route.observe(self.env, self.network), None
         return self.env.observe_pads(self.network), self.env.around_pads()
 

@@ -24,7 +24,7 @@ from game.panels.knobs import KnobsPanel
 from game.panels.run_status import draw_run_status
 from game.panels.training_status import digit_status
 from game.panels.way_back import WayBack
-from game.scenes.dialog import QuestionDialog
+from game.scenes.menus.dialogs import QuestionDialog
 from game.scenes.training_scene import DISPLAY_WIDTH, LEFT, PANEL_LEFT, TrainingScene
 from game.training.digit_models import DigitModels, figures_of, runs_dir
 from game.training.knob_descriptions import knob_descriptions

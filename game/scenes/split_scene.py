@@ -19,7 +19,7 @@ from game.panels.lab import Laboratory
 from game.panels.lab_knobs import LabKnobsPanel
 from game.panels.split_view import SplitView
 from game.panels.training_charts import BY_DECISIONS, TrainingCharts
-from game.scenes.dialog import QuestionDialog
+from game.scenes.menus.dialogs import QuestionDialog
 from game.scenes.training_scene import TrainingScene
 from game.training.run import TrainingRun
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from game.core import texts
 from game.core.names import LibraryError
 from game.core.scene import Push, Scene, Transition
-from game.scenes.dialog import ListDialog, NameDialog, QuestionDialog
+from game.scenes.menus.dialogs import ListDialog, NameDialog, QuestionDialog
 from game.training.beside import rename_beside, take_away
 from game.training.library import Library, SavedRun
 from game.training.run import TrainingRun

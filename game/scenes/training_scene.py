@@ -14,7 +14,7 @@ from game.drawing.tokens import PANEL, VIEW_SIZE
 from game.input.controls import Command
 from game.panels.knobs import KnobsPanel
 from game.panels.run_status import draw_problem, start_label
-from game.scenes.dialog import NameDialog
+from game.scenes.menus.dialogs import NameDialog
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.form_scene import FormScene

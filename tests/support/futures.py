@@ -1,6 +1,6 @@
 """Futures for guarded flights, without a process of their own."""
 
-from ai.copilot.futures import KEYS, Lookahead
+from ai.copilot.futures import KEYS, Lookahead, Push
 
 
 class AtOnce:
@@ -8,7 +8,7 @@ class AtOnce:
 
     def __init__(self):
         self.problem = ""
-        self.late = set()
+        self.late: set[Push] | None = set()
 
     def ask(self, moment, before, asked, decisions, policy, route):
         self._lookahead = Lookahead(policy, route)

@@ -38,10 +38,10 @@ from game.learn.memory import MemoryChapter
 from game.learn.target import TargetChapter
 from game.scenes import scene_of
 from game.scenes.chapter import ChapterScene
-from game.scenes.dialog import QuestionDialog
 from game.scenes.digit_inside import DigitInsideScene
 from game.scenes.error_screen import ErrorScene
 from game.scenes.lesson import LessonScene
+from game.scenes.menus.dialogs import QuestionDialog
 from game.scenes.play import PlayScene
 from game.shell.app import App
 from game.training.beside import put_beside, rename_beside

@@ -26,7 +26,7 @@ from game.core.worker import WorkerState
 from game.flight.demonstrations import FILE_NAME
 from game.panels.network_panel import SHOWN
 from game.panels.network_view import NetworkView
-from game.scenes.dialog import QuestionDialog
+from game.scenes.menus.dialogs import QuestionDialog
 from game.scenes.train import TrainScene
 from game.training.knob_descriptions import knob_descriptions
 from game.training.library import Library
