@@ -23,9 +23,9 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is imported, 
 
 import numpy as np
 
-from ai.agent.config import PRESETS, Config
 from ai.lander.rewards import RewardWeights
 from ai.sweep.cluster import MISSING, each, installed
+from ai.training.config import PRESETS, Config
 from ai.training.loop import VALIDATION_SEED, Training, evaluate
 
 EVERY = 25_000

@@ -27,10 +27,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from ai.agent.config import PRESETS, Config
 from ai.agent.network import build_network
 from ai.explain.inspection import NetworkHealth
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
+from ai.training.config import PRESETS, Config
 from ai.training.history import Point
 from ai.training.messages import ChangeSetting, NetworkState
 from ai.training.sabotage import SABOTAGES, sabotaged

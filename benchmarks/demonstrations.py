@@ -21,8 +21,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ai.agent.config import PRESETS, Config
 from ai.lander.pilots import ScriptedPilot
+from ai.training.config import PRESETS, Config
 from ai.training.demonstrations import Demonstration, demonstrate, taught, teach
 from ai.training.loop import Training
 from benchmarks.learning import Checkpoint, race

@@ -33,12 +33,12 @@ from typing import Any
 
 import numpy as np
 
-from ai.agent.config import PRESETS, Config
 from ai.cli.command_line import configured
 from ai.common.environment import Floats, Ints
 from ai.lander.pilots import Pilot
 from ai.lander.spawns import CURRICULA
 from ai.sweep.cluster import MISSING, each, installed
+from ai.training.config import PRESETS, Config
 from ai.training.lander_task import Evaluation, LanderTask
 from ai.training.loop import TEST_SEED, VALIDATION_SEED, Training, evaluate
 

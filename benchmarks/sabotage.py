@@ -17,8 +17,8 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is imported, 
 import argparse
 from typing import Final
 
-from ai.agent.config import PRESETS
 from ai.common.intervals import mean_of_shares
+from ai.training.config import PRESETS
 from ai.training.loop import Training
 from ai.training.sabotage import MEASURED, SABOTAGES, sabotaged
 

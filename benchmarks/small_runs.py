@@ -8,8 +8,8 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 
-from ai.agent.config import Config
 from ai.common.intervals import mean_of_shares, wilson
+from ai.training.config import Config
 from ai.training.small_run import SMALL_RUN, Plan, SmallRun, SmallState
 from game.learn.daring import DARING, PAY
 from game.learn.memory import LATEST, TODAY, YESTERDAY, MemoryChapter

@@ -21,12 +21,12 @@ import time
 from importlib.metadata import version
 from pathlib import Path
 
-from ai.agent.config import PRESETS
 from ai.sweep.cluster import MISSING, installed, joined
 from ai.sweep.plan import Plan
 from ai.sweep.space import knob_space
 from ai.sweep.study import Study
 from ai.sweep.trial import Asked, Trial
+from ai.training.config import PRESETS
 
 
 def plan_of(trials: int, decisions: int, knob: str) -> Plan:

@@ -30,8 +30,8 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import pygame
 
-from ai.agent.config import PRESETS
 from ai.training.checkpoints import resume_run
+from ai.training.config import PRESETS
 from ai.training.history import History
 from game.core.scene import Push
 from game.core.settings import Settings

@@ -38,7 +38,7 @@ def run(seed: int, limit: float) -> tuple[float, list[float], list[float]]:
     import numpy as np
     import pygame
 
-    from ai.agent.config import PRESETS
+    from ai.training.config import PRESETS
     from game.core.settings import Settings
     from game.scenes import scene_of
     from game.scenes.train import TrainScene

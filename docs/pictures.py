@@ -24,8 +24,8 @@ import numpy as np
 import pygame
 from PIL import Image
 
-from ai.agent.config import PRESETS
 from ai.lander.missions import MISSIONS
+from ai.training.config import PRESETS
 from ai.training.explanations import Explanations
 from ai.training.loop import Training
 from game.core.scene import Scene

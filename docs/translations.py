@@ -17,9 +17,9 @@ from babel.messages.pofile import read_po, write_po
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))
 
-from ai.agent.config import Config
 from ai.digits.config import DigitConfig
 from ai.lander.rules import ACTION_NAMES
+from ai.training.config import Config
 from game.core import catalogue
 
 DOMAINS = (catalogue.DOMAIN, catalogue.AI_DOMAIN)

@@ -12,8 +12,7 @@ Reading order: `vector`, `shapes`, `state`, `integrate`, `collide`, `broad_phase
         world.step()
     print(ball.position)        # (batch, 2)
 
-`free_flight` flies one body of one world in plain floats, as long as it touches nothing, and `lone_touch` and
-`lone_contacts` step it where it does.
+`free_flight` flies one body of one world in plain floats, as long as it touches nothing.
 """
 
 from engine.body import Body

@@ -13,8 +13,6 @@ class MovingBodies:
 
     def __init__(self, params: BodyParams, chosen: Bools) -> None:
         self.bodies: Span = span(chosen)
-        rows = np.flatnonzero(chosen)
-        self.only = int(rows[0]) if len(rows) == 1 and params.dynamic[rows[0]] else None  # the body, if it is one
         self.inverse_mass = params.inverse_mass[self.bodies]
         self.linear_drag = params.linear_drag[self.bodies]
         self.quadratic_drag = params.quadratic_drag[..., self.bodies, :]

@@ -55,11 +55,6 @@ class Rest:
         self._known: tuple[NDArray[Any], ...] | None = None  # the worlds after the last step; None if nothing sleeps
         self._all_asleep = False
 
-    @property
-    def idle(self) -> bool:
-        """Whether nothing sleeps, or has been still."""
-        return self._known is None and not self._counts
-
     def copy(self) -> Rest:
         """Return a copy that later steps do not change."""
         return copy.deepcopy(self)

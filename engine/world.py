@@ -9,9 +9,7 @@ import numpy as np
 from engine.body import Body
 from engine.contact_set import Contacts
 from engine.contacts import Detector
-from engine.free_flight import FreeFlight
 from engine.integrate import MovingBodies, integrate_position, integrate_velocity
-from engine.lone_contacts import LoneContacts
 from engine.rest import Rest
 from engine.shapes import Point, Shape, mass_properties
 from engine.solver import Solver
@@ -34,12 +32,7 @@ class World:
     that it comes to lie still, impulses pass over to the points that take the place of others, and overlaps of
     up to 1.5 cm are left alone. Off, each step computes everything anew, as a flight needs that was
     recorded so.
-
-    Unless `in_floats` is off, the only body of a batch of one that forces can move flies in plain floats, and so many
-    times as fast, as long as nothing is near it (`engine.free_flight`): the same, bit for bit.
     """
-
-    in_floats: bool = True
 
     def __init__(
         self,
@@ -65,7 +58,6 @@ class World:
         self._shape_bodies: list[int] = []
         self._detector: Detector | None = None
         self._movers: MovingBodies | None = None
-        self._lone: LoneContacts | None = None
         self._version = 0  # of `params`, with which these were made
 
     @property
@@ -187,8 +179,6 @@ class World:
         if rest and rest.undisturbed(self.state, self.gravity):
             self._touched = (rest.contacts, None)
             return
-        if touching and self._step_in_floats():
-            return
         contacts = self.detector.find(self.state) if touching else None
         awake = rest.awake if rest else None
         solver = Solver(self.state, self.params, contacts) if contacts else None
@@ -202,42 +192,6 @@ class World:
         self.state.force[:] = 0.0
         self._touched = (contacts, rest.settle(self.state, contacts, self.gravity) if rest else None)
         self.detector.remember(contacts)
-
-    def _step_in_floats(self) -> bool:
-        """Take the step in plain floats, and return whether that was possible.
-
-        Only one body may move, and no shape may be a circle. In a world with sleep, nothing may be near it.
-        """
-        body, rest, state = self.movers.only, self.detector.rest, self.state
-        if (
-            body is None
-            or self.batch > 1
-            or not self.in_floats
-            or (rest and not rest.idle)
-            or not state.active[0, body]
-        ):
-            return False
-        if self._lone is None or self._lone.flight.body != body:
-            if self.detector.shapes.is_circle.any():
-                return False
-            self._lone = LoneContacts(self, FreeFlight(self, body))
-        flight, (along, up, torque) = self._lone.flight, state.force[0, body].tolist()
-        flight.take()
-        flight.feel()
-        if not flight.near():
-            flight.step(along, up, torque, DT)
-            flight.give()
-        elif rest or self._others_move(body):
-            return False
-        else:
-            self._touched = (self._lone.step((along, up, torque), DT), None)
-            self.detector.remember(self._touched[0])
-        state.force[:] = 0.0
-        return True
-
-    def _others_move(self, body: int) -> bool:
-        velocity = self.state.velocity[0]
-        return bool(velocity[:body].any() or velocity[body + 1 :].any())
 
     @property
     def contacts(self) -> Contacts | None:
@@ -284,7 +238,7 @@ class World:
         """Forget what was made with other parameters."""
         if self._version != self.params.version:
             self._version = self.params.version
-            self._detector = self._movers = self._lone = None
+            self._detector = self._movers = None
 
     def moved(self, body: Body, worlds: Bools | None) -> None:
         """Update what is cached about a body that was changed by hand, in these worlds or in all."""

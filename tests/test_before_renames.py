@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from ai.agent import DeepQAgent
-from ai.agent.config import Config
 from ai.digits.checkpoints import resume_digit_run
 from ai.digits.config import DigitConfig
 from ai.training.checkpoints import resume_run
+from ai.training.config import Config, load_agent
 from ai.training.history import History, SettingChange
 from ai.training.messages import ChangeSetting
 from ai.training.session import live
@@ -54,8 +54,8 @@ def assert_same_values(values, expected):
 
 
 def test_a_model_loads_with_the_same_settings_and_values():
-    agent, expected = DeepQAgent.load(DATA / "model"), EXPECTED["model"]
-    assert_same_settings(agent.config, expected["config"], RENAMED)
+    (agent, config), expected = load_agent(DATA / "model"), EXPECTED["model"]
+    assert_same_settings(config, expected["config"], RENAMED)
     assert_same_values(agent.q_values(OBSERVATIONS), expected["values"])
     assert agent.decisions == expected["decisions"]
 

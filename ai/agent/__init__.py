@@ -4,7 +4,7 @@ May be imported by `training`, `copilot`, `digits`, `gym` and `cli`.
 """
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.config import PRESETS, Config
+from ai.agent.config import AgentConfig
 from ai.agent.replay import MemoryCell, PrioritisedReplayBuffer, ReplayBuffer
 
-__all__ = ["PRESETS", "Config", "DeepQAgent", "MemoryCell", "PrioritisedReplayBuffer", "ReplayBuffer"]
+__all__ = ["AgentConfig", "DeepQAgent", "MemoryCell", "PrioritisedReplayBuffer", "ReplayBuffer"]

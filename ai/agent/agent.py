@@ -39,11 +39,11 @@ from __future__ import annotations
 from copy import deepcopy
 from functools import cached_property
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
-from ai.agent.config import Config
+from ai.agent.config import AgentConfig
 from ai.agent.n_step import Episodes, NStep
 from ai.agent.network import build_network, make_optimizer
 from ai.agent.normalizer import Normalizer
@@ -74,6 +74,7 @@ class DeepQAgent:
         mean_q: mean value of the next states it learned from, in the same unit.
         held: whether `learn` does nothing, while its network is edited by hand.
         folder: where it was read from; None for an agent that was not.
+        run_settings: what its file says of the run it is from, and `config` does not; saved with it again.
 
     """
 
@@ -81,7 +82,7 @@ class DeepQAgent:
         self,
         num_features: int = 9,
         num_actions: int = 6,
-        config: Config | None = None,
+        config: AgentConfig | None = None,
         rng: np.random.Generator | None = None,
         *,
         symmetry: Symmetry | None = None,
@@ -90,7 +91,7 @@ class DeepQAgent:
         optimizer: Optimizer | None = None,
     ) -> None:
         self.num_features, self.num_actions = num_features, num_actions
-        self.config = config or Config()
+        self.config = config or AgentConfig()
         self.rng = rng or np.random.default_rng(0)
         self.symmetry, self.action_chances = symmetry, action_chances
         self.normalizer = Normalizer(num_features) if self.config.normalise_inputs else None
@@ -103,6 +104,7 @@ class DeepQAgent:
         self.loss = self.mean_q = 0.0
         self.held = False
         self.folder: Path | None = None
+        self.run_settings: dict[str, Any] = {}
         self._n_step = NStep(self.config.n_step, self.config.discount)
         self._episodes = Episodes()
 
@@ -279,7 +281,7 @@ class DeepQAgent:
         """Replay buffer of transitions of flights that ended well."""
         return ReplayBuffer(max(1500, self.config.replay_size // 10), self.num_features)
 
-    def apply_live(self, config: Config) -> None:
+    def apply_live(self, config: AgentConfig) -> None:
         """Use the live knobs of another configuration, which must not differ in others."""
         self.config = config
         self._n_step.discount = config.discount
@@ -308,14 +310,15 @@ class DeepQAgent:
 
     def saved(self) -> SavedAgent:
         """Return all that is saved of this agent; the networks and the optimizer are its own, not copies."""
-        return SavedAgent(self.num_features, self.num_actions, self.config, self.decisions, self.train_count,
-                          self.online, self.target, self.optimizer, self.normalizer)  # fmt: skip
+        return SavedAgent(self.num_features, self.num_actions, self.config, self.run_settings, self.decisions,
+                          self.train_count, self.online, self.target, self.optimizer, self.normalizer)  # fmt: skip
 
     @classmethod
-    def load(cls, folder: str | Path, rng: np.random.Generator | None = None, *, env: str | None = None) -> DeepQAgent:
-        """Read what `save` wrote; raises ModelFormatError. `env` allows an environment: see `storage.read_agent`."""
-        saved = read_agent(folder, env=env)
+    def load(cls, folder: str | Path, rng: np.random.Generator | None = None) -> DeepQAgent:
+        """Read what `save` wrote; raises ModelFormatError."""
+        saved = read_agent(folder)
         agent = cls(saved.num_features, saved.num_actions, saved.config, rng, optimizer=saved.optimizer)
         agent.online, agent.target, agent.normalizer = saved.online, saved.target, saved.normalizer
+        agent.run_settings = saved.run_settings
         agent.decisions, agent.train_count, agent.folder = saved.decisions, saved.train_count, Path(folder)
         return agent

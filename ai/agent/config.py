@@ -1,30 +1,19 @@
-"""Settings of a training run, as one dataclass, and the presets."""
+"""Settings that a Q-learning agent learns and decides by."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, fields
-from typing import Any, Final
+from dataclasses import dataclass
 
-from ai.common.knobs import Knobs, is_number, knob
-from ai.files import shown
-from ai.lander.rewards import RewardWeights
-from ai.lander.spawns import CURRICULA, RUNGS, SPAWNS
+from ai.common.knobs import Knobs, knob
 from ai.nn import OPTIMIZERS
 from ai.nn.activations import ACTIVATIONS
 
-LANDER: Final = "lander"
-ANYWHERE: Final = "lander-anywhere"  # our lander at random sites, with what is around it as further inputs
-_STARTS: Final = (*CURRICULA, *(name for name in SPAWNS if name not in RUNGS))  # a person's ladder is no choice here
-_HASTE: Final = RewardWeights(time=-0.4, switch=-0.05)  # quick, and without flickering jets
-
 
 @dataclass(frozen=True)
-class Config(Knobs):
-    """Settings of one training run.
+class AgentConfig(Knobs):
+    """Settings of an agent, whatever it learns; `ai.training.config` adds those of the run around it.
 
     The defaults are what a file means that does not name a setting, as it was saved before there was that choice.
-    `PRESETS` has what is offered today.
     """
 
     # fmt: off
@@ -91,74 +80,16 @@ class Config(Knobs):
                                   "exploration", low=0, high=10_000_000, live=True)
     epsilon_spread: float = knob(0.7, "Spread ε over the landers: at 1, from ε for the first up to 1 for the last.",
                                  "exploration", low=0.0, high=1.0, live=True)
-    random_main: float = knob(0.3, "How often a random action fires the main engine; half the time is hovering.",
-                              "exploration", low=0.0, high=1.0, live=True)
 
-    env: str = knob(LANDER, "Environment to learn: our lander, lander-anywhere, or one of Gymnasium by its name.",
-                    "task")
     steadiness: float = knob(0.01, "Value by which the action held may fall short of the best.",
                              "lander", low=0.0, high=1.0, live=True)
-    num_envs: int = knob(256, "Landers flown at once.", "lander", low=1, high=1024)
-    frame_skip: int = knob(4, "Physics steps per decision.", "lander", low=1, high=12)
-    spawn: str = knob("thorough", "Where flights begin.", "lander", choices=_STARTS)
-    final_touchdown_limits: float = knob(0.8, "Touchdown limits after the schedule, as a share of the real ones.",
-                                         "lander", low=0.3, high=1.0, formerly="care")
     reward_scale: float = knob(0.01, "Factor on rewards before the network sees them.",
                                "lander", low=0.0001, high=1.0, log=True)
-    reward_weights: RewardWeights = knob(_HASTE, "Weight of each part of the reward.",  # noqa: RUF009
-                                         "lander", live=True, formerly="weights")
     # fmt: on
 
     def problems(self) -> list[str]:
         """Return what is wrong with the values, a sentence each."""
         problems = super().problems()
-        problems += _weight_problems(self.reward_weights)
-        if self.env == "":
-            problems.append("env is the name of an environment, and was empty")
         if not problems and self.replay_prune > self.replay_size:
             problems.append(f"replay_prune is at most replay_size, {self.replay_size}, not {self.replay_prune}")
         return problems
-
-    @classmethod
-    def value_from_json(cls, name: str, value: Any) -> Any:
-        """Return the value of a field from what a file holds of it; raises ValueError for what cannot be one."""
-        if name != "reward_weights":
-            return super().value_from_json(name, value)
-        parts = [item.name for item in fields(RewardWeights)]
-        if not isinstance(value, Mapping):
-            raise ValueError(f"reward_weights are numbers by name, of {', '.join(parts)}, not {shown(value)}")
-        if unknown := [part for part in value if part not in parts]:
-            raise ValueError(f"reward_weights has no {shown(unknown[0])}, only {', '.join(parts)}")
-        return RewardWeights(**value)
-
-
-def _weight_problems(weights: Any) -> list[str]:
-    """Return what is wrong with the weights of the parts of the reward, a sentence each."""
-    if not isinstance(weights, RewardWeights):
-        return [f"reward_weights are finite numbers by name, not {shown(weights)}"]
-    wrong = {name: value for name, value in vars(weights).items() if not is_number(value)}
-    return [f"reward_weights.{name} is a finite number, not {shown(value)}" for name, value in wrong.items()]
-
-
-# What a network is taught with that lands anywhere, by `python main.py train --preset anywhere`; not among the presets
-# that are offered on the screen, since what it needs to see is not drawn there.
-LANDS_ANYWHERE: Final = Config(
-    env=ANYWHERE, hidden=(128, 128), final_learning_rate=1e-4, schedule_decisions=3_000_000, gradient_steps=8,
-    replay_size=400_000, epsilon_decisions=100_000, steadiness=0.02,
-    reward_weights=RewardWeights(time=-0.2, switch=-0.1),
-)  # fmt: skip
-PRESETS: Final[dict[str, Config]] = {
-    "modern": Config(
-        learning_rate=3e-3, schedule_decisions=100_000, n_step=8, batch_size=128, gradient_steps=16,
-        activation="leaky_relu", target_judges=False, double=False, final_tau=0.05, epsilon_decisions=15_000,
-        spawn="widening",
-    ),
-    "classic": Config(
-        learning_rate=1e-3, final_learning_rate=1e-3, schedule_decisions=300_000, discount=0.99, n_step=1,
-        batch_size=64, gradient_steps=1, optimizer="sgd", cost="mse", hidden=(128, 128), activation="tanh",
-        layer_normalisation=False, output_scale=1.0, replay_size=1500, replay_prune=1000, learning_starts=64,
-        mirror=False, success_pass=True, double=False, target_update_interval=50, tau=1.0, fly_target=False,
-        epsilon_decay=0.999, epsilon_decisions=0, epsilon_spread=0.0, random_main=0.5, num_envs=1, steadiness=0.0,
-        final_touchdown_limits=1.0, spawn="curriculum", reward_scale=0.1, reward_weights=RewardWeights(time=-0.1),
-    ),
-}  # fmt: skip

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ai.agent.config import Config
+from ai.agent.config import AgentConfig
 from ai.common.environment import Doubles, Floats, Ints
 
 
@@ -191,7 +191,7 @@ class SumTree:
         return nodes - self.first_leaf
 
 
-def make_replay(config: Config, num_features: int) -> ReplayBuffer:
+def make_replay(config: AgentConfig, num_features: int) -> ReplayBuffer:
     """Make the empty replay buffer of a configuration, for observations of so many features."""
     if config.prioritised:
         return PrioritisedReplayBuffer(

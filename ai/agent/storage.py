@@ -12,11 +12,11 @@ from typing import Any, Final
 
 import numpy as np
 
-from ai.agent.config import Config
+from ai.agent.config import AgentConfig
 from ai.agent.network import build_network, make_optimizer
 from ai.agent.normalizer import Normalizer
 from ai.common.environment import Floats
-from ai.files import NETWORK, FolderKind, brief, check_header, count_of, inside, problem_in, read_arrays, read_json
+from ai.files import NETWORK, FolderKind, check_header, count_of, inside, problem_in, read_arrays, read_json
 from ai.nn import ModelFormatError, NeuralNetwork, atomic_folder, recover_folder
 from ai.nn.budget import WIDEST
 from ai.nn.optimizers import Optimizer
@@ -39,7 +39,8 @@ class SavedAgent:
 
     num_features: int
     num_actions: int
-    config: Config
+    config: AgentConfig
+    run_settings: dict[str, Any]  # of the run it is from, by name: kept as they are, for what is above to read
     decisions: int  # taken so far
     train_count: int  # gradient steps taken so far
     online: NeuralNetwork
@@ -66,7 +67,7 @@ def write_agent(agent: SavedAgent, folder: Path) -> None:
         "actions": agent.num_actions,
         "decisions": agent.decisions,
         "train_count": agent.train_count,
-        "config": agent.config.to_json(),
+        "config": {**agent.config.to_json(), **agent.run_settings},
     }
     if agent.normalizer:
         described["scale"] = agent.normalizer.to_json()
@@ -77,18 +78,15 @@ def write_agent(agent: SavedAgent, folder: Path) -> None:
     (folder / AGENT_FILE).write_text(json.dumps(described, indent=2) + "\n", encoding="utf-8")
 
 
-def read_agent(folder: str | Path, *, env: str | None = None) -> SavedAgent:
-    """Read what `save_agent` wrote. Raises ModelFormatError, which names everything that is wrong.
-
-    Reading imports no code that a file names: an agent for an environment "module:Name" is refused, unless the
-    caller names that same `env`.
-    """
+def read_agent(folder: str | Path) -> SavedAgent:
+    """Read what `save_agent` wrote. Raises ModelFormatError, which names everything that is wrong."""
     folder = Path(folder)
     recover_folder(folder)
     described = _read_description(folder)
     try:
-        config = Config.from_json(described["config"])
-        check_env(config.env, env)
+        settings = AgentConfig.renamed(described["config"])
+        run_settings = {name: settings.pop(name) for name in settings.keys() - AgentConfig.names()}
+        config = AgentConfig.from_json(settings)
         features, actions = (count_of(described[name], 1, WIDEST) for name in ("features", "actions"))
         network = build_network(features, actions, config, np.random.default_rng(0))
         decisions, train_count = count_of(described["decisions"]), count_of(described["train_count"])
@@ -108,7 +106,8 @@ def read_agent(folder: str | Path, *, env: str | None = None) -> SavedAgent:
         problems.append(f"{OPTIMIZER_FILE}: {problem_in(error)}")
     if problems:
         raise ModelFormatError(folder, problems)
-    return SavedAgent(features, actions, config, decisions, train_count, online, target, optimizer, normalizer)
+    return SavedAgent(features, actions, config, run_settings, decisions, train_count,
+                      online, target, optimizer, normalizer)  # fmt: skip
 
 
 def _read_description(folder: Path) -> dict[str, Any]:
@@ -119,15 +118,6 @@ def _read_description(folder: Path) -> dict[str, Any]:
         raise ModelFormatError(folder, [f"{AGENT_FILE}: {error.strerror or error}"]) from error
     except ValueError as error:
         raise ModelFormatError(folder, [f"{AGENT_FILE}: {error}"]) from error
-
-
-def check_env(env: object, named: str | None) -> None:
-    """Raise ValueError for a file's environment whose name would import code, unless the user has named it."""
-    if not isinstance(env, str) or (":" in env and env != named):
-        raise ValueError(
-            f"it is for the environment {brief(repr(env), 100)}, which is code that a file may not start; "
-            "if you trust it, name it yourself with --env"
-        )
 
 
 def _read_network(folder: Path, name: str, like: NeuralNetwork, problems: list[str]) -> NeuralNetwork:

@@ -58,21 +58,21 @@ def add_commands(commands: Any) -> None:
 
 
 def _lander(model: Path, envs: tuple[str, ...]) -> DeepQAgent:
-    """Read the agent of a folder; raises ValueError for one of other environments, and as `DeepQAgent.load`."""
-    from ai.agent.agent import DeepQAgent
+    """Read the agent of a folder; raises ValueError for one of other environments, and as `load_agent`."""
+    from ai.training.config import load_agent
 
-    agent = DeepQAgent.load(model)
-    if agent.config.env not in envs:
-        raise ValueError(f"the co-pilot flies the lander; this network is for {agent.config.env}")
+    agent, config = load_agent(model)
+    if config.env not in envs:
+        raise ValueError(f"the co-pilot flies the lander; this network is for {config.env}")
     return agent
 
 
 def _table(arguments: argparse.Namespace) -> int:
-    from ai.agent.config import ANYWHERE, LANDER
     from ai.copilot.copilot import Mode
     from ai.copilot.measurement import HELPS, seconds
     from ai.sweep.cluster import each
     from ai.sweep.copilot_table import fly, parts, tables_of
+    from ai.training.config import ANYWHERE, LANDER
 
     if problem := out_of_range(arguments, episodes=EPISODES, seed=SEEDS, workers=WORKERS):
         return fail(problem)

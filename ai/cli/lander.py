@@ -30,8 +30,8 @@ from ai.cli.training_run import RunCommand, add_run_options, show_progress, trai
 
 if TYPE_CHECKING:
     from ai.agent.agent import DeepQAgent
-    from ai.agent.config import Config
     from ai.training.checkpoints import TrainingClock
+    from ai.training.config import Config
     from ai.training.loop import Progress, Training
     from ai.training.task import Score, Task
 
@@ -113,8 +113,8 @@ def _used_up(clock: TrainingClock, training: Training) -> str:
 
 def _advance(clock: TrainingClock, training: Training, output: Path, stop: list[int]) -> None:
     """Train until the clock or the user says stop, with a progress bar, keeping the work now and then."""
-    from ai.agent.config import ANYWHERE, LANDER
     from ai.training.checkpoints import save_run
+    from ai.training.config import ANYWHERE, LANDER
 
     def shown(progress: Progress) -> tuple[int, str]:
         best = f" best {progress.best.figure}" if progress.best else ""
@@ -130,9 +130,9 @@ def _advance(clock: TrainingClock, training: Training, output: Path, stop: list[
 
 
 def _evaluate(arguments: argparse.Namespace) -> int:
-    from ai.agent.config import LANDER
     from ai.common.intervals import wilson
     from ai.lander.spawns import SPAWNS
+    from ai.training.config import LANDER
 
     spawn, episodes = "random" if arguments.spawn is None else arguments.spawn, arguments.episodes
     if problem := out_of_range(arguments, episodes=FLIGHTS, seed=SEEDS, workers=WORKERS):
@@ -140,12 +140,12 @@ def _evaluate(arguments: argparse.Namespace) -> int:
     if spawn not in SPAWNS:
         return fail(f"--spawn is one of {', '.join(SPAWNS)}, not {spawn}")
     try:
-        agent, task = _agent_and_task(arguments)
+        agent, task, env = _agent_and_task(arguments)
     except REFUSED as error:
         return fail(reason(error))
     episodes = episodes or task.test_episodes
     spread = arguments.address is not None or arguments.workers is not None
-    if agent.config.env == LANDER:
+    if env == LANDER:
         try:
             score: Score = _flown(arguments, agent, episodes, spawn)
         except REFUSED as error:
@@ -155,7 +155,7 @@ def _evaluate(arguments: argparse.Namespace) -> int:
     elif arguments.spawn is None:
         score = task.evaluate(agent, episodes, arguments.seed)
     else:
-        return fail(f"--spawn is for the lander on the moon; this network is for {agent.config.env}")
+        return fail(f"--spawn is for the lander on the moon; this network is for {env}")
     told: dict[str, Any] = score.to_json()
     if score.success is not None:
         told["success_interval"] = wilson(score.success, score.episodes)
@@ -169,19 +169,19 @@ def _evaluate(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _agent_and_task(arguments: argparse.Namespace) -> tuple[DeepQAgent, Task]:
-    """Read the network, and what it is measured by; raises ValueError if these two or `--env` do not fit together."""
-    from ai.agent.agent import DeepQAgent
+def _agent_and_task(arguments: argparse.Namespace) -> tuple[DeepQAgent, Task, str]:
+    """Read the network, what it is measured by, and its environment; raises ValueError where they do not fit."""
+    from ai.training.config import load_agent
     from ai.training.tasks import task_of
 
-    agent = DeepQAgent.load(arguments.model, env=arguments.env)
-    env = agent.config.env
+    agent, config = load_agent(arguments.model, env=arguments.env)
+    env = config.env
     if arguments.env not in (None, env):
         raise ValueError(f"the network in {arguments.model} is for {env}, not for {arguments.env}")
-    task = task_of(agent.config)
+    task = task_of(config)
     if (agent.num_features, agent.num_actions) != (task.num_features, task.num_actions):
         raise ValueError(f"the network in {arguments.model} is not made for {env}")
-    return agent, task
+    return agent, task, env
 
 
 def _flown(arguments: argparse.Namespace, agent: DeepQAgent, episodes: int, spawn: str) -> Score:
@@ -210,7 +210,7 @@ def config_of(arguments: argparse.Namespace, begun: Config | None = None) -> Con
 
     Raises ValueError for a change that makes no sense.
     """
-    from ai.agent.config import ANYWHERE, LANDER, LANDS_ANYWHERE, PRESETS
+    from ai.training.config import ANYWHERE, LANDER, LANDS_ANYWHERE, PRESETS
 
     presets = {**PRESETS, "anywhere": LANDS_ANYWHERE}
     if arguments.preset is not None and arguments.preset not in presets:

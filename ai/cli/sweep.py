@@ -159,9 +159,9 @@ def _resumed(arguments: argparse.Namespace, place: Path) -> Study:
 
     A study may be a stranger's: an environment whose name would import code has to be named by the user as well.
     """
-    from ai.agent.storage import check_env
     from ai.sweep.runs import AGENT, check_ready, read_config
     from ai.sweep.study import Study
+    from ai.training.config import check_env
 
     if given := [name for name in _OF_A_NEW_ONE if getattr(arguments, name) is not None]:
         named = ", ".join(f"--{'set' if name == 'changes' else name.replace('_', '-')}" for name in given)
@@ -182,10 +182,10 @@ def _resumed(arguments: argparse.Namespace, place: Path) -> Study:
 
 def _plan(arguments: argparse.Namespace) -> Plan:
     """Return the plan of a new study; raises ValueError or OSError for what makes no sense."""
-    from ai.agent.config import ANYWHERE, LANDER
     from ai.sweep.plan import POPULATION, TPE, Plan
     from ai.sweep.runs import AGENT, DIGITS, check_ready
     from ai.sweep.space import knob_space, read_space
+    from ai.training.config import ANYWHERE, LANDER
 
     config = _config(arguments)
     check_ready(config)

@@ -78,10 +78,15 @@ class Knobs:
     def from_json(cls, values: Mapping[str, Any]) -> Self:
         """Read what `to_json` wrote, now or under former names; raises ValueError for unknown names and bad values."""
         values = cls.renamed(values)
-        unknown = sorted(set(values) - {item.name for item in fields(cls)})
+        unknown = sorted(set(values) - cls.names())
         if unknown:
             raise ValueError(f"unknown settings: {', '.join(unknown)}")
         return cls(**{name: cls.value_from_json(name, value) for name, value in values.items()})
+
+    @classmethod
+    def names(cls) -> set[str]:
+        """Return the names of all fields."""
+        return {item.name for item in fields(cls)}
 
     @classmethod
     def name_now(cls, name: str) -> str:

@@ -11,7 +11,7 @@ from typing import Any, Final, Protocol
 import numpy as np
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.config import Config
+from ai.agent.config import AgentConfig
 from ai.common.decision import in_points
 from ai.common.environment import Bools, Doubles, Floats, Ints
 from ai.copilot.futures import DECISION_STEPS, KEYS, Future, Futures, Here, Lookahead, Moment, Push
@@ -131,7 +131,7 @@ class CoPilot:
         self.agent = agent
         self.assist = assist
         self.mode = Mode(mode)
-        config = agent.config if isinstance(agent, DeepQAgent) else Config()
+        config = agent.config if isinstance(agent, DeepQAgent) else AgentConfig()
         self.reward_scale = config.reward_scale if reward_scale is None else reward_scale
         self.infers_intent = infers_intent
         self._intent = Intent(self.reward_scale)

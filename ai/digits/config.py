@@ -1,4 +1,4 @@
-"""Settings of a digit training run, as one dataclass, and the presets; like `ai.agent.config`."""
+"""Settings of a digit training run, as one dataclass, and the presets; like `ai.training.config`."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ from typing import Any, Final
 import numpy as np
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.config import Config
+from ai.agent.config import AgentConfig
 from ai.agent.n_step import NStep
 from ai.agent.network import build_network, make_optimizer
 from ai.agent.normalizer import Normalizer
@@ -78,7 +78,7 @@ class Lesson:
 
     """
 
-    config: Config
+    config: AgentConfig
     decisions: int
     flown: Flown | None
     cell: MemoryCell
@@ -113,7 +113,7 @@ class Before:
 
     """
 
-    config: Config
+    config: AgentConfig
     decisions: int
     online: Floats
     target: Floats
@@ -132,7 +132,7 @@ class Before:
         return cls(agent.config, agent.decisions, online, target, optimizer, normalizer, cells, weights)
 
 
-def functions(config: Config) -> dict[str, Function]:
+def functions(config: AgentConfig) -> dict[str, Function]:
     """Return the functions that a learning step runs through and a lesson records, by their qualified names."""
     network = build_network(2, 2, config, np.random.default_rng(0))
     return Recorder([*_AGENT, *network_functions(network, make_optimizer(config))]).functions

@@ -10,7 +10,6 @@ import time
 from pathlib import Path
 from typing import Any, Final, Protocol
 
-from ai.agent.config import Config
 from ai.common.knobs import Knobs
 from ai.digits.checkpoints import resume_digit_run, save_digit_run
 from ai.digits.config import DigitConfig
@@ -18,6 +17,7 @@ from ai.digits.mnist import TRAIN, load_part
 from ai.digits.training import DigitTraining
 from ai.sweep.metric import Point
 from ai.training.checkpoints import resume_run, save_run
+from ai.training.config import Config
 from ai.training.loop import VALIDATION_SEED, Training
 from ai.training.tasks import task_of
 

@@ -21,6 +21,7 @@ from ai.agent.storage import write_agent
 from ai.lander.environment import LanderEnv
 from ai.sweep.cluster import each
 from ai.sweep.trial import archive, unpack
+from ai.training.config import Config
 from ai.training.lander_task import FlightSums, counted
 
 SHARD: Final = 10_000  # flights at once, in 5 KB each
@@ -41,8 +42,9 @@ class Shard:
 def shards(agent: DeepQAgent, episodes: int, seed: int, spawn: str) -> list[Shard]:
     """Return the shards of an evaluation of an agent."""
     packed = pack_agent(agent)
+    frame_skip = Config.of(agent).frame_skip
     return [
-        Shard(packed, first, min(episodes, first + SHARD), seed, spawn, agent.config.frame_skip)
+        Shard(packed, first, min(episodes, first + SHARD), seed, spawn, frame_skip)
         for first in range(0, episodes, SHARD)
     ]
 

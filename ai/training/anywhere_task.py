@@ -7,8 +7,6 @@ from typing import Final
 
 import numpy as np
 
-from ai.agent.config import Config
-from ai.agent.schedule import touchdown_limits
 from ai.agent.symmetry import Symmetry
 from ai.common.environment import Env
 from ai.lander.anywhere import SITES, AnywhereEnv
@@ -16,7 +14,9 @@ from ai.lander.environment import MIRROR_ACTIONS, MIRROR_FEATURES, MIRROR_SIGNS,
 from ai.lander.pilots import Pilot
 from ai.lander.sensing import SURROUNDINGS, SURROUNDINGS_MIRROR
 from ai.lander.spawns import CURRICULA
+from ai.training.config import Config
 from ai.training.lander_task import Evaluation, LanderTask, flown
+from ai.training.schedule import touchdown_limits
 
 ANYWHERE_SYMMETRY: Final = Symmetry(
     np.concatenate([MIRROR_SIGNS, SURROUNDINGS_MIRROR]),

@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import Any, Final
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.config import ANYWHERE, LANDER, LANDS_ANYWHERE, PRESETS, Config
 from ai.agent.normalizer import Normalizer
 from ai.agent.storage import KIND, LAST, write_agent
 from ai.common.knobs import nearest_preset
 from ai.files import count_of, inside, number_of, problem_in, read_json
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.nn import ModelFormatError, atomic_folder
+from ai.training.config import ANYWHERE, LANDER, LANDS_ANYWHERE, PRESETS, Config, load_agent
 from ai.training.gym_task import gym_config
 from ai.training.history import Checkpoint, History
 from ai.training.loop import Progress, Training
@@ -126,12 +126,12 @@ def save_run(training: Training, folder: str | Path, final: bool = False) -> Non
 def resume_run(folder: str | Path, *, env: str | None = None) -> Training:
     """Resume a run that `save_run` saved, with an empty memory; raises ModelFormatError for anything else.
 
-    `env` is the environment as the user names it, without which "module:Name" is refused: see `DeepQAgent.load`.
+    `env` is the environment as the user names it, without which "module:Name" is refused: see `load_agent`.
     """
     folder = Path(folder)
-    best = DeepQAgent.load(folder, env=env)
+    best, _ = load_agent(folder, env=env)
     try:
-        last = DeepQAgent.load(inside(folder, LAST), env=env)
+        last, config = load_agent(inside(folder, LAST), env=env)
         described = read_json(inside(folder, TRAINING_FILE))
     except OSError as error:
         raise ModelFormatError(folder, [f"{Path(error.filename or LAST).name}: {error.strerror or error}"]) from error
@@ -140,10 +140,10 @@ def resume_run(folder: str | Path, *, env: str | None = None) -> Training:
     except ValueError as error:
         raise ModelFormatError(folder, [f"{TRAINING_FILE}: {error}"]) from error
     try:
-        training = Training(last.config, count_of(described["seed"], most=10**40))
+        training = Training(config, count_of(described["seed"], most=10**40))
         for agent in (best, last):
             if (agent.num_features, agent.num_actions) != (training.task.num_features, training.task.num_actions):
-                raise ValueError(f"its network is not made for {last.config.env}")
+                raise ValueError(f"its network is not made for {config.env}")
         if described["best"] is not None:
             if best.network.values.shape != training.agent.network.values.shape:
                 raise ValueError("the best network and the last one are of different sizes")

@@ -15,7 +15,6 @@ from typing import Annotated, Any, Final
 import numpy as np
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.config import Config
 from ai.agent.n_step import NStep
 from ai.agent.replay import MemoryCell
 from ai.common.environment import Bools, Floats
@@ -35,6 +34,7 @@ from ai.lander.environment import NUM_ACTIONS, LanderEnv, Outcome
 from ai.lander.ground import hilly
 from ai.lander.pilots import Pilot
 from ai.lander.spawns import SPAWNS
+from ai.training.config import Config
 
 FORMAT: Final = "tranquility demonstrations"
 VERSION: Final = 1
@@ -123,7 +123,7 @@ def teach(agent: DeepQAgent, demonstrations: Sequence[Demonstration]) -> int:
 
     The agent learns from the list in a second pass of its own, if `config.success_pass` is on, as `taught` has it.
     """
-    landings = [cells for cells in relive(demonstrations, agent.config) if cells is not None]
+    landings = [cells for cells in relive(demonstrations, Config.of(agent)) if cells is not None]
     for cells in landings:
         agent.replay.add(cells)
         agent.successes.add(cells)

@@ -10,10 +10,10 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields, is_dataclass
 from typing import Any, Final, Literal
 
-from ai.agent.config import Config
-from ai.agent.schedule import idle
 from ai.lander.rewards import RewardWeights
+from ai.training.config import Config
 from ai.training.sabotage import SABOTAGES
+from ai.training.schedule import idle
 
 Kind = Literal["times", "divided", "value", "sabotage"]
 FACTOR: Final = 100.0  # on a logarithmic scale

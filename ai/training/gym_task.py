@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from ai.agent.config import Config
 from ai.agent.symmetry import Symmetry
 from ai.common.environment import SUCCESS, Bools, Doubles, Env, Floats, Ints, StepResult
 from ai.lander.pilots import Pilot
+from ai.training.config import Config
 from ai.training.task import checked_score
 
 if TYPE_CHECKING:

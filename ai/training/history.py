@@ -10,7 +10,6 @@ from typing import Annotated, Any, ClassVar, Final
 
 import numpy as np
 
-from ai.agent.config import Config
 from ai.agent.normalizer import Normalizer
 from ai.common.environment import Doubles, Floats
 from ai.files import (
@@ -30,6 +29,7 @@ from ai.files import (
 from ai.files import described as array_said
 from ai.lander.rewards import REWARDS
 from ai.nn import ModelFormatError
+from ai.training.config import Config
 
 COLUMNS: Final = (
     "seconds", "decisions", "episodes", "success", "mean_return", "loss", "mean_q", "epsilon", "stage",

@@ -8,8 +8,6 @@ from typing import Any, Final
 
 import numpy as np
 
-from ai.agent.config import Config
-from ai.agent.schedule import touchdown_limits
 from ai.agent.symmetry import Symmetry
 from ai.common.environment import Doubles, Env, Ints
 from ai.lander.environment import (
@@ -25,6 +23,8 @@ from ai.lander.environment import (
 )
 from ai.lander.pilots import Pilot
 from ai.lander.spawns import CURRICULA, SPAWNS, TEACH_HARD
+from ai.training.config import Config
+from ai.training.schedule import touchdown_limits
 from ai.training.task import checked_score
 
 LANDER_SYMMETRY: Final = Symmetry(MIRROR_SIGNS, MIRROR_FEATURES, MIRROR_ACTIONS)

@@ -17,12 +17,12 @@ from typing import Any
 import numpy as np
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.config import Config
 from ai.agent.network import make_optimizer
 from ai.agent.normalizer import Normalizer
 from ai.agent.replay import make_replay
 from ai.agent.schedule import exploration, exploration_of_each
 from ai.common.environment import Env, Floats, StepResult
+from ai.training.config import Config
 from ai.training.lander_task import LANDER_SYMMETRY, Evaluation, evaluate
 from ai.training.statistics import EpisodeStatistics
 from ai.training.task import TEST_SEED, VALIDATION_SEED, Score, Task
@@ -114,7 +114,7 @@ class Training:
         agent, statistics = self.agent, self.statistics
         before, epsilon = agent.decisions, self.epsilon
         self.task.update_env(agent.decisions, self.env)
-        each = exploration_of_each(agent.config, epsilon)
+        each = exploration_of_each(agent.config, epsilon, self.env.num_envs)
         actions, result = agent.train_step(self.env, self.observation, each, self._held)
         statistics.add(result)
         if self.on_step is not None:
@@ -172,7 +172,7 @@ class Training:
 
     def best_agent(self) -> DeepQAgent:
         """Return an agent that flies with the best network found so far."""
-        agent = self._new_agent(self.agent.config)
+        agent = self._new_agent(self.config)
         if self.best_values is None:
             agent.restore(self.agent.network.values, deepcopy(self.agent.normalizer))
         else:
@@ -187,7 +187,7 @@ class Training:
 
     def last_agent(self) -> DeepQAgent:
         """Return a copy of the agent that learns, with an empty replay buffer."""
-        agent = self._new_agent(self.agent.config)
+        agent = self._new_agent(self.config)
         agent.copy_from(self.agent)
         return agent
 

@@ -9,12 +9,12 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ai.agent.config import Config
-from ai.agent.schedule import InForce
 from ai.common.environment import Floats
 from ai.explain.agent_lesson import Lesson
+from ai.training.config import Config
 from ai.training.edits import EditCommand, NetworkEdits
 from ai.training.history import Checkpoint, Point, SettingChange, Validation
+from ai.training.schedule import InForce
 
 
 @dataclass(frozen=True)

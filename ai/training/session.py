@@ -10,12 +10,11 @@ from typing import Any, Final
 
 import numpy as np
 
-from ai.agent.config import Config
-from ai.agent.schedule import InForce, in_force
 from ai.common.environment import Ints, StepResult
 from ai.lander.environment import LanderEnv
 from ai.training.autosave import Autosave
 from ai.training.checkpoints import restore_checkpoint, resume_run
+from ai.training.config import Config
 from ai.training.demonstrations import Demonstration, read, taught, teach
 from ai.training.edits import EDITED, EditCommand, NetworkEditor
 from ai.training.explanations import Explanations
@@ -46,6 +45,7 @@ from ai.training.messages import (
     SwarmState,
     problem_of,
 )
+from ai.training.schedule import InForce, in_force
 from ai.training.validation_flights import ValidationFlights
 
 POINT_DECISIONS: Final = 256  # at least so many between two points

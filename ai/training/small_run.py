@@ -10,7 +10,6 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.config import Config
 from ai.agent.replay import MemoryCell, PrioritisedReplayBuffer, ReplayBuffer
 from ai.agent.schedule import exploration
 from ai.common.decision import in_points
@@ -18,6 +17,7 @@ from ai.common.environment import Bools, Doubles, Floats, Ints
 from ai.lander.environment import Outcome
 from ai.lander.one_engine import OneEngineEnv
 from ai.lander.rewards import RewardWeights
+from ai.training.config import Config
 
 # Plain deep Q-learning: a hard copy of the target network every 100 gradient steps, as Mnih et al. 2015 had it.
 SMALL_RUN: Final = Config(

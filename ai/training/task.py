@@ -6,11 +6,11 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ai.agent.config import Config
 from ai.agent.symmetry import Symmetry
 from ai.common.environment import Doubles, Env
 from ai.files import number_of, shown
 from ai.lander.pilots import Pilot
+from ai.training.config import Config
 
 VALIDATION_SEED = 1_000_003  # episodes that choose the best checkpoint
 TEST_SEED = 2_000_003  # episodes that have no say in anything, to measure a finished network by

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ai.agent.config import ANYWHERE, LANDER, Config
+from ai.training.config import ANYWHERE, LANDER, Config
 from ai.training.task import Task
 
 

@@ -6,7 +6,7 @@ from typing import Final, Literal, NamedTuple
 
 import numpy as np
 
-from ai.agent.config import Config
+from ai.training.config import Config
 from ai.training.hints import RULES, RecentCurves
 from ai.training.history import History
 

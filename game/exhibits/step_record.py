@@ -179,7 +179,6 @@ class StepRecord:
     def __init__(self, exhibit: Exhibit, grip: Grip | None = None) -> None:
         exhibit.world.wake()
         self.exhibit, grip = copy.deepcopy((exhibit, grip))
-        self.exhibit.world.in_floats = False  # arrays are recorded
         self.exhibit.world.detector.broad.forget_boxes()  # or it may know that nothing is near, and make none
         state = self.exhibit.world.state
         self.before = (state.pose[0].copy(), state.velocity[0].copy())

@@ -127,7 +127,7 @@ class Credit:
             return self._challenge.bar
         if self._hands != OWN:
             return "hands"
-        if self.helped:
+        if self.helped and flight.share < 1.0:
             return "helped"
         if flight.share < 1.0 or flight.hand is StickHolder.NETWORK:
             return "handed_over"
@@ -137,7 +137,10 @@ class Credit:
 
     @property
     def counts(self) -> bool:
-        """Whether the person flew all of it without help, handicap, changed gravity or assists that set it apart."""
+        """Whether the person flew all of it, without handicap, changed gravity or assists that set it apart.
+
+        Help that stood by and changed nothing takes nothing away.
+        """
         return not self.bar
 
     @property
@@ -150,7 +153,11 @@ class Credit:
         """Text that says why it does not count, and what is changed; empty if it counts, or never could."""
         if self._difficulty.words:
             return self._difficulty.words
-        return texts.NOT_COUNTED[self.bar] if self.bar and (self._challenge is None or self._challenge.kept) else ""
+        if self._challenge is not None and not self._challenge.kept:
+            return ""
+        if self.bar:
+            return texts.NOT_COUNTED[self.bar]
+        return texts.HELP_IS_ON if self.helped and not self._flight.over else ""
 
     @property
     def medal(self) -> int:

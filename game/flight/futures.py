@@ -12,7 +12,7 @@ from collections.abc import Iterable, Mapping
 from typing import Final, NamedTuple
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.config import Config
+from ai.agent.config import AgentConfig
 from ai.agent.normalizer import Normalizer
 from ai.common.environment import Floats
 from ai.copilot.futures import KEYS, Future, Lookahead, Moment, Opening, Push
@@ -30,7 +30,7 @@ class Flyer(NamedTuple):
 
     num_features: int
     num_actions: int
-    config: Config
+    config: AgentConfig
     values: Floats  # (parameters,)
     normalizer: Normalizer | None
 

@@ -122,11 +122,11 @@ def load(name: str, folder: Path, features: int = NUM_FEATURES) -> Network:
 
 
 def _fresh(name: str, folder: Path, features: int) -> Network:
-    from ai.agent.agent import DeepQAgent
     from ai.nn import ModelFormatError
+    from ai.training.config import load_agent
 
     try:
-        agent = DeepQAgent.load(folder)
+        agent, _ = load_agent(folder)
     except ModelFormatError as error:
         return Network(name, problem=brief(error.problems[0] if error.problems else error))
     except OSError as error:

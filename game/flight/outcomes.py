@@ -13,6 +13,7 @@ from ai.lander.rules import tenths
 from game.core import texts
 
 _LEVEL: Final = math.cos(math.radians(30))  # upward part of the unit normal of ground that still counts as level
+_TIPPED: Final = math.radians(45)  # tilt from which on no engine can brake the fall: that came first
 
 
 @dataclass(frozen=True)
@@ -108,11 +109,20 @@ def ending_word(outcome: str, *, intact: bool) -> str:
 
 
 def cause_of(env: LanderEnv, slot: int = 0) -> Cause:
-    """Return why a craft broke: of a hard touch beside the pad the limit it exceeded, as the place breaks nothing."""
+    """Return why a craft broke, the cause before its symptom: one that had tipped over could not brake any more.
+
+    Of a hard touch beside the pad it is the limit that was exceeded, as the place breaks nothing.
+    """
     cause = Cause(int(env.cause[slot]))
+    if cause is not Cause.NONE and _tipped(env, slot):
+        return Cause.TILTED
     if cause is not Cause.TERRAIN or env.intact[slot]:
         return cause
     return next(cause for cause, (value, limit) in _exceeded(env, slot).items() if value > limit)
+
+
+def _tipped(env: LanderEnv, slot: int) -> bool:
+    return bool(env.impact[slot, 2] > _TIPPED)
 
 
 def _exceeded(env: LanderEnv, slot: int) -> dict[Cause, tuple[float, float]]:
@@ -149,6 +159,8 @@ def crash_reason(env: LanderEnv, slot: int = 0) -> str:
     value, limit = limits.get(cause, (0.0, 0.0))
     steep = struck_side(env, slot)
     value = touch_speed(env, slot) if steep else value
+    if cause is Cause.TILTED and _tipped(env, slot):
+        return texts.TIPPED_OVER.format(tilt=f"{value:.0f}", speed=f"{touch_speed(env, slot):.1f}")
     words = texts.CRASHED_SIDEWAYS if steep else texts.CAUSES[cause.name]
     shown = _beyond(value, limit, 0 if cause is Cause.TILTED else 1) if cause in limits else ("", "")
     return words.format(value=shown[0], limit=shown[1])

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Final
 
-from ai.agent.config import LANDER
 from ai.files import Count, Share, Sized, brief, inside, read_as, read_json
+from ai.training.config import LANDER
 from game.core import texts
 
 STUDIES: Final = "studies"  # folder of the studies, in the player's

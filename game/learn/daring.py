@@ -8,9 +8,9 @@ from typing import Final
 import pygame
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.config import Config
 from ai.agent.schedule import exploration
 from ai.lander.rewards import RewardWeights
+from ai.training.config import Config
 from ai.training.small_run import SMALL_RUN, Plan
 from game.core import texts
 from game.core.scene import Route

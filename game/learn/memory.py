@@ -10,10 +10,10 @@ import numpy as np
 import pygame
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.config import Config
 from ai.agent.replay import PrioritisedReplayBuffer, ReplayBuffer
 from ai.common.environment import Doubles
 from ai.lander.environment import OBSERVATION_SCALE
+from ai.training.config import Config
 from ai.training.small_run import SMALL_RUN, TESTED, Plan, SmallState
 from game.core import texts
 from game.core.scene import Route

@@ -13,6 +13,7 @@ from ai.agent.agent import DeepQAgent
 from ai.common.decision import Decision, in_points
 from ai.common.environment import Floats
 from ai.lander.environment import LanderEnv, Outcome
+from ai.training.config import Config
 from game.core import texts
 from game.core.scene import Route
 from game.drawing.canvas import Canvas
@@ -102,7 +103,7 @@ class MomentChapter(Chapter):
         if self.agent is None:
             return
         seed, spawn, decisions = MOMENTS[self._number]
-        self.env = LanderEnv(1, seed, spawn, frame_skip=1, weights=self.agent.config.reward_weights)
+        self.env = LanderEnv(1, seed, spawn, frame_skip=1, weights=Config.of(self.agent).reward_weights)
         self.env.reset()
         for step in range(DECISION_STEPS * decisions):
             if step % DECISION_STEPS == 0:

@@ -9,11 +9,11 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.agent.config import Config
 from ai.common.environment import Bools, Doubles, Ints
 from ai.lander.environment import PARAMS, LanderEnv, Outcome
 from ai.lander.rewards import REWARDS, RewardWeights
 from ai.training.checkpoints import agent_of
+from ai.training.config import Config
 from ai.training.history import Checkpoint
 from ai.training.messages import SwarmState
 from ai.training.session import live

@@ -10,9 +10,9 @@ from typing import ClassVar, Final
 import numpy as np
 import pygame
 
-from ai.agent.config import Config
 from ai.common.environment import Doubles, Ints
 from ai.lander.environment import PARAMS, Outcome
+from ai.training.config import Config
 from ai.training.small_run import Flown, Plan, SmallState, small_runs
 from game.core import texts
 from game.core.worker import Worker, WorkerState

@@ -7,7 +7,7 @@ from typing import Any, Final
 
 import pygame
 
-from ai.agent.config import Config
+from ai.training.config import Config
 from ai.training.hints import Adviser, Hint
 from ai.training.history import History
 from game.core import texts

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from ai.agent.config import Config
 from ai.training.captions import CHARTS, Caption, captions
+from ai.training.config import Config
 from ai.training.hints import RecentCurves
 from ai.training.history import History
 from game.charts.chart import Chart

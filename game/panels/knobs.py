@@ -8,8 +8,8 @@ from typing import Any, Final, Literal
 
 import pygame
 
-from ai.agent.schedule import InForce
 from ai.training.sabotage import MEASURED
+from ai.training.schedule import InForce
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, LABEL, LINE, MUTE, SMALL, TEXT, TITLE

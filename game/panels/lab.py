@@ -9,7 +9,7 @@ from typing import Final, NamedTuple
 
 import pygame
 
-from ai.agent.config import PRESETS, Config
+from ai.training.config import PRESETS, Config
 from ai.training.experiments import Experiment, differences
 from ai.training.sabotage import MEASURED
 from ai.training.verdict import KINDS, Flown, Kind, judged_at, verdict

@@ -8,11 +8,11 @@ from typing import Final, get_args
 import numpy as np
 import pygame
 
-from ai.agent.config import Config
 from ai.agent.network import build_network
 from ai.explain.inspection import NetworkHealth
 from ai.lander.environment import ACTION_NAMES, NUM_ACTIONS, NUM_FEATURES
 from ai.nn import NeuralNetwork
+from ai.training.config import Config
 from ai.training.history import PARTS, History
 from ai.training.messages import NetworkState
 from game.core import texts

@@ -5,14 +5,13 @@ from __future__ import annotations
 from datetime import date
 
 from ai.flights.places import DAILY
-from ai.lander.environment import Outcome
 from game.core import texts
 from game.flight.flight import Flight
 from game.flight.flight_file import Entry, Record
 from game.flight.networks import Policy
 from game.flight.replay import ReplayedFlight
 from game.play.challenge import Challenge
-from game.play.days import Attempt, Days, line
+from game.play.days import Attempt, Days
 from game.play.ghost import Ghost
 
 
@@ -77,12 +76,15 @@ class DailyStart(Challenge):
         self._days.add(entry)
         if self.bar:
             return ""
-        self._days.note(Attempt(self.line, entry.outcome, entry.score, entry.barred, entry.file))
+        self._days.note(self._attempt(entry))
         return self._days.problem
 
     def message(self, record: Record) -> tuple[str, str]:
         """Return the result in a line, which tells nothing of the way."""
         entry = record.entry
         attempt = "practice" if self.bar else "eased" if entry.barred else "first"
-        told = line(self.line, Outcome[entry.outcome], entry.score, attempt)
+        told = self._attempt(entry).told(attempt)
         return told, texts.CODE_LINE_COPIED.format(line=told)
+
+    def _attempt(self, entry: Entry) -> Attempt:
+        return Attempt(self.line, entry.outcome, entry.score, entry.barred, entry.file, entry.intact)

@@ -31,6 +31,7 @@ class Attempt:
     Attributes:
         day: the day, as in 2026-11-22.
         outcome: name of an Outcome; FLYING if it was left before its end.
+        intact: whether it came down whole beside the pad.
         score: points.
         barred: why it does not count as the player's own, as in the logbook; empty if it does.
         file: name of the flight's file.
@@ -42,18 +43,23 @@ class Attempt:
     score: Count = 0
     barred: Annotated[str, Sized(40)] = ""
     file: Annotated[str, Sized(255)] = ""
+    intact: bool = False
 
     @property
     def line(self) -> str:
         """The result in a line for a message, which tells nothing of the way."""
-        return line(self.day, Outcome[self.outcome], self.score, "eased" if self.barred else "first")
+        return self.told("eased" if self.barred else "first")
 
+    @property
+    def result(self) -> str:
+        """How it ended, for the list and for the line."""
+        return texts.BESIDE_RESULT if self.intact else texts.RIVAL_RESULTS[self.outcome]
 
-def line(day: str, outcome: Outcome, points: int, attempt: str) -> str:
-    """Return a result of a day in a line for a message; `attempt` is a key of `texts.DAILY_ATTEMPTS`."""
-    landed = outcome is Outcome.LANDED
-    end = texts.DAILY_LANDED.format(points=points) if landed else texts.EARNED[outcome.name]
-    return texts.DAILY_LINE.format(day=day, end=end, attempt=texts.DAILY_ATTEMPTS[attempt])
+    def told(self, attempt: str) -> str:
+        """Return the result in a line for a message; `attempt` is a key of `texts.DAILY_ATTEMPTS`."""
+        landed = self.outcome == Outcome.LANDED.name
+        end = texts.DAILY_LANDED.format(points=self.score) if landed else self.result
+        return texts.DAILY_LINE.format(day=self.day, end=end, attempt=texts.DAILY_ATTEMPTS[attempt])
 
 
 class Days:

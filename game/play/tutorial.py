@@ -43,6 +43,7 @@ _PRAISE: Final = 40  # steps that a finished lesson stays on the screen, with a 
 _LONG: Final = 840  # steps in flight after which the network lands a rescue that does not come down
 _NEAR: Final = 4.0  # metres above the pad, below which the craft should be upright
 _TOLD_WHY: Final = 240  # steps in flight that the reason for a restart stays on the screen
+_ON_ITS_SIDE: Final = np.radians(45)  # tilt from which on firing does not brake
 _SIDEWAYS: Final = 12.0  # metres from the pad that count as far
 _BESIDE: Final = 1.6  # metres from the middle of a craft to the text beside it
 _EDGE: Final = 24.0
@@ -113,11 +114,13 @@ class Tutorial(Challenge):
         if self.praise:
             self.praise -= 1
             if not self.praise:
+                watched = self._watched(flight)
                 self._begin_lesson(self._number + 1)
+                self._why = texts.TUTORIAL_WATCHED if watched else ""
             return ""
         if self.lesson.guarded and self._flown_for == _LONG and flight.hand is StickHolder.HUMAN:
             flight.hand_over()  # kept from crashing by a co-pilot, one may hover without end
-        done = flight.hand is (self.lesson.by or flight.hand) and self.lesson.done(flight)
+        done = (flight.hand is (self.lesson.by or flight.hand) and self.lesson.done(flight)) or self._watched(flight)
         self._done_for = self._done_for + 1 if done else 0 if self.lesson.held else self._done_for
         if self._done_for < self.lesson.steps:
             return ""
@@ -125,6 +128,11 @@ class Tutorial(Challenge):
         self.flown |= self.lesson.name == "land"
         self.through = self._number == len(self._lessons) - 1
         return "" if flight.over else "choose"  # a landing has a sound of its own
+
+    def _watched(self, flight: Flight) -> bool:
+        """Whether the network has landed before the stick was taken back, which is as good: it was to be watched."""
+        by_network = flight.hand is StickHolder.NETWORK and flight.outcome is Outcome.LANDED
+        return self.lesson.name == "take_back" and by_network
 
     def skip(self) -> None:
         """Skip the lesson, and those that start with it."""
@@ -194,8 +202,7 @@ class Tutorial(Challenge):
         if flight.outcome is not Outcome.LANDED:
             return outcome_card(flight.env, flight.share).reason
         if flight.hand is StickHolder.NETWORK:
-            sooner = self.lesson.name == "take_back"
-            return texts.TUTORIAL_TAKE_EARLIER if sooner else texts.TUTORIAL_NETWORK_LANDED
+            return texts.TUTORIAL_NETWORK_LANDED
         return texts.TUTORIAL_LANDED_EARLY
 
     # The picture
@@ -225,7 +232,7 @@ class Tutorial(Challenge):
         env, lesson = flight.env, self.lesson
         told = texts.TUTORIAL[lesson.name]
         if flight.over:
-            return texts.TUTORIAL_GOOD[lesson.name] if self.praise else texts.TUTORIAL_AGAIN
+            return self._line_after(flight)
         if waiting and lesson.guarded:
             return told[0] if self.holds else texts.TUTORIAL_PATHS
         if stuck:
@@ -250,10 +257,15 @@ class Tutorial(Challenge):
             return texts.TUTORIAL_STANDS
         return told[1] if self._begun > 2 and told[1] else told[0]
 
+    def _line_after(self, flight: Flight) -> str:
+        if self._watched(flight):
+            return texts.TUTORIAL_WATCHED
+        return texts.TUTORIAL_GOOD[self.lesson.name] if self.praise else texts.TUTORIAL_AGAIN
+
     def _urgent(self, env: LanderEnv) -> str:
         """Return an urgent warning, which precedes any lesson; empty if nothing is urgent."""
         if falls_too_fast(env):
-            return texts.TUTORIAL_TOO_FAST
+            return texts.TUTORIAL_TURN_FIRST if env.tilt[0] > _ON_ITS_SIDE else texts.TUTORIAL_TOO_FAST
         if leaves_at_the_top(env):
             return texts.TUTORIAL_TOO_HIGH
         if self.lesson.name == "land" and env.altitude[0] < _NEAR and env.tilt[0] > env.limits.touch_tilt / 2:
@@ -275,7 +287,7 @@ class Tutorial(Challenge):
             return
         x, y, _ = flight.poses.at(scene.alpha)[0].tolist()
         words = self.words(flight, scene.controls, waiting=scene.waiting, stuck=scene.stuck)
-        praised = bool(self.praise) and words == texts.TUTORIAL_GOOD[self.lesson.name]
+        praised = bool(self.praise) and words in (texts.TUTORIAL_GOOD[self.lesson.name], texts.TUTORIAL_WATCHED)
         tick = 22 if praised else 0
         why = self._why_beside(flight)
         width = max(canvas.text_width(words, size=_SIZE) + tick, canvas.text_width(why, size=SMALL))

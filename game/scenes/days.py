@@ -76,7 +76,7 @@ class DaysScene(ListScene[date]):
             return texts.DAYS_NOT_FLOWN if day == self._today else texts.DAYS_MISSED
         if attempt.outcome == Outcome.FLYING.name:
             return texts.DAYS_LEFT
-        return texts.RIVAL_RESULTS[attempt.outcome]
+        return attempt.result
 
     def _make_verbs(self) -> list[Widget]:
         if self.chosen is None:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import pygame
 
-from ai.agent.schedule import InForce
 from ai.digits.config import DIGIT_PRESETS, DigitConfig
+from ai.training.schedule import InForce
 from game.charts.scrubber import Scrubber
 from game.core import texts
 from game.core.scene import Push, Transition, push

@@ -60,6 +60,7 @@ class LogbookScene(ListScene[Entry]):
     def __init__(self, context: Context) -> None:
         super().__init__(context, texts.LOGBOOK_TITLE, _LAYOUT, empty=texts.LOGBOOK_EMPTY)
         self._records = Records(context.user_dir)
+        self._last_thrown = ""
         manager = self.form.manager
         box = (MARGIN, _LAYOUT.box.top - 54, 330, 20)
         self._filter = self.form.add(
@@ -105,7 +106,8 @@ class LogbookScene(ListScene[Entry]):
     def actions(self) -> Table:
         """Move, choose, go back; the Delete key deletes a flight."""
         delete = [] if self.form.typing else [Action(pygame.K_DELETE, self._throw_away)]
-        return [*super().actions(), *delete]
+        undo = [Action(pygame.K_z, self._undo)] if self._last_thrown in self._thrown and not self.form.typing else []
+        return [*super().actions(), *delete, *undo]
 
     def update(self) -> Transition | None:
         """Animate widgets and charts."""
@@ -151,7 +153,8 @@ class LogbookScene(ListScene[Entry]):
         self._charts.charts[1].set([Series(number, np.array(fuel, float), texts.LOGBOOK_YOU, HUMAN)], span)
 
     def _row(self, entry: Entry) -> Row:
-        return entry_row(entry)
+        when, course, end, *more = entry_row(entry)
+        return when, course, texts.LOGBOOK_ROW_THROWN if entry.file in self._thrown else end, *more
 
     def _make_verbs(self) -> list[Widget]:
         self._why_gone = self._records.why_gone(self.chosen) if self.chosen else ""
@@ -198,7 +201,12 @@ class LogbookScene(ListScene[Entry]):
 
     def _throw_away(self) -> None:
         if self.chosen and self._replayable:
+            self._last_thrown = self.chosen.file
             self._tell(self._records.throw_away(self.chosen.file), texts.LOGBOOK_THROWN)
+
+    def _undo(self) -> None:
+        """Bring back the flight that was thrown away last."""
+        self._tell(self._records.bring_back(self._last_thrown), texts.LOGBOOK_BROUGHT_BACK)
 
     def _bring_back(self) -> None:
         if self.chosen:

@@ -10,7 +10,7 @@ from typing import Final
 
 import pygame
 
-from ai.agent.config import PRESETS, Config
+from ai.training.config import PRESETS, Config
 from ai.training.experiments import Experiment, differences
 from game.core import texts
 from game.core.names import LibraryError

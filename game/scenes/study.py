@@ -7,11 +7,11 @@ from typing import Final
 
 import pygame
 
-from ai.agent.config import LANDER
 from ai.files import brief
 from ai.sweep.results import FinishedTrial
 from ai.sweep.runs import DIGITS
 from ai.sweep.study import Study, StudyError
+from ai.training.config import LANDER
 from game.charts.chart import Chart, Series
 from game.core import texts
 from game.core.scene import Transition, push

@@ -7,8 +7,8 @@ from dataclasses import Field, asdict, dataclass, fields
 from functools import cache
 from typing import Any, Final, Literal
 
-from ai.agent.config import Config
 from ai.lander.rewards import RewardWeights
+from ai.training.config import Config
 from game.core import texts
 
 KnobKind = Literal["slider", "switch", "words"]
@@ -21,7 +21,7 @@ _FEW: Final = 32  # whole numbers that a track shows one by one, at most
 _EVEN_STEPS: Final = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0)
 _EVEN: Final = 20  # steps on an evenly spaced track, at most
 
-Configuration = Any  # `ai.agent.config.Config`, or another dataclass with fields described in the same way
+Configuration = Any  # `ai.training.config.Config`, or another dataclass with fields described in the same way
 
 
 @dataclass(frozen=True)

@@ -5,10 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, Final
 
-from ai.agent.config import Config
-from ai.agent.schedule import InForce
 from ai.explain.agent_lesson import Lesson
 from ai.nn import ModelFormatError
+from ai.training.config import Config
 from ai.training.edits import EditCommand, NetworkEdits
 from ai.training.history import Checkpoint, History, Point, SettingChange, Validation
 from ai.training.messages import (
@@ -22,6 +21,7 @@ from ai.training.messages import (
     Saved,
     SwarmState,
 )
+from ai.training.schedule import InForce
 from ai.training.session import TAUGHT, live
 from game.core import texts
 from game.core.names import LibraryError

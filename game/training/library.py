@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Final
 
-from ai.agent.config import LANDER
 from ai.agent.storage import LAST
 from ai.files import Share, Within, brief, inside, read_as, read_json
 from ai.training.checkpoints import TRAINING_FILE
+from ai.training.config import LANDER
 from game.core import texts
 from game.core.collection import Collection, ItemKind, leads_nowhere, there
 from game.core.names import LONGEST_NAME, reason

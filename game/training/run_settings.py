@@ -10,10 +10,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
 
-from ai.agent.config import PRESETS
-from ai.agent.schedule import InForce, idle
 from ai.common.knobs import Knobs
+from ai.training.config import PRESETS
 from ai.training.sabotage import SABOTAGES, sabotaged
+from ai.training.schedule import InForce, idle
 from game.core import texts
 from game.training.knob_descriptions import Configuration, KnobDescription, figure, knob_descriptions, label
 

@@ -6,7 +6,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, Final
 
-from ai.agent.config import Config
+from ai.training.config import Config
 from ai.training.history import Checkpoint
 from ai.training.messages import AutosaveTo
 from ai.training.session import live

@@ -43,33 +43,6 @@ def test_free_flight_is_the_same_bit_for_bit_until_just_before_something_touches
             assert getattr(world.state, name).tobytes() == getattr(twin.state, name).tobytes()
 
 
-@pytest.mark.parametrize("sleeping", [True, False])
-def test_a_world_of_one_body_steps_in_floats_as_it_does_in_arrays(sleeping):
-    rng = np.random.default_rng(8)
-    for seed in range(6):
-        (world, block), (twin, other) = (falling(np.random.default_rng(seed), sleeping=sleeping) for _ in range(2))
-        twin.in_floats = False
-        touched = 0
-        for step in range(240):
-            push = rng.uniform(-4.0, 4.0, 3) if step % 3 else np.zeros(3)
-            for body in (block, other):
-                body.apply_force(push[:2])
-                body.apply_torque(push[2])
-            if step in (5, 90):  # a floor that is put elsewhere, a body taken out for a while, another gravity
-                for each in (world, twin):
-                    each.bodies[1].position = (0.0, -0.7 - 0.01 * step)
-                    each.bodies[0].active = step > 5
-                    each.gravity = np.array([0.1, -3.0 - 0.01 * step])
-            world.step()
-            twin.step()
-            assert not world.state.force.any()
-            for name in ("pose", "velocity", "cos", "sin"):
-                assert getattr(world.state, name).tobytes() == getattr(twin.state, name).tobytes()
-            assert (world.contacts is None) == (twin.contacts is None)
-            touched += twin.contacts is not None
-        assert 0 < touched < 240
-
-
 def test_what_sways_is_near_wherever_it_may_be():
     world, block = falling(np.random.default_rng(0))
     world.add(Polygon.box(1.0, 6.0), (8.0, 3.0), static=True)

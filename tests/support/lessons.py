@@ -5,11 +5,11 @@ from functools import cache
 
 import numpy as np
 
-from ai.agent.config import PRESETS, Config
 from ai.digits.config import DIGIT_PRESETS
 from ai.digits.training import DigitTraining
 from ai.explain.agent_lesson import Lesson
 from ai.explain.digit_lesson import DigitLesson, explain_digit
+from ai.training.config import PRESETS, Config
 from ai.training.messages import Explain
 from ai.training.session import live
 from game.lesson.frame import PICTURE

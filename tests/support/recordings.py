@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ai.agent.config import PRESETS, Config
+from ai.training.config import PRESETS, Config
 from ai.training.history import History, Point, SettingChange
 
 _MADE_WITH = PRESETS | {"modern": Config()}  # recorded before modern learned as it does now

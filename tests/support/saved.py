@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from ai.agent.config import PRESETS
 from ai.digits.checkpoints import resume_digit_run, save_digit_run
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS
@@ -20,6 +19,7 @@ from ai.nn import FullyConnectedLayer, ModelFormatError, NeuralNetwork
 from ai.nn.costs import CostFunctions
 from ai.training import demonstrations
 from ai.training.checkpoints import resume_run, snapshot
+from ai.training.config import PRESETS
 from ai.training.demonstrations import Demonstration
 from ai.training.history import Checkpoint, History, Point, SettingChange, Validation
 from ai.training.loop import Training

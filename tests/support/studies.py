@@ -4,13 +4,13 @@ import json
 import shutil
 from pathlib import Path
 
-from ai.agent.config import PRESETS
 from ai.sweep.metric import Point
 from ai.sweep.plan import Plan
 from ai.sweep.results import FinishedTrial, SeedResult
 from ai.sweep.space import knob_space
 from ai.sweep.study import Study
 from ai.sweep.trial import Asked, Trial, archive
+from ai.training.config import PRESETS
 from ai.training.gym_task import gym_config
 from game.core.assets import MODELS_DIR
 

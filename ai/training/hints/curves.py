@@ -7,9 +7,9 @@ from typing import Final
 
 import numpy as np
 
-from ai.agent.config import Config
 from ai.agent.schedule import learning_rate
 from ai.common.environment import Doubles
+from ai.training.config import Config
 from ai.training.history import REVERTED, History
 
 ENOUGH: Final = 150_000  # decisions after which the modern preset lands nearly always

@@ -7,9 +7,9 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from ai.agent.config import Config
 from ai.lander.environment import LIMITS
 from ai.lander.rewards import FEET_STEPS_PAID, RewardWeights
+from ai.training.config import Config
 from ai.training.hints.curves import COLLAPSE, ENOUGH, RATES, RecentCurves, median, rate_too_high
 
 _FARTHEST: Final = 25.0  # metres from the pad, at the most

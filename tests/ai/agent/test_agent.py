@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from ai.agent.agent import TOGETHER, DeepQAgent
-from ai.agent.config import PRESETS, Config
 from ai.agent.replay import MemoryCell
 from ai.agent.symmetry import Symmetry
 from ai.common.environment import StepResult
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES, LanderEnv
 from ai.nn import SGD, ModelFormatError
+from ai.training.config import PRESETS, Config, load_agent
 from ai.training.loop import LANDER_SYMMETRY
 
 SMALL = Config(
@@ -255,7 +255,10 @@ def test_save_and_load(tmp_path, preset):
     loaded = DeepQAgent.load(tmp_path / "agent")
     states = np.random.default_rng(0).normal(size=(10, NUM_FEATURES)).astype(np.float32)
     assert np.array_equal(loaded.q_values(states), agent.q_values(states))
-    assert loaded.config == agent.config
+    assert Config.of(loaded) == agent.config
+    loaded.save(tmp_path / "again")
+    kept, _ = load_agent(tmp_path / "again")
+    assert kept.config == agent.config, "settings of the run are kept by an agent that does not know them"
     assert not list(tmp_path.glob(".*"))
 
 

@@ -4,8 +4,8 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from ai.agent.config import PRESETS, Config
 from ai.lander.rewards import RewardWeights
+from ai.training.config import PRESETS, Config
 
 
 def test_every_setting_tells_a_screen_how_to_show_it():

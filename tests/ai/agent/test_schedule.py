@@ -6,11 +6,12 @@ from inspect import getgeneratorlocals
 import numpy as np
 import pytest
 
-from ai.agent.config import PRESETS, Config
-from ai.agent.schedule import InForce, idle, in_force, target_rate
+from ai.agent.schedule import target_rate
 from ai.digits.config import DIGIT_PRESETS
+from ai.training.config import PRESETS, Config
 from ai.training.loop import Training
 from ai.training.messages import ChangeSetting, SwarmState
+from ai.training.schedule import InForce, idle, in_force
 from ai.training.session import live
 
 TINY = Config(

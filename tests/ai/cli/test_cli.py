@@ -14,9 +14,9 @@ import pytest
 
 import ai.training.checkpoints
 from ai.agent.agent import DeepQAgent
-from ai.agent.config import PRESETS
 from ai.cli.command_line import configured
 from ai.training.checkpoints import save_run
+from ai.training.config import PRESETS
 from ai.training.lander_task import Evaluation, LanderTask
 from ai.training.loop import Training
 from ai.training.task import VALIDATION_SEED

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.config import PRESETS
 from ai.common.decision import decide
+from ai.training.config import PRESETS
 
 SEEN = np.zeros((3, 9), np.float32)
 VALUES = np.array([[0.5, 0.49, 0.1], [0.5, 0.45, 0.1], [0.1, 0.2, 0.3]], np.float32)

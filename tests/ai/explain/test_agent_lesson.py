@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.config import PRESETS
 from ai.agent.replay import MemoryCell, ReplayBuffer
 from ai.explain.agent_lesson import Before, explain, functions
+from ai.training.config import PRESETS
 from ai.training.lander_task import LANDER_SYMMETRY
 from ai.training.loop import Training
 

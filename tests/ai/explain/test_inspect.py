@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
 
-from ai.agent.config import Config
 from ai.agent.network import build_network
 from ai.explain.inspection import dead_units, links, traces
 from ai.nn import (
@@ -13,6 +12,7 @@ from ai.nn import (
     FullyConnectedLayer,
     NeuralNetwork,
 )
+from ai.training.config import Config
 
 OBSERVATION = np.linspace(-1, 1, 9).astype(np.float32)
 

@@ -19,7 +19,6 @@ import numpy as np
 import pytest
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.config import PRESETS
 from ai.agent.storage import KIND, write_agent
 from ai.digits.classifier import DigitClassifier
 from ai.files import (
@@ -45,6 +44,7 @@ from ai.nn import (
 )
 from ai.nn.budget import MOST_LAYERS
 from ai.training.checkpoints import resume_run, save_run
+from ai.training.config import PRESETS, load_agent
 from ai.training.demonstrations import Demonstration
 from ai.training.gym_task import gym_config
 from ai.training.history import History
@@ -239,7 +239,7 @@ def test_a_small_agent_cannot_ask_for_a_huge_network_or_message(run, changes):
     config = json.loads((run / "config.json").read_text())["config"]
     edit(run / "config.json", config=config | changes)
     with little_memory(), limited(20), pytest.raises(ModelFormatError) as caught:
-        DeepQAgent.load(run)
+        load_agent(run)
     assert len(str(caught.value)) < 1000
 
 

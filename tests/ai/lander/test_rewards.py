@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from ai.agent.config import PRESETS
 from ai.lander.environment import NUM_ACTIONS, LanderEnv, Outcome
 from ai.lander.rewards import REWARDS, RewardWeights, Situation, SituationChange
+from ai.training.config import PRESETS
 
 SHAPING = ("distance", "speed", "alignment")
 

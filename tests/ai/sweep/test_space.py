@@ -5,9 +5,9 @@ import json
 import numpy as np
 import pytest
 
-from ai.agent.config import PRESETS
 from ai.digits.config import DIGIT_PRESETS
 from ai.sweep.space import Dimension, knob_dimension, knob_space, read_dimension, read_space
+from ai.training.config import PRESETS
 
 MODERN = PRESETS["modern"]
 

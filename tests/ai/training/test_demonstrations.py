@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.config import PRESETS
 from ai.lander.environment import LanderEnv
 from ai.lander.ground import hilly
 from ai.lander.pilots import ScriptedPilot
+from ai.training.config import PRESETS
 from ai.training.demonstrations import MOST, Demonstration, demonstrate, read, relive, takeover, taught, teach, write
 from ai.training.history import SettingChange
 from ai.training.messages import AddDemonstrations, NetworkState, Refused, SwarmState

@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.config import PRESETS, Config
 from ai.explain.inspection import links
 from ai.nn import NeuralNetwork
+from ai.training.config import PRESETS, Config
 from ai.training.edits import (
     EDITED,
     MOST_WEIGHT,

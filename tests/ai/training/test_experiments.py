@@ -5,8 +5,8 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from ai.agent.config import PRESETS, Config
 from ai.lander.environment import LanderEnv
+from ai.training.config import PRESETS, Config
 from ai.training.experiments import differences, experiment_of, experiments
 from ai.training.loop import Training
 from ai.training.sabotage import SABOTAGES, sabotaged

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ai.agent.config import PRESETS
 from ai.explain.agent_lesson import Lesson
+from ai.training.config import PRESETS
 from ai.training.history import Point
 from ai.training.messages import Explain, NetworkState, Refused
 from ai.training.session import live

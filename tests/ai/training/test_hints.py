@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ai.agent.config import PRESETS, Config
 from ai.lander.rewards import RewardWeights
+from ai.training.config import PRESETS, Config
 from ai.training.hints import HOLD, REST, RULES, STAY, Adviser, Hint, RecentCurves, returns
 from ai.training.history import Checkpoint, History, Point, SettingChange
 from ai.training.loop import Training

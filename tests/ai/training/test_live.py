@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.config import Config
 from ai.agent.schedule import exploration_of_each
 from ai.lander.environment import Outcome
 from ai.lander.rewards import RewardWeights
 from ai.nn import ModelFormatError
 from ai.training import autosave
 from ai.training.checkpoints import agent_of, resume_run
+from ai.training.config import Config
 from ai.training.history import PARTS, REVERTED, Checkpoint, History, Point, SettingChange, Validation
 from ai.training.lander_task import LanderTask
 from ai.training.loop import Training
@@ -138,7 +138,7 @@ def test_what_flights_earned_is_the_sum_of_its_parts(begin):
 
 
 def test_the_careful_lander_acts_at_random_the_least():
-    spread = exploration_of_each(TINY.changed(epsilon_spread=0.7), 0.3)
+    spread = exploration_of_each(TINY.changed(epsilon_spread=0.7), 0.3, TINY.num_envs)
     assert spread.argmin() == CAREFUL
     assert (spread[CAREFUL] < np.delete(spread, CAREFUL)).all()
 

@@ -3,8 +3,8 @@ from typing import Any
 
 import pytest
 
-from ai.agent.config import PRESETS, Config
 from ai.agent.schedule import exploration_of_each
+from ai.training.config import PRESETS, Config
 from ai.training.loop import Training
 from ai.training.sabotage import SABOTAGES, sabotaged
 
@@ -62,7 +62,7 @@ def test_no_replay_keeps_one_batch():
 def test_without_exploration_nothing_is_random():
     training = Training(sabotaged(Config(num_envs=4, epsilon_spread=1.0), "no_exploration"), evaluate_every=0)
     assert training.advance().epsilon == 0.0
-    assert not exploration_of_each(training.config, training.epsilon).any()
+    assert not exploration_of_each(training.config, training.epsilon, training.config.num_envs).any()
 
 
 def test_an_unknown_name_is_a_key_error():

@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from ai.agent.config import PRESETS, Config
+from ai.training.config import PRESETS, Config
 
 # The settings that differ are told beside those that the presets had when the networks were trained.
 THEN = PRESETS | {"modern": Config()}

@@ -4,12 +4,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ai.agent.config import PRESETS, Config
 from ai.agent.schedule import geometric, linear
 from ai.lander.environment import LIMITS, LanderEnv, Outcome
 from ai.lander.pilots import NoPilot, ScriptedPilot
 from ai.nn import ModelFormatError
 from ai.training.checkpoints import TrainingClock, resume_run, save_run
+from ai.training.config import PRESETS, Config
 from ai.training.lander_task import LanderTask
 from ai.training.loop import Evaluation, Training, evaluate, run
 

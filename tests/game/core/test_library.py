@@ -12,8 +12,8 @@ import platformdirs
 import pytest
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.config import Config
 from ai.training.checkpoints import resume_run, save_run
+from ai.training.config import Config
 from ai.training.loop import Training
 from game.core import collection, texts
 from game.core.collection import UNSAVED

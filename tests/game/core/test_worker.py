@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ai.agent.config import Config
 from ai.training.checkpoints import resume_run
+from ai.training.config import Config
 from ai.training.history import Checkpoint, History
 from ai.training.loop import Training
 from ai.training.messages import ChangeSetting, Refused, Save, Saved

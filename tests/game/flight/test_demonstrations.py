@@ -3,8 +3,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ai.agent.config import Config
 from ai.lander.pilots import ScriptedPilot
+from ai.training.config import Config
 from ai.training.demonstrations import read, relive
 from game.flight.demonstrations import FILE_NAME, add_demonstration, count_demonstrations
 from game.flight.flight import Flight, StickHolder

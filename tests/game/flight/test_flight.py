@@ -122,7 +122,7 @@ CASES = {
     Cause.HARD: ((0, 6, 0, -3, 0, 0), "Touched down at {0:.1f} m/s; 2.0 is the limit."),
     Cause.TILTED: ((0, 3.2, 0, -0.5, 0.6, 0), "Tilted {2:.0f}° at contact; 29° is the limit."),
     Cause.SLIDING: ((-2, 2.6, 3.5, -0.3, 0, 0), "Slid across the ground at {1:.1f} m/s; 2.0 is the limit."),
-    Cause.HULL: ((0, 3.5, 0, -0.5, np.pi, 0), texts.CAUSES["HULL"]),
+    Cause.HULL: ((0, 3.5, 0, -0.5, np.pi, 0), "Tipped over to {2:.0f}°, and then came down at {0:.1f} m/s."),
     Cause.TERRAIN: ((10, 2.2, 0, -0.5, 0, 0), texts.CAUSES["TERRAIN"]),
 }
 # Beside the pad, nothing but speed and tilt break a craft.
@@ -163,6 +163,18 @@ def test_a_hard_touch_beside_the_pad_breaks_by_its_speed_or_tilt(cause: Cause):
     speed, slide, tilt = flight.env.impact[0]
     assert card.reason == words.format(speed, slide, np.degrees(tilt))
     assert card.advice == texts.ADVICE[cause.name]
+
+
+def test_a_craft_that_tipped_over_in_the_gust_is_told_of_that_and_not_of_its_speed():
+    flight = Flight(1)
+    place(flight.env, 0, 12, 1.0, -1.0, 1.2, 1.5)
+    while not flight.over:
+        flight.step(3)
+    card, (speed, _, tilt) = outcome_card(flight.env, 1.0), flight.env.impact[0]
+    assert flight.env.cause[0] != Cause.TILTED
+    assert speed > LIMITS.touch_speed
+    assert card.reason == texts.TIPPED_OVER.format(tilt=f"{np.degrees(tilt):.0f}", speed=f"{speed:.1f}")
+    assert card.advice == texts.ADVICE["TILTED"]
 
 
 def test_a_soft_touch_beside_the_pad_leaves_the_craft_whole_without_points():

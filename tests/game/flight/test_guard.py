@@ -10,7 +10,11 @@ from ai.copilot.futures import KEYS, Lookahead, Moment, Push
 from ai.flights.starts import begun
 from ai.flights.stick import thrust
 from ai.lander.environment import Outcome
+from game.core import texts
 from game.core.assets import MODELS_DIR
+from game.core.settings import Settings
+from game.flight.credit import Credit
+from game.flight.difficulty import Difficulty
 from game.flight.flight import Flight, StickHolder
 from game.flight.futures import FuturesProcess
 from game.flight.guard import Guard, Taps, nearest, push_of, shares_of
@@ -137,3 +141,16 @@ def test_the_process_flies_what_is_asked_for_first_and_then_every_key(agent):
         assert (ahead.known()[KEYS[2]].plan.actions == here.plan.actions).all()
     finally:
         ahead.close()
+
+
+def test_help_that_changed_nothing_takes_no_record_away_and_help_that_did_is_named(agent):
+    for held, changed in ((0, False), (2, True)):
+        flight = guarded(agent)
+        credit = Credit(flight, Difficulty(Settings(), flight, free=True))
+        assert credit.notice == texts.HELP_IS_ON
+        for _ in range(40):
+            flight.step(held)
+            credit.follow()
+        assert (flight.share < 1) is changed
+        assert credit.bar == ("helped" if changed else "")
+        assert credit.notice == (texts.NOT_COUNTED["helped"] if changed else texts.HELP_IS_ON)

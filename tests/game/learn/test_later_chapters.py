@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.config import Config
 from ai.lander.environment import LanderEnv, Outcome
 from ai.training.checkpoints import save_run
+from ai.training.config import Config
 from ai.training.loop import Training
 from game.core import texts
 from game.core.assets import MODELS_DIR
@@ -58,7 +58,7 @@ def test_the_value_is_the_networks_own_and_what_comes_is_the_discounted_pay(made
         chapter.go()
         while not chapter.over:
             chapter.update()
-        env = LanderEnv(1, seed, spawn, frame_skip=4, weights=agent.config.reward_weights)
+        env = LanderEnv(1, seed, spawn, frame_skip=4, weights=Config.of(agent).reward_weights)
         observation, pays = env.reset(), []
         while env.outcome[0] == Outcome.FLYING:
             decided = agent.decide(observation, held=env.actions)

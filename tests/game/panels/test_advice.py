@@ -7,7 +7,7 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.agent.config import PRESETS
+from ai.training.config import PRESETS
 from ai.training.hints import RULES, Hint
 from ai.training.history import Checkpoint, History
 from game.core import texts

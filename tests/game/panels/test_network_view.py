@@ -2,10 +2,10 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.agent.config import Config
 from ai.agent.network import build_network
 from ai.lander.environment import ACTION_NAMES, FEATURE_NAMES
 from ai.nn import CostFunctions, FullyConnectedLayer, NeuralNetwork
+from ai.training.config import Config
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.panels.network_plan import Edge, NetworkPlan, steady_choice, strongest_edges

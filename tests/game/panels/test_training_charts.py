@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ai.agent.config import PRESETS, Config
+from ai.training.config import PRESETS, Config
 from ai.training.history import COLUMNS, History, Point
 from ai.training.messages import RunStarted
 from ai.training.session import live

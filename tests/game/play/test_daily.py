@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from datetime import date, timedelta
 
 import pygame
@@ -230,3 +231,13 @@ def test_a_mouse_alone_flies_and_copies(open_game: Open, context: Context, clipb
     driver.click(driver.widget(texts.DAYS_FLY_AGAIN).box.center)
     driver.frames(2)
     assert play(driver).credit.bar == "day_again"
+
+
+def test_card_list_and_line_agree_on_who_comes_down_softly_beside_the_pad(context: Context):
+    beside = Attempt(TODAY.isoformat(), Outcome.CRASHED.name, intact=True)
+    Days(context.user_dir).note(beside)
+    read = Days(context.user_dir).attempts[TODAY.isoformat()]
+    assert read == beside
+    assert texts.BESIDE_RESULT in read.line
+    assert texts.RIVAL_RESULTS["CRASHED"] not in read.line
+    assert replace(read, intact=False).result == texts.RIVAL_RESULTS["CRASHED"]

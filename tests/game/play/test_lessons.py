@@ -19,7 +19,7 @@ from tests.support.flights import play
 pytestmark = pytest.mark.usefixtures("scripted_network")
 PILOT = ScriptedPilot()
 LEFT, MAIN, RIGHT = "left", "main", "right"
-MARKED = ("TOO_FAST", "TOO_HIGH", "TOO_TILTED", "AWAY", "STANDS", "LET_GO", "AGAIN", "READY")
+MARKED = ("TOO_FAST", "TOO_HIGH", "TOO_TILTED", "TURN_FIRST", "WATCHED", "AWAY", "STANDS", "LET_GO", "AGAIN", "READY")
 LINES = texts.TUTORIAL | {name: (getattr(texts, f"TUTORIAL_{name}"),) for name in MARKED}
 SENTENCES = [
     (name, re.compile(re.sub(r"\\{(\w+)\\}", r"(?P<\1>.+?)", re.escape(line))))
@@ -88,7 +88,7 @@ class Reader:
                 return {MAIN} if env.velocity[0, 1] < -0.8 else set()
             case "lean":
                 return {LEFT}
-            case "upright" | "TOO_TILTED":
+            case "upright" | "TOO_TILTED" | "TURN_FIRST":
                 return {self.side(keys["other"])}
             case "AWAY":
                 side = self.side(keys["inward"])

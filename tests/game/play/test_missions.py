@@ -308,7 +308,7 @@ def test_who_begins_with_help_is_told_that_medals_are_for_ones_own_hand(
     written: set[str] = set()
     monkeypatch.setattr(Canvas, "text", lambda _, string, *__, **___: written.add(string) or pygame.FRect())
     driver.frames(1)
-    assert (texts.NOT_COUNTED["helped"] in written) is warned
+    assert (texts.HELP_IS_ON in written) is warned
     assert (play(driver).challenge.goal in written) is not warned
 
 
@@ -370,3 +370,13 @@ def test_at_the_end_there_is_nothing_to_fly_on(book: Driver):
     book.key(pygame.K_END)
     book.key(pygame.K_TAB)
     assert book.top_name == "ReplayScene"
+
+
+def test_a_flight_thrown_away_says_so_in_its_row_and_z_brings_it_back(book: Driver):
+    listing = book.the(Listing)
+    ending = listing.rows[0][2]
+    book.key(pygame.K_DELETE)
+    assert listing.rows[0][2] == texts.LOGBOOK_ROW_THROWN != ending
+    book.key(pygame.K_z)
+    assert listing.rows[0][2] == ending
+    assert Records(book.app.context.user_dir).kept()

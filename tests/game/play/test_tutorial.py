@@ -187,7 +187,7 @@ def test_no_copilot_does_what_is_to_be_learnt(open_game: Open, context: Context)
     assert not play(driver).flight.shared
 
 
-def test_who_lands_before_all_is_done_is_lifted_up_again(open_game: Open):
+def test_who_goes_on_watching_the_network_until_it_lands_has_watched_it_and_goes_on(open_game: Open):
     driver = pupil = Player(open_game(PlayScene, 0, challenge=Tutorial()), "keys")
     for name in learn(pupil):
         if name == "take_back":
@@ -195,8 +195,20 @@ def test_who_lands_before_all_is_done_is_lifted_up_again(open_game: Open):
     first = play(driver).flight
     wait_for_another(driver)  # the network goes on to land
     assert first.outcome is Outcome.LANDED
-    assert tutorial(driver).lesson.name == "hand_over"
+    assert tutorial(driver).lesson.name == "land"
     assert play(driver).flight.hand is StickHolder.HUMAN
+
+
+def test_who_has_tipped_over_is_told_to_turn_before_anything_else(open_game: Open):
+    driver = open_game(PlayScene, 0, challenge=Tutorial())
+    driver.key(pygame.K_UP)
+    flight, controls = play(driver).flight, driver.app.context.controls
+    for tilt, left in ((61, False), (-138, True), (20, None)):
+        flight.env.place(np.ones(1, bool), np.array([[0.0, 6.0, 0.0, -4.0, np.radians(tilt), 0.0]]))
+        words = tutorial(driver).words(flight, controls)
+        turn = {True: Held.LEFT, False: Held.RIGHT}.get(left)
+        wanted = texts.TUTORIAL_TURN_FIRST.format(other=controls.word(turn)) if turn else None
+        assert words == (wanted or texts.TUTORIAL_TOO_FAST.format(main=controls.word(Held.MAIN))), tilt
 
 
 def test_each_lesson_can_be_skipped(open_game: Open, context: Context):

@@ -7,9 +7,9 @@ import pygame
 import pytest
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.config import Config
 from ai.lander.environment import PARAMS, Outcome
 from ai.lander.pilots import ScriptedPilot
+from ai.training.config import Config
 from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.drawing.canvas import Canvas

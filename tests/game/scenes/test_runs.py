@@ -10,7 +10,7 @@ import pygame
 import pytest
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.config import Config
+from ai.training.config import Config
 from game.core import texts
 from game.core.scene import Pop, Push
 from game.scenes.menu import MenuScene

@@ -11,10 +11,10 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.agent.config import PRESETS
 from ai.lander.pilots import ScriptedPilot
 from ai.lander.rewards import RewardWeights
 from ai.training.checkpoints import resume_run
+from ai.training.config import PRESETS
 from ai.training.demonstrations import demonstrate, write
 from ai.training.history import History
 from ai.training.loop import Training

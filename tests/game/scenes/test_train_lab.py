@@ -9,8 +9,8 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.agent.config import Config
 from ai.files import read_json
+from ai.training.config import Config
 from ai.training.history import History
 from ai.training.loop import Training
 from game.core import texts

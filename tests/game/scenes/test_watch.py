@@ -7,7 +7,7 @@ import pygame
 import pytest
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.config import Config
+from ai.training.config import Config
 from game.core.settings import SettingsFile
 from game.drawing.canvas import Canvas
 from game.flight.flight import DECISION_STEPS

@@ -3,9 +3,9 @@ from typing import Any
 
 import pytest
 
-from ai.agent.config import PRESETS, Config
 from ai.digits.config import DigitConfig
 from ai.lander.rewards import RewardWeights
+from ai.training.config import PRESETS, Config
 from ai.training.sabotage import SABOTAGES, sabotaged
 from game.core import texts
 from game.training.knob_descriptions import figure, knob_descriptions, pages

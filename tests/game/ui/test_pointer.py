@@ -6,9 +6,9 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.agent.config import Config
 from ai.agent.network import build_network
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
+from ai.training.config import Config
 from game.flight.flight import Flight
 from game.flight.logbook import Records
 from game.scenes.logbook import LogbookScene

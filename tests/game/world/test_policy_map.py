@@ -8,9 +8,9 @@ import pygame
 import pytest
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.config import Config
 from ai.lander.environment import LanderEnv
 from ai.lander.pilots import ScriptedPilot
+from ai.training.config import Config
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.flight import networks

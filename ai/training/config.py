@@ -1,0 +1,128 @@
+"""Settings of a training run, as one dataclass, the presets, and agents as they were saved with theirs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any, Final, Self
+
+from ai.agent.agent import DeepQAgent
+from ai.agent.config import AgentConfig
+from ai.agent.storage import AGENT_FILE
+from ai.common.knobs import is_number, knob
+from ai.files import brief, problem_in, shown
+from ai.lander.rewards import RewardWeights
+from ai.lander.spawns import CURRICULA, RUNGS, SPAWNS
+from ai.nn import ModelFormatError
+
+LANDER: Final = "lander"
+ANYWHERE: Final = "lander-anywhere"  # our lander at random sites, with what is around it as further inputs
+_STARTS: Final = (*CURRICULA, *(name for name in SPAWNS if name not in RUNGS))  # a person's ladder is no choice here
+_HASTE: Final = RewardWeights(time=-0.4, switch=-0.05)  # quick, and without flickering jets
+
+
+@dataclass(frozen=True)
+class Config(AgentConfig):
+    """Settings of one training run: its agent's, then those of what it flies in.
+
+    The defaults are what a file means that does not name a setting, as it was saved before there was that choice.
+    `PRESETS` has what is offered today.
+    """
+
+    # fmt: off
+    random_main: float = knob(0.3, "How often a random action fires the main engine; half the time is hovering.",
+                              "exploration", low=0.0, high=1.0, live=True)
+    env: str = knob(LANDER, "Environment to learn: our lander, lander-anywhere, or one of Gymnasium by its name.",
+                    "task")
+    num_envs: int = knob(256, "Landers flown at once.", "lander", low=1, high=1024)
+    frame_skip: int = knob(4, "Physics steps per decision.", "lander", low=1, high=12)
+    spawn: str = knob("thorough", "Where flights begin.", "lander", choices=_STARTS)
+    final_touchdown_limits: float = knob(0.8, "Touchdown limits after the schedule, as a share of the real ones.",
+                                         "lander", low=0.3, high=1.0, formerly="care")
+    reward_weights: RewardWeights = knob(_HASTE, "Weight of each part of the reward.",  # noqa: RUF009
+                                         "lander", live=True, formerly="weights")
+    # fmt: on
+
+    def problems(self) -> list[str]:
+        """Return what is wrong with the values, a sentence each."""
+        problems = super().problems() + _weight_problems(self.reward_weights)
+        if self.env == "":
+            problems.append("env is the name of an environment, and was empty")
+        return problems
+
+    @classmethod
+    def value_from_json(cls, name: str, value: Any) -> Any:
+        """Return the value of a field from what a file holds of it; raises ValueError for what cannot be one."""
+        if name != "reward_weights":
+            return super().value_from_json(name, value)
+        parts = [item.name for item in fields(RewardWeights)]
+        if not isinstance(value, Mapping):
+            raise ValueError(f"reward_weights are numbers by name, of {', '.join(parts)}, not {shown(value)}")
+        if unknown := [part for part in value if part not in parts]:
+            raise ValueError(f"reward_weights has no {shown(unknown[0])}, only {', '.join(parts)}")
+        return RewardWeights(**value)
+
+    @classmethod
+    def of(cls, agent: DeepQAgent) -> Self:
+        """Return the configuration of the run that an agent is from; raises ValueError where its file has no such."""
+        if isinstance(agent.config, cls):
+            return agent.config
+        return cls.from_json({**agent.config.to_json(), **agent.run_settings})
+
+
+def load_agent(folder: str | Path, *, env: str | None = None) -> tuple[DeepQAgent, Config]:
+    """Read an agent and the configuration of its run. Raises ModelFormatError, which names everything that is wrong.
+
+    Reading imports no code that a file names: an agent for an environment "module:Name" is refused, unless the
+    caller names that same `env`.
+    """
+    agent = DeepQAgent.load(folder)
+    try:
+        config = Config.of(agent)
+        check_env(config.env, env)
+    except (TypeError, ValueError) as error:
+        raise ModelFormatError(folder, [f"{AGENT_FILE}: {problem_in(error)}"]) from error
+    agent.config, agent.run_settings = config, {}
+    return agent, config
+
+
+def check_env(env: object, named: str | None) -> None:
+    """Raise ValueError for a file's environment whose name would import code, unless the user has named it."""
+    if not isinstance(env, str) or (":" in env and env != named):
+        raise ValueError(
+            f"it is for the environment {brief(repr(env), 100)}, which is code that a file may not start; "
+            "if you trust it, name it yourself with --env"
+        )
+
+
+def _weight_problems(weights: Any) -> list[str]:
+    """Return what is wrong with the weights of the parts of the reward, a sentence each."""
+    if not isinstance(weights, RewardWeights):
+        return [f"reward_weights are finite numbers by name, not {shown(weights)}"]
+    wrong = {name: value for name, value in vars(weights).items() if not is_number(value)}
+    return [f"reward_weights.{name} is a finite number, not {shown(value)}" for name, value in wrong.items()]
+
+
+# What a network is taught with that lands anywhere, by `python main.py train --preset anywhere`; not among the presets
+# that are offered on the screen, since what it needs to see is not drawn there.
+LANDS_ANYWHERE: Final = Config(
+    env=ANYWHERE, hidden=(128, 128), final_learning_rate=1e-4, schedule_decisions=3_000_000, gradient_steps=8,
+    replay_size=400_000, epsilon_decisions=100_000, steadiness=0.02,
+    reward_weights=RewardWeights(time=-0.2, switch=-0.1),
+)  # fmt: skip
+PRESETS: Final[dict[str, Config]] = {
+    "modern": Config(
+        learning_rate=3e-3, schedule_decisions=100_000, n_step=8, batch_size=128, gradient_steps=16,
+        activation="leaky_relu", target_judges=False, double=False, final_tau=0.05, epsilon_decisions=15_000,
+        spawn="widening",
+    ),
+    "classic": Config(
+        learning_rate=1e-3, final_learning_rate=1e-3, schedule_decisions=300_000, discount=0.99, n_step=1,
+        batch_size=64, gradient_steps=1, optimizer="sgd", cost="mse", hidden=(128, 128), activation="tanh",
+        layer_normalisation=False, output_scale=1.0, replay_size=1500, replay_prune=1000, learning_starts=64,
+        mirror=False, success_pass=True, double=False, target_update_interval=50, tau=1.0, fly_target=False,
+        epsilon_decay=0.999, epsilon_decisions=0, epsilon_spread=0.0, random_main=0.5, num_envs=1, steadiness=0.0,
+        final_touchdown_limits=1.0, spawn="curriculum", reward_scale=0.1, reward_weights=RewardWeights(time=-0.1),
+    ),
+}  # fmt: skip
