@@ -164,8 +164,8 @@ class NeuronChapter(Chapter):
         """Return the layer's sum, with the numbers of this decision."""
         inputs, weights = self.sensed[0], self.layer.weights[:, 0]
         total = " ".join(f"{value:+.2f}×{weight:.1f}" for value, weight in zip(inputs, weights, strict=True))
-        sums = {"input_data.dot": total, "output += bias": f"{float(self.layer.bias[0]):+.1f}"}
-        return [Code(FullyConnectedLayer.predict, "input_data.dot", sums)]
+        sums = {np.dot: total, "output": f"{float(self.layer.bias[0]):+.1f}"}
+        return [Code(FullyConnectedLayer.predict, np.dot, sums)]
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the flight, and the neuron below it."""
