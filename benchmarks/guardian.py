@@ -22,10 +22,11 @@ import numpy as np
 from ai.agent.agent import DeepQAgent
 from ai.copilot import futures
 from ai.copilot.copilot import Mode
-from ai.copilot.futures import KEYS, Lookahead, Moment
+from ai.copilot.futures import KEYS, Lookahead
 from ai.copilot.guardian import decisions_of
 from ai.copilot.measurement import ALONE, PILOTS, rows
 from ai.lander.environment import LanderEnv, Outcome
+from ai.lander.moment import Moment
 
 MODEL = Path(__file__).parent.parent / "models" / "lander" / "modern"
 BATCHES = (1, 6, 12, 18, 42)

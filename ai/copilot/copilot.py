@@ -14,10 +14,11 @@ from ai.agent.agent import DeepQAgent
 from ai.agent.config import AgentConfig
 from ai.common.decision import in_points
 from ai.common.environment import Bools, Doubles, Floats, Ints
-from ai.copilot.futures import DECISION_STEPS, KEYS, Future, Futures, Here, Lookahead, Moment, Push
+from ai.copilot.futures import DECISION_STEPS, KEYS, Future, Futures, Here, Lookahead, Push
 from ai.copilot.guardian import ActionSource, Choice, Guardian, decisions_of
 from ai.copilot.intent import Intent, in_question
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES, LanderEnv, Outcome
+from ai.lander.moment import Moment
 from ai.lander.pilots import COAST
 from ai.lander.route import Route
 from ai.lander.rules import ACTION_SHARES

@@ -8,15 +8,14 @@ bits; so a plan is flown as it is written down, and never decided anew.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, is_dataclass, replace
-from typing import Any, Final, NamedTuple, Protocol
+from dataclasses import dataclass
+from typing import Final, NamedTuple, Protocol
 
 import numpy as np
 
 from ai.common.environment import Bools, Doubles, Ints
-from ai.lander.conditions import Conditions
-from ai.lander.environment import PARAMS, LanderEnv, LanderParams, Limits, Outcome
-from ai.lander.ground import Ground
+from ai.lander.environment import LanderEnv, LanderParams, Outcome
+from ai.lander.moment import Moment
 from ai.lander.pilots import Pilot
 from ai.lander.route import Route
 from ai.lander.rules import ACTION_SHARES, nearest_action
@@ -45,88 +44,6 @@ class Push(NamedTuple):
 
 KEYS: Final = tuple(Push(action, *shares) for action, shares in enumerate(ACTION_SHARES.tolist()))
 Opening = tuple[Push, ...]  # what is pushed in the first decisions of a future, before the network has the stick
-
-
-@dataclass(frozen=True, eq=False)
-class Moment:
-    """Everything that the flights of n landers depend on; it can be pickled, for another process.
-
-    Numbers of `params`, `limits` and `conditions` may be arrays (n,), one for each lander.
-    """
-
-    params: LanderParams
-    limits: Limits
-    conditions: Conditions
-    ground: Ground
-    gravity: Doubles  # (2,) or (n, 2)
-    air: Doubles  # quadratic drag of the bodies, (bodies, 3) or (n, bodies, 3)
-    state: dict[str, Any]  # as `LanderEnv.snapshot` returns it: bodies, contacts, counters, target, actions held
-
-    @classmethod
-    def of(cls, env: LanderEnv) -> Moment:
-        """Return the present moment of an environment."""
-        world = env.world
-        return cls(env.params, env.limits, env.conditions, env.ground, world.gravity.copy(),
-                   world.params.quadratic_drag.copy(), env.snapshot())  # fmt: skip
-
-    def __len__(self) -> int:
-        return len(self.target)
-
-    @property
-    def target(self) -> Ints:
-        """Number of the pad that each flies to, (n,)."""
-        target: Ints = self.state["counters"]["target"]
-        return target
-
-    @property
-    def steps(self) -> Ints:
-        """Physics steps that each has flown, (n,)."""
-        steps: Ints = self.state["counters"]["steps"]
-        return steps
-
-    def fall(self, row: int) -> float:
-        """Return the gravity that pulls at one of them, m/s²."""
-        return -float(self.gravity[1] if self.gravity.ndim == 1 else self.gravity[row, 1])
-
-    def take(self, rows: Ints) -> Moment:
-        """Return the moment of the landers `rows` (m,), each of them as often as it is named."""
-        counters = {name: value[rows] for name, value in self.state["counters"].items()}
-        bodies = {name: value[rows] for name, value in self.state["bodies"].items()}
-        state = {"counters": counters, "bodies": bodies, "contacts": self.state["contacts"].of_worlds(rows)}
-        return Moment(
-            _taken(self.params, rows),
-            _taken(self.limits, rows),
-            _taken(self.conditions, rows),
-            self.ground,
-            self.gravity if self.gravity.ndim == 1 else self.gravity[rows],
-            self.air if self.air.ndim == 2 else self.air[rows],
-            state,
-        )
-
-    def put(self, env: LanderEnv) -> None:
-        """Put it into an environment of as many slots as it has landers, over the same ground."""
-        env.params, env.limits, env.conditions = self.params, self.limits, self.conditions
-        env.world.gravity = self.gravity.copy()
-        env.world.params.quadratic_drag[:] = self.air
-        env.restore(self.state)
-
-
-def _taken(rules: Any, rows: Ints) -> Any:
-    """Return rules with the rows (m,) of those of their numbers that are arrays; the same object if none is."""
-    if isinstance(rules, np.ndarray) and rules.ndim:
-        return rules[rows]
-    if isinstance(rules, tuple):
-        parts = tuple(_taken(part, rows) for part in rules)
-        return rules if all(map(_same, parts, rules)) else parts
-    if not is_dataclass(rules):
-        return rules
-    old = {field.name: getattr(rules, field.name) for field in fields(rules)}
-    new = {name: _taken(value, rows) for name, value in old.items()}
-    return rules if all(map(_same, new.values(), old.values())) else replace(rules, **new)  # type: ignore[type-var]
-
-
-def _same(a: object, b: object) -> bool:
-    return a is b
 
 
 @dataclass(frozen=True, eq=False)
@@ -251,7 +168,7 @@ class Lookahead:
     def __init__(self, pilot: Pilot, route: Route | None = None) -> None:
         self.pilot, self.route = pilot, route
         self._envs: dict[int, LanderEnv] = {}
-        self._world: object = None  # ground and craft of these
+        self._built = ""  # what these are built of
 
     def futures(
         self, moment: Moment, asked: Sequence[tuple[int, Push]], decisions: int = 1, before: Opening = ()
@@ -344,10 +261,10 @@ class Lookahead:
     def _begin(self, moment: Moment, future: Ints) -> tuple[LanderEnv, Ints]:
         """Put a moment into an environment, which may have more slots; return it, and what each slot in use flies."""
         count, size = len(future), _size(len(future))
-        if self._world != (world := (moment.ground, _craft(moment.params))):
-            self._world, self._envs = world, {}
+        if self._built != moment.built:
+            self._built, self._envs = moment.built, {}
         if size not in self._envs:
-            self._envs[size] = _roomy(size, *world)
+            self._envs[size] = _roomy(size, moment)
         env = self._envs[size]
         moment.take(np.minimum(np.arange(size), count - 1)).put(env)
         env.outcome[count:] = Outcome.TIMED_OUT
@@ -355,17 +272,13 @@ class Lookahead:
         return env, future
 
 
-def _roomy(slots: int, ground: Ground, craft: LanderParams) -> LanderEnv:
-    """Return an environment into which any moment over its ground can be put, with an air for each slot."""
-    env = LanderEnv(slots, 0, frame_skip=DECISION_STEPS, params=craft, ground=ground)
+def _roomy(slots: int, moment: Moment) -> LanderEnv:
+    """Return an environment into which any moment over the same ground can be put, with an air for each slot."""
+    # Where each lander has a craft of its own, the usual one is built.
+    params = LanderParams(**{name: value for name, value in moment.state["params"].items() if not np.ndim(value)})
+    env = LanderEnv(slots, 0, frame_skip=DECISION_STEPS, params=params, ground=moment.ground)
     env.world.params.quadratic_drag = np.tile(env.world.params.quadratic_drag, (slots, 1, 1))
     return env
-
-
-def _craft(params: LanderParams) -> LanderParams:
-    """Return the craft in plain numbers: where each lander has one of its own, the usual one."""
-    own = {field.name: getattr(PARAMS, field.name) for field in fields(params) if np.ndim(getattr(params, field.name))}
-    return replace(params, **own)
 
 
 def _size(count: int) -> int:

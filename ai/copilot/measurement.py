@@ -13,12 +13,13 @@ from ai.agent.agent import DeepQAgent
 from ai.common.environment import Bools, Doubles
 from ai.common.intervals import wilson
 from ai.copilot.copilot import CoPilot, Mode
-from ai.copilot.futures import KEYS, Lookahead, Moment
+from ai.copilot.futures import KEYS, Lookahead
 from ai.copilot.guardian import decisions_of
 from ai.copilot.hands import FAMILIES, STUBBORN, UNSEEN, Adversary, MakePilot
 from ai.lander.anywhere import AnywhereEnv
 from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.ground import hilly
+from ai.lander.moment import Moment
 from ai.lander.pilots import Pilot
 from ai.lander.rules import ACTION_SHARES
 

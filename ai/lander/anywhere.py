@@ -18,7 +18,7 @@ from ai.lander.conditions import Conditions
 from ai.lander.environment import LIMITS, NUM_FEATURES, PARAMS, LanderEnv
 from ai.lander.ground import Ground, Pad
 from ai.lander.rewards import RewardWeights
-from ai.lander.sensing import SURROUNDINGS, surroundings
+from ai.lander.sensing import SURROUNDINGS
 from ai.lander.spawns import Curriculum
 
 # Width and top of the pads that sites have, metres.
@@ -122,12 +122,12 @@ class AnywhereEnv(LanderEnv):
 
     Attributes:
         kind: the number in `sites` of the distribution that each slot's site was drawn from, (n,).
-        strictness: share of the limits of a touch that pilots are told which holds; an agent that learns under less
-            than all of them keeps a margin.
+        settled: numbers of every slot's Site, (n, k).
 
     """
 
     num_features = NUM_FEATURES + len(SURROUNDINGS)
+    kept = (*LanderEnv.kept, "kind", "settled")
 
     def __init__(
         self,
@@ -143,51 +143,36 @@ class AnywhereEnv(LanderEnv):
         if unknown or not sites:
             raise ValueError(f"sites are some of {', '.join(SITES)}, not {', '.join(unknown) or 'none'}")
         super().__init__(num_envs, seed, spawn, frame_skip, ground=GROUND, weights=weights)
-        self.sites, self.strictness = tuple(sites), 1.0
+        self.sites = tuple(sites)
         self.kind: Ints = np.zeros(num_envs, dtype=np.intp)
-        self._told = LIMITS
-        self._sites: Doubles = np.tile(np.array(Site()), (num_envs, 1))
+        self.settled: Doubles = np.tile(np.array(Site()), (num_envs, 1))
         self.world.params.quadratic_drag = np.tile(self.world.params.quadratic_drag, (num_envs, 1, 1))
         self._air: Doubles = self.world.movers.quadratic_drag  # (n, 1, 3), the lander's
-        self._settle()
+        self.settle(self.settled)
 
     def reset(self, mask: Bools | None = None) -> Floats:
         """Begin a new flight at a new site in the slots of `mask` (n,), or in all; return every slot's observation."""
         begun = np.ones(self.num_envs, dtype=bool) if mask is None else np.asarray(mask, dtype=bool)
         for slot in np.flatnonzero(begun):
-            rng = self._rngs[slot]
+            rng = self.streams[slot]
             self.kind[slot] = rng.integers(len(self.sites))
-            self._sites[slot] = SITES[self.sites[self.kind[slot]]](rng)
-        self._settle()
+            self.settled[slot] = SITES[self.sites[self.kind[slot]]](rng)
+        self.settle(self.settled)
         return super().reset(mask)
 
-    @property
-    def settled(self) -> Doubles:
-        """Numbers of every slot's Site, (n, k)."""
-        return self._sites
-
-    def settle(self, sites: Sequence[Site] | Doubles, mask: Bools | None = None) -> None:
-        """Let every slot, or those of `mask` (n,), be at a given site from now on, until the next reset."""
-        self._sites[slice(None) if mask is None else mask] = np.array(sites)
-        self._settle()
+    def settle(self, sites: Sequence[Site] | Doubles) -> None:
+        """Let every slot be at a given site from now on, until the next reset."""
+        self.settled[:] = sites
+        site = Site(*self.settled.T.copy())
+        self.world.gravity = np.stack([np.zeros(self.num_envs), -site.gravity], axis=1)
+        self._air[:, 0, :2] = np.array(site.air)[:, None]
+        self.params = replace(PARAMS, main_thrust=site.thrust, quadratic_drag=site.air)
+        self.limits = replace(LIMITS, touch_speed=site.touch_speed, slide_speed=site.slide_speed, time=site.time)
+        self.conditions = Conditions(site.wind, site.gust, site.gust_period, site.tank, (site.dead, site.back),
+                                     site.swing, site.swing_period)  # fmt: skip
+        self.target = np.array(site.pad, dtype=np.intp)
+        self.world.state.active[:, self.pad_bodies] = self.target[:, None] == np.arange(len(_PADS))
 
     def observe(self, pad: Any = None) -> Floats:
         """Return every lander's observation and what is around it, (n, 9 + k)."""
         return self.observe_wide(pad)
-
-    def surroundings(self, pad: Any = None) -> Floats:
-        """Return what is around every lander, (n, k), with the limits of a touch that pilots are told."""
-        return surroundings(self, self._told, self.target if pad is None else np.asarray(pad))
-
-    def _settle(self) -> None:
-        """Let gravity, engine, air, limits, conditions and pads be those of the slots' sites."""
-        site = Site(*self._sites.T.copy())
-        self.world.gravity = np.stack([np.zeros(self.num_envs), -site.gravity], axis=1)
-        self._air[:, 0, :2] = np.array(site.air)[:, None]
-        self.params = replace(PARAMS, main_thrust=site.thrust, quadratic_drag=site.air)
-        self._told = replace(LIMITS, touch_speed=site.touch_speed, slide_speed=site.slide_speed, time=site.time)
-        self.limits = self._told.stricter(self.strictness)
-        self.conditions = Conditions(site.wind, site.gust, site.gust_period, site.tank, (site.dead, site.back),
-                                     site.swing, site.swing_period)  # fmt: skip
-        self.target = np.array(site.pad, dtype=np.intp)
-        self.world.state.active[:, self._pad_bodies] = self.target[:, None] == np.arange(len(_PADS))

@@ -2,23 +2,23 @@
 
 Actions are `3 * main + steer`; `steer` is 0 for none, 1 for left, 2 for right. Observations are
 [rel_x, rel_y, vx, vy, sin θ, cos θ, ω, left contact, right contact], relative to standing on the middle of
-the pad and scaled by `OBSERVATION_SCALE`. `ai.lander.rules` has the numbers.
+the pad and scaled by `OBSERVATION_SCALE`. `ai.lander.rules` has the numbers; `craft` pushes, `judging` judges,
+`rewards` pay and `sensing` senses, as functions of a `LanderEnv`.
 """
 
 from __future__ import annotations
 
-from dataclasses import fields
 from typing import Any, Final
 
 import numpy as np
 
 from ai.common.environment import Bools, Doubles, Floats, Ints, StepResult
-from ai.lander.alone import Alone
+from ai.lander import craft, moment
 from ai.lander.conditions import CALM, Conditions
+from ai.lander.free_flight import FreeFlight
 from ai.lander.ground import Ground
-from ai.lander.judging import JUDGEMENTS
-from ai.lander.observing import ObservedCraft
-from ai.lander.rewards import REWARDS, TILT_ALLOWED, RewardWeights, SituationChange
+from ai.lander.judging import judge
+from ai.lander.rewards import REWARDS, TILT_ALLOWED, RewardWeights, Situation
 from ai.lander.rules import (
     ACTION_NAMES,
     ACTION_SHARES,
@@ -40,7 +40,9 @@ from ai.lander.rules import (
     Outcome,
     engines_switched,
 )
+from ai.lander.sensing import sensed, surroundings, terrain
 from ai.lander.spawns import SPAWNS, Curriculum
+from engine import DT
 
 __all__ = [
     "ACTION_NAMES", "FEATURE_NAMES", "FOOT_CENTRE", "FOOT_SIZE", "HULL", "LIMITS", "MIRROR_ACTIONS",
@@ -48,12 +50,20 @@ __all__ = [
     "LanderEnv", "LanderParams", "Limits", "Outcome", "engines_switched",
 ]  # fmt: skip
 
-_COUNTERS: Final = (*JUDGEMENTS, "actions", "shares", "steps", "main_steps", "side_steps")
 # NumPy compares with plain numbers many times as fast as with members of an enumeration.
 _FLYING, _LATE = int(Outcome.FLYING), int(Outcome.TIMED_OUT)
+# What begins at zero with each flight, and the shape of one lander's.
+_COUNTERS: Final[dict[str, tuple[tuple[int, ...], type]]] = {
+    **dict.fromkeys(("actions", "outcome", "cause", "touched", "steps"), ((), np.intp)),
+    **dict.fromkeys(("still_steps", "feet_steps", "tilted_steps"), ((), np.intp)),
+    **dict.fromkeys(("main_steps", "side_steps"), ((), float)),
+    "shares": ((2,), float),
+    "contacts": ((2,), bool),
+    "impact": ((3,), float),
+}
 
 
-class LanderEnv(ObservedCraft):
+class LanderEnv:
     """Vectorised lunar lander environment: `num_envs` landers, each in a world of its own, stepped together.
 
     `spawn` names a distribution of `ai.lander.spawns` or is a Curriculum, then followed by this environment's own
@@ -61,12 +71,46 @@ class LanderEnv(ObservedCraft):
     not depend on how many fly beside it. A `step` is `frame_skip` physics steps of 1/60 s with one action.
 
     All fly over the same `ground`, by default a plain with one pad. Where that has several pads, a landing on any
-    of them counts; `target` (n,) says by number which one observations and rewards are about. `conditions` can make
-    flights harder; on a pad that moves, observations and the limits of a landing are relative to it.
+    of them counts. `conditions` can make flights harder; on a pad that moves, observations and the limits of a landing
+    are relative to it. Raises ValueError for options without sense.
+
+    Attributes:
+        params, ground, conditions, limits, weights: as given; numbers of all but ground and weights may be arrays (n,).
+        strictness: share of the limits of a touch, as pilots are told, that holds.
+        target: number of the pad that observations and rewards are about, (n,).
+        actions: what each was last told to do, 0 to 5, (n,).
+        shares: with which shares of thrust, (n, 2): of the main engine, 0 to 1, and of the jets, -1, left, to 1, right.
+        steps: physics steps of 1/60 s flown, (n,).
+        main_steps, side_steps: the same with the main engine and with a jet, each step by its share of thrust, (n,).
+        outcome, cause: `Outcome` of each flight, and `Cause` of a crash, (n,).
+        contacts: whether the left and the right foot are on a pad, (n, 2).
+        touched: number of the pad that a foot was last on, (n,).
+        impact: greatest speed towards what was touched, along it, both m/s, and tilt in radians at any touch, (n, 3).
+        feet_steps, tilted_steps: physics steps with both feet down, and tilted by more than `TILT_ALLOWED`, (n,).
+        still_steps: physics steps at rest on both feet, up to now, (n,).
+        landings: landings so far, in all flights.
+        streams: the Generator from which each slot's flights are drawn, n of them.
+        world, lander, pad_bodies: the engine's worlds, the craft's body in them, and the pads' rows among bodies.
+
     """
 
     num_actions = NUM_ACTIONS
     num_features = NUM_FEATURES
+    kept: tuple[str, ...] = (*_COUNTERS, "target")  # arrays that a snapshot keeps
+
+    actions: Ints
+    outcome: Ints
+    cause: Ints
+    touched: Ints
+    steps: Ints
+    still_steps: Ints
+    feet_steps: Ints
+    tilted_steps: Ints
+    main_steps: Doubles
+    side_steps: Doubles
+    shares: Doubles
+    contacts: Bools
+    impact: Doubles
 
     def __init__(
         self,
@@ -85,17 +129,143 @@ class LanderEnv(ObservedCraft):
             raise ValueError(f"num_envs and frame_skip start from 1, not {num_envs} and {frame_skip}")
         if not (isinstance(spawn, Curriculum) or (isinstance(spawn, str) and spawn in SPAWNS)):
             raise ValueError(f"spawn is one of {', '.join(SPAWNS)}, or a Curriculum, not {spawn!r}")
-        super().__init__(num_envs, params, ground or Ground.flat(params), conditions, limits)
-        self.frame_skip, self.weights = frame_skip, weights or RewardWeights()
-        self.spawn = spawn
-        self._rngs = np.random.default_rng(seed).spawn(num_envs)
+        self.num_envs, self.spawn, self.frame_skip = num_envs, spawn, frame_skip
+        self.params, self.ground, self.conditions, self.limits = (
+            params,
+            ground or Ground.flat(params),
+            conditions,
+            limits,
+        )
+        self.weights, self.strictness, self.landings = weights or RewardWeights(), 1.0, 0
+        self.streams = np.random.default_rng(seed).spawn(num_envs)
+        self.world, self.lander, self.pad_bodies = craft.build(num_envs, params, self.ground)
+        for name, (shape, kind) in _COUNTERS.items():
+            setattr(self, name, np.zeros((num_envs, *shape), dtype=kind))
+        self.target: Ints = np.zeros(num_envs, dtype=np.intp)
         self._started = False
-        self._alone = Alone(self) if num_envs == 1 else None
+        self._free = FreeFlight(self) if num_envs == 1 else None
 
     @property
     def stage(self) -> int:
         """Stage of the curriculum, 0 without one."""
         return self.spawn.stage(self.landings) if isinstance(self.spawn, Curriculum) else 0
+
+    @property
+    def gravity(self) -> float:
+        """Gravity in m/s²; can be changed at any time, for all landers."""
+        return -float(self.world.gravity[1])
+
+    @gravity.setter
+    def gravity(self, gravity: float) -> None:
+        self.world.gravity = np.array([0.0, -gravity])
+
+    @property
+    def position(self) -> Doubles:
+        """Centre of mass, metres, (n, 2)."""
+        return self.lander.position
+
+    @property
+    def velocity(self) -> Doubles:
+        """Metres a second, (n, 2)."""
+        return self.lander.velocity
+
+    @property
+    def angle(self) -> Doubles:
+        """Radians counter-clockwise from upright, unwrapped, (n,)."""
+        return self.lander.angle
+
+    @property
+    def angular_velocity(self) -> Doubles:
+        """Radians a second, (n,)."""
+        return self.lander.angular_velocity
+
+    @property
+    def tilt(self) -> Doubles:
+        """Radians from upright either way, 0 to pi, (n,)."""
+        tilt: Doubles = np.abs(np.mod(self.angle + np.pi, 2 * np.pi) - np.pi)
+        return tilt
+
+    @property
+    def time(self) -> Doubles:
+        """Seconds flown, (n,)."""
+        seconds: Doubles = np.multiply(self.steps, DT)
+        return seconds
+
+    @property
+    def fuel(self) -> Doubles:
+        """Fuel burnt, in seconds of main engine, (n,)."""
+        return (self.main_steps + self.params.jet_fuel * self.side_steps) * DT
+
+    @property
+    def thrust(self) -> Doubles:
+        """Shares of thrust (n, 2) that take effect: zero where there is no fuel, or an engine does not work."""
+        if not self.conditions.fails:
+            return self.shares
+        works = np.stack([self.conditions.main_works(self.time), np.ones(self.num_envs, dtype=bool)], axis=1)
+        return np.where(works & (self.fuel < self.conditions.tank)[:, None], self.shares, 0.0)
+
+    @property
+    def fired(self) -> Ints:
+        """Actions (n,) that take effect: those for which there is fuel and the engines work."""
+        if not self.conditions.fails:
+            return self.actions
+        main = (self.actions >= 3) & self.conditions.main_works(self.time)
+        return np.where(self.fuel < self.conditions.tank, 3 * main + self.actions % 3, 0)
+
+    @property
+    def pad(self) -> Doubles:
+        """Middle of the target pad's top, (n, 2)."""
+        return self._top(self.target)
+
+    @property
+    def pad_width(self) -> Doubles:
+        """Width of the target pad, metres, (n,)."""
+        return self.ground.widths[self.target]
+
+    @property
+    def pad_shift(self) -> Doubles:
+        """Displacement of the pads to the right of their places, metres, (n,)."""
+        return self.conditions.shift(self.time)[0]
+
+    @property
+    def pad_velocity(self) -> Doubles:
+        """Velocity of the pads to the right, m/s, (n,)."""
+        return self.conditions.shift(self.time)[1]
+
+    @property
+    def relative_velocity(self) -> Doubles:
+        """Velocity as seen from the pads, m/s, (n, 2)."""
+        if not self.conditions.moves:
+            return self.velocity
+        return self.velocity - np.stack([self.pad_velocity, np.zeros(self.num_envs)], axis=1)
+
+    @property
+    def altitude(self) -> Doubles:
+        """Metres between the level feet and the target pad's top, (n,)."""
+        return self.position[:, 1] - self.pad[:, 1] - self.params.stand
+
+    @property
+    def landed_on(self) -> Ints:
+        """Number of the pad a flight has landed on, -1 for those that have not, (n,)."""
+        return np.where(self.outcome == Outcome.LANDED, self.touched, -1)
+
+    @property
+    def intact(self) -> Bools:
+        """Whether a flight ended in a touch beside the pad that broke nothing: within all limits of a touch, (n,).
+
+        Its outcome is CRASHED all the same: no landing, and no reward for one.
+        """
+        limits = self.limits.stricter(self.strictness)
+        kept = self.impact <= np.array([limits.touch_speed, limits.slide_speed, limits.touch_tilt])
+        whole: Bools = kept.all(axis=1) & (self.outcome == Outcome.CRASHED)
+        return whole
+
+    def _top(self, pad: Any) -> Doubles:
+        """Return the middle of the top of one pad, or of one for each slot, where it is now: (2,) or (n, 2)."""
+        middle: Doubles = self.ground.middles[pad]
+        if not self.conditions.moves:
+            return middle
+        return np.broadcast_to(middle, (self.num_envs, 2)) + np.stack([self.pad_shift, np.zeros(self.num_envs)], axis=1)
 
     def reset(self, mask: Bools | None = None) -> Floats:
         """Begin a new flight in the slots of `mask` (n,), or in all; return every slot's observation."""
@@ -103,14 +273,9 @@ class LanderEnv(ObservedCraft):
         if mask.shape != (self.num_envs,):
             raise ValueError(f"the mask must have one entry for each of {self.num_envs} slots, not {mask.shape}")
         draw = SPAWNS[self.spawn.spawn(self.landings) if isinstance(self.spawn, Curriculum) else self.spawn]
-        slots = np.flatnonzero(mask)
-        start = np.array([draw(self._rngs[slot]) for slot in slots]).reshape(-1, 6)
+        start = np.array([draw(self.streams[slot]) for slot in np.flatnonzero(mask)]).reshape(-1, 6)
         self.place(mask, start)
         return self.observe()
-
-    def draw_from(self, slot: int, rng: np.random.Generator) -> None:
-        """Let one slot draw its flights from a stream of its own."""
-        self._rngs[slot] = rng
 
     def place(self, mask: Bools, start: Doubles) -> None:
         """Begin a flight in the slots of `mask` at rows x, y, vx, vy, angle, spin of `start`, in the world's frame."""
@@ -119,9 +284,16 @@ class LanderEnv(ObservedCraft):
         )
         for name in _COUNTERS:
             getattr(self, name)[mask] = 0
-        self.outcome[mask] = Outcome.FLYING
         self.lander.active = self.outcome == Outcome.FLYING
         self._started = True
+
+    def draw_from(self, slot: int, rng: np.random.Generator) -> None:
+        """Let one slot draw its flights from a stream of its own."""
+        self.streams[slot] = rng
+
+    def lowest(self, x: float, angle: float) -> float:
+        """Return the least height, in metres, at which a lander at `x` that leans by `angle` clears the ground."""
+        return craft.lowest(self.ground, x, angle)
 
     def begin_at(self, slot: int, start: Doubles) -> None:
         """Begin a flight of one slot at x, y, vx, vy, angle, spin, above the ground inside the area.
@@ -140,20 +312,17 @@ class LanderEnv(ObservedCraft):
 
     def step(self, actions: Any) -> StepResult:
         """Fly one decision; `actions` (n,) are 0 to 5. Raises ValueError for others, RuntimeError before a reset."""
-        before = self.moment()
-        self._take(actions)
-        self._fly_on()
-        change = SituationChange.between(before, self.moment())
-        parts = np.array([part(change, self.weights) for part in REWARDS.values()], np.float32)
-        parts = parts.reshape(len(REWARDS), self.num_envs)
-        reward = np.add.accumulate(parts)[-1]  # one by one, in their order: NumPy's sum takes them in another
+        before = Situation.of(self)
+        self.fly(actions)
+        after = Situation.of(self)
+        parts = np.array([part(self.weights, before, after) for part in REWARDS.values()], np.float32)
         truncated = self.outcome == _LATE
         return StepResult(
             observation=self.observe(),
-            reward=reward,
+            reward=np.add.accumulate(parts)[-1],  # one by one, in their order: NumPy's sum takes them in another
             terminated=(self.outcome != _FLYING) & ~truncated,
             truncated=truncated,
-            outcome=self.outcome.copy(),
+            outcome=after.outcome,
             components=dict(zip(REWARDS, parts, strict=True)),
         )
 
@@ -164,10 +333,28 @@ class LanderEnv(ObservedCraft):
         0 to 1, of the jets -1, left, to 1, right. The actions then only say what was meant. Raises ValueError for
         shares outside.
         """
-        self._take(actions)
+        actions = np.asarray(actions)
+        if actions.shape != (self.num_envs,) or actions.dtype.kind not in "iu":
+            raise ValueError(f"actions must be {self.num_envs} whole numbers, not {actions.dtype} {actions.shape}")
+        if np.count_nonzero(actions.astype(np.uintp) >= NUM_ACTIONS):  # those below 0 become huge
+            raise ValueError(f"actions run from 0 to {NUM_ACTIONS - 1}, not {actions.min()} to {actions.max()}")
+        if not self._started:
+            raise RuntimeError("reset() must come before the first step()")
         if shares is not None:
-            self.shares = self._checked(shares)
-        self._fly_on()
+            shares = np.array(shares, dtype=float)
+            if shares.shape != (self.num_envs, 2) or not ((shares >= (0.0, -1.0)) & (shares <= 1.0)).all():
+                raise ValueError(f"shares of thrust are {self.num_envs} rows, main 0 to 1 and side -1 to 1")
+        self.actions = actions.astype(np.intp)
+        self.shares = ACTION_SHARES.take(self.actions, axis=0) if shares is None else shares
+        left = self.frame_skip
+        while left and np.count_nonzero(flying := self.outcome == _FLYING):
+            if self._free and (flown := self._free.fly(left)):
+                left -= flown
+                continue
+            self._move(flying)
+            judge(self, flying)
+            self.tilted_steps += flying & (self.tilt > TILT_ALLOWED)
+            left -= 1
 
     def glide(self, actions: Ints) -> Floats:
         """Fly one decision in every slot without collisions; return the observations, (n, 9).
@@ -176,66 +363,86 @@ class LanderEnv(ObservedCraft):
         rewards, and `actions` (n,) are not checked.
         """
         self.actions, self.shares = actions, ACTION_SHARES.take(actions, axis=0)
-        flying = self.outcome == Outcome.FLYING
-        if self._alone and flying[0]:
-            self._alone.fly(self.frame_skip, solid=False)
+        flying = self.outcome == _FLYING
+        if self._free and flying[0]:
+            self._free.fly(self.frame_skip, solid=False)
             return self.observe()
         for _ in range(self.frame_skip):
             self._move(flying, touching=False)
         return self.observe()
 
+    def _move(self, flying: Bools, touching: bool = True) -> None:
+        """Fly one physics step; without `touching`, nothing collides."""
+        main, side = self.thrust.T
+        craft.push(self, main, side)
+        self.world.step(touching)
+        self.steps += flying
+        self.main_steps += flying * main
+        self.side_steps += flying * np.abs(side)
+
     def snapshot(self) -> dict[str, Any]:
-        """Return everything a flight depends on but its random streams, to be put back by `restore`."""
-        state = self.world.state
-        arrays = {name: getattr(self, name).copy() for name in (*_COUNTERS, "target")}
-        bodies = {field.name: getattr(state, field.name).copy() for field in fields(state)}
-        return {"counters": arrays, "bodies": bodies, "contacts": self.world.detector.memory()}
+        """Return everything a flight depends on but its random streams, to be put back by `restore`.
 
-    def restore(self, snapshot: dict[str, Any]) -> None:
-        """Go back to a snapshot of this environment, or of one with as many slots."""
-        for name, value in snapshot["counters"].items():
-            setattr(self, name, value.copy())
-        for name, value in snapshot["bodies"].items():
-            setattr(self.world.state, name, value.copy())
-        self.world.detector.recall_memory(snapshot["contacts"])
+        It is a nested dict of arrays, numbers and texts: bodies and contacts, counters, target, held actions, gravity,
+        air, params, limits, conditions, landings, and what the worlds are built of.
+        """
+        return moment.snapshot(self)
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Go back to a snapshot of this environment, or of one with as many slots over the same ground.
+
+        Raises ValueError for a snapshot of others.
+        """
+        moment.restore(self, state)
         self._started = True
-        if self._alone:
-            self._alone.forget()
 
-    def _take(self, actions: Any) -> None:
-        """Set the actions to fly from now on; raises as `step` does."""
-        actions = np.asarray(actions)
-        if actions.shape != (self.num_envs,) or actions.dtype.kind not in "iu":
-            raise ValueError(f"actions must be {self.num_envs} whole numbers, not {actions.dtype} {actions.shape}")
-        if np.count_nonzero(actions.astype(np.uintp) >= NUM_ACTIONS):  # those below 0 become huge
-            raise ValueError(f"actions run from 0 to {NUM_ACTIONS - 1}, not {actions.min()} to {actions.max()}")
-        if not self._started:
-            raise RuntimeError("reset() must come before the first step()")
-        self.actions = actions.astype(np.intp)
-        self.shares = ACTION_SHARES.take(self.actions, axis=0)
+    def observe(self, pad: Any = None) -> Floats:
+        """Return every lander's observation (n, 9) of its target, or of another `pad`, one number or (n,)."""
+        pad = self.target if pad is None else np.asarray(pad)
+        pads = self.ground.at_once
+        contacts = self.contacts if pads == 1 else self.contacts * (self.touched == pad)[:, None]
+        offset = self.position - (self._top(pad) + np.array([0.0, self.params.stand]))
+        return sensed(offset, self.relative_velocity, *self.turned, contacts, pads=pads)
 
-    def _checked(self, shares: Doubles) -> Doubles:
-        """Return shares of thrust as doubles; raises ValueError for those that no engine has."""
-        shares = np.array(shares, dtype=float)
-        lowest, highest = (0.0, -1.0), (1.0, 1.0)
-        if shares.shape != (self.num_envs, 2) or not ((shares >= lowest) & (shares <= highest)).all():
-            raise ValueError(f"shares of thrust are {self.num_envs} rows, main 0 to 1 and side -1 to 1")
-        return shares
+    def observe_at(self, slot: int, places: Doubles) -> Floats:
+        """Return what lander `slot` would observe at other places (m, 2) in the air, moving as it does now: (m, 9)."""
+        at = np.full(len(places), slot)
+        offset = places - (self._top(self.target)[at] + np.array([0.0, self.params.stand]))
+        sin, cos, spin = (part[at] for part in self.turned)
+        nothing = np.zeros((len(places), 2), dtype=bool)
+        return sensed(offset, self.relative_velocity[at], sin, cos, spin, nothing, pads=self.ground.at_once)
 
-    def _fly_on(self) -> None:
-        """Fly one decision where flights go on."""
-        left = self.frame_skip
-        while left and np.count_nonzero(flying := self.outcome == _FLYING):
-            if self._alone and (flown := self._alone.fly(left)).steps:
-                left -= flown.steps
-                self.tilted_steps[0] += flown.tilted
-                self._judge_untouched(flown.outcome)
-                continue
-            self._fly(flying)
-            self.tilted_steps += flying & (self.tilt > TILT_ALLOWED)
-            left -= 1
+    @property
+    def turned(self) -> tuple[Doubles, Doubles, Doubles]:
+        """Sine and cosine of every lander's angle, and its turning in rad/s, (n,) each."""
+        state, body = self.world.state, self.lander.index
+        return state.sin[:, body], state.cos[:, body], self.angular_velocity
 
-    def _fly(self, flying: Bools) -> None:
-        """One physics step of the slots that fly: push, move, judge."""
-        self._move(flying)
-        self._judge(flying)
+    def observe_pads(self, pilot: Any = None) -> Floats:
+        """Return every lander's observation of each pad, (n, pads, 9), or what `pilot` reads, (n, pads, features)."""
+        return np.stack([self.observe_for(pilot, pad) for pad in range(len(self.ground.pads))], axis=1)
+
+    def observe_for(self, pilot: Any, pad: Any = None) -> Floats:
+        """Return what a pilot reads: `observe_wide` if its network has inputs for that, else `observe`."""
+        wide = getattr(pilot, "num_features", NUM_FEATURES) > NUM_FEATURES
+        return self.observe_wide(pad) if wide else LanderEnv.observe(self, pad)
+
+    def observe_wide(self, pad: Any = None) -> Floats:
+        """Return every lander's observation and what is around it, side by side, (n, 9 + k)."""
+        return np.concatenate([LanderEnv.observe(self, pad), self.surroundings(pad)], axis=1)
+
+    def surroundings(self, pad: Any = None) -> Floats:
+        """Return what is around every lander (n, k) that `observe` leaves out, for the target or another `pad`.
+
+        `ai.lander.sensing.SURROUNDINGS` names the k numbers.
+        """
+        return surroundings(self, self.target if pad is None else np.asarray(pad))
+
+    def around(self, pad: Any = None) -> Floats:
+        """Return the surroundings and the ground beside every lander, (n, k): `ai.lander.sensing.AROUND` names them."""
+        pad = self.target if pad is None else np.asarray(pad)
+        return np.concatenate([self.surroundings(pad), terrain(self, pad)], axis=1)
+
+    def around_pads(self) -> Floats:
+        """Return what is around every lander on its way to each pad, (n, pads, k)."""
+        return np.stack([self.around(pad) for pad in range(len(self.ground.pads))], axis=1)

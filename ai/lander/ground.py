@@ -82,6 +82,11 @@ class Ground:
         return cls((Pad(0.0, params.pad_top, params.pad_width),), base=params.ground)
 
     @cached_property
+    def text(self) -> str:
+        """Text that is the same for equal grounds alone."""
+        return repr(self)
+
+    @cached_property
     def at_once(self) -> int:
         """How many pads a slot has."""
         return 1 if self.in_turn else len(self.pads)

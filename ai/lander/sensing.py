@@ -1,14 +1,17 @@
-"""Sensing: the nine numbers that a pilot observes, as a function of a lander's state, and those of its surroundings."""
+"""Sensing: the nine numbers that a pilot observes, those of its surroundings, and edges of the area that are near."""
 
 from __future__ import annotations
 
-from typing import Any, Final
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
 
 from ai.common.environment import Doubles, Floats
-from ai.lander.craft import Craft
-from ai.lander.rules import NUM_FEATURES, OBSERVATION_SCALE, Limits
+from ai.lander.rules import NUM_FEATURES, OBSERVATION_SCALE, Outcome
+
+if TYPE_CHECKING:
+    from ai.lander.environment import LanderEnv
 
 # Metres sideways beyond which networks were never trained: with several pads, farther ones are shown at this.
 _FAR: Final = 16.0
@@ -47,12 +50,13 @@ TERRAIN: Final = (
 )  # fmt: skip
 AROUND: Final = (*SURROUNDINGS, *TERRAIN)
 LONG, _AHEAD, _SOON = 20.0, 8.0, 2.0  # seconds: what is farther off than the first two is shown as they are
+NEAR: Final = 10.0  # metres within which an edge of the area is announced
 
 
 def sensed(
     offset: Doubles, velocity: Doubles, sin: Doubles, cos: Doubles, spin: Doubles, contacts: Any, *, pads: int = 1
 ) -> Floats:
-    """Return the observations (n, 9) of n states.
+    """Return the observations (n, 9) of n states over a ground with so many pads.
 
     Args:
         offset: metres from standing on the middle of the pad, (n, 2).
@@ -60,7 +64,7 @@ def sensed(
         sin, cos: of the angle, (n,).
         spin: rad/s, (n,).
         contacts: whether the left and the right foot stand on the pad, (n, 2).
-        pads: how many pads the ground has.
+        pads: how many pads a lander may choose from.
 
     """
     numbers = np.empty((len(offset), NUM_FEATURES))
@@ -70,27 +74,22 @@ def sensed(
     numbers[:, 5] = cos
     numbers[:, 6] = spin
     numbers[:, 7:9] = contacts
-    return scaled(numbers, pads)
-
-
-def scaled(numbers: Doubles, pads: int) -> Floats:
-    """Return the observations of numbers (n, 9) in SI units, which are changed, over a ground with so many pads."""
     if pads > 1:
         numbers[:, 0].clip(-_FAR, _FAR, out=numbers[:, 0])
     numbers *= OBSERVATION_SCALE
     return numbers.astype(np.float32)
 
 
-def surroundings(craft: Craft, limits: Limits, pad: Any) -> Floats:
+def surroundings(env: LanderEnv, pad: Any) -> Floats:
     """Return what is around each lander, (n, k): `SURROUNDINGS` names the numbers, scaled by `SURROUNDINGS_SCALE`.
 
     A failure of the engine is announced: it is seen to come. `pad` is one number, or one for each slot.
     """
-    conditions, params, time = craft.conditions, craft.params, craft.time
-    numbers = np.zeros((craft.num_envs, len(SURROUNDINGS)))
-    numbers[:, 0] = np.minimum(limits.time - time, LONG)
-    numbers[:, 1] = craft.ground.widths[pad]
-    numbers[:, 2] = -craft.world.gravity[..., 1]
+    conditions, params, time = env.conditions, env.params, env.time
+    numbers = np.zeros((env.num_envs, len(SURROUNDINGS)))
+    numbers[:, 0] = np.minimum(env.limits.time - time, LONG)
+    numbers[:, 1] = env.ground.widths[pad]
+    numbers[:, 2] = -env.world.gravity[..., 1]
     numbers[:, 3] = params.main_thrust / params.mass
     if conditions.pushes:
         soon = (conditions.impulse(time + _SOON) - conditions.impulse(time)) / _SOON
@@ -104,23 +103,43 @@ def surroundings(craft: Craft, limits: Limits, pad: Any) -> Floats:
         works = numbers[:, 7] = conditions.main_works(time)
         numbers[:, 8] = np.where(time < end, np.clip(start - time, 0.0, _AHEAD), _AHEAD)
         numbers[:, 9] = np.where(works, 0.0, np.minimum(end - time, _AHEAD))
-        numbers[:, 10] = np.clip(conditions.tank - craft.fuel, 0.0, _AHEAD)
+        numbers[:, 10] = np.clip(conditions.tank - env.fuel, 0.0, _AHEAD)
     if conditions.moves:
-        numbers[:, 11], numbers[:, 12] = craft.pad_velocity, craft.pad_acceleration
+        shift, numbers[:, 11] = conditions.shift(time)
+        numbers[:, 12] = -((2 * np.pi / conditions.swing_period) ** 2) * shift
     numbers[:, 13] = params.quadratic_drag
-    numbers[:, 14] = limits.touch_speed
+    numbers[:, 14] = env.limits.touch_speed
     numbers *= SURROUNDINGS_SCALE
     return numbers.astype(np.float32)
 
 
-def terrain(craft: Craft, pad: Any) -> Floats:
+def terrain(env: LanderEnv, pad: Any) -> Floats:
     """Return the ground's height beside each lander, (n, 7): `TERRAIN` names the places. Pads count where they rest."""
-    heights = _in_order(craft.ground.height_near(craft.position[:, :1] + _PLACES))
-    above = heights - np.reshape(craft.ground.middles[pad, 1], (-1, 1))
-    return (_HEIGHT * above).astype(np.float32)
-
-
-def _in_order(heights: Doubles) -> Doubles:
-    """Return what `TERRAIN` names, (n, 7), of the ground's heights at `_PLACES`."""
+    heights = env.ground.height_near(env.position[:, :1] + _PLACES)
     left, beside, right = np.split(heights, (len(_BEYOND), len(_BEYOND) + len(_BESIDE)), axis=1)
-    return np.column_stack([left.max(axis=1), beside, right.max(axis=1)])
+    named = np.column_stack([left.max(axis=1), beside, right.max(axis=1)])
+    return (_HEIGHT * (named - np.reshape(env.ground.middles[pad, 1], (-1, 1)))).astype(np.float32)
+
+
+@dataclass(frozen=True)
+class Edge:
+    """An edge near a lander: its `place` is a metre mark across, or up for the one above; `away` is in metres."""
+
+    side: Literal["left", "right", "above"]
+    place: float
+    away: float
+    ahead: bool  # whether the lander moves towards it
+
+
+def near_edges(env: LanderEnv, slot: int = 0) -> list[Edge]:
+    """Return the edges of the area within `NEAR` of a lander in flight, the nearest first."""
+    if env.outcome[slot] != Outcome.FLYING:
+        return []
+    (x, y), (across, up), limits = env.position[slot].tolist(), env.velocity[slot].tolist(), env.limits
+    wide, ceiling = limits.half_width, limits.ceiling
+    edges = (
+        Edge("left", -wide, max(0.0, x + wide), across < 0),
+        Edge("right", wide, max(0.0, wide - x), across > 0),
+        Edge("above", ceiling, max(0.0, ceiling - y), up > 0),
+    )
+    return sorted((edge for edge in edges if edge.away < NEAR), key=lambda edge: edge.away)

@@ -7,8 +7,8 @@ from typing import Final
 import numpy as np
 
 from ai.common.environment import Doubles
-from ai.lander.edges import near_edges
 from ai.lander.environment import LanderEnv, Outcome
+from ai.lander.sensing import near_edges
 from game.audio.instruments import RUNGS, altitude_key
 from game.audio.mixer import Sound
 from game.core.pace import SlowMotion

@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterator
 from typing import Final
 
-from ai.lander.edges import near_edges
 from ai.lander.environment import PARAMS, LanderEnv
+from ai.lander.sensing import near_edges
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK, MARGIN, MUTE, SMALL

@@ -14,7 +14,6 @@ from game.cockpit.decision_panel import PANEL
 from game.core.clock import STEP, TimeScale
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK
-from game.flight.flight import DECISION_STEPS
 from game.flight.networks import Policy
 from game.flight.swarm import REST_STEPS, Swarm
 from game.ui.context import Context
@@ -122,7 +121,7 @@ class Watched:
         swarm, slot = self.swarm, self.shown
         alone = not np.delete(swarm.since_end == 0, slot).any()
         before = swarm.decided[slot]
-        for _ in range(REST_STEPS + DECISION_STEPS if alone else DECISION_STEPS):
+        for _ in range(REST_STEPS * alone + swarm.decision_steps):
             self.fly()
             if swarm.decided[slot] != before:
                 return

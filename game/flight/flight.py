@@ -17,7 +17,7 @@ from ai.lander.environment import Outcome
 from ai.lander.pilots import COAST, ScriptedPilot
 from ai.lander.route import Route
 from game.flight.handicap import OWN, Handicap
-from game.flight.networks import Policy, QPolicy, decide
+from game.flight.networks import DECISION_STEPS, Policy, QPolicy, decide, decision_steps
 from game.flight.poses import Poses
 
 if TYPE_CHECKING:
@@ -26,8 +26,6 @@ if TYPE_CHECKING:
 
 __all__ = ["DECISION_STEPS", "Flight", "Recording", "StickHolder"]
 
-# Physics steps per decision of a network, here as in training.
-DECISION_STEPS: Final = 4
 _STEERING: Final = ScriptedPilot()  # fires the jets for a person who flies with one switch
 
 
@@ -167,7 +165,7 @@ class Flight:
 
     def change_network(self, network: Policy | None) -> None:
         """Set the network that can take or share the stick from now on; with None, the person has the stick."""
-        self.network = network
+        self.network, self._network_steps = network, decision_steps(network)
         self._held_for, self.decision, self.alone = 0, None, None
         if network is None:
             self.hand = StickHolder.HUMAN
@@ -242,7 +240,7 @@ class Flight:
             env, network = self.env, self.network
             seen = self.route.observe(env, network) if self.route else env.observe_for(network)
             self.alone = decide(network, seen, env.actions)
-        self._held_for = (self._held_for + 1) % DECISION_STEPS
+        self._held_for = (self._held_for + 1) % self._network_steps
         return int(self.alone.action[0])
 
     def _ask_copilot(self) -> int:
@@ -254,7 +252,7 @@ class Flight:
             self.decision = decision = self.copilot.decide(seen, np.array([self.asked]), around)
             self._held_for = 0
             self.aim(decision.likely[0])
-        self._held_for = (self._held_for + 1) % DECISION_STEPS
+        self._held_for = (self._held_for + 1) % self._network_steps
         return int(decision.action[0])
 
     def aim(self, likely: Doubles | float = 0.0) -> None:

@@ -18,8 +18,7 @@ from ai.lander.environment import PARAMS, LanderEnv
 from ai.lander.ground import Ground
 from engine import DT
 from engine.integrate import integrate_velocity
-from game.flight.flight import DECISION_STEPS
-from game.flight.networks import Policy
+from game.flight.networks import Policy, decision_steps
 from game.flight.surface import surface_height
 
 # Metres above the ground at which to stop: the touchdown itself is not predicted.
@@ -63,7 +62,7 @@ class Forecast:
     def __init__(self, policy: Policy, ground: Ground | None = None) -> None:
         self.path: Doubles = np.empty((0, 2))
         self._policy = policy
-        self._ahead = LanderEnv(1, 0, frame_skip=DECISION_STEPS, ground=ground)
+        self._ahead = LanderEnv(1, 0, frame_skip=decision_steps(policy), ground=ground)
         self._ahead.reset()
         self._places: list[Doubles] = []
 
@@ -73,7 +72,6 @@ class Forecast:
         for _ in range(decisions):
             if not self._places:
                 ahead.restore(env.snapshot())
-                ahead.gravity, ahead.limits = env.gravity, env.limits
             self._places.append(ahead.position[0].copy())
             if self._arrived():
                 self.path, self._places = np.array(self._places), []

@@ -15,7 +15,8 @@ from ai.agent.agent import DeepQAgent
 from ai.agent.config import AgentConfig
 from ai.agent.normalizer import Normalizer
 from ai.common.environment import Floats
-from ai.copilot.futures import KEYS, Future, Lookahead, Moment, Opening, Push
+from ai.copilot.futures import KEYS, Future, Lookahead, Opening, Push
+from ai.lander.moment import Moment
 from ai.lander.pilots import Pilot
 from ai.lander.route import Route
 from game.core import texts

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from ai.copilot.copilot import Mode, SharedDecision
-from ai.copilot.futures import DECISION_STEPS, KEYS, FlownAhead, Future, Moment, Opening, Push
+from ai.copilot.futures import DECISION_STEPS, KEYS, FlownAhead, Future, Opening, Push
 from ai.copilot.guardian import decisions_of
 from ai.flights.recording import StickHolder
 from ai.flights.stick import STEPS, Shares, full
+from ai.lander.moment import Moment
 from ai.lander.pilots import COAST
 from ai.lander.route import Route
 from ai.lander.rules import ACTION_SHARES

@@ -18,6 +18,7 @@ from game.core.collection import looks_like_item
 from game.core.kept import Kept
 from game.flight.study_runs import best_runs
 
+DECISION_STEPS: Final = 4  # physics steps per decision of a policy that does not say
 DEFAULT: Final = "modern"
 ANYWHERE: Final = "anywhere"  # flies in place of a shipped network where it is not as on the moon
 SCRIPTED: Final = "scripted"
@@ -51,6 +52,13 @@ def decide(policy: Policy, observation: Floats, held: Ints | None = None) -> Dec
         return policy.decide(observation, held=held)
     action = policy.act(observation, held=held)
     return Decision(observation, action, action)
+
+
+def decision_steps(policy: Policy | None) -> int:
+    """Return after how many physics steps a policy decides anew: as many as it was trained with, or four."""
+    config = getattr(policy, "config", None)
+    steps = getattr(policy, "run_settings", {}).get("frame_skip", getattr(config, "frame_skip", DECISION_STEPS))
+    return steps if isinstance(steps, int) and steps > 0 else DECISION_STEPS
 
 
 def work_of(policy: Policy) -> int:

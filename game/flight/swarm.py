@@ -11,8 +11,7 @@ from ai.common.decision import Decision
 from ai.common.environment import Bools, Doubles, Floats, Ints
 from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.pilots import COAST
-from game.flight.flight import DECISION_STEPS
-from game.flight.networks import Policy, decide
+from game.flight.networks import Policy, decide, decision_steps
 from game.flight.poses import Poses
 
 # Steps that an ended flight of a swarm stays visible.
@@ -42,6 +41,7 @@ class Swarm:
         decision: latest decision of each slot, which is being flown.
         decided: number of decisions of each slot.
         touched: mask of the slots whose flight a person has changed; such a flight is not counted.
+        decision_steps: number of steps from one decision to the next, as the network was trained.
         steps: number of steps since the beginning.
 
     """
@@ -57,7 +57,8 @@ class Swarm:
         self.touched: Bools = np.zeros(count, dtype=bool)
         self.decision = decide(policy, self.observation, np.zeros(count, dtype=np.intp))
         self.decided: Ints = np.ones(count, dtype=np.intp)
-        self._age: Ints = np.arange(count) % DECISION_STEPS  # steps since the latest decision; staggered at first
+        self.decision_steps = decision_steps(policy)
+        self._age: Ints = np.arange(count) % self.decision_steps  # steps since the latest decision; staggered at first
         self.steps = 0
 
     def step(self) -> Bools:
@@ -67,7 +68,7 @@ class Swarm:
             self.observation = self.env.reset(self.fresh)
             self.since_end[self.fresh] = 0
             self.touched[self.fresh] = False
-        self._decide(np.flatnonzero(self.fresh | ((self._age == DECISION_STEPS) & (self.since_end == 0))))
+        self._decide(np.flatnonzero(self.fresh | ((self._age == self.decision_steps) & (self.since_end == 0))))
         self._age += self.since_end == 0
         self.steps += 1
         self.env.fly(self.decision.action)

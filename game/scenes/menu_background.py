@@ -10,8 +10,7 @@ import numpy as np
 from ai.lander.environment import LanderEnv, Outcome
 from game.core.clock import STEP
 from game.drawing.canvas import Canvas
-from game.flight.flight import DECISION_STEPS
-from game.flight.networks import Policy
+from game.flight.networks import Policy, decision_steps
 from game.flight.poses import Poses
 from game.ui.context import Context
 from game.world.camera import Camera, CameraTarget
@@ -123,7 +122,7 @@ class MenuBackground:
         falls = env.position[0, 1] > _HIGH and env.velocity[0, 1] < 0
         if self._climbs and not (falls and self.pilot):
             self._action[:] = self._ascend()
-        elif self.pilot is not None and (self._climbs or self._step % DECISION_STEPS == 0):
+        elif self.pilot is not None and (self._climbs or self._step % decision_steps(self.pilot) == 0):
             self._climbs = False
             self._action = self.pilot.act(env.observe(), held=env.actions)
 

@@ -9,8 +9,8 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.lander.edges import NEAR, near_edges
 from ai.lander.environment import LanderEnv
+from ai.lander.sensing import NEAR, near_edges
 from game.drawing.canvas import Canvas
 from game.drawing.paint import light
 from game.drawing.tokens import Colour

@@ -7,8 +7,8 @@ from typing import Final
 import numpy as np
 
 from ai.common.environment import Doubles
-from ai.lander.edges import NEAR, near_edges
 from ai.lander.environment import LanderEnv
+from ai.lander.sensing import NEAR, near_edges
 from game.drawing.tokens import VIEW_SIZE
 from game.world.camera import GROUND_LINE, POINTS_PER_METRE, Camera, CameraTarget, ClearArea
 

@@ -6,13 +6,14 @@ import pytest
 
 from ai.agent.agent import DeepQAgent
 from ai.cli.copilot import ANYWHERE_MODEL, MODEL
-from ai.copilot.futures import DECISION_STEPS, KEYS, Here, Lookahead, Moment, Push
+from ai.copilot.futures import DECISION_STEPS, KEYS, Here, Lookahead, Push
 from ai.lander.anywhere import AnywhereEnv
 from ai.lander.conditions import Conditions
 from ai.lander.descent import LegStart, leg_of
 from ai.lander.environment import LIMITS, LanderEnv, Outcome
 from ai.lander.ground import Ground, Pad, hilly
 from ai.lander.missions import MISSIONS
+from ai.lander.moment import Moment
 from ai.lander.pilots import ScriptedPilot
 from ai.lander.route import Route
 from ai.lander.rules import nearest_action

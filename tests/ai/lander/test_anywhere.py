@@ -79,12 +79,18 @@ def test_sites_are_of_the_kinds_asked_for():
             AnywhereEnv(1, 0, sites=wrong)
 
 
-def test_stricter_limits_are_not_told():
-    env = AnywhereEnv(1, 0, "fixed", sites=("moon",))
-    env.strictness = 0.5
+def test_stricter_limits_hold_and_are_not_told():
+    env = AnywhereEnv(2, 0, "fixed", frame_skip=1, sites=("moon",))
     env.reset()
-    assert env.limits.touch_speed == pytest.approx(0.5 * LIMITS.touch_speed)
-    assert env.surroundings()[0, -1] / SURROUNDINGS_SCALE[-1] == pytest.approx(LIMITS.touch_speed)
+    touch = 0.75 * LIMITS.touch_speed
+    env.place(np.ones(2, bool), np.array([[0.0, PARAMS.pad_top + PARAMS.stand + 0.01, 0, -touch, 0, 0]] * 2))
+    for strictness, outcome in ((1.0, Outcome.FLYING), (0.5, Outcome.CRASHED)):
+        before, env.strictness = env.snapshot(), strictness
+        for _ in range(5):
+            env.step(np.zeros(2, int))
+        assert (env.outcome == outcome).all()
+        assert env.surroundings()[0, -1] / SURROUNDINGS_SCALE[-1] == pytest.approx(LIMITS.touch_speed)
+        env.restore(before)
 
 
 @pytest.mark.slow

@@ -12,7 +12,7 @@ from ai.lander.environment import (
     LanderEnv,
     Outcome,
 )
-from ai.lander.rewards import RewardWeights
+from ai.lander.rewards import RewardWeights, Situation
 from ai.lander.spawns import SPAWNS, Curriculum
 from engine import DT
 
@@ -202,14 +202,14 @@ def test_reward_is_the_sum_of_its_parts_and_potentials_telescope():
     env = LanderEnv(16, 5, "random")
     env.reset()
     rng = np.random.default_rng(1)
-    start = env.situation()
+    start = Situation.of(env)
     totals = {name: np.zeros(16) for name in ("distance", "speed")}
     for _ in range(400):
         result = env.step(rng.integers(0, NUM_ACTIONS, 16))
         assert result.reward == pytest.approx(sum(result.components.values()), abs=1e-4)
         for name, total in totals.items():
             totals[name] = total + result.components[name]
-    end = env.situation()
+    end = Situation.of(env)
     weights = RewardWeights()
     assert totals["distance"] == pytest.approx(10 * weights.distance * (start.distance - end.distance), abs=1e-3)
     assert totals["speed"] == pytest.approx(10 * weights.speed * (start.speed - end.speed), abs=1e-3)

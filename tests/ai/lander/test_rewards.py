@@ -4,37 +4,32 @@ import numpy as np
 import pytest
 
 from ai.lander.environment import NUM_ACTIONS, LanderEnv, Outcome
-from ai.lander.rewards import REWARDS, RewardWeights, Situation, SituationChange
+from ai.lander.rewards import REWARDS, RewardWeights, Situation
 from ai.training.config import PRESETS
 
 SHAPING = ("distance", "speed", "alignment")
 
 
-def change(before, after):
-    """A decision of four steps between two situations, in which nothing else happened."""
-    none = np.zeros(len(before.distance), dtype=np.intp)
-    return SituationChange(before, after, none + 4, none, none, none, none, none > 0, none > 0)
-
-
 def situation(distance, speed, offset, tilt):
-    return Situation(*(np.atleast_1d(np.asarray(part, float)) for part in (distance, offset, speed, tilt)))
+    parts = (np.atleast_1d(np.asarray(part, float)) for part in (distance, offset, speed, tilt))
+    return Situation(*parts, *(np.zeros(1, dtype=np.intp) for _ in range(5)))
 
 
 MIDDLE = situation(0, 0, 0, 0)
 
 
 def shaped(before, after, weights):
-    return sum(REWARDS[name](change(before, after), weights) for name in SHAPING)
+    return sum(REWARDS[name](weights, before, after) for name in SHAPING)
 
 
 def test_in_points_a_flight_is_paid_for_its_two_ends_alone():
     env, rng = LanderEnv(20, 3, "practice"), np.random.default_rng(0)
     env.reset()
-    start, paid = env.situation(), np.zeros(20)
+    start, paid = Situation.of(env), np.zeros(20)
     while (flying := env.outcome == Outcome.FLYING).any():
         components = env.step(rng.integers(0, NUM_ACTIONS, 20)).components
         paid += flying * sum(components[name] for name in SHAPING)
-    assert paid == pytest.approx(shaped(start, env.situation(), env.weights), abs=1e-2)
+    assert paid == pytest.approx(shaped(start, Situation.of(env), env.weights), abs=1e-2)
 
 
 @pytest.mark.parametrize("preset", PRESETS)
@@ -43,8 +38,7 @@ def test_discounted_a_decision_near_the_pad_is_worth_less_than_its_time_costs(pr
     config = PRESETS[preset]
     rng = np.random.default_rng(1)
     some = situation(rng.uniform(0, 20, 500), rng.uniform(0, 5, 500), rng.uniform(0, 4, 500), rng.uniform(0, 1, 500))
-    rest = Situation(*(np.zeros(500) for _ in range(4)))
-    potential = config.reward_weights.alignment - shaped(some, rest, config.reward_weights)
+    potential = config.reward_weights.alignment - shaped(some, MIDDLE, config.reward_weights)
     most = (1 - config.discount) * potential.max()
     bound = (1 - config.discount) * config.reward_weights.alignment
     assert potential.max() <= config.reward_weights.alignment

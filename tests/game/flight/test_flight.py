@@ -1,4 +1,5 @@
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -314,3 +315,38 @@ def test_a_forecast_is_flown_under_the_gravity_of_the_flight(share: float):
     for _ in range(10 * DECISION_STEPS):
         flight.step(0)
     assert np.array_equal(forecast.path[10], flight.poses.now[0, :2])
+
+
+class TrainedAtSeven(ScriptedPilot):
+    """Pilot of a network that was trained with seven steps to a decision, and counts its decisions."""
+
+    run_settings: ClassVar = {"frame_skip": 7}
+    asked = 0
+
+    def act(self, observation, *, held=None):
+        self.asked += 1
+        return super().act(observation, held=held)
+
+
+def test_a_network_decides_as_often_as_it_was_trained_to_wherever_it_flies():
+    pilot = TrainedAtSeven()
+    flight = Flight(3, pilot)
+    flight.hand_over()
+    for _ in range(70):
+        flight.step(0)
+    assert pilot.asked == 10
+    swarm = Swarm(1, 3, pilot := TrainedAtSeven())
+    for _ in range(70):
+        swarm.step()
+    assert swarm.decided[0] == pilot.asked == 10
+    forecast = Forecast(pilot := TrainedAtSeven())
+    forecast.follow(flight.env, 5)
+    assert forecast._ahead.frame_skip == 7
+
+
+def test_what_a_network_says_of_its_rate_is_not_believed_without_a_look():
+    for said in (0, -3, "4", None, 2.5):
+        pilot = TrainedAtSeven()
+        pilot.run_settings = {"frame_skip": said}
+        assert networks.decision_steps(pilot) == networks.DECISION_STEPS, said
+    assert networks.decision_steps(None) == networks.DECISION_STEPS

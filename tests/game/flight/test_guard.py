@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from ai.agent.agent import DeepQAgent
-from ai.copilot.futures import KEYS, Lookahead, Moment, Push
+from ai.copilot.futures import KEYS, Lookahead, Push
 from ai.flights.starts import begun
 from ai.flights.stick import thrust
 from ai.lander.environment import Outcome
+from ai.lander.moment import Moment
 from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.core.settings import Settings

@@ -7,10 +7,10 @@ import pygame
 import pytest
 
 from ai.flights.recording import AREA
-from ai.lander.edges import NEAR, near_edges
 from ai.lander.environment import LIMITS, LanderEnv, Outcome
 from ai.lander.ground import hilly
 from ai.lander.rules import AREAS
+from ai.lander.sensing import NEAR, near_edges
 from game.audio.flight_sounds import FlightSound
 from game.cockpit.surroundings import surroundings
 from game.drawing.canvas import Canvas
