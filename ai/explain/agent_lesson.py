@@ -18,8 +18,8 @@ from ai.agent.n_step import NStep
 from ai.agent.normalizer import Normalizer
 from ai.agent.replay import MemoryCell, ReplayBuffer
 from ai.common.environment import Floats, Ints
-from ai.explain.learning_step import MOST_PARAMETERS, Line, Step, kept_by, network_functions, recorded_step
-from ai.explain.recorder import RETURN, Function, Recorder
+from ai.explain.learning_step import MOST_PARAMETERS, Step, kept_by, network_functions, recorded_step
+from ai.explain.recorder import RETURN, Function, Line, Recorder
 from ai.nn import NeuralNetwork
 
 

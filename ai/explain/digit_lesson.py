@@ -15,7 +15,6 @@ from ai.digits.config import DigitConfig
 from ai.digits.training import DigitTraining
 from ai.explain.learning_step import (
     MOST_PARAMETERS,
-    Line,
     Step,
     kept_by,
     network_functions,
@@ -23,7 +22,7 @@ from ai.explain.learning_step import (
     recorded_step,
     shown_lines,
 )
-from ai.explain.recorder import Function, Recorder
+from ai.explain.recorder import Function, Line, Recorder
 from ai.nn import OPTIMIZERS, NeuralNetwork
 from ai.nn.costs import softmax
 

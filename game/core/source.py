@@ -41,9 +41,10 @@ class Source:
             found = sorted(node.lineno for node in ast.walk(self._tree)
                            if isinstance(node, ast.Call) and _name(node.func) == mark.__name__)  # fmt: skip
         else:
-            named = [(node.lineno, isinstance(getattr(node, "ctx", None), ast.Store)) for node in ast.walk(self._tree)
-                     if _name(node) == mark]  # fmt: skip
-            found = sorted((line for line, sets in named if sets), reverse=True) or sorted(line for line, _ in named)
+            named = [node for node in ast.walk(self._tree)
+                     if isinstance(node, ast.Name | ast.Attribute) and _name(node) == mark]  # fmt: skip
+            sets = sorted((node.lineno for node in named if isinstance(node.ctx, ast.Store)), reverse=True)
+            found = sets or sorted(node.lineno for node in named)
         line = next(islice(found, number, None), None)
         if line is None:
             raise LookupError(f"{self.name} has no line for {mark}")

@@ -152,7 +152,7 @@ class PlaneChapter(Chapter):
         """Return a pass through the layers, and a learning step, with this network's shapes and cost."""
         stages = self.network.activations(self.points)
         shapes = " → ".join(str(stage.shape[1]) for stage in (self.points, *stages[1::2]))
-        passes = {FullyConnectedLayer.forward_propagate: shapes}
+        passes: dict[Mark, str] = {FullyConnectedLayer.forward_propagate: shapes}
         step: dict[Mark, str] = {"cost": f"{self.cost:.4f}", Optimizer.step: f"{self.network.values.size}"}
         return [
             Code(NeuralNetwork.forward_propagate, FullyConnectedLayer.forward_propagate, passes),

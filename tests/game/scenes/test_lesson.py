@@ -105,11 +105,12 @@ def test_a_gamepads_pointer_picks_a_weight(open_game: Open):
 def test_lines_are_stepped_through_and_stand_in_the_source(driver: Driver, lesson: Lesson):
     seen = 0
     for part in driver.top.parts:
-        code = part.code
-        for line in code.lines:
-            code.index = code.lines.index(line)
-            assert line.number in dict(code.source.lines), f"{line.function}, line {line.number}"
+        begin = part.code.index
+        for place, line in enumerate(part.code.lines):
+            part.code.index = place
+            assert line.number in dict(part.code.source.lines), f"{line.function}, line {line.number}"
             seen += 1
+        part.code.index = begin
     assert seen > 100
     driver.top.show(3)
     code = driver.top.code
