@@ -18,8 +18,8 @@ from ai.agent.n_step import NStep
 from ai.agent.normalizer import Normalizer
 from ai.agent.replay import MemoryCell, ReplayBuffer
 from ai.common.environment import Floats, Ints
-from ai.explain.learning_step import MOST_PARAMETERS, Step, kept_by, network_functions, recorded_step
-from ai.explain.recorder import RETURN, Function, Line, Recorder
+from ai.explain.learning_step import Step, recorded_step
+from ai.explain.recorder import RETURN, Function, Line
 from ai.nn import NeuralNetwork
 
 
@@ -93,16 +93,11 @@ def explain(before: Before, cell: MemoryCell, agent: DeepQAgent, flown: Flown | 
     """Take the learning step that follows from `before` with `cell` in its minibatch, and return all of it.
 
     `agent` is one of the same sizes and symmetry, which is not changed. Raises DivergenceError as the step does, and
-    ValueError for a network of more than MOST_PARAMETERS.
+    ValueError for a network that is too large.
     """
-    if len(before.online) > MOST_PARAMETERS:
-        raise ValueError(f"a network of more than {MOST_PARAMETERS:,} parameters is too large to be explained")
     row = len(before.weights) // 2  # the first half of a minibatch may be mirrored
     twin = _twin(before, cell, row, agent)
-    kept = kept_by(twin.optimizer, before.online)
-    with Recorder([*_AGENT, *network_functions(twin.online, twin.optimizer)], row) as recorder:
-        twin.learn()
-    step = recorded_step(recorder, twin.online, twin.optimizer, before.online, kept, row)
+    recorder, step = recorded_step(twin.learn, twin.online, twin.optimizer, _AGENT, row)
     # What both networks said of the next states.
     said = {id(call.owner): call.values[RETURN] for call in recorder.calls(NeuralNetwork.predict)}
     taken, judged, target = (

@@ -13,15 +13,7 @@ from ai.common.environment import Floats
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DigitConfig
 from ai.digits.training import DigitTraining
-from ai.explain.learning_step import (
-    MOST_PARAMETERS,
-    Step,
-    kept_by,
-    network_functions,
-    of_row,
-    recorded_step,
-    shown_lines,
-)
+from ai.explain.learning_step import Step, of_row, recorded_step, shown_lines
 from ai.explain.recorder import Function, Line, Recorder
 from ai.nn import OPTIMIZERS, NeuralNetwork
 from ai.nn.costs import softmax
@@ -56,19 +48,13 @@ def explain_digit(training: DigitTraining, row: int = 0) -> DigitLesson:
         raise ValueError(f"a batch has {training.config.batch_size} images, and none of number {row}")
     if training.done:
         raise ValueError("the run is over: it takes no more learning steps")
-    if training.classifier.network.values.size > MOST_PARAMETERS:
-        raise ValueError(f"a network of more than {MOST_PARAMETERS:,} parameters is too large to be explained")
     twin = _twin(training)
     classifier, network = twin.classifier, twin.classifier.network
-    before = network.values.copy()
-    kept = kept_by(twin.optimizer, before)
-    with Recorder([DigitTraining.advance, *network_functions(network, twin.optimizer)], row) as recorder:
-        twin.advance()
-    step = recorded_step(recorder, network, twin.optimizer, before, kept, row)
+    recorder, step = recorded_step(twin.advance, network, twin.optimizer, (DigitTraining.advance,), row)
     taken = recorder.call(DigitTraining.advance).values
     image = of_row(taken["images"], row)
     after = classifier.predict(image)[0]
-    network.values = before
+    network.values = step.values_before
     with Recorder(_READING) as reading:
         probabilities = classifier.predict(image)[0]
     return DigitLesson(

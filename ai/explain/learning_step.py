@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
@@ -67,32 +67,31 @@ def backward_functions(network: NeuralNetwork, optimizer: Optimizer) -> list[Fun
             Optimizer.step, type(optimizer)._fill_step]  # fmt: skip
 
 
-def network_functions(network: NeuralNetwork, optimizer: Optimizer) -> list[Function]:
-    """Return the functions that a learning step of a network runs through, from the forward pass to the optimizer."""
-    return [NeuralNetwork.predict, *forward_functions(network), network.cost.function, network.cost.derivative,
-            *backward_functions(network, optimizer)]  # fmt: skip
-
-
 def recorded_step(
-    recorder: Recorder,
-    network: NeuralNetwork,
-    optimizer: Optimizer,
-    values_before: Floats,
-    optimizer_before: dict[str, Floats],
-    row: int,
-) -> Step:
-    """Read one step of an optimizer from a recording; only that one may be in it.
+    take: Callable[[], object], network: NeuralNetwork, optimizer: Optimizer, others: Iterable[Function], row: int
+) -> tuple[Recorder, Step]:
+    """Take one step of an optimizer on a minibatch; return its recording and what it did, around one row.
 
-    `network` and `optimizer` are as the step left them, and stay so.
+    `others` are functions to record besides those of network, cost and optimizer. Raises ValueError for a network of
+    more than MOST_PARAMETERS, and what `take` does.
     """
+    values_before = network.values.copy()
+    if len(values_before) > MOST_PARAMETERS:
+        raise ValueError(f"a network of more than {MOST_PARAMETERS:,} parameters is too large to be explained")
+    forward, backward = forward_functions(network), backward_functions(network, optimizer)
+    kept, cost = _kept_by(optimizer, values_before), network.cost
+    with Recorder(
+        [*others, NeuralNetwork.predict, *forward, cost.function, cost.derivative, *backward], row
+    ) as recorder:
+        take()
     derivative = recorder.call(NeuralNetwork.backward_propagate).arguments["output_error"]
-    given = {id(call.owner): call.values[RETURN] for call in recorder.calls(*forward_functions(network))}
+    given = {id(call.owner): call.values[RETURN] for call in recorder.calls(*forward)}
     errors: dict[int, Any] = {}
-    for call in recorder.calls(*backward_functions(network, optimizer)):
+    for call in recorder.calls(*backward):
         if "output_error" in call.arguments:
             errors.setdefault(id(call.owner), call.arguments["output_error"])
     gradient, after = network.gradients.copy(), network.values.copy()
-    return Step(
+    return recorder, Step(
         row=row,
         values_before=values_before,
         values_after=after,
@@ -102,8 +101,8 @@ def recorded_step(
         gradient_length=float(recorder.call(Optimizer.step).values["length"]),
         share=_share(network, values_before, derivative, row),
         learning_rate=optimizer.learning_rate,
-        optimizer_before=optimizer_before,
-        optimizer_after=kept_by(optimizer, after),
+        optimizer_before=kept,
+        optimizer_after=_kept_by(optimizer, after),
         taken=optimizer.scratch.copy(),
         lines=shown_lines(recorder, row, len(derivative), len(after)),
     )
@@ -125,7 +124,7 @@ def _share(network: NeuralNetwork, values_before: Floats, derivative: Floats, ro
     return share
 
 
-def kept_by(optimizer: Optimizer, values: Floats) -> dict[str, Floats]:
+def _kept_by(optimizer: Optimizer, values: Floats) -> dict[str, Floats]:
     """Return copies of what an optimizer keeps of each parameter, zeros before its first step."""
     return {name: optimizer.memory.get(name, np.zeros_like(values)).copy() for name in optimizer.remembers}
 
