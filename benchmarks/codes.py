@@ -21,14 +21,12 @@ import numpy as np
 
 from ai.agent.agent import DeepQAgent
 from ai.flights.code import code_of, flight_of
-from ai.flights.recording import Recording, StickHolder
-from ai.flights.shared import Claim, SharedFlight
-from ai.flights.starts import begun
-from ai.flights.stick import Stick, full, pushed, thrust
-from ai.flights.verification import earned, is_true, verified
+from ai.flights.recording import Claim, Recording, SharedFlight, StickHolder, full, thrust
+from ai.flights.verification import begun, earned, is_true, verified
 from ai.lander.environment import Outcome
 from ai.lander.pilots import Pilot, ScriptedPilot
 from ai.lander.rules import ACTION_SHARES
+from game.input.analogue import Stick, pushed
 
 MODEL = Path(__file__).parents[1] / "models" / "lander" / "modern"
 LATE = 12  # steps from what clumsy hands see to what they do

@@ -105,7 +105,8 @@ def search(mission: Mission, generations: int, enough: float, steps: int, rng: n
 def keep(name: str, found: Found, steps: int) -> None:
     """Write a flight down as the game does, a decision being so many steps."""
     actions = [action for action in found.actions for _ in range(steps)]
-    flight = ReplayedFlight(Recording(0, "random", 1, actions, [StickHolder.NETWORK] * len(actions), name))
+    hands = [StickHolder.NETWORK] * len(actions)
+    flight = ReplayedFlight(Recording(0, "random", mission=name, actions=actions, hands=hands))
     while not flight.over:
         flight.step(0)
     x, y, angle = flight.poses.now[0].tolist()

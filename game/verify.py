@@ -17,7 +17,8 @@ from typing import Any, Final
 
 from ai.cli.command_line import readable
 from ai.files import brief, read_text
-from ai.flights.shared import SharedFlight
+from ai.flights.code import codes_in
+from ai.flights.recording import SharedFlight
 from ai.flights.verification import Earned, is_true, verified
 from game.core import texts
 from game.flight import sharing
@@ -113,6 +114,6 @@ def _flights_in(file: Path, read: Callable[[], str]) -> Iterator[tuple[str, Shar
     except UnicodeDecodeError:
         yield str(file), texts.CODE_REFUSED["none"]
         return
-    alone = text.count("tranq-") < 2
+    alone = len(list(islice(codes_in(text), 2))) < 2
     for number, flight in enumerate(sharing.flights_in(text), 1):
         yield str(file) if alone else f"{file}:{number}", flight

@@ -66,7 +66,7 @@ def test_a_run_resumes_with_the_same_settings_networks_and_counts():
     agent = training.agent
     assert_same_values(agent.q_values(OBSERVATIONS), expected["values"])
     assert_same_values(DeepQAgent.load(DATA / "run").q_values(OBSERVATIONS), expected["best"])
-    assert (agent.decisions, agent.train_count) == (expected["decisions"], expected["train_count"])
+    assert (agent.decisions, agent.gradient_steps) == (expected["decisions"], expected["train_count"])
     assert (training.episodes, training.seconds) == (expected["episodes"], expected["seconds"])
 
 

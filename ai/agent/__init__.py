@@ -5,6 +5,6 @@ May be imported by `training`, `copilot`, `digits`, `gym` and `cli`.
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.config import AgentConfig
-from ai.agent.replay import MemoryCell, PrioritisedReplayBuffer, ReplayBuffer
+from ai.agent.replay import PrioritisedReplayBuffer, ReplayBuffer, Transition
 
-__all__ = ["AgentConfig", "DeepQAgent", "MemoryCell", "PrioritisedReplayBuffer", "ReplayBuffer"]
+__all__ = ["AgentConfig", "DeepQAgent", "PrioritisedReplayBuffer", "ReplayBuffer", "Transition"]

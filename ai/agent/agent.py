@@ -37,9 +37,9 @@ In no paper: half of each minibatch is mirrored (`mirror`); `classic` has a seco
 from __future__ import annotations
 
 from copy import deepcopy
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, Self
 
 import numpy as np
 
@@ -47,14 +47,13 @@ from ai.agent.config import AgentConfig
 from ai.agent.n_step import Episodes, NStep
 from ai.agent.network import build_network, make_optimizer
 from ai.agent.normalizer import Normalizer
-from ai.agent.replay import MemoryCell, ReplayBuffer, make_replay
+from ai.agent.replay import ReplayBuffer, Transition, make_replay
 from ai.agent.schedule import importance, learning_rate, target_rate
-from ai.agent.storage import SavedAgent, read_agent, save_agent
+from ai.agent.storage import read_agent, save_agent
 from ai.agent.symmetry import Symmetry
 from ai.common.decision import Decision, decide
 from ai.common.environment import Bools, Doubles, Env, Floats, Ints, StepResult
-from ai.nn import NeuralNetwork
-from ai.nn.optimizers import Optimizer
+from ai.nn import NeuralNetwork, Optimizer
 
 TOGETHER: Final = 1024  # states that are judged at a time: fewer calls, and what layers make of them stays in the cache
 
@@ -69,10 +68,10 @@ class DeepQAgent:
     Attributes:
         online, target: the network that learns, and the slower copy of it that its targets come from.
         decisions: decisions taken so far, of single landers.
-        train_count: gradient steps taken so far.
+        gradient_steps: gradient steps taken so far.
         loss: mean absolute temporal-difference error of the last `learn`, in scaled reward.
         mean_q: mean value of the next states it learned from, in the same unit.
-        held: whether `learn` does nothing, while its network is edited by hand.
+        paused: whether `learn` does nothing, while its network is edited by hand.
         folder: where it was read from; None for an agent that was not.
         run_settings: what its file says of the run it is from, and `config` does not; saved with it again.
 
@@ -100,9 +99,9 @@ class DeepQAgent:
         self.optimizer = optimizer or make_optimizer(self.config)
         if replay is not None:
             self.replay = replay
-        self.decisions = self.train_count = 0
+        self.decisions = self.gradient_steps = 0
         self.loss = self.mean_q = 0.0
-        self.held = False
+        self.paused = False
         self.folder: Path | None = None
         self.run_settings: dict[str, Any] = {}
         self._n_step = NStep(self.config.n_step, self.config.discount)
@@ -160,11 +159,11 @@ class DeepQAgent:
     def learn(self) -> float | None:
         """Take `config.gradient_steps` steps, and a second pass over successes if asked for; return the mean loss.
 
-        None until `config.learning_starts` transitions have been stored, and while it is `held`. Raises
+        None until `config.learning_starts` transitions have been stored, and while it is `paused`. Raises
         DivergenceError when a number is no longer finite.
         """
         config = self.config
-        if self.held or self.replay.added < config.learning_starts:
+        if self.paused or self.replay.added < config.learning_starts:
             return None
         self.optimizer.learning_rate = learning_rate(config, self.decisions)
         self.optimizer.clip = config.gradient_clip
@@ -193,12 +192,12 @@ class DeepQAgent:
                 transitions.state[batch], transitions.action[batch], targets[batch], weights[batch]
             )
             if first_pass:
-                self.train_count += 1
+                self.gradient_steps += 1
                 self._update_target()
         replay.update_priorities(rows, errors)
         return float(np.abs(errors).mean()), float(values.mean())
 
-    def targets(self, transitions: MemoryCell) -> tuple[Floats, Floats]:
+    def targets(self, transitions: Transition) -> tuple[Floats, Floats]:
         """Return Bellman targets (n,), reward + γ^steps · value, and the values (n,) of the next states."""
         firsts = range(0, len(transitions.action), TOGETHER)
         parts = (transitions.next_state[first : first + TOGETHER] for first in firsts)
@@ -233,7 +232,7 @@ class DeepQAgent:
 
     def _update_target(self) -> None:
         """Move the target network towards the online one by τ, where that is due."""
-        if self.train_count % self.config.target_update_interval == 0:
+        if self.gradient_steps % self.config.target_update_interval == 0:
             tau = target_rate(self.config, self.decisions)
             if tau >= 1.0:
                 self.target.values = self.online.values
@@ -296,7 +295,7 @@ class DeepQAgent:
         """Copy the networks, optimizer state, normalizer and counts of `other`, but not its replay buffers."""
         self.online.values, self.target.values = other.online.values, other.target.values
         self.optimizer.load_state(other.optimizer.state(), self.online.values)
-        self.decisions, self.train_count = other.decisions, other.train_count
+        self.decisions, self.gradient_steps = other.decisions, other.gradient_steps
         self.normalizer = deepcopy(other.normalizer)
 
     # Files: ai.agent.storage has their format
@@ -306,19 +305,9 @@ class DeepQAgent:
 
         Raises OSError if it cannot be written, FileExistsError if the folder holds something else.
         """
-        save_agent(self.saved(), folder)
-
-    def saved(self) -> SavedAgent:
-        """Return all that is saved of this agent; the networks and the optimizer are its own, not copies."""
-        return SavedAgent(self.num_features, self.num_actions, self.config, self.run_settings, self.decisions,
-                          self.train_count, self.online, self.target, self.optimizer, self.normalizer)  # fmt: skip
+        save_agent(self, folder)
 
     @classmethod
-    def load(cls, folder: str | Path, rng: np.random.Generator | None = None) -> DeepQAgent:
-        """Read what `save` wrote; raises ModelFormatError."""
-        saved = read_agent(folder)
-        agent = cls(saved.num_features, saved.num_actions, saved.config, rng, optimizer=saved.optimizer)
-        agent.online, agent.target, agent.normalizer = saved.online, saved.target, saved.normalizer
-        agent.run_settings = saved.run_settings
-        agent.decisions, agent.train_count, agent.folder = saved.decisions, saved.train_count, Path(folder)
-        return agent
+    def load(cls, folder: str | Path, rng: np.random.Generator | None = None) -> Self:
+        """Read what `save` wrote; raises ModelFormatError, which names everything that is wrong."""
+        return read_agent(folder, partial(cls, rng=rng))

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ai.agent.replay import MemoryCell
+from ai.agent.replay import Transition
 from ai.common.environment import Bools, Floats, Ints
 
 
@@ -22,7 +22,7 @@ class NStep:
 
     def add(
         self, state: Floats, action: Ints, reward: Floats, next_state: Floats, terminal: Bools, ended: Bools
-    ) -> tuple[MemoryCell, Ints]:
+    ) -> tuple[Transition, Ints]:
         """Take one decision of each of n slots; return the m transitions that are now complete, and their slots (m,).
 
         `state` and `next_state` are (n, features), the others (n,). `terminal` marks a next state without value,
@@ -47,7 +47,7 @@ class NStep:
         row, slot = done.nonzero()
         order = np.argsort(-self._ages[row, slot], kind="stable")
         row, slot = row[order], slot[order]
-        cells = MemoryCell(
+        cells = Transition(
             self._states[row, slot],
             next_state[slot],
             self._actions[row, slot],
@@ -71,17 +71,17 @@ class Episodes:
     """Collects each slot's transitions until its episode ends, and passes on those that ended well."""
 
     def __init__(self) -> None:
-        self._parts: dict[int, list[MemoryCell]] = {}
+        self._parts: dict[int, list[Transition]] = {}
 
-    def add(self, cells: MemoryCell, slots: Ints, ended: Bools, success: Bools) -> Iterator[MemoryCell]:
+    def add(self, cells: Transition, slots: Ints, ended: Bools, success: Bools) -> Iterator[Transition]:
         """Take m new transitions with their slots (m,); yield every successful episode that is now whole.
 
         `ended` and `success` (n,) are of all slots.
         """
         for slot in np.unique(slots).tolist():
             mine = slots == slot
-            self._parts.setdefault(slot, []).append(MemoryCell(*(part[mine] for part in cells)))
+            self._parts.setdefault(slot, []).append(Transition(*(part[mine] for part in cells)))
             if ended[slot]:
                 parts = self._parts.pop(slot)
                 if success[slot]:
-                    yield MemoryCell(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+                    yield Transition(*(np.concatenate(column) for column in zip(*parts, strict=True)))

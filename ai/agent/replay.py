@@ -11,7 +11,7 @@ from ai.agent.config import AgentConfig
 from ai.common.environment import Doubles, Floats, Ints
 
 
-class MemoryCell(NamedTuple):
+class Transition(NamedTuple):
     """One transition, or a batch of them stacked field by field.
 
     With n-step returns, `reward` is the discounted sum over `steps` decisions and `next_state` what came after
@@ -60,34 +60,29 @@ class ReplayBuffer:
     def __len__(self) -> int:
         return self.size
 
-    def add(self, cells: MemoryCell) -> Ints:
+    def add(self, cells: Transition) -> Ints:
         """Keep a batch of n transitions, oldest first, and return where they lie, (n,)."""
-        count = len(cells.action)
-        self.added += count
-        if count > self.capacity:
-            cells = MemoryCell(
-                *(
-                    np.broadcast_to(part, (count,))[-self.capacity :] if np.ndim(part) == 0 else part[-self.capacity :]
-                    for part in cells
-                )
-            )
-            count = self.capacity
+        self.added += len(cells.action)
+        new = np.empty(len(cells.action), self.records.dtype)
+        for name, part in zip(Transition._fields, cells, strict=True):
+            new[name] = part
+        new = new[-self.capacity :]
+        count = len(new)
         if self.size + count > self.capacity:
             self._drop(min(self.size, max(self.prune, self.size + count - self.capacity)))
         rows = (self.start + self.size + np.arange(count)) % self.capacity
-        for kept, new in zip(self.cells, cells, strict=True):
-            kept[rows] = new
+        self.records[rows] = new
         self.size += count
         return rows
 
-    def sample(self, count: int, rng: np.random.Generator) -> tuple[MemoryCell, Ints, Floats]:
+    def sample(self, count: int, rng: np.random.Generator) -> tuple[Transition, Ints, Floats]:
         """Draw `count` transitions; return them, the rows where they lie, and their weights in the cost, (count,)."""
         rows = rng.integers(self.size, size=count)
         rows += self.start
         rows %= self.capacity
         return self.at(rows), rows, np.ones(count, dtype=np.float32)
 
-    def at(self, rows: Ints) -> MemoryCell:
+    def at(self, rows: Ints) -> Transition:
         """Return the transitions that lie at `rows`, stacked."""
         return _fields(self.records.take(rows))
 
@@ -99,9 +94,9 @@ class ReplayBuffer:
         self.size -= count
 
 
-def _fields(records: NDArray[np.void]) -> MemoryCell:
+def _fields(records: NDArray[np.void]) -> Transition:
     """Return the fields of records as views."""
-    return MemoryCell(*(records[name] for name in MemoryCell._fields))
+    return Transition(*(records[name] for name in Transition._fields))
 
 
 class PrioritisedReplayBuffer(ReplayBuffer):
@@ -119,13 +114,13 @@ class PrioritisedReplayBuffer(ReplayBuffer):
         self.tree = SumTree(capacity)
         self._largest = 1.0
 
-    def add(self, cells: MemoryCell) -> Ints:
+    def add(self, cells: Transition) -> Ints:
         """Keep a batch of n transitions, oldest first, and return where they lie, (n,)."""
         rows = super().add(cells)
         self.tree.set(rows, np.full(len(rows), self._largest))
         return rows
 
-    def sample(self, count: int, rng: np.random.Generator) -> tuple[MemoryCell, Ints, Floats]:
+    def sample(self, count: int, rng: np.random.Generator) -> tuple[Transition, Ints, Floats]:
         """Draw `count` transitions; return them, the rows where they lie, and their weights in the cost, (count,).
 
         Weights are (size · probability)^-importance, relative to the largest of those drawn.

@@ -1,25 +1,28 @@
 """An agent on disk: a folder with its settings and counts, both networks, and the state of its optimizer.
 
-The format knows the parts of an agent, not the agent: `ai.agent.agent` turns itself into a `SavedAgent` and back.
+Its replay buffers and its random generator are not kept.
 """
 
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import numpy as np
 
 from ai.agent.config import AgentConfig
-from ai.agent.network import build_network, make_optimizer
-from ai.agent.normalizer import Normalizer
 from ai.common.environment import Floats
-from ai.files import NETWORK, FolderKind, check_header, count_of, inside, problem_in, read_arrays, read_json
-from ai.nn import ModelFormatError, NeuralNetwork, atomic_folder, recover_folder
-from ai.nn.budget import WIDEST
-from ai.nn.optimizers import Optimizer
+from ai.files import NETWORK, FolderKind, check_header, count_of, inside, read_arrays, read_json
+from ai.nn import ModelFormatError, NeuralNetwork, Optimizer, atomic_folder, recover_folder
+from ai.nn.layers import WIDEST
+from ai.nn.storage import noted
+
+if TYPE_CHECKING:
+    from ai.agent.agent import DeepQAgent
+
+A = TypeVar("A", bound="DeepQAgent")
 
 FORMAT: Final = "tranquility agent"
 VERSION: Final = 1
@@ -30,26 +33,11 @@ _OLD: Final = FolderKind("tranquility safety critic", (), {"network": NETWORK}) 
 _PARTS: Final = {"online": NETWORK, "target": NETWORK, "guardian": _OLD}
 _ALONE: Final = FolderKind(FORMAT, (OPTIMIZER_FILE,), _PARTS)
 KIND: Final = FolderKind(FORMAT, (OPTIMIZER_FILE, "training.json", "history.npz"), {**_ALONE.folders, LAST: _ALONE})
+_FORMERLY: Final = "train_count"  # the name of `gradient_steps` in older files
 _SLACK: Final = 1 << 16  # bytes of an archive beside its numbers
 
 
-@dataclass
-class SavedAgent:
-    """All that is saved of an agent: everything but its replay buffers and its random generator."""
-
-    num_features: int
-    num_actions: int
-    config: AgentConfig
-    run_settings: dict[str, Any]  # of the run it is from, by name: kept as they are, for what is above to read
-    decisions: int  # taken so far
-    train_count: int  # gradient steps taken so far
-    online: NeuralNetwork
-    target: NeuralNetwork
-    optimizer: Optimizer
-    normalizer: Normalizer | None  # of observations; None unless `config.normalise_inputs`
-
-
-def save_agent(agent: SavedAgent, folder: str | Path) -> None:
+def save_agent(agent: DeepQAgent, folder: str | Path) -> None:
     """Write an agent to a folder, whole or not at all.
 
     Raises OSError if it cannot be written, FileExistsError if the folder holds something else.
@@ -58,7 +46,7 @@ def save_agent(agent: SavedAgent, folder: str | Path) -> None:
         write_agent(agent, temporary)
 
 
-def write_agent(agent: SavedAgent, folder: Path) -> None:
+def write_agent(agent: DeepQAgent, folder: Path) -> None:
     """Write an agent's files into a new folder; `save_agent` does so safely. Raises OSError."""
     described = {
         "format": FORMAT,
@@ -66,7 +54,7 @@ def write_agent(agent: SavedAgent, folder: Path) -> None:
         "features": agent.num_features,
         "actions": agent.num_actions,
         "decisions": agent.decisions,
-        "train_count": agent.train_count,
+        "gradient_steps": agent.gradient_steps,
         "config": {**agent.config.to_json(), **agent.run_settings},
     }
     if agent.normalizer:
@@ -78,60 +66,51 @@ def write_agent(agent: SavedAgent, folder: Path) -> None:
     (folder / AGENT_FILE).write_text(json.dumps(described, indent=2) + "\n", encoding="utf-8")
 
 
-def read_agent(folder: str | Path) -> SavedAgent:
-    """Read what `save_agent` wrote. Raises ModelFormatError, which names everything that is wrong."""
+def read_agent(folder: str | Path, make: Callable[[int, int, AgentConfig], A]) -> A:
+    """Read what `save_agent` wrote; `make` makes the agent of its numbers of features and actions and its settings.
+
+    Raises ModelFormatError, which names everything that is wrong.
+    """
     folder = Path(folder)
     recover_folder(folder)
-    described = _read_description(folder)
-    try:
-        settings = AgentConfig.renamed(described["config"])
-        run_settings = {name: settings.pop(name) for name in settings.keys() - AgentConfig.names()}
-        config = AgentConfig.from_json(settings)
-        features, actions = (count_of(described[name], 1, WIDEST) for name in ("features", "actions"))
-        network = build_network(features, actions, config, np.random.default_rng(0))
-        decisions, train_count = count_of(described["decisions"]), count_of(described["train_count"])
-        normalizer = Normalizer(features) if config.normalise_inputs else None
-        if normalizer:
-            normalizer.load(described["scale"])
-    except (KeyError, TypeError, ValueError, ArithmeticError) as error:
-        raise ModelFormatError(folder, [f"{AGENT_FILE}: {problem_in(error)}"]) from error
     problems: list[str] = []
-    online, target = (_read_network(folder, name, network, problems) for name in ("online", "target"))
-    optimizer = make_optimizer(config)
-    try:
-        optimizer.load_state(_read_state(inside(folder, OPTIMIZER_FILE), optimizer, network.values), network.values)
-    except OSError as error:
-        problems.append(f"{OPTIMIZER_FILE}: {error.strerror or error}")
-    except (ValueError, KeyError) as error:
-        problems.append(f"{OPTIMIZER_FILE}: {problem_in(error)}")
+    with noted(problems, AGENT_FILE):
+        agent = _read_description(folder, make)
     if problems:
         raise ModelFormatError(folder, problems)
-    return SavedAgent(features, actions, config, run_settings, decisions, train_count,
-                      online, target, optimizer, normalizer)  # fmt: skip
+    for name in ("online", "target"):
+        with noted(problems, name):
+            setattr(agent, name, _read_network(inside(folder, name), getattr(agent, name)))
+    with noted(problems, OPTIMIZER_FILE):
+        state = _read_state(inside(folder, OPTIMIZER_FILE), agent.optimizer, agent.online.values)
+        agent.optimizer.load_state(state, agent.online.values)
+    if problems:
+        raise ModelFormatError(folder, problems)
+    agent.folder = folder
+    return agent
 
 
-def _read_description(folder: Path) -> dict[str, Any]:
-    """Read the file of settings and counts; raises ModelFormatError unless it is of this format and version."""
-    try:
-        return check_header(read_json(inside(folder, AGENT_FILE)), FORMAT, (VERSION,))
-    except OSError as error:
-        raise ModelFormatError(folder, [f"{AGENT_FILE}: {error.strerror or error}"]) from error
-    except ValueError as error:
-        raise ModelFormatError(folder, [f"{AGENT_FILE}: {error}"]) from error
+def _read_description(folder: Path, make: Callable[[int, int, AgentConfig], A]) -> A:
+    """Make an agent as the file of settings and counts describes it."""
+    described = check_header(read_json(inside(folder, AGENT_FILE)), FORMAT, (VERSION,))
+    settings = AgentConfig.renamed(described["config"])
+    run_settings = {name: settings.pop(name) for name in settings.keys() - AgentConfig.names()}
+    features, actions = (count_of(described[name], 1, WIDEST) for name in ("features", "actions"))
+    agent = make(features, actions, AgentConfig.from_json(settings))
+    agent.run_settings = run_settings
+    agent.decisions = count_of(described["decisions"])
+    agent.gradient_steps = count_of(described["gradient_steps" if "gradient_steps" in described else _FORMERLY])
+    if agent.normalizer:
+        agent.normalizer.load(described["scale"])
+    return agent
 
 
-def _read_network(folder: Path, name: str, like: NeuralNetwork, problems: list[str]) -> NeuralNetwork:
-    """Read a network of the sizes of `like`; return that itself, and add to `problems`, if there is none."""
-    try:
-        network = NeuralNetwork.load(inside(folder, name))
-        if _sizes(network) == _sizes(like):
-            return network
-        problems.append(f"{name}: its sizes are not those of the agent's settings")
-    except ModelFormatError as error:
-        problems += [f"{name}: {problem}" for problem in error.problems]
-    except OSError as error:
-        problems.append(f"{name}: {error.strerror or error}")
-    return like
+def _read_network(folder: Path, like: NeuralNetwork) -> NeuralNetwork:
+    """Read a network of the sizes of `like`."""
+    network = NeuralNetwork.load(folder)
+    if _sizes(network) != _sizes(like):
+        raise ValueError("its sizes are not those of the agent's settings")
+    return network
 
 
 def _sizes(network: NeuralNetwork) -> list[Any]:

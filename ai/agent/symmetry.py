@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ai.agent.replay import MemoryCell
+from ai.agent.replay import Transition
 from ai.common.environment import Floats, Ints
 
 
@@ -27,7 +27,7 @@ class Symmetry:
         matrix[self.features, np.arange(size)] = self.signs
         return matrix
 
-    def apply(self, cells: MemoryCell, batch_size: int, count: int) -> MemoryCell:
+    def apply(self, cells: Transition, batch_size: int, count: int) -> Transition:
         """Return minibatches, one after another (batches · batch_size), with the first `count` of each mirrored.
 
         All arrays are new. States are in the units of the environment: scaled by different means for left and right,

@@ -16,7 +16,7 @@ from ai.agent.agent import DeepQAgent
 from ai.agent.config import AgentConfig
 from ai.agent.n_step import NStep
 from ai.agent.normalizer import Normalizer
-from ai.agent.replay import MemoryCell, ReplayBuffer
+from ai.agent.replay import ReplayBuffer, Transition
 from ai.common.environment import Floats, Ints
 from ai.explain.learning_step import Step, recorded_step
 from ai.explain.recorder import RETURN, Function, Line
@@ -47,7 +47,7 @@ class Lesson:
     config: AgentConfig  # of the run; the step shown is the first of its `gradient_steps`
     decisions: int  # of the run, when the step was taken
     flown: Flown | None  # None if that is not known
-    cell: MemoryCell  # the memory, (features,) and numbers, as it lies in the replay buffer
+    cell: Transition  # the memory, (features,) and numbers, as it lies in the replay buffer
     state: Floats  # (features,) of it as the networks are given them
     next_state: Floats
     weight: float  # its weight in the cost, by importance sampling; 1 in uniform replay
@@ -76,7 +76,7 @@ class Before:
     target: Floats
     optimizer: dict[str, Any]  # what `Optimizer.state` returned
     normalizer: dict[str, Any] | None  # of observations
-    cells: MemoryCell  # the minibatch, (batch, ...), as it was drawn; one of them gives way to the memory of the lesson
+    cells: Transition  # the minibatch, (batch, ...), as it was drawn; one of them gives way to the memory of the lesson
     weights: Floats  # (batch,) of them in the cost
 
     @classmethod
@@ -89,7 +89,7 @@ class Before:
         return cls(agent.config, agent.decisions, online, target, optimizer, normalizer, cells, weights)
 
 
-def explain(before: Before, cell: MemoryCell, agent: DeepQAgent, flown: Flown | None = None) -> Lesson:
+def explain(before: Before, cell: Transition, agent: DeepQAgent, flown: Flown | None = None) -> Lesson:
     """Take the learning step that follows from `before` with `cell` in its minibatch, and return all of it.
 
     `agent` is one of the same sizes and symmetry, which is not changed. Raises DivergenceError as the step does, and
@@ -136,18 +136,18 @@ _AGENT: Final[tuple[Function, ...]] = (
 class _HandedBatch(ReplayBuffer):
     """Replay buffer that always draws the minibatch that it was handed."""
 
-    def __init__(self, cells: MemoryCell, weights: Floats) -> None:
+    def __init__(self, cells: Transition, weights: Floats) -> None:
         super().__init__(len(weights), cells.state.shape[1])
         self.added, self._drawn = 2**62, (cells, np.arange(len(weights)), weights)
 
-    def sample(self, count: int, rng: np.random.Generator) -> tuple[MemoryCell, Ints, Floats]:  # noqa: ARG002
+    def sample(self, count: int, rng: np.random.Generator) -> tuple[Transition, Ints, Floats]:  # noqa: ARG002
         """Return the minibatch."""
         return self._drawn
 
 
-def _twin(before: Before, cell: MemoryCell, row: int, agent: DeepQAgent) -> DeepQAgent:
+def _twin(before: Before, cell: Transition, row: int, agent: DeepQAgent) -> DeepQAgent:
     """Return an agent that is about to take the learning step, with the memory in a row of its minibatch."""
-    cells = MemoryCell(*(np.array(part) for part in before.cells))
+    cells = Transition(*(np.array(part) for part in before.cells))
     for part, own in zip(cells, cell, strict=True):
         part[row] = own
     config = before.config.changed(gradient_steps=1, success_pass=False, batch_size=len(before.weights))

@@ -1,75 +1,121 @@
-"""Code of a flight, short enough for a message: `tranq-`, letters and digits, `-over`.
+"""Code of a flight, short enough for a message: `tranq2-`, base64, `-over`.
 
-The letters stand for bytes: the format's version, sections, and a checksum. A section is a tag, its length and its
-content, which one function packs and one reads; what is as usual is left out. A reader refuses a section that it does
-not know, because without it the flight would be another, but not one with a tag from `OPTIONAL` on.
-docs/files.md describes the sections.
+It stands for deflated bytes and their checksum. The bytes are start and claim as one line of JSON, a byte for each run
+of equal steps, and for a flight by sticks the moves of both. docs/sharing.md describes them.
 """
 
 from __future__ import annotations
 
+import base64
+import json
 import re
-import struct
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
+from dataclasses import dataclass
 from itertools import groupby
-from typing import Any, Final
+from typing import Annotated, Final
 
-from ai.flights import key_presses, letters, stick_positions
-from ai.flights.easing import AS_IT_IS, Easing
-from ai.flights.places import COURSES
-from ai.flights.recording import LONGEST, Recording, StickHolder
-from ai.flights.shared import Claim, SharedFlight
-from ai.flights.stick import STEPS, Shares
-from ai.lander.descent import MOST_LEGS, TANK, LegStart
+import numpy as np
+
+from ai.files import OneOf, Sized, Within, parse_json, read_as
+from ai.flights.recording import (
+    LONGEST,
+    STEPS,
+    Claim,
+    LegAsList,
+    Recording,
+    SharedFlight,
+    Shares,
+    Start,
+    StickHolder,
+    full,
+)
+from ai.flights.verification import COURSES
 from ai.lander.environment import Outcome
-from ai.lander.missions import MISSIONS
-from ai.lander.rules import AREAS
-from ai.lander.spawns import SPAWNS
+from ai.lander.rules import nearest_action
 
-VERSION: Final = 1
-BEGIN, END = "tranq-", "-over"
-OPTIONAL: Final = 64  # tags from which a reader may pass over a section that it does not know
-LARGEST: Final = 8_192  # bytes of a code: several times those of the longest flight with a change in every step
+VERSION: Final = 2
+BEGIN, END = f"tranq{VERSION}-", "-over"
 _LONGEST_TEXT: Final = 1_000_000  # characters of a text in which codes are looked for
-_MOST: Final = 10**6
-_LARGEST_SEED: Final = 10**40
-_LONGEST_NAME: Final = 40  # bytes
-_MOST_CHANGES: Final = 1_000  # of gravity
-_GRAVITY: Final = (0.01, 10.0)  # share of normal gravity
+_LARGEST: Final = 4 * LONGEST  # bytes that a code may unfold to: several for each step
+_SIGNS: Final = b"+."  # base64's last two: unlike others, no messenger takes them for formatting
+_ALIEN: Final = re.compile(r"[^0-9A-Za-z+.-]+")
+_CODE: Final = re.compile(r"tranq(\d{0,3})-((?:(?!tranq\d{0,3}-)[0-9A-Za-z+.])*)(-over)?")
 _FAR: Final = 10**6  # metres
 _GRID: Final = 10_000  # parts of a metre and a radian in which the last pose is told
-_SIDES: Final = 2 * STEPS + 1  # shares of the jets that there are
-_STICK: Final = 1  # how the shares of thrust are told; so their section is never empty
-_TANK: Final = 1_000  # parts of a second of fuel in which a tank is told, as it is rounded in a descent
-_ALIEN: Final = re.compile(r"[^0-9A-Za-z-]+")
+_LONGEST_NAME: Final = 40  # characters
+_HELD: Final = 6 * len(StickHolder)  # an action, and who holds the stick
+_RUN: Final = 21  # steps of a run, at most: a run fits a byte below _MOVES
+_MOVES: Final = b"\xff"  # comes before the moves of the sticks
+# What deflating takes to have been said before: words of some codes, and how most of them begin.
+_USUAL: Final = (
+    b'"daily","wind","gravity":[[0,0.7"rung_"pads":3,"wider_pads":true,"untimed":true},"leg":[2,12.5,false]'
+    b'"outcome":"CRASHED","points":0,"end":[-{"seed":1,"spawn":"random","pads":1,"mission":"","gravity":[],'
+    b'"easing":{"wider_pads":false,"untimed":false},"area":1,"leg":null,"course":"","barred":"","outcome":"LANDED",'
+    b'"points":9'
+)
+
+_Tenth = Annotated[int, Within(-_FAR * _GRID, _FAR * _GRID)]
 
 
 class CodeError(ValueError):
-    """A code is refused. `kind` says why in one word, for those who say it in the player's language."""
+    """A code is refused; `kind` says why, a key of `texts.CODE_REFUSED`."""
 
     def __init__(self, kind: str) -> None:
         self.kind = kind
-        super().__init__(REFUSALS[kind])
+        super().__init__(f"a code is refused: {kind}")
 
 
-REFUSALS: Final = {
-    "none": "there is no code of a flight in it",
-    "cut": "the end of the code is missing",
-    "damaged": "the code is damaged: a sign is wrong or missing",
-    "newer": "the code was made by a newer version of the game",
-    "nonsense": "the code stands for no flight that there can be",
-}
+@dataclass(kw_only=True)
+class _Told(Start):
+    """What a code says besides the inputs."""
+
+    leg: LegAsList
+    outcome: Annotated[str, OneOf(Outcome.__members__)]
+    points: Annotated[int, Within(0, 10**6)]
+    end: tuple[_Tenth, _Tenth, _Tenth]
+    course: Annotated[str, OneOf(COURSES)]
+    barred: Annotated[str, Sized(_LONGEST_NAME)]
 
 
 def code_of(flight: SharedFlight) -> str:
     """Return the code of a flight."""
-    data = bytearray([VERSION])
-    for tag, (pack, _) in _SECTIONS.items():
-        if content := pack(flight):
-            data += _varint(tag) + _varint(len(content)) + content
-    data += zlib.crc32(data).to_bytes(4, "big")
-    return f"{BEGIN}{letters.spelt(bytes(data))}{END}"
+    recording, claim = flight.recording, flight.claim
+    told = recording.start() | {
+        "course": flight.course, "barred": flight.barred[:_LONGEST_NAME], "outcome": claim.outcome.name,
+        "points": claim.points, "end": [round(_GRID * min(max(number, -_FAR), _FAR)) for number in claim.end],
+    }  # fmt: skip
+    packer = zlib.compressobj(9, wbits=-zlib.MAX_WBITS, memLevel=9, zdict=_USUAL)
+    data = packer.compress(json.dumps(told, separators=(",", ":")).encode() + b"\n" + _packed(recording))
+    data += packer.flush()
+    return f"{BEGIN}{_spelt(data + zlib.crc32(data).to_bytes(4, 'big'))}{END}"
+
+
+def _spelt(data: bytes) -> str:
+    return base64.b64encode(data, _SIGNS).decode().rstrip("=")
+
+
+def _packed(recording: Recording) -> bytes:
+    """Return the inputs of all steps: runs of equal ones, and how far the sticks moved in each step."""
+    actions, moves, asked = recording.actions, b"", [0] * len(recording.actions)
+    if recording.shares:
+        places = [recording.shares.get(step) or full(action) for step, action in enumerate(actions)]
+        moves = _MOVES + np.diff(np.array(places, np.int8), axis=0, prepend=np.int8(0)).T.tobytes()
+        asked = _asked(places)
+    held = [
+        (action - known) % 6 + 6 * (hand is StickHolder.NETWORK)
+        for action, known, hand in zip(actions, asked, recording.hands, strict=True)
+    ]
+    return bytes(
+        each + _HELD * (min(_RUN, left) - 1)
+        for each, same in groupby(held)
+        for left in range(len(list(same)), 0, -_RUN)
+    ) + moves  # fmt: skip
+
+
+def _asked(places: list[Shares]) -> list[int]:
+    """Return the actions that sticks ask for: a code tells only where another was flown."""
+    return [nearest_action(main / STEPS, side / STEPS) for main, side in places]
 
 
 def flight_of(code: str) -> SharedFlight:
@@ -77,291 +123,61 @@ def flight_of(code: str) -> SharedFlight:
 
     Whatever a messenger has put into it is passed over: line breaks, blanks, quotation marks.
     """
-    found = next(codes_in(code), "")
-    if not found:
+    match = _CODE.fullmatch(next(codes_in(code), ""))
+    if match is None:
         raise CodeError("none")
-    if not found.endswith(END):
+    version, signs, end = match.groups()
+    if int(version or 1) != VERSION:
+        raise CodeError("older" if int(version or 1) < VERSION else "newer")
+    if not end:
         raise CodeError("cut")
-    signs = found[len(BEGIN) : -len(END)]
-    if len(signs) > 2 * LARGEST:
-        raise CodeError("nonsense")
     try:
-        data = letters.read(signs)
+        data = base64.b64decode(signs + "=" * (-len(signs) % 4), _SIGNS, validate=True)
     except ValueError as error:
         raise CodeError("damaged") from error
-    if len(data) < 5 or zlib.crc32(data[:-4]) != int.from_bytes(data[-4:], "big"):
+    if zlib.crc32(data[:-4]).to_bytes(4, "big") != data[-4:] or _spelt(data) != signs:
         raise CodeError("damaged")
-    return _unpacked(data[:-4])
+    try:
+        return _read(data[:-4])
+    except (ValueError, zlib.error) as error:
+        raise CodeError("nonsense") from error
 
 
 def codes_in(text: str) -> Iterator[str]:
     """Yield every code in a text, without what a messenger put between its signs; one that is cut has no end."""
-    plain = _ALIEN.sub("", text[:_LONGEST_TEXT])
-    for part in plain.split(BEGIN)[1:]:
-        signs, dash, rest = part.partition("-")
-        yield f"{BEGIN}{signs}{END if rest.startswith(END[1:]) else dash}"
+    return (match[0] for match in _CODE.finditer(_ALIEN.sub("", text[:_LONGEST_TEXT])))
 
 
-def _unpacked(data: bytes) -> SharedFlight:
-    if data[0] != VERSION:
-        raise CodeError("newer")
-    reader, found = _Reader(data[1:]), dict[str, Any]()
-    last = -1
-    try:
-        while reader.left:
-            tag = reader.number(_MOST)
-            content = _Reader(reader.bytes(reader.number(LARGEST)))
-            if tag <= last:
-                raise ValueError("sections come in the order of their tags")
-            last = tag
-            if tag in _SECTIONS:
-                _SECTIONS[tag][1](content, found)
-                if content.left:
-                    raise CodeError("newer")  # a section that has grown
-            elif tag < OPTIONAL:
-                raise CodeError("newer")
-        return _made(**found)
-    except CodeError:
-        raise
-    except (ValueError, TypeError, KeyError) as error:  # the last two if a section is missing
-        raise CodeError("nonsense") from error
-
-
-def _made(
-    start: tuple[int, str, int, str],
-    actions: list[int],
-    hands: list[StickHolder],
-    claim: Claim,
-    gravity: list[tuple[int, float]] | None = None,
-    course: str = "",
-    barred: str = "",
-    **more: Any,
-) -> SharedFlight:
-    """Return a flight of what the sections hold."""
-    seed, spawn, pads, mission = start
-    if "leg" in more and (mission or gravity or pads != 1):
+def _read(data: bytes) -> SharedFlight:
+    """Return the flight of a code's bytes; raises ValueError or zlib.error for what is none."""
+    unpacker = zlib.decompressobj(-zlib.MAX_WBITS, zdict=_USUAL)
+    line, _, inputs = unpacker.decompress(data, _LARGEST).partition(b"\n")
+    if not unpacker.eof or unpacker.unused_data:
+        raise ValueError("it is longer than any flight, or has no end")
+    told = read_as(_Told, parse_json(line.decode()), strict=True)
+    if told.leg and (told.mission or told.gravity or told.pads != 1):
         raise ValueError("a leg of a descent has a start and rules of its own")
-    recording = Recording(seed, spawn, pads, actions, hands, mission, gravity or [], **more)
-    return SharedFlight(recording, claim, course or mission, barred)
+    x, y, angle = (number / _GRID for number in told.end)
+    claim = Claim(Outcome[told.outcome], told.points, (x, y, angle))
+    return SharedFlight(Recording.begun(told, told.leg, *_unpacked(inputs)), claim, told.course, told.barred)
 
 
-class _Reader:
-    """Reader of a row of bytes; raises ValueError for numbers out of bounds and for bytes that are missing."""
-
-    def __init__(self, data: bytes) -> None:
-        self._data, self._at = data, 0
-
-    @property
-    def left(self) -> int:
-        """Number of bytes left."""
-        return len(self._data) - self._at
-
-    def bytes(self, count: int) -> bytes:
-        """Return the next bytes."""
-        if count > self.left:
-            raise ValueError("bytes are missing")
-        self._at += count
-        return self._data[self._at - count : self._at]
-
-    def number(self, most: int) -> int:
-        """Return a whole number from 0 to `most`, seven bits to a byte, the lowest first."""
-        value = shift = 0
-        while True:
-            byte = self.bytes(1)[0]
-            value |= (byte & 127) << shift
-            shift += 7
-            if byte < 128:
-                break
-            if shift > most.bit_length() + 7:
-                raise ValueError("a number is too long")
-        if value > most:
-            raise ValueError("a number is too large")
-        return value
-
-    def text(self) -> str:
-        """Return a text behind its length."""
-        return self.bytes(self.number(_LONGEST_NAME)).decode()
-
-
-def _varint(value: int) -> bytes:
-    out = bytearray()
-    while value > 127:
-        out.append(value & 127 | 128)
-        value >>= 7
-    return bytes([*out, value])
-
-
-def _named(text: str) -> bytes:
-    data = text.encode()[:_LONGEST_NAME].decode(errors="ignore").encode()  # never half of a letter
-    return _varint(len(data)) + data
-
-
-# Sections: each has one function that packs it, empty if it has nothing to say, and one that reads it.
-
-
-def _pack_start(flight: SharedFlight) -> bytes:
-    recording = flight.recording
-    return (
-        _varint(recording.seed) + _varint(recording.pads)
-        + _named("" if recording.spawn == "random" else recording.spawn) + _named(recording.mission)
-    )  # fmt: skip
-
-
-def _read_start(reader: _Reader, found: dict[str, Any]) -> None:
-    seed, pads, spawn, mission = reader.number(_LARGEST_SEED), reader.number(3), reader.text(), reader.text()
-    if pads not in (1, 3) or (spawn and spawn not in SPAWNS):
-        raise ValueError("there is no such start")
-    if mission and mission not in MISSIONS:
-        raise CodeError("newer")
-    found["start"] = (seed, spawn or "random", pads, mission)
-
-
-def _pack_actions(flight: SharedFlight) -> bytes:
-    actions = flight.recording.actions
-    return _varint(len(actions)) + key_presses.packed(actions)
-
-
-def _read_actions(reader: _Reader, found: dict[str, Any]) -> None:
-    count = reader.number(LONGEST)
-    found["actions"] = key_presses.unpacked(reader.bytes(reader.left), count)
-
-
-def _pack_hands(flight: SharedFlight) -> bytes:
-    rows = [(hand, len(list(same))) for hand, same in groupby(flight.recording.hands)]
-    first = rows[0][0] if rows else StickHolder.HUMAN
-    return bytes([first is StickHolder.NETWORK]) + b"".join(_varint(length) for _, length in rows[:-1])
-
-
-def _read_hands(reader: _Reader, found: dict[str, Any]) -> None:
-    total, holders = len(found["actions"]), list(StickHolder)
-    turn, hands = reader.number(1), list[StickHolder]()
-    while reader.left:
-        length = reader.number(total - len(hands))
-        hands += [holders[turn]] * length
-        turn = 1 - turn
-    found["hands"] = hands + [holders[turn]] * (total - len(hands))
-
-
-def _pack_gravity(flight: SharedFlight) -> bytes:
-    return b"".join(_varint(step) + struct.pack(">d", share) for step, share in flight.recording.gravity)
-
-
-def _read_gravity(reader: _Reader, found: dict[str, Any]) -> None:
-    changes = list[tuple[int, float]]()
-    while reader.left:
-        step, (share,) = reader.number(LONGEST), struct.unpack(">d", reader.bytes(8))
-        if not _GRAVITY[0] <= share <= _GRAVITY[1] or len(changes) == _MOST_CHANGES:
-            raise ValueError("there is no such gravity")
-        if changes and step <= changes[-1][0]:
-            raise ValueError("changes of gravity come one after another")
-        changes.append((step, share))
-    found["gravity"] = changes
-
-
-def _pack_claim(flight: SharedFlight) -> bytes:
-    claim = flight.claim
-    pose = (round(min(max(number, -_FAR), _FAR) * _GRID) for number in claim.end)
-    zigzag = (2 * number if number >= 0 else -2 * number - 1 for number in pose)
-    return b"".join(map(_varint, (claim.outcome, claim.points, *zigzag)))
-
-
-def _read_claim(reader: _Reader, found: dict[str, Any]) -> None:
-    outcome, points = Outcome(reader.number(max(Outcome))), reader.number(_MOST)
-    zigzag = [reader.number(2 * _FAR * _GRID) for _ in range(3)]
-    x, y, angle = ((-(number + 1) // 2 if number % 2 else number // 2) / _GRID for number in zigzag)
-    found["claim"] = Claim(outcome, points, (x, y, angle))
-
-
-def _pack_no_shares(flight: SharedFlight) -> bytes:  # noqa: ARG001
-    """Leave out the older section, which took several times as many letters."""
-    return b""
-
-
-def _read_older_shares(reader: _Reader, found: dict[str, Any]) -> None:
-    total, step, shares = len(found["actions"]), 0, dict[int, Shares]()
-    while reader.left:
-        pair, length = reader.number((STEPS + 1) * _SIDES), reader.number(total - step)
-        if pair:
-            main, side = divmod(pair - 1, _SIDES)
-            shares |= dict.fromkeys(range(step, step + length), (main, side - STEPS))
-        step += length
-    found["shares"] = shares
-
-
-def _pack_shares(flight: SharedFlight) -> bytes:
-    recording = flight.recording
-    return bytes([_STICK]) + stick_positions.packed(recording.actions, recording.shares) if recording.shares else b""
-
-
-def _read_shares(reader: _Reader, found: dict[str, Any]) -> None:
-    if reader.number(_MOST) != _STICK:
-        raise CodeError("newer")
-    found["shares"] = stick_positions.unpacked(reader.bytes(reader.left), found["actions"])
-
-
-def _pack_easing(flight: SharedFlight) -> bytes:
-    easing = flight.recording.easing
-    return b"" if easing == AS_IT_IS else _varint(easing.wider_pads + 2 * easing.untimed)
-
-
-def _read_easing(reader: _Reader, found: dict[str, Any]) -> None:
-    bits = reader.number(3)
-    found["easing"] = Easing(bool(bits & 1), bool(bits & 2))
-
-
-def _pack_area(flight: SharedFlight) -> bytes:
-    return _varint(flight.recording.area)
-
-
-def _read_area(reader: _Reader, found: dict[str, Any]) -> None:
-    area = reader.number(_MOST)
-    if area >= len(AREAS):
-        raise CodeError("newer")
-    found["area"] = area
-
-
-def _pack_leg(flight: SharedFlight) -> bytes:
-    leg = flight.recording.leg
-    return b"" if leg is None else _varint(leg.number) + _varint(round(_TANK * leg.tank)) + bytes([leg.bare])
-
-
-def _read_leg(reader: _Reader, found: dict[str, Any]) -> None:
-    number, tank, bare = reader.number(MOST_LEGS), reader.number(round(_TANK * TANK)), reader.number(1)
-    if number < 1:
-        raise ValueError("there is no such leg")
-    found["leg"] = LegStart(number, tank / _TANK, bool(bare))
-
-
-def _pack_course(flight: SharedFlight) -> bytes:
-    return _named(flight.course) if flight.course != flight.recording.mission else b""
-
-
-def _read_course(reader: _Reader, found: dict[str, Any]) -> None:
-    course = reader.text()
-    if course not in COURSES:
-        raise CodeError("newer")
-    found["course"] = course
-
-
-def _pack_barred(flight: SharedFlight) -> bytes:
-    return _named(flight.barred) if flight.barred else b""
-
-
-def _read_barred(reader: _Reader, found: dict[str, Any]) -> None:
-    found["barred"] = reader.text()
-
-
-_SECTIONS: Final[dict[int, tuple[Callable[[SharedFlight], bytes], Callable[[_Reader, dict[str, Any]], None]]]] = {
-    1: (_pack_start, _read_start),
-    2: (_pack_actions, _read_actions),
-    3: (_pack_hands, _read_hands),
-    4: (_pack_gravity, _read_gravity),
-    5: (_pack_claim, _read_claim),
-    6: (_pack_no_shares, _read_older_shares),
-    7: (_pack_easing, _read_easing),
-    8: (_pack_area, _read_area),
-    9: (_pack_leg, _read_leg),
-    10: (_pack_shares, _read_shares),
-    OPTIONAL: (_pack_course, _read_course),
-    OPTIONAL + 1: (_pack_barred, _read_barred),
-}
+def _unpacked(inputs: bytes) -> tuple[list[int], list[StickHolder], dict[int, Shares]]:
+    """Return the actions, the hands and the shares of thrust of `_packed`; raises ValueError."""
+    runs, marked, moves = inputs.partition(_MOVES)
+    if sum(run // _HELD + 1 for run in runs) > LONGEST:
+        raise ValueError("no flight is so long")
+    held = [run % _HELD for run in runs for _ in range(run // _HELD + 1)]
+    holders = list(StickHolder)
+    hands = [holders[each // 6] for each in held]
+    if not marked:
+        return [each % 6 for each in held], hands, {}
+    if len(moves) != 2 * len(held):
+        raise ValueError("sticks have a place in every step")
+    main, side = np.frombuffer(moves, np.int8).reshape(2, -1).cumsum(axis=1, dtype=int)
+    if not (((main >= 0) & (main <= STEPS)).all() and (abs(side) <= STEPS).all()):
+        raise ValueError("there is no more thrust than all of it")
+    places = list(zip(main.tolist(), side.tolist(), strict=True))
+    actions = [(each + known) % 6 for each, known in zip(held, _asked(places), strict=True)]
+    shares = {step: place for step, place in enumerate(places) if place != full(actions[step])}
+    return actions, hands, shares

@@ -2,17 +2,76 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import asdict, astuple, dataclass, field, fields, replace
 from enum import Enum
-from typing import Final
+from typing import Annotated, Any, Final, Self
 
-from ai.flights.easing import AS_IT_IS, UNHURRIED, Easing
-from ai.flights.stick import Shares
-from ai.lander.descent import LegStart
-from ai.lander.rules import AREAS
+import numpy as np
 
+from ai.common.environment import Doubles
+from ai.files import OneOf, Seed, Sized, Within
+from ai.lander.descent import MOST_LEGS, TANK, LegStart
+from ai.lander.environment import Outcome
+from ai.lander.missions import MISSIONS, STARTS, Mission
+from ai.lander.rules import ACTION_SHARES, AREAS, Limits
+from ai.lander.spawns import SPAWNS
+
+WIDER: Final = 1.5  # width of wider pads, in shares of their own
+UNHURRIED: Final = 1200.0  # seconds that a flight may take without its time limit
 AREA: Final = len(AREAS) - 1  # version of the area in which new flights are flown
 LONGEST: Final = round(UNHURRIED) * 60  # physics steps of a recorded flight, at most
+STEPS: Final = (
+    16  # from no thrust to all of it: thrust is recorded in them, so that a flight can be flown again exactly
+)
+_MOST_CHANGES: Final = 1_000  # of gravity
+
+Shares = tuple[int, int]  # of the main engine, 0 to STEPS, and of the jets, -STEPS, left, to STEPS, right
+End = tuple[float, float, float]  # x, y in metres, angle in rad
+LegAsList = tuple[Annotated[int, Within(1, MOST_LEGS)], Annotated[float, Within(0, TANK)], bool] | None
+_Change = tuple[Annotated[int, Within(0, LONGEST)], Annotated[float, Within(0.5, 2.0)]]
+
+
+def full(action: int) -> Shares:
+    """Return the shares of all the thrust that an action asks for."""
+    main, side = ACTION_SHARES[action].tolist()
+    return round(STEPS * main), round(STEPS * side)
+
+
+def thrust(shares: Shares | None) -> Doubles | None:
+    """Return shares as the environment takes them, (1, 2); None for all of the action's thrust."""
+    return None if shares is None else np.array([shares]) / STEPS
+
+
+@dataclass(frozen=True)
+class Easing:
+    """Changes of a flight's rules, set at its start, that give the pilot more room; by default, none.
+
+    Attributes:
+        wider_pads: whether all pads are half as wide again.
+        untimed: whether the flight may take `UNHURRIED` seconds.
+
+    """
+
+    wider_pads: bool = False
+    untimed: bool = False
+
+    @property
+    def pads(self) -> float:
+        """Width of the pads, in shares of their own."""
+        return WIDER if self.wider_pads else 1.0
+
+    def limits(self, limits: Limits) -> Limits:
+        """Return a flight's limits, eased."""
+        return replace(limits, time=UNHURRIED) if self.untimed else limits
+
+    def mission(self, name: str) -> Mission:
+        """Return a mission, eased."""
+        mission = STARTS[name]
+        pad = replace(mission.pad, width=self.pads * mission.pad.width)
+        return replace(mission, pad=pad, limits=self.limits(mission.limits))
+
+
+AS_IT_IS: Final = Easing()
 
 
 class StickHolder(Enum):
@@ -22,29 +81,91 @@ class StickHolder(Enum):
     NETWORK = "network"
 
 
-@dataclass
-class Recording:
-    """Recording of a flight for an exact replay: its start, and the action of every step.
+def _in_order(changes: tuple[_Change, ...]) -> None:
+    steps = [step for step, _ in changes]
+    if steps != sorted(set(steps)):
+        raise ValueError("its changes of gravity are not in order")
 
-    `hands` says who chose each action: with a shared stick, the person if the action is the one they asked for.
-    `gravity` lists its changes: the first step, and the share of normal gravity. `shares` has the shares of thrust
-    of each step, by its number, in which an engine gave less than all of it. `easing` is what gave the pilot more room,
-    `area` the version of the area's edges, an index of `ai.lander.rules.AREAS`. `leg` is where a flight of a
-    descent begins, None for any other.
+
+@dataclass
+class Start:
+    """All that a flight follows from besides its inputs; `ai.files.schema.read_as` checks it as files hold it.
+
+    Attributes:
+        gravity: its changes: the first step, and the share of normal gravity.
+        area: version of the area's edges, an index of `ai.lander.rules.AREAS`.
+        easing: what gave the pilot more room.
+
     """
 
-    seed: int
-    spawn: str
-    pads: int = 1
-    actions: list[int] = field(default_factory=list)
-    hands: list[StickHolder] = field(default_factory=list)
-    mission: str = ""
-    gravity: list[tuple[int, float]] = field(default_factory=list)
-    shares: dict[int, Shares] = field(default_factory=dict)
+    seed: Seed
+    spawn: Annotated[str, OneOf(SPAWNS)]
+    pads: Annotated[int, OneOf((1, 3))] = 1
+    mission: Annotated[str, OneOf(("", *MISSIONS))] = ""
+    gravity: Annotated[tuple[_Change, ...], Sized(_MOST_CHANGES), _in_order] = ()
     easing: Easing = AS_IT_IS
-    area: int = AREA
-    leg: LegStart | None = None
+    area: Annotated[int, OneOf(range(len(AREAS)))] = AREA
 
     def gravity_at(self, step: int) -> float:
         """Return the share of normal gravity during a step."""
         return next((share for begin, share in reversed(self.gravity) if begin <= step), 1.0)
+
+
+@dataclass
+class Recording(Start):
+    """Recording of a flight for an exact replay: its start, and the action of every step.
+
+    Attributes:
+        leg: where a flight of a descent begins; None for any other.
+        hands: who chose each action: with a shared stick, the person if the action is the one they asked for.
+        shares: shares of thrust of each step, by its number, in which an engine gave less than all of it.
+
+    """
+
+    leg: LegStart | None = None
+    actions: list[int] = field(default_factory=list)
+    hands: list[StickHolder] = field(default_factory=list)
+    shares: dict[int, Shares] = field(default_factory=dict)
+
+    @classmethod
+    def begun(cls, start: Start, leg: LegAsList, actions: list[int], hands: list[StickHolder],
+              shares: dict[int, Shares]) -> Self:  # fmt: skip
+        """Return the recording of a start that was read, with these inputs."""
+        told = {each.name: getattr(start, each.name) for each in fields(Start)}
+        return cls(**told, leg=LegStart(*leg) if leg else None, actions=actions, hands=hands, shares=shares)
+
+    def start(self) -> dict[str, Any]:
+        """Return its start, with the leg, as JSON can hold it."""
+        told = {each.name: getattr(self, each.name) for each in fields(Start)}
+        return told | {"easing": asdict(self.easing), "leg": astuple(self.leg) if self.leg else None}
+
+
+@dataclass(frozen=True)
+class Claim:
+    """What a flight is said to have ended in: its outcome, the points of its landing, its last pose, and its medal.
+
+    A code says nothing of the medal, which is 0 then, as it is without one.
+    """
+
+    outcome: Outcome
+    points: int
+    end: End
+    medal: int = 0
+
+
+@dataclass(frozen=True)
+class SharedFlight:
+    """Flight as it is sent to a friend: its recording, and what its pilot claims to have earned.
+
+    Attributes:
+        recording: its start and actions.
+        claim: what it is said to have earned.
+        course: name of its challenge in the logbook; empty for a free flight.
+        barred: why it does not count as its pilot's own, a key of the game's texts; empty if it is said to count.
+
+    """
+
+    recording: Recording
+    claim: Claim
+    course: str = ""
+    barred: str = ""

@@ -4,25 +4,84 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
+from datetime import date
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
 
 from ai.common.environment import Doubles, Ints
-from ai.flights.easing import AS_IT_IS
-from ai.flights.places import in_its_place
-from ai.flights.recording import Recording
-from ai.flights.score import landing_score
-from ai.flights.shared import End, SharedFlight
-from ai.flights.starts import begun
-from ai.flights.stick import STEPS, full
-from ai.lander.environment import LanderEnv, Outcome
+from ai.flights.recording import AS_IT_IS, STEPS, End, Recording, SharedFlight, full
+from ai.lander.descent import can_begin, leg_of
+from ai.lander.environment import LIMITS, LanderEnv, Outcome
+from ai.lander.ground import PADS, Ground, Pad, hilly
 from ai.lander.missions import MISSIONS
+from ai.lander.rules import PARAMS
+from ai.lander.spawns import RUNGS
 from engine import DT
 
+DAILY: Final = "daily"
+DESCENT: Final = "descent"
+COURSES: Final = ("", DAILY, DESCENT, *MISSIONS)  # "" is a free flight
 TOLERANCE: Final = 1e-3  # metres and radians by which the last pose may differ: other processors round differently
 _BATCH: Final = 256  # flights that are flown at once
+
+
+@lru_cache(maxsize=8)
+def ground_of(seed: int, pads: int, width: float = 1.0) -> Ground:
+    """Return the ground of a flight: a plain with one pad, or hills with a pad of every size.
+
+    Pads are `width` times as wide as they usually are.
+    """
+    if pads == 1:
+        return Ground((Pad(0.0, PARAMS.pad_top, width * PARAMS.pad_width),), base=PARAMS.ground)
+    return hilly(np.random.default_rng(seed), [(width * wide, factor) for wide, factor in PADS])
+
+
+def begun(start: Recording, seeds: Sequence[int] = ()) -> LanderEnv:
+    """Return landers at the start of a recorded flight, one physics step to a decision.
+
+    There is one for each of `seeds`, by default for the recording's own. A mission sets everything by itself. With
+    several pads the ground is that of the first seed, so all must be equal.
+    """
+    seeds, easing = seeds or (start.seed,), start.easing
+    if start.leg:
+        return leg_of(seeds[0], start.leg).begin(start.leg.tank)
+    if start.mission:
+        env = easing.mission(start.mission).begin(len(seeds))
+        env.limits = env.limits.in_area(start.area)
+        return env
+    limits = easing.limits(LIMITS).in_area(start.area)
+    ground = ground_of(seeds[0], start.pads, easing.pads)
+    env = LanderEnv(len(seeds), 0, start.spawn, frame_skip=1, ground=ground, limits=limits)
+    for slot, seed in enumerate(seeds):  # as each would draw alone
+        env.draw_from(slot, np.random.default_rng(seed).spawn(1)[0])
+    env.reset()
+    return env
+
+
+def day_of(seed: int) -> date | None:
+    """Return the day whose start has this seed; None if no day has."""
+    with suppress(ValueError, OverflowError):
+        return date.fromordinal(seed)
+    return None
+
+
+def in_its_place(flight: SharedFlight) -> bool:
+    """Whether a flight began where its course begins, under the gravity, fuel and limits of that place."""
+    recording, course = flight.recording, flight.course
+    start = recording.spawn, recording.pads, recording.mission, recording.leg
+    if course == DAILY:
+        return start == ("random", 3, "", None) and not recording.gravity and day_of(recording.seed) is not None
+    if course in MISSIONS:
+        return start == ("random", 1, course, None) and not recording.gravity
+    if leg := recording.leg:  # one can be raced too, as a flight of no course
+        plain = start[:3] == ("random", 1, "") and not recording.gravity and recording.easing == AS_IT_IS
+        return course in ("", DESCENT) and plain and can_begin(recording.seed, leg)
+    usual = recording.spawn == "random" or (recording.spawn in RUNGS and recording.pads == 1)
+    return course == "" and start[2:] == ("", None) and usual
 
 
 @dataclass(frozen=True)
@@ -50,6 +109,17 @@ class Earned:
     def seconds(self) -> float:
         """Duration of the flight."""
         return self.steps * DT
+
+
+def landing_score(env: LanderEnv, slot: int = 0) -> int:
+    """Return the score of a landing: up to 100 times its pad's factor, less for a hard touch or off the middle."""
+    number = int(env.landed_on[slot])
+    if number < 0:
+        return 0
+    pad = env.ground.pads[number]
+    hard = min(1.0, float(env.impact[slot, 0]) / env.limits.touch_speed)
+    aside = min(1.0, abs(float(env.position[slot, 0] - env.pad_shift[slot]) - pad.x) / (pad.width / 2))
+    return pad.factor * round(100 - 40 * hard - 30 * aside)
 
 
 def earned(env: LanderEnv, recording: Recording, slot: int = 0) -> Earned:

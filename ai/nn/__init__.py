@@ -1,6 +1,6 @@
 """A neural network library on NumPy: layers, costs, optimizers and a folder format, every gradient by hand.
 
-To read it in building order: parameter, activations, costs, layers, images, dropout, optimizers, storage, network.
+To read in this order: parameter, activations, costs, layers, images, dropout, optimizers, network, storage.
 """
 
 from ai.files import atomic_folder, recover_folder

@@ -20,18 +20,15 @@ class DropoutLayer(HalvedLayer):
         if isinstance(rate, bool) or not isinstance(rate, int | float) or not 0 <= rate < 1:
             raise ValueError(f"the rate of dropout is at least 0 and less than 1, not {rate!r}")
         self.rate = rate
-        self.factors: Array = np.empty(0)
-        self.output: Array = self.factors
 
     def forward_propagate(self, input_data: Array) -> Array:
         """Return what is kept, enlarged, and 0 elsewhere."""
         self.rng = self.rng or np.random.default_rng(0)
-        if self.output.shape != input_data.shape or self.output.dtype != input_data.dtype:
-            self.factors, self.output, self.error = (np.empty_like(input_data) for _ in range(3))
         # Drawn in the order that images have in memory; for small arrays the order does not matter.
         drawn = self.rng.random(input_data.shape[::-1], np.float32).T
+        self.factors = self.kept("factors", input_data.shape, input_data.dtype)
         np.multiply(drawn >= self.rate, 1 / (1 - self.rate), out=self.factors, casting="same_kind")
-        return np.multiply(input_data, self.factors, out=self.output)
+        return np.multiply(input_data, self.factors, out=self.kept("output", input_data.shape, input_data.dtype))
 
     def predict(self, input_data: Array) -> Array:
         """Return the input as it is."""
@@ -39,4 +36,4 @@ class DropoutLayer(HalvedLayer):
 
     def input_error(self, output_error: Array) -> Array:
         """Return the error of what was kept, enlarged alike, and 0 elsewhere."""
-        return np.multiply(output_error, self.factors, out=self.error)
+        return np.multiply(output_error, self.factors, out=self.kept("error", self.factors.shape, self.factors.dtype))

@@ -6,12 +6,107 @@ and compares whole runs of examples at a time, however small the images are, and
 are gathered almost at the speed of memory (docs/adr/0009-images-batch-last-in-memory.md).
 """
 
+from collections.abc import Iterator
+from itertools import product
+
 import numpy as np
 import numpy.typing as npt
+from numpy.lib.stride_tricks import sliding_window_view
 
-from ai.nn.correlation import Correlation
-from ai.nn.layers import FullyConnectedLayer, HalvedLayer, ImageShape, Layer, checked_size, constant
+from ai.nn.layers import FullyConnectedLayer, HalvedLayer, ImageShape, Layer, checked_size, ones
 from ai.nn.parameter import Array
+
+BLOCK = 1 << 20  # numbers at work at a time: 4 MB, which stay in the cache between one pass and the next
+
+
+class Correlation:
+    """Windows of images times kernels, as matrix products.
+
+    Arrays are transposed: images (channels, width, height, batch), with `padding` zeros around each; kernels (kernel
+    column, kernel row, channel, filter). Windows lie `stride` pixels apart, `width` of them in a row.
+
+    Windows are copied into the columns of a matrix (Chellapilla, Puri & Simard 2006): whole, so that one product with
+    the kernels is the result; or only one column of each, and the products with all columns of the kernels are added,
+    every one shifted by its place. For each pixel the first moves kernel² · channels numbers in and `filters` out, the
+    second kernel · channels in and kernel · filters out; `whole` says that the first moves less.
+    """
+
+    def __init__(
+        self, kernel: int, channels: int, filters: int, width: int, *, stride: int = 1, padding: int = 0
+    ) -> None:
+        self.kernel, self.filters, self.width, self.stride, self.padding = kernel, filters, width, stride, padding
+        self.whole = stride > 1 or kernel * channels < filters
+        self.scratch: dict[str, Array] = {}
+
+    def correlate(self, images: Array, kernels: Array, bias: Array, output: Array) -> None:
+        """Fill `output`, (filters, width, height, batch), with the correlation plus a bias of each filter."""
+        bias = bias[:, None, None, None]
+        if self.whole:
+            weights = kernels.reshape(-1, self.filters).T
+            for matrix, x, y in self._blocks(images, self.kernel):
+                part = output[:, x, y]
+                np.matmul(weights, matrix.reshape(len(matrix), -1), out=part.reshape(self.filters, -1))
+                part += bias
+            return
+        output[...] = bias
+        weights = kernels.reshape(self.kernel, -1, self.filters).swapaxes(1, 2).reshape(self.kernel * self.filters, -1)
+        for matrix, x, y in self._blocks(images, 1):
+            products = self._memory("products", (self.kernel, self.filters, *matrix.shape[1:]), output.dtype)
+            np.matmul(weights, matrix.reshape(len(matrix), -1), out=products.reshape(len(weights), -1))
+            for shift in range(self.kernel):
+                inside, place = self._shifted(x, shift)
+                part = output[:, place, y]
+                part += products[shift][:, inside]
+
+    def gradient(self, images: Array, error: Array) -> Array:
+        """Return the gradient of the kernels, flat, given that of the output."""
+        # The sums are small either way, so the way that copies least is best.
+        columns = 1 if self.stride == 1 else self.kernel
+        gradients = [np.zeros((0, 0), error.dtype)] * (self.kernel // columns)
+        for block, (matrix, x, y) in enumerate(self._blocks(images, columns)):
+            for shift, before in enumerate(gradients):
+                inside, place = self._shifted(x, shift)
+                part = error[:, place, y].reshape(self.filters, -1)
+                more = matrix[:, inside].reshape(len(matrix), -1) @ part.T
+                gradients[shift] = before + more if block else more
+        return np.concatenate(gradients, axis=None)
+
+    def _blocks(self, images: Array, columns: int) -> Iterator[tuple[Array, slice, slice]]:
+        """Yield blocks of windows, or of single columns of them: (rows, width, height, batch), and where they start.
+
+        A block is some columns of the images, or a part of one column: contiguous in the output, either way.
+        """
+        margin = self.padding if columns < self.kernel else 0  # columns of zeros, which add nothing when shifted
+        windows = sliding_window_view(images, (columns, self.kernel), (1, 2))
+        windows = windows[:, :: self.stride, :: self.stride].transpose(4, 5, 0, 1, 2, 3)
+        width, height, batch = windows.shape[3:]
+        rows = int(np.prod(windows.shape[:3]))
+        fit = max(1, BLOCK // (batch * (rows + self.kernel // columns * self.filters)))
+        for x, y in product(_parts(margin, width - margin, fit // height), _parts(0, height, fit)):
+            block = windows[..., x, y, :]
+            matrix = self._memory("matrix", block.shape, images.dtype)
+            matrix[...] = block
+            yield matrix.reshape(rows, *block.shape[3:]), x, y
+
+    def _shifted(self, x: slice, shift: int) -> tuple[slice, slice]:
+        """Return which columns of a block meet the output when they are shifted, and where."""
+        first = max(x.start, shift)
+        last = max(first, min(x.stop, self.width + shift))
+        return slice(first - x.start, last - x.start), slice(first - shift, last - shift)
+
+    def _memory(self, name: str, shape: tuple[int, ...], dtype: npt.DTypeLike) -> Array:
+        """Return scratch memory, the same at each call."""
+        size, kept = int(np.prod(shape)), self.scratch.get(name)
+        if kept is None or kept.size < size or kept.dtype != dtype:
+            kept = self.scratch[name] = np.empty(size, dtype)
+        return kept[:size].reshape(shape)
+
+
+def _parts(first: int, last: int, size: int) -> list[slice]:
+    """Cut a range into parts of about equal length, at most `size` (or 1) each."""
+    count = -(-(last - first) // max(1, size))
+    length = -(-(last - first) // count)
+    return [slice(start, min(start + length, last)) for start in range(first, last, length)]
 
 
 class ConvolutionLayer(FullyConnectedLayer):
@@ -50,15 +145,13 @@ class ConvolutionLayer(FullyConnectedLayer):
         super().__init__(
             self.kernel**2 * channels, self.filters, initialisation=initialisation, scale=scale, rng=rng, dtype=dtype
         )
-        self.inputs = shape
-        _, reach, _ = self.outputs = (self._reach(height), self._reach(width), self.filters)
+        rows, columns = ((size + 2 * self.padding - self.kernel) // self.stride + 1 for size in (height, width))
+        self.inputs, self.outputs = shape, (rows, columns, self.filters)
         self.overhang = self.kernel - 1 - self.padding  # the padding of the way back
-        self.forward = Correlation(self.kernel, channels, self.filters, reach, stride=self.stride, padding=self.padding)
+        self.forward = Correlation(
+            self.kernel, channels, self.filters, columns, stride=self.stride, padding=self.padding
+        )
         self.backward = Correlation(self.kernel, self.filters, channels, width, padding=self.overhang)
-        # What the gradient sums up is small whichever way windows are copied, so the way that copies least is best.
-        self.sums = Correlation(self.kernel, channels, self.filters, reach, stride=self.stride, padding=self.padding,
-                                columns=1 if self.stride == 1 else None)  # fmt: skip
-        self.framed = self.framed_error = np.empty((0, 0, 0, 0), dtype)
 
     @property
     def weights(self) -> Array:
@@ -73,42 +166,35 @@ class ConvolutionLayer(FullyConnectedLayer):
     def forward_propagate(self, input_data: Array) -> Array:
         """Return each window times the weights, plus the bias: (batch, height, width, filters)."""
         _check_images(self, input_data)
-        if len(self.output) != len(input_data) or self.output.dtype != self.dtype:
-            self.framed = self._frame(len(input_data))
-            self.output = np.empty((len(input_data), *self.outputs), self.dtype, order="F")
-        return self._correlate(input_data, self.framed, self.output)
+        frame = self.kept("framed", self._frame(len(input_data)), self.dtype)
+        return self._correlate(input_data, frame, self.kept("output", (len(input_data), *self.outputs), self.dtype))
 
     def predict(self, input_data: Array) -> Array:
-        """Return the same as a new array, also for one image without the batch axis."""
-        _check_images(self, input_data, (3, 4))
-        images = input_data if input_data.ndim == 4 else input_data[None]
-        output = np.empty((len(images), *self.outputs), self.dtype, order="F")
-        self._correlate(images, self._frame(len(images)), output)
-        return output if input_data.ndim == 4 else output[0]
+        """Return the same as a new array."""
+        _check_images(self, input_data)
+        frame = np.zeros(self._frame(len(input_data)), self.dtype, "F")
+        return self._correlate(input_data, frame, np.empty((len(input_data), *self.outputs), self.dtype, "F"))
 
     def fill_gradients(self, output_error: Array) -> None:
         """Set the gradients of weights, the sum of windowᵀ E over all windows, and of the bias."""
         weights, bias = self.parameters
         error = np.asarray(output_error, self.dtype, order="F").T
-        error.reshape(self.filters, -1).dot(constant(error[0].size, 1.0, error.dtype), bias.gradient)
-        weights.gradient[...] = self.sums.gradient(self.framed.T, error).reshape(weights.value.shape)
+        error.reshape(self.filters, -1).dot(ones(error[0].size, error.dtype), bias.gradient)
+        weights.gradient[...] = self.forward.gradient(self.framed.T, error).reshape(weights.value.shape)
 
     def input_error(self, output_error: Array) -> Array:
         """Return E correlated with the kernels turned by half: (batch, height, width, channels)."""
-        if len(self.framed_error) != len(output_error) or self.framed_error.dtype != self.dtype:
-            height, width, channels = self.inputs
-            reach = self.kernel - 1
-            shape = (len(output_error), height + reach, width + reach, self.filters)
-            self.framed_error = np.zeros(shape, self.dtype, order="F")
-            self.error = np.empty((len(output_error), height, width, channels), self.dtype, order="F")
-        _place(output_error, self.framed_error, self.overhang, self.stride)
+        (height, width, channels), reach = self.inputs, self.kernel - 1
+        framed = self.kept("framed_error", (len(output_error), height + reach, width + reach, self.filters), self.dtype)
+        error = self.kept("error", (len(output_error), *self.inputs), self.dtype)
+        _place(output_error, framed, self.overhang, self.stride)
         turned = self.kernels[::-1, ::-1].swapaxes(2, 3)
-        self.backward.correlate(self.framed_error.T, turned, np.zeros(turned.shape[-1], self.dtype), self.error.T)
-        return self.error
+        self.backward.correlate(framed.T, turned, np.zeros(channels, self.dtype), error.T)
+        return error
 
     def window(self, image: Array, row: int, column: int) -> Array:
         """Return what one output reads of an image (height, width, channels): (kernel, kernel, channels)."""
-        frame = self._frame(1)
+        frame = np.zeros(self._frame(1), self.dtype)
         _place(image[None], frame, self.padding)
         top, left = row * self.stride, column * self.stride
         return frame[0, top : top + self.kernel, left : left + self.kernel]
@@ -118,14 +204,10 @@ class ConvolutionLayer(FullyConnectedLayer):
         self.forward.correlate(frame.T, self.kernels, self.bias, output.T)
         return output
 
-    def _frame(self, batch: int) -> Array:
-        """Return memory for images with zeros around them."""
+    def _frame(self, batch: int) -> tuple[int, ...]:
+        """Return the shape of images with zeros around them."""
         height, width, channels = self.inputs
-        return np.zeros((batch, height + 2 * self.padding, width + 2 * self.padding, channels), self.dtype, order="F")
-
-    def _reach(self, pixels: int) -> int:
-        """Return how many windows lie along so many pixels."""
-        return (pixels + 2 * self.padding - self.kernel) // self.stride + 1
+        return batch, height + 2 * self.padding, width + 2 * self.padding, channels
 
 
 class MaxPoolingLayer(HalvedLayer):
@@ -144,37 +226,32 @@ class MaxPoolingLayer(HalvedLayer):
         if not 2 <= self.size <= min(height, width):
             raise ValueError(f"size lies between 2 and that of the image, {height} x {width}; not {size}")
         self.outputs = (height // size, width // size, channels)
-        self.output = self.error = np.empty((0, 0, 0, 0))
 
     def forward_propagate(self, input_data: Array) -> Array:
         """Return the maxima, (batch, height, width, channels)."""
         _check_images(self, input_data)
-        if len(self.output) != len(input_data) or self.output.dtype != input_data.dtype:
-            self.output = np.empty((len(input_data), *self.outputs), input_data.dtype, order="F")
         self.input = input_data
+        self.output = self.kept("output", (len(input_data), *self.outputs), input_data.dtype)
         return self._maximum(input_data, self.output)
 
     def predict(self, input_data: Array) -> Array:
-        """Return the same as a new array, also for one image without the batch axis."""
-        _check_images(self, input_data, (3, 4))
-        images = input_data if input_data.ndim == 4 else input_data[None]
-        output = self._maximum(images, np.empty((len(images), *self.outputs), images.dtype, order="F"))
-        return output if input_data.ndim == 4 else output[0]
+        """Return the same as a new array."""
+        _check_images(self, input_data)
+        return self._maximum(input_data, np.empty((len(input_data), *self.outputs), input_data.dtype, "F"))
 
     def input_error(self, output_error: Array) -> Array:
         """Return the error of the largest pixels, and 0 for all others: (batch, height, width, channels)."""
-        if self.error.shape != self.input.shape or self.error.dtype != self.input.dtype:
-            self.error = np.zeros(self.input.shape, self.input.dtype, order="F")
-            self.given, self.left = np.empty_like(self.output, bool), np.empty_like(self.output, bool)
-        self.left.fill(True)  # squares whose error no pixel has been given yet
-        *others, (_, last) = zip(self._squares(self.input), self._squares(self.error), strict=True)
+        found = self.kept("error", self.input.shape, self.input.dtype)
+        given, left = (self.kept(name, self.output.shape, bool) for name in ("given", "left"))
+        left.fill(True)  # squares whose error no pixel has been given yet
+        *others, (_, last) = zip(self._squares(self.input), self._squares(found), strict=True)
         for pixel, error in others:
-            np.equal(pixel, self.output, out=self.given)
-            self.given &= self.left
-            self.left ^= self.given
-            np.multiply(output_error, self.given, out=error)
-        np.multiply(output_error, self.left, out=last)
-        return self.error
+            np.equal(pixel, self.output, out=given)
+            given &= left
+            left ^= given
+            np.multiply(output_error, given, out=error)
+        np.multiply(output_error, left, out=last)
+        return found
 
     def _maximum(self, images: Array, output: Array) -> Array:
         first, second, *others = self._squares(images)
@@ -203,7 +280,6 @@ class FlattenLayer(HalvedLayer):
     def __init__(self, inputs: ImageShape) -> None:
         self.inputs = height, width, channels = _checked_shape(inputs)
         self.outputs = height * width * channels
-        self.error = np.empty((0, 0, 0, 0))
 
     def forward_propagate(self, input_data: Array) -> Array:
         """Return the same numbers, (batch, values): a view, if the images are in Fortran order."""
@@ -211,16 +287,14 @@ class FlattenLayer(HalvedLayer):
         return input_data.reshape(-1, self.outputs, order="F")
 
     def predict(self, input_data: Array) -> Array:
-        """Return the same, also for one image without the batch axis."""
-        _check_images(self, input_data, (3, 4))
-        return input_data.reshape(*input_data.shape[:-3], self.outputs, order="F")
+        """Return the same."""
+        return self.forward_propagate(input_data)
 
     def input_error(self, output_error: Array) -> Array:
         """Return the error in the shape of the images."""
-        if len(self.error) != len(output_error) or self.error.dtype != output_error.dtype:
-            self.error = np.empty((len(output_error), *self.inputs), output_error.dtype, order="F")
-        self.error.reshape(output_error.shape, order="F")[...] = output_error
-        return self.error
+        error = self.kept("error", (len(output_error), *self.inputs), output_error.dtype)
+        error.reshape(output_error.shape, order="F")[...] = output_error
+        return error
 
 
 def _place(images: Array, frame: Array, border: int, stride: int = 1) -> None:
@@ -239,7 +313,7 @@ def _checked_shape(inputs: ImageShape) -> ImageShape:
     return height, width, channels
 
 
-def _check_images(layer: Layer, images: Array, dimensions: tuple[int, ...] = (4,)) -> None:
-    if images.ndim not in dimensions or images.shape[-3:] != layer.inputs:
+def _check_images(layer: Layer, images: Array) -> None:
+    if images.ndim != 4 or images.shape[1:] != layer.inputs:
         kind = type(layer).__name__
         raise ValueError(f"{kind} takes a batch of images of shape {layer.inputs}, not {images.shape}")

@@ -3,8 +3,9 @@
 An *error* is the derivative of the cost with respect to what it stands for: one number per element.
 """
 
+import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property, lru_cache, partial
 from typing import Any
 
@@ -14,8 +15,15 @@ import numpy.typing as npt
 from ai.nn.activations import Activation, Function
 from ai.nn.parameter import INITIALISATIONS, Array, Parameter
 
-MAX_SIZE = 1 << 20  # a config.json that asks for more outputs than this is damaged
 ImageShape = tuple[int, int, int]  # height, width, channels
+
+# A small file must not be able to ask for more than a machine has. An agent of so many parameters, two networks with
+# gradients and an optimizer, takes 430 MB to load.
+MAX_SIZE = 1 << 20  # of any one size
+MOST_LAYERS = 500
+MOST_PARAMETERS = 12_000_000
+WIDEST = 1 << 18  # values that a layer may make of one example
+MOST_WORK = 1_000_000_000  # multiplications for one example
 
 
 class Layer(ABC):
@@ -26,7 +34,7 @@ class Layer(ABC):
 
     What `forward_propagate` and `backward_propagate` return lasts until their next call: they may write into
     arrays that are kept while the batch size stays the same. `predict` returns a new array, or its input where
-    there is nothing to compute, and also takes one example without the batch axis.
+    there is nothing to compute; layers without images also take one example (values,).
     """
 
     settings: tuple[str, ...] = ()  # arguments of the constructor that are stored with the layer
@@ -68,6 +76,16 @@ class Layer(ABC):
         """Return what the constructor needs to make such a layer again."""
         return {name: getattr(self, name) for name in self.settings}
 
+    def kept(self, name: str, shape: tuple[int, ...], dtype: npt.DTypeLike) -> Array:
+        """Return the attribute `name`, an array that begins as zeros, made anew where shape or dtype are others.
+
+        Images are in Fortran order, as in `ai.nn.images`.
+        """
+        array: Array | None = self.__dict__.get(name)
+        if array is None or array.shape != shape or array.dtype != dtype:
+            array = self.__dict__[name] = np.zeros(shape, dtype, "F" if len(shape) == 4 else "C")
+        return array
+
     @abstractmethod
     def forward_propagate(self, input_data: Array) -> Array:
         """Return the output and keep what the way back needs; `input_data` is to stay as it is until then."""
@@ -76,15 +94,13 @@ class Layer(ABC):
     def predict(self, input_data: Array) -> Array:
         """Return the output and keep nothing."""
 
-    def row_step(self, memory: Array, output: Array | None, values: Array) -> Callable[[], Any]:  # noqa: ARG002
-        """Return a function that predicts the one example in `memory`, again whenever it is called.
+    def row_step(self, memory: Array, values: Array, output: Array) -> Callable[[], object]:  # noqa: ARG002
+        """Return a function that predicts the one example in `memory` into `output`, whenever it is called.
 
-        `memory` is (inputs + 1,): the example, and a 1 for a bias. The answer is written into `output`, (outputs,);
-        where that is None, it is returned as a new batch of one. `values` are the layer's parameters, flat.
+        `memory` is (inputs + 1,): the example, and a 1 for a bias; `output` is (outputs,). `values` are the layer's
+        parameters, flat.
         """
         example = memory[:-1]  # NumPy handles a vector up to three times faster than a batch of one
-        if output is None:
-            return lambda: np.array(self.predict(example)[None])
         return lambda: np.copyto(output, self.predict(example))
 
     @abstractmethod
@@ -149,7 +165,6 @@ class FullyConnectedLayer(HalvedLayer):
         self.scale = scale
         self.rng = rng.spawn(1)[0] if rng else None  # its own: the weights are drawn later
         self.dtype = dtype
-        self.output = np.empty((0, 0), dtype)
 
     @property
     def weights(self) -> Array:
@@ -165,12 +180,10 @@ class FullyConnectedLayer(HalvedLayer):
         """Return x W + b, (batch, outputs)."""
         weights, bias = self.parameters
         self.input = np.asarray(input_data, self.dtype)
-        if len(self.output) != len(input_data) or self.output.dtype != self.dtype:
-            self.output = np.empty((len(input_data), bias.value.size), self.dtype)
-            self.error = np.empty(self.input.shape, self.dtype)
-        self.input.dot(weights.value, self.output)
-        self.output += bias.value
-        return self.output
+        output = self.kept("output", (len(input_data), bias.value.size), self.dtype)
+        self.input.dot(weights.value, output)
+        output += bias.value
+        return output
 
     def predict(self, input_data: Array) -> Array:
         """Return x W + b as a new array, (batch, outputs) or (outputs,)."""
@@ -179,21 +192,20 @@ class FullyConnectedLayer(HalvedLayer):
         output += bias.value
         return output
 
-    def row_step(self, memory: Array, output: Array | None, values: Array) -> Callable[[], Any]:
+    def row_step(self, memory: Array, values: Array, output: Array) -> Callable[[], object]:
         """Return x W + b of one example, as the one product [x 1] [W; b]: a sum apart takes a fifth longer."""
-        joined = values.reshape(-1, *self.shapes["bias"])
-        return partial(memory[None].dot, joined) if output is None else partial(memory.dot, joined, output)
+        return partial(memory.dot, values.reshape(-1, output.size), output)
 
     def fill_gradients(self, output_error: Array) -> None:
         """Set the gradients of weights, xᵀ E, and bias, Σ E over the batch."""
         weights, bias = self.parameters
         self.input.T.dot(output_error, weights.gradient)
-        _ones(len(output_error), self.dtype).dot(output_error, bias.gradient)
+        ones(len(output_error), self.dtype).dot(output_error, bias.gradient)
 
     def input_error(self, output_error: Array) -> Array:
         """Return E Wᵀ, (batch, inputs)."""
-        output_error.dot(self.parameters[0].value.T, self.error)
-        return self.error
+        error: Array = output_error.dot(self.parameters[0].value.T, self.kept("error", self.input.shape, self.dtype))
+        return error
 
     def initial_value(self, name: str) -> Array:
         """Return zeros for the bias, and weights drawn as `initialisation` says."""
@@ -229,12 +241,16 @@ class DuelingLayer(FullyConnectedLayer):
         q: Array = super().predict(input_data).dot(self.mixture)
         return q
 
-    def row_step(self, memory: Array, output: Array | None, values: Array) -> Callable[[], Any]:
+    def row_step(self, memory: Array, values: Array, output: Array) -> Callable[[], object]:
         """Return Q of one example."""
-        streams, mixture = super().row_step(memory, None, values), self.mixture
-        if output is None:
-            return lambda: streams().dot(mixture)
-        return lambda: streams()[0].dot(mixture, output)
+        streams, mixture = np.empty(self.shapes["bias"], output.dtype), self.mixture
+        fill_streams = super().row_step(memory, values, streams)
+
+        def step() -> None:
+            fill_streams()
+            streams.dot(mixture, output)
+
+        return step
 
     def fill_gradients(self, output_error: Array) -> None:
         """Set the gradients of both streams' weights and biases."""
@@ -255,30 +271,27 @@ class ActivationLayer(HalvedLayer):
 
     def __init__(self, activation: Activation | Function, derivative: Function | None = None) -> None:
         self.activation = Activation.of(activation, derivative)
-        self.output: Array = np.empty((0, 0))
 
     def forward_propagate(self, input_data: Array) -> Array:
         """Return f(x), of the shape of x."""
         self.input = input_data
-        if self.output.shape != input_data.shape or self.output.dtype != input_data.dtype:
-            self.output, self.error = np.empty_like(input_data), np.empty_like(input_data)
+        self.output = self.kept("output", input_data.shape, input_data.dtype)
         return self.activation.function(input_data, out=self.output)
 
     def predict(self, input_data: Array) -> Array:
         """Return f(x) as a new array."""
         return self.activation.function(input_data)
 
-    def row_step(self, memory: Array, output: Array | None, values: Array) -> Callable[[], Any]:  # noqa: ARG002
+    def row_step(self, memory: Array, values: Array, output: Array) -> Callable[[], object]:  # noqa: ARG002
         """Return f(x) of one example."""
-        if output is None:
-            return partial(self.activation, memory[None, :-1])
         return partial(self.activation.function, memory[:-1], output)
 
     def input_error(self, output_error: Array) -> Array:
         """Return f'(x) · E."""
-        self.activation.slope(self.input, self.output, self.error)
-        self.error *= output_error
-        return self.error
+        error = self.kept("error", self.output.shape, self.output.dtype)
+        self.activation.slope(self.input, self.output, error)
+        error *= output_error
+        return error
 
 
 class LayerNormalisation(HalvedLayer):
@@ -298,14 +311,13 @@ class LayerNormalisation(HalvedLayer):
         self.shapes = {"gain": (size,), "bias": (size,)}
         self.epsilon = epsilon
         self.dtype = dtype
-        self.output = np.empty((0, 0), dtype)
 
     def forward_propagate(self, input_data: Array) -> Array:
         """Return the normalised batch, (batch, size)."""
         gain, bias = self.parameters
-        if len(self.output) != len(input_data) or self.output.dtype != self.dtype:
-            buffers = np.empty((5, *input_data.shape), self.dtype)
-            self.output, self.centred, self.stretch, self.error, self.scratch = buffers
+        self.output, self.centred, self.stretch, self.error, self.scratch = self.kept(
+            "buffers", (5, *input_data.shape), self.dtype
+        )
         self.inverse_deviation = self._centre(np.asarray(input_data, self.dtype), self.centred)
         self.inverse_deviation.dot(gain.value[None], self.stretch)
         np.multiply(self.centred, self.stretch, out=self.output)
@@ -320,17 +332,16 @@ class LayerNormalisation(HalvedLayer):
         output += bias.value
         return output
 
-    def row_step(self, memory: Array, output: Array | None, values: Array) -> Callable[[], Array]:
+    def row_step(self, memory: Array, values: Array, output: Array) -> Callable[[], object]:
         """Return one example normalised: `predict`, with plain numbers in place of columns of one number."""
         example, average = memory[:-1], self._average
         gain, bias = values.reshape(2, self.size)
 
-        def step() -> Array:
+        def step() -> None:
             centred = example - example.dot(average)
             inverse_deviation = 1 / np.sqrt(centred.dot(centred) / self.size + self.epsilon)
-            normalised: Array = np.multiply(centred, inverse_deviation * gain, out=output)
-            normalised += bias
-            return normalised[None]
+            np.multiply(centred, inverse_deviation * gain, out=output)
+            np.add(output, bias, out=output)
 
         return step
 
@@ -338,7 +349,7 @@ class LayerNormalisation(HalvedLayer):
         """Set the gradients of gain, Σ n E, and bias, Σ E over the batch, with n the normalised input."""
         gain, bias = self.parameters
         self.inverse_deviation.T.dot(np.multiply(self.centred, output_error, out=self.scratch), gain.gradient[None])
-        _ones(len(output_error), self.dtype).dot(output_error, bias.gradient)
+        ones(len(output_error), self.dtype).dot(output_error, bias.gradient)
 
     def input_error(self, output_error: Array) -> Array:
         """Return D - mean D - n · mean(n D), with D = gain · E / deviation and means over the values."""
@@ -360,19 +371,33 @@ class LayerNormalisation(HalvedLayer):
 
     @property
     def _average(self) -> Array:
-        return constant(self.size, 1 / self.size, np.dtype(self.dtype))
+        return _constant(self.size, 1 / self.size, np.dtype(self.dtype))
 
     def initial_value(self, name: str) -> Array:
         """Return gains of 1 and biases of 0."""
         return (np.ones if name == "gain" else np.zeros)(self.shapes[name])
 
 
-def check_fit(before: list[Layer], layer: Layer) -> None:
-    """Raise ValueError if a layer does not take what the layers before it give."""
+def check_next(before: Sequence[Layer], layer: Layer) -> None:
+    """Raise ValueError if a layer does not take what those before it give, or makes the network too large."""
     given = next((one.outputs for one in reversed(before) if one.outputs is not None), None)
     if None not in (given, layer.inputs) and given != layer.inputs:
         kind = type(layer).__name__
         raise ValueError(f"{kind} takes {_said(layer.inputs)}, the layer before gives {_said(given)}")
+    layers = [*before, layer]
+    width = math.prod(layer.outputs) if isinstance(layer.outputs, tuple) else layer.outputs or 0
+    parameters = [sum(map(math.prod, one.shapes.values())) for one in layers]
+    # A convolution uses each of its parameters in every window.
+    windows = [math.prod(one.outputs[:2]) if isinstance(one.outputs, tuple) else 1 for one in layers]
+    work = sum(count * places for count, places in zip(parameters, windows, strict=True))
+    if len(layers) > MOST_LAYERS:
+        raise ValueError(f"a network has at most {MOST_LAYERS} layers")
+    if width > WIDEST:
+        raise ValueError(f"a layer makes at most {WIDEST:,} values of an example, not {width}")
+    if sum(parameters) > MOST_PARAMETERS:
+        raise ValueError(f"a network has at most {MOST_PARAMETERS:,} parameters, not {sum(parameters)}")
+    if work > MOST_WORK:
+        raise ValueError(f"a network takes at most {MOST_WORK:,} multiplications for an example, not {work}")
 
 
 def _said(shape: int | ImageShape | None) -> str:
@@ -386,9 +411,13 @@ def checked_size(name: str, size: int) -> int:
     return int(size)
 
 
+def ones(size: int, dtype: npt.DTypeLike) -> Array:
+    """Return a vector of ones, to sum rows with: it is kept, and cannot be written to."""
+    return _constant(size, 1.0, np.dtype(dtype))
+
+
 @lru_cache(maxsize=64)
-def constant(size: int, value: float, dtype: np.dtype[Any]) -> Array:
-    """Return a vector of equal numbers, to sum rows with: it is kept, and cannot be written to."""
+def _constant(size: int, value: float, dtype: np.dtype[Any]) -> Array:
     vector: Array = np.full(size, value, dtype)
     vector.setflags(write=False)
     return vector
@@ -400,7 +429,3 @@ def _mixture(outputs: int, dtype: np.dtype[Any]) -> Array:
     mixture: Array = np.vstack([np.ones(outputs), identity - 1 / outputs]).astype(dtype)
     mixture.setflags(write=False)
     return mixture
-
-
-def _ones(size: int, dtype: npt.DTypeLike) -> Array:
-    return constant(size, 1.0, np.dtype(dtype))

@@ -3,16 +3,15 @@
 from collections.abc import Callable, Iterator
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Literal, Self
+from typing import Literal, Self
 
 import numpy as np
 import numpy.typing as npt
 
 from ai.files import atomic_folder
-from ai.nn.budget import check_budget
 from ai.nn.costs import Cost, CostFunction
 from ai.nn.dropout import DropoutLayer
-from ai.nn.layers import ActivationLayer, Layer, check_fit
+from ai.nn.layers import ActivationLayer, Layer, check_next
 from ai.nn.optimizers import SGD, Optimizer
 from ai.nn.parameter import Array, pack
 from ai.nn.storage import read_network, write_network
@@ -46,8 +45,7 @@ class NeuralNetwork:
 
         Raises ValueError if it does not fit the one before, belongs to a network already, or makes this one too large.
         """
-        check_fit(self.layers, layer)
-        check_budget(self.layers, layer)
+        check_next(self.layers, layer)
         layer.join(self.rng, self.dtype)
         if isinstance(layer, ActivationLayer):
             for before in self.layers:
@@ -76,25 +74,23 @@ class NeuralNetwork:
         return pack((parameter for layer in self.layers for parameter in layer.parameters), self.dtype)
 
     @cached_property
-    def _row(self) -> tuple[Array, list[Callable[[], Any]]]:
-        """Memory for one example (1, inputs), and the steps that predict it; the last one returns the answer.
+    def _row(self) -> tuple[Array, list[Callable[[], object]], Array]:
+        """Memory for one example (1, inputs), the steps that predict it, and memory for its answer (1, outputs).
 
         Each step has its arrays at hand, so that a decision of a small network takes little more time than its
         arithmetic. The layers' own `predict` says the same at length. Networks that take images have no steps.
         """
         sizes = [size for layer in self.layers for size in (layer.inputs, layer.outputs) if isinstance(size, int)]
         if not sizes or any(isinstance(layer.inputs, tuple) for layer in self.layers):
-            return np.empty((0, 0), self.dtype), []
-        units, values, steps = sizes[0], self.values, []
-        first = memory = np.ones(units + 1, self.dtype)
+            return np.empty((0, 0), self.dtype), [], np.empty((0, 0), self.dtype)
+        first = memory = np.ones(sizes[0] + 1, self.dtype)
+        values, steps = self.values, []
         for layer in self.layers:
-            units = layer.outputs if isinstance(layer.outputs, int) else units
-            following = np.ones(units + 1, self.dtype)
+            following = np.ones(1 + layer.outputs if isinstance(layer.outputs, int) else len(memory), self.dtype)
             size = sum(parameter.value.size for parameter in layer.parameters)
-            output = None if layer is self.layers[-1] else following[:-1]
-            steps.append(layer.row_step(memory, output, values[:size]))
+            steps.append(layer.row_step(memory, values[:size], following[:-1]))
             memory, values = following, values[size:]
-        return first[None, :-1], steps
+        return first[None, :-1], steps, memory[None, :-1]
 
     def predict(self, input_data: npt.ArrayLike) -> Array:
         """Return the output for a batch (batch, inputs), or one example (inputs,), as a new array.
@@ -104,14 +100,16 @@ class NeuralNetwork:
         is for one thread at a time.
         """
         data: Array = np.asarray(input_data, self.dtype)
+        if data.ndim % 2:
+            return self.predict(data[None])[0]
         if data.ndim == 4 and len(data) > IMAGES:
             return np.concatenate([self.predict(part) for part in np.split(data, range(IMAGES, len(data), IMAGES))])
-        example, steps = self._row
+        example, steps, answer = self._row
         if data.shape == example.shape:
             example[...] = data
             for step in steps:
-                data = step()
-            return data
+                step()
+            return answer.copy()
         for layer in self.layers:
             data = layer.predict(data)
         return data
@@ -119,6 +117,8 @@ class NeuralNetwork:
     def activations(self, input_data: npt.ArrayLike) -> list[Array]:
         """Return what each layer gives for a batch or one example; the last is what `predict` returns."""
         data: Array = np.asarray(input_data, self.dtype)
+        if data.ndim % 2:
+            return [each[0] for each in self.activations(data[None])]
         return [data := layer.predict(data) for layer in self.layers]
 
     def input_gradient(self, input_data: npt.ArrayLike, output_error: npt.ArrayLike) -> Array:

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ai.files import MOST
 from ai.nn.parameter import Array
 
 
@@ -84,7 +83,7 @@ class Optimizer(ABC):
         """
         kind = type(self).__name__
         steps = np.asarray(state.get("steps", -1))
-        if steps.shape != () or steps.dtype.kind not in "iu" or not 0 <= steps <= MOST:
+        if steps.shape != () or steps.dtype.kind not in "iu" or not 0 <= steps < 1 << 53:
             raise ValueError(f"not a state of {kind}: it does not say after how many steps")
         names = self.remembers if steps else ()
         if set(state) != {"steps", *names}:

@@ -4,7 +4,8 @@ The reasons are in docs/adr/0004-models-are-folders.md.
 """
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from inspect import signature
 from pathlib import Path
 from typing import Any, TypeVar
@@ -12,13 +13,31 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from ai.files import CONFIG, NETWORK, brief, check_header, inside, read_array, read_json, recover_folder, shown
+from ai.files import (
+    CONFIG,
+    NETWORK,
+    brief,
+    check_header,
+    inside,
+    problem_in,
+    read_array,
+    read_json,
+    recover_folder,
+    shown,
+)
 from ai.nn.activations import ACTIVATIONS, Activation
-from ai.nn.budget import MOST_LAYERS, check_budget
 from ai.nn.costs import COSTS, Cost
 from ai.nn.dropout import DropoutLayer
 from ai.nn.images import ConvolutionLayer, FlattenLayer, MaxPoolingLayer
-from ai.nn.layers import ActivationLayer, DuelingLayer, FullyConnectedLayer, Layer, LayerNormalisation, check_fit
+from ai.nn.layers import (
+    MOST_LAYERS,
+    ActivationLayer,
+    DuelingLayer,
+    FullyConnectedLayer,
+    Layer,
+    LayerNormalisation,
+    check_next,
+)
 from ai.nn.parameter import Array, Parameter
 
 T = TypeVar("T")
@@ -105,70 +124,45 @@ def read_network(folder: str | Path) -> tuple[Cost, list[Layer], str]:
     folder = Path(folder)
     recover_folder(folder)
     problems: list[str] = []
-    config = _attempt(problems, CONFIG, _read_config, folder)
-    if config is None:
+    with noted(problems, CONFIG):
+        config = _read_config(folder)
+    if problems:
         raise ModelFormatError(folder, problems)
-
-    dtype = config.get("dtype")
+    dtype, descriptions = config.get("dtype"), config.get("layers")
     if dtype not in DTYPES:
         problems.append(f"{CONFIG}: dtype is {shown(dtype)}, not one of {', '.join(DTYPES)}")
-    cost = _attempt(problems, f"{CONFIG}: cost", _named, COSTS, config.get("cost"))
-    layers = _read_layers(problems, config.get("layers"))
-    if layers is not None:
-        for index, (layer, description) in enumerate(zip(layers, config["layers"], strict=True)):
-            if layer is not None:
-                _read_parameters(problems, folder, index, layer, description, dtype)
-    if problems or cost is None:
-        raise ModelFormatError(folder, problems)
-    return cost, [layer for layer in layers or () if layer is not None], str(dtype)
-
-
-def _read_layers(problems: list[str], descriptions: Any) -> list[Layer | None] | None:
-    """Make the layers without their parameters, None for each that can't be; None for more than there can be."""
+    with noted(problems, f"{CONFIG}: cost"):
+        cost = _named(COSTS, config.get("cost"))
     if not isinstance(descriptions, list):
         problems.append(f"{CONFIG}: layers is to be a list")
-        return None
-    if len(descriptions) > MOST_LAYERS:
-        problems.append(f"{CONFIG}: a network has at most {MOST_LAYERS} layers, not {len(descriptions):,}")
-        return None
-    layers: list[Layer | None] = []
-    for index, description in enumerate(descriptions):
+        descriptions = []
+    layers: list[Layer] = []
+    for index, description in enumerate(descriptions[: MOST_LAYERS + 1]):
         where = f"{CONFIG}: layer {index}"
-        layer = _attempt(problems, where, _make_layer, description)
-        if layer is not None:
-            before = [one for one in layers if one is not None]
-            _attempt(problems, where, check_fit, before, layer)
-            found = len(problems)
-            _attempt(problems, where, check_budget, before, layer)
-            if len(problems) > found:
-                return None
-        layers.append(layer)
-    return layers
+        with noted(problems, where):
+            layer = _make_layer(description)
+            check_next(layers, layer)
+            layers.append(layer)
+            if dtype in DTYPES:
+                layer.parameters = tuple(_read_parameters(problems, where, folder, layer, description, dtype))
+    if problems:
+        raise ModelFormatError(folder, problems)
+    return cost, layers, str(dtype)
 
 
-def _read_parameters(
-    problems: list[str], folder: Path, index: int, layer: Layer, description: Any, dtype: object
-) -> None:
-    read = {
-        name: _attempt(problems, f"{CONFIG}: layer {index}", _read_parameter, folder, description, name, shape, dtype)
-        for name, shape in layer.shapes.items()
-    }
-    layer.parameters = tuple(
-        Parameter(name, array, np.zeros_like(array)) for name, array in read.items() if array is not None
-    )
-
-
-def _attempt(problems: list[str], where: str, read: Callable[..., T], *arguments: object) -> T | None:
-    """Return what `read` returns, or note what it raises; damage can surface as any exception."""
+@contextmanager
+def noted(problems: list[str], place: str) -> Iterator[None]:
+    """Add what is wrong at a place to `problems`, instead of raising it; damage can surface as any exception."""
     try:
-        return read(*arguments)
+        yield
+    except ModelFormatError as error:
+        problems += [f"{place}: {problem}" for problem in error.problems]
     except OSError as error:
-        name = Path(error.filename or where).name
-        asked = "" if name == where else f", and {where} asks for it"
+        name = Path(error.filename or place).name
+        asked = "" if name == place else f", and {place} asks for it"
         problems.append(f"{name}: {error.strerror or error}{asked}")
     except Exception as error:
-        problems.append(f"{where}: {error or type(error).__name__}")
-    return None
+        problems.append(f"{place}: {problem_in(error)}")
 
 
 def _read_config(folder: Path) -> dict[str, Any]:
@@ -203,14 +197,22 @@ def _required(description: Any, name: str) -> Any:
     return description[name]
 
 
-def _read_parameter(folder: Path, description: Any, name: str, shape: Sequence[int], dtype: Any) -> Array:
+def _read_parameters(
+    problems: list[str], where: str, folder: Path, layer: Layer, description: Any, dtype: str
+) -> Iterator[Parameter]:
+    """Yield the parameters that can be read; note what is wrong with the others."""
+    for name, shape in layer.shapes.items():
+        with noted(problems, where):
+            array = _read_parameter(folder, description, name, shape, dtype)
+            yield Parameter(name, array, np.zeros_like(array))
+
+
+def _read_parameter(folder: Path, description: Any, name: str, shape: Sequence[int], dtype: str) -> Array:
     """Return a parameter; raises OSError or ValueError if it is not as the layer wants it and as the folder says."""
     entry = _required(_required(description, "arrays"), name)
     file = _required(entry, "file")
     if not isinstance(file, str) or Path(file).name != file:
         raise ValueError(f"{name}: {shown(file)} is not a file of this folder")
-    if dtype not in DTYPES:
-        raise ValueError(f"{file} cannot be read as {shown(dtype)}")
     said = {key: entry.get(key) for key in ("shape", "dtype")}
     if said != {"shape": list(shape), "dtype": dtype}:
         raise ValueError(f"{file} is said to hold {brief(said, 60)}, and should hold {dtype} {list(shape)}")

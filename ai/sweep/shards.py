@@ -76,7 +76,7 @@ def flown_shards(parts: list[Shard], address: str | None, workers: int | None) -
 def pack_agent(agent: DeepQAgent) -> bytes:
     """Return an agent as an archive: what was read of it, and no file as it lies."""
     with tempfile.TemporaryDirectory() as folder:
-        write_agent(agent.saved(), Path(folder))
+        write_agent(agent, Path(folder))
         return archive(Path(folder))
 
 

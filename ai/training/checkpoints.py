@@ -71,8 +71,8 @@ class Snapshot:
     def save(self, folder: str | Path) -> None:
         """Write it, whole or not at all; raises OSError if it cannot be written."""
         with atomic_folder(folder, KIND) as temporary:
-            write_agent(self.best.saved(), temporary)
-            write_agent(self.last.saved(), temporary / LAST)
+            write_agent(self.best, temporary)
+            write_agent(self.last, temporary / LAST)
             if self.history is not None:
                 self.history.write(temporary)
             (temporary / TRAINING_FILE).write_text(json.dumps(self.described, indent=2) + "\n", encoding="utf-8")
@@ -95,7 +95,7 @@ def snapshot(training: Training, history: History | None = None) -> Snapshot:
         **nearest_preset(config.to_json(), {name: preset.to_json() for name, preset in presets.items()}),
         "seed": training.seed,
         "decisions": agent.decisions,
-        "updates": agent.train_count,
+        "updates": agent.gradient_steps,
         "episodes": training.episodes,
         "landings": training.env.landings,
         "seconds": round(training.seconds, 3),

@@ -16,7 +16,7 @@ import numpy as np
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.n_step import NStep
-from ai.agent.replay import MemoryCell
+from ai.agent.replay import Transition
 from ai.common.environment import Bools, Floats
 from ai.files import (
     OneOf,
@@ -101,13 +101,13 @@ def demonstrate(pilot: Pilot, count: int, seed: int = 0, spawn: str = "random") 
     return found
 
 
-def relive(demonstrations: Sequence[Demonstration], config: Config) -> list[MemoryCell | None]:
+def relive(demonstrations: Sequence[Demonstration], config: Config) -> list[Transition | None]:
     """Fly demonstrations again, and return the transitions of each as `config` would have remembered them.
 
     None for one that doesn't land, as one made under other rules may not. A transition is a decision of
     `config.frame_skip` physics steps with the action that was held longest in it.
     """
-    found: list[MemoryCell | None] = [None] * len(demonstrations)
+    found: list[Transition | None] = [None] * len(demonstrations)
     places: dict[tuple[str, int | None], list[int]] = {}
     for number, demonstration in enumerate(demonstrations):
         places.setdefault((demonstration.spawn, demonstration.ground), []).append(number)
@@ -164,7 +164,7 @@ def _stream(seed: int) -> np.random.Generator:
 
 def _fly_together(
     demonstrations: Sequence[Demonstration], spawn: str, ground: int | None, config: Config
-) -> Iterator[MemoryCell | None]:
+) -> Iterator[Transition | None]:
     """Fly demonstrations over the same ground side by side; give the transitions of each, or None."""
     count, skip = len(demonstrations), config.frame_skip
     hills = None if ground is None else hilly(np.random.default_rng(ground))
@@ -195,11 +195,11 @@ def _fly_together(
 
 def _transitions(
     demonstration: Demonstration, decisions: Sequence[tuple[Any, ...]], slot: int, config: Config
-) -> MemoryCell | None:
+) -> Transition | None:
     """Return what one of the flights is remembered as; None if nothing of it is an example."""
-    steps, parts, skip = NStep(config.n_step, config.discount), list[MemoryCell](), config.frame_skip
+    steps, parts, skip = NStep(config.n_step, config.discount), list[Transition](), config.frame_skip
     for number in range(-(-demonstration.begins // skip), -(-len(demonstration.actions) // skip)):
         longest = np.bincount(demonstration.actions[number * skip : (number + 1) * skip]).argmax()
         before, *after = (part[slot : slot + 1] for part in decisions[number])
         parts.append(steps.add(before, np.array([longest]), *after)[0])
-    return MemoryCell(*(np.concatenate(column) for column in zip(*parts, strict=True))) if parts else None
+    return Transition(*(np.concatenate(column) for column in zip(*parts, strict=True))) if parts else None

@@ -114,7 +114,7 @@ class NetworkEditor:
             tuple(dict.fromkeys(silenced)),
             tuple(dict.fromkeys(weights)),
             len(self._steps),
-            self._agent.held,
+            self._agent.paused,
             self._before is not None,
         )
 
@@ -153,7 +153,7 @@ class NetworkEditor:
             self._edits.append(edit)
         for network in networks:
             _place(network, edit)[...] = edit.value if isinstance(edit, SetWeight) else 0.0
-        self._agent.held = True
+        self._agent.paused = True
 
     def undo(self) -> None:
         """Undo the last step; after the last one, the agent learns again."""
@@ -166,7 +166,7 @@ class NetworkEditor:
         if not self._edits and not self._learnt_on:
             self.forget()
         elif not self._edits:
-            self._agent.held = False
+            self._agent.paused = False
 
     def restore(self) -> None:
         """Restore all parameters from before the first edit, bit for bit; the agent learns again.
@@ -183,13 +183,13 @@ class NetworkEditor:
     def learn_on(self) -> None:
         """Let the agent learn again, from the network as it is; `restore` still leads back."""
         self._learnt_on = self.count
-        self._agent.held = False
+        self._agent.paused = False
         self._steps.clear()
         self._edits.clear()
 
     def forget(self) -> None:
         """Let the agent learn, and keep no way back: its networks have been replaced, or are as they were."""
-        self._agent.held = False
+        self._agent.paused = False
         self._before, self._learnt_on = None, 0
         self._steps.clear()
         self._edits.clear()

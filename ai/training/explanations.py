@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from ai.agent.n_step import NStep
-from ai.agent.replay import MemoryCell
+from ai.agent.replay import Transition
 from ai.common.environment import Floats, Ints, StepResult
 from ai.explain.agent_lesson import Before, Flown, Lesson, explain
 from ai.explain.learning_step import shown_lines
@@ -98,7 +98,7 @@ class Explanations:
         return _Moment(tuple(self._decided), Before.of(agent, rng))
 
 
-def _memory(moment: _Moment, slot: int) -> tuple[MemoryCell, Flown]:
+def _memory(moment: _Moment, slot: int) -> tuple[Transition, Flown]:
     """Return a lander's latest memory that is complete, or of a flight's end the one that sums up most."""
     config, decided = moment.before.config, list(moment.decided)
     last = next(
@@ -125,7 +125,7 @@ def _memory(moment: _Moment, slot: int) -> tuple[MemoryCell, Flown]:
         int(results[-1].outcome[slot]) if results[-1].ended[slot] else 0,
         shown_lines(recorder),
     )
-    return MemoryCell(*(part[0] for part in cells)), flown
+    return Transition(*(part[0] for part in cells)), flown
 
 
 def _size(moment: _Moment) -> int:

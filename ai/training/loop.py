@@ -127,7 +127,7 @@ class Training:
         self._held = np.where(result.ended, 0, actions)
         evaluation = self.evaluate() if passed(before, agent.decisions, self.evaluate_every or 0) else None
         return Progress(
-            agent.decisions, agent.decisions * self.config.frame_skip, agent.train_count, self.episodes,
+            agent.decisions, agent.decisions * self.config.frame_skip, agent.gradient_steps, self.episodes,
             statistics.success, statistics.mean_return, agent.loss, agent.mean_q, epsilon, self.env.stage, self._pace(),
             statistics.shares, statistics.parts, evaluation, self.best,
         )  # fmt: skip
@@ -177,7 +177,7 @@ class Training:
             agent.restore(self.agent.network.values, deepcopy(self.agent.normalizer))
         else:
             agent.restore(self.best_values, deepcopy(self.best_normalizer))
-        agent.decisions, agent.train_count = self.agent.decisions, self.agent.train_count
+        agent.decisions, agent.gradient_steps = self.agent.decisions, self.agent.gradient_steps
         return agent
 
     def restore_best(self) -> None:

@@ -107,7 +107,7 @@ class _LiveRun:
         self._network_state_at = 0.0
         self._point_at = 0
         self._checkpoint_at = training.agent.decisions + self._checkpoint_every
-        self._began_learning = training.agent.train_count
+        self._began_learning = training.agent.gradient_steps
         self._turned_at: dict[str, float] = {}  # by the clock, when each knob was turned last
         self._learned_from: set[Demonstration] = set()
         self._messages: list[Message] = []
@@ -144,11 +144,11 @@ class _LiveRun:
         if progress.decisions >= self._point_at:
             self._point_at = progress.decisions + POINT_DECISIONS
             self._record(self._point(progress))
-        if progress.decisions >= self._checkpoint_at and not training.agent.held:
+        if progress.decisions >= self._checkpoint_at and not training.agent.paused:
             self._record(self._checkpoint(progress.success_rate))
             self._checkpoint_at = progress.decisions + self._checkpoint_every
         self._explanations.keep()
-        if not training.agent.held:  # what is edited is only looked at, until it learns on from there
+        if not training.agent.paused:  # what is edited is only looked at, until it learns on from there
             self._messages += self._autosave.go_on(now)
         return self._flush()
 
@@ -179,7 +179,7 @@ class _LiveRun:
 
     def end(self) -> None:
         """Save what has not been saved, without an edit that was only looked at; wait until it is on the disk."""
-        if self.training.agent.held:
+        if self.training.agent.paused:
             self._editor.restore()
         self._autosave.end()
 
@@ -223,7 +223,7 @@ class _LiveRun:
     def _point(self, progress: Progress) -> Point:
         flown = 1.0 if self.training.statistics.known else np.nan
         agent = self.training.agent
-        learnt = 1.0 if agent.train_count > self._began_learning and not agent.held else np.nan
+        learnt = 1.0 if agent.gradient_steps > self._began_learning and not agent.paused else np.nan
         landed, crashed, out_of_bounds, timed_out = (flown * share for share in progress.shares)
         return Point(
             self.training.seconds, progress.decisions, progress.episodes, flown * progress.success_rate,
@@ -237,7 +237,7 @@ class _LiveRun:
         values = agent.network.values.copy()
         if not np.isfinite(values).all():
             raise FloatingPointError(
-                f"the network was not finite after learning step {agent.train_count}; "
+                f"the network was not finite after learning step {agent.gradient_steps}; "
                 f"most likely the learning rate of {agent.optimizer.learning_rate:g} is too high"
             )
         normalizer = agent.normalizer.to_json() if agent.normalizer else None

@@ -10,7 +10,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.replay import MemoryCell, PrioritisedReplayBuffer, ReplayBuffer
+from ai.agent.replay import PrioritisedReplayBuffer, ReplayBuffer, Transition
 from ai.agent.schedule import exploration
 from ai.common.decision import in_points
 from ai.common.environment import Bools, Doubles, Floats, Ints
@@ -60,7 +60,7 @@ class Memory:
 
     """
 
-    cells: MemoryCell
+    cells: Transition
     first: int
     oldest: int
     drawn: Ints
@@ -113,7 +113,7 @@ class WatchedReplay(ReplayBuffer):
 
     drawn: Ints = np.zeros(0, dtype=np.intp)
 
-    def sample(self, count: int, rng: np.random.Generator) -> tuple[MemoryCell, Ints, Floats]:
+    def sample(self, count: int, rng: np.random.Generator) -> tuple[Transition, Ints, Floats]:
         """Draw as the buffer does, and keep the rows."""
         cells, self.drawn, weights = super().sample(count, rng)
         return cells, self.drawn, weights

@@ -10,8 +10,8 @@ import pygame
 
 from ai.digits.classifier import DigitClassifier
 from ai.nn import ActivationLayer, ConvolutionLayer, FullyConnectedLayer, MaxPoolingLayer
-from ai.nn.correlation import Correlation
 from ai.nn.costs import softmax
+from ai.nn.images import Correlation
 from game.core import texts
 from game.core.source import Source, source_of
 from game.digits.unit_walk import UnitWalk
@@ -38,8 +38,8 @@ def _function(walk: UnitWalk) -> tuple[Any, ...]:
     if walk.at_answer:
         return DigitClassifier.probabilities, softmax if walk.logits else np.sum
     match walk.stage.layer:
-        case ConvolutionLayer(forward=Correlation(shifts=shifts)):
-            return Correlation.correlate, np.matmul, int(shifts > 1)
+        case ConvolutionLayer(forward=Correlation(whole=whole)):
+            return Correlation.correlate, np.matmul, int(not whole)
         case MaxPoolingLayer():
             return MaxPoolingLayer._maximum, np.maximum, 1
         case FullyConnectedLayer():
@@ -67,12 +67,12 @@ def _said(walk: UnitWalk) -> str:
     match walk.stage.layer:
         case _ if walk.at_answer:
             return ""
-        case ConvolutionLayer(forward=Correlation(shifts=1) as forward, filters=filters, outputs=outputs):
+        case ConvolutionLayer(forward=Correlation(whole=True), filters=filters, outputs=outputs) as layer:
             return texts.PATCH_CODE["convolution"].format(
-                filters=filters, rows=forward.rows, windows=outputs[0] * outputs[1], number=walk.place[2] + 1
+                filters=filters, rows=len(layer.weights), windows=outputs[0] * outputs[1], number=walk.place[2] + 1
             )
-        case ConvolutionLayer(forward=forward, kernel=kernel):
-            return texts.PATCH_CODE["columns"].format(kernel=kernel, rows=forward.rows)
+        case ConvolutionLayer(kernel=kernel) as layer:
+            return texts.PATCH_CODE["columns"].format(kernel=kernel, rows=len(layer.weights) // kernel)
         case FullyConnectedLayer() as layer:
             inputs, units = layer.weights.shape
             return texts.PATCH_CODE["connected"].format(inputs=inputs, units=units, number=walk.place[2] + 1)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from ai.flights.easing import Easing
+from ai.flights.recording import Easing
 from game.core import texts
 from game.core.settings import Settings
 from game.flight.flight import Flight

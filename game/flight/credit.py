@@ -8,7 +8,7 @@ from __future__ import annotations
 from enum import Enum, auto
 from typing import Final, Protocol
 
-from ai.flights.score import landing_score
+from ai.flights.verification import landing_score
 from ai.lander.environment import Outcome
 from game.core import texts
 from game.flight.difficulty import Difficulty

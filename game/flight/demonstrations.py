@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Final
 
 from ai.files import take
-from ai.flights.easing import AS_IT_IS
-from ai.flights.score import landing_score
+from ai.flights.recording import AS_IT_IS
+from ai.flights.verification import landing_score
 from game.flight.flight import Flight, StickHolder
 
 FILE_NAME: Final = "demonstrations.json"

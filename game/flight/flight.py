@@ -8,10 +8,8 @@ import numpy as np
 
 from ai.common.decision import Decision
 from ai.common.environment import Doubles, Floats
-from ai.flights.easing import AS_IT_IS, Easing
-from ai.flights.recording import AREA, Recording, StickHolder
-from ai.flights.starts import begun
-from ai.flights.stick import Shares, thrust
+from ai.flights.recording import AREA, AS_IT_IS, Easing, Recording, Shares, StickHolder, thrust
+from ai.flights.verification import begun
 from ai.lander.descent import LegStart, leg_of
 from ai.lander.environment import Outcome
 from ai.lander.pilots import COAST, ScriptedPilot
@@ -139,20 +137,19 @@ class Flight:
         self.recording.actions[:] = source.actions[:step]
         self.recording.hands[:] = source.hands[:step]
         self._yours = self.recording.hands.count(StickHolder.HUMAN)
-        self.recording.gravity[:] = [change for change in source.gravity if change[0] <= step]
+        self.recording.gravity = tuple(change for change in source.gravity if change[0] <= step)
         self.recording.shares = {at: shares for at, shares in source.shares.items() if at < step}
         self._pull(self.recording.gravity_at(step))
         self.rest()
 
     def set_gravity(self, share: float) -> None:
         """Set gravity to a share of the normal one, from the next step on."""
-        step, gravity = len(self.recording.actions), self.recording.gravity
-        if share == self.recording.gravity_at(step):
+        recording, step = self.recording, len(self.recording.actions)
+        if share == recording.gravity_at(step):
             return
-        if gravity and gravity[-1][0] == step:  # changed twice within one step
-            gravity.pop()
-        if share != self.recording.gravity_at(step):
-            gravity.append((step, share))
+        recording.gravity = tuple(change for change in recording.gravity if change[0] < step)
+        if share != recording.gravity_at(step):
+            recording.gravity += ((step, share),)
         self._pull(share)
 
     def _pull(self, share: float) -> None:

@@ -10,23 +10,19 @@ import errno
 import json
 import os
 from collections.abc import Iterable
-from dataclasses import asdict, astuple, dataclass
+from dataclasses import asdict, dataclass
 from itertools import groupby
 from pathlib import Path
 from typing import Annotated, Any, Final
 
-from ai.files import OneOf, Seed, Share, Sized, Within, brief, check_header, parse_json, read_as, read_text, write_text
-from ai.flights.easing import AS_IT_IS, Easing
-from ai.flights.places import COURSES
-from ai.flights.recording import LONGEST, Recording, StickHolder
-from ai.flights.stick import STEPS, Shares
-from ai.lander.descent import MOST_LEGS, TANK, LegStart
+from ai.files import OneOf, Share, Sized, Within, brief, check_header, parse_json, read_as, read_text, write_text
+from ai.flights.recording import LONGEST, STEPS, End, LegAsList, Recording, Shares, Start, StickHolder
+from ai.flights.verification import COURSES
 from ai.lander.environment import NUM_ACTIONS, Outcome
 from ai.lander.missions import MISSIONS
 from ai.lander.rules import AREAS
 from ai.lander.spawns import RUNGS, SPAWNS
 from game.core import texts
-from game.core.settings import GRAVITY_SHARES
 
 FORMAT: Final = "tranquility flight"
 VERSION: Final = 5
@@ -143,26 +139,20 @@ class Record:
 
     recording: Recording
     entry: Entry
-    end: tuple[float, float, float]
+    end: End
 
 
-@dataclass(frozen=True)
-class _FlightFile:
+@dataclass(kw_only=True)
+class _FlightFile(Start):
     format: str
     version: int
-    seed: Seed
-    spawn: Annotated[str, OneOf(SPAWNS)]
-    pads: Annotated[int, OneOf((1, 3))]
-    mission: str
     actions: str
     hands: str
-    end: tuple[float, float, float]
+    end: End
     entry: Entry
-    area: Annotated[int, OneOf(range(len(AREAS)))] = 0
-    gravity: tuple[tuple[_Number, Annotated[float, Within(*GRAVITY_SHARES)]], ...] = ()
+    area: Annotated[int, OneOf(range(len(AREAS)))] = 0  # the first, before version 5
     shares: str = ""
-    easing: Easing = AS_IT_IS
-    leg: tuple[Annotated[int, Within(1, MOST_LEGS)], Annotated[float, Within(0, TANK)], bool] | None = None
+    leg: LegAsList = None
 
 
 def read(path: Path) -> Record:
@@ -186,14 +176,11 @@ def write(path: Path, record: Record) -> None:
 def to_text(record: Record) -> str:
     """Return a record as the text of a flight's file."""
     recording = record.recording
-    return json.dumps({
-        "format": FORMAT, "version": VERSION, "seed": recording.seed, "spawn": recording.spawn,
-        "pads": recording.pads, "mission": recording.mission, "area": recording.area,
-        "leg": astuple(recording.leg) if recording.leg else None,
+    told = {"format": FORMAT, "version": VERSION} | recording.start() | {
         "actions": _packed(recording.actions), "hands": _packed(hand.value for hand in recording.hands),
-        "gravity": recording.gravity, "shares": _packed_shares(recording), "easing": asdict(recording.easing),
-        "end": record.end, "entry": asdict(record.entry),
-    }, indent=1) + "\n"  # fmt: skip
+        "shares": _packed_shares(recording), "end": record.end, "entry": asdict(record.entry),
+    }  # fmt: skip
+    return json.dumps(told, indent=1) + "\n"
 
 
 def from_text(text: str) -> Record:
@@ -204,23 +191,14 @@ def from_text(text: str) -> Record:
     except ValueError as error:
         raise ValueError(texts.FLIGHT_FORMAT.format(format=FORMAT, version=VERSION)) from error
     file = read_as(_FlightFile, values, strict=True)
-    for name, known in ((file.mission, ("", *MISSIONS)), (file.entry.course, COURSES)):
-        if name not in known:
-            raise ValueError(texts.FLIGHT_MISSION.format(name=brief(name, 40)))
+    if file.entry.course not in COURSES:
+        raise ValueError(texts.FLIGHT_MISSION.format(name=brief(file.entry.course, 40)))
     actions = [int(word) for word in _unpacked(file.actions)]
     hands = [StickHolder(word) for word in _unpacked(file.hands)]
     if len(actions) != len(hands) or not all(0 <= action < NUM_ACTIONS for action in actions):
         raise ValueError(texts.FLIGHT_ACTIONS)
-    steps = [step for step, _ in file.gravity]
-    if steps != sorted(set(steps)):
-        raise ValueError(texts.FLIGHT_GRAVITY)
     shares = _unpacked_shares(file.shares, len(actions))
-    leg = LegStart(*file.leg) if file.leg else None
-    recording = Recording(
-        file.seed, file.spawn, file.pads, actions, hands, file.mission, list(file.gravity),
-        area=file.area, shares=shares, easing=file.easing, leg=leg,
-    )  # fmt: skip
-    return Record(recording, file.entry, file.end)
+    return Record(Recording.begun(file, file.leg, actions, hands, shares), file.entry, file.end)
 
 
 def _packed(words: Iterable[Any]) -> str:

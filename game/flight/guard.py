@@ -11,8 +11,7 @@ import numpy as np
 from ai.copilot.copilot import Mode, SharedDecision
 from ai.copilot.futures import DECISION_STEPS, KEYS, FlownAhead, Future, Opening, Push
 from ai.copilot.guardian import decisions_of
-from ai.flights.recording import StickHolder
-from ai.flights.stick import STEPS, Shares, full
+from ai.flights.recording import STEPS, Shares, StickHolder, full
 from ai.lander.moment import Moment
 from ai.lander.pilots import COAST
 from ai.lander.route import Route

@@ -14,8 +14,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from ai.files import append_line, brief, free_path, read_lines
-from ai.flights.places import DESCENT
-from ai.flights.score import landing_score
+from ai.flights.verification import DESCENT, landing_score
 from game.core import texts
 from game.core.names import LibraryError
 from game.core.trash import Trash

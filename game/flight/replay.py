@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from ai.common.environment import Doubles
-from ai.flights.stick import Shares
+from ai.flights.recording import Shares
 from ai.flights.verification import Earned, earned
 from ai.lander.pilots import COAST
 from game.flight.flight import DECISION_STEPS, Flight, Recording, StickHolder

@@ -9,10 +9,8 @@ from typing import Final
 
 from ai.files import read_text
 from ai.flights.code import CodeError, code_of, codes_in, flight_of
-from ai.flights.places import DAILY, DESCENT, day_of, in_its_place
-from ai.flights.recording import StickHolder
-from ai.flights.shared import Claim, SharedFlight
-from ai.flights.verification import Earned
+from ai.flights.recording import Claim, SharedFlight, StickHolder
+from ai.flights.verification import DAILY, DESCENT, Earned, day_of, in_its_place
 from ai.lander.environment import Outcome
 from ai.lander.rules import tenths
 from ai.lander.spawns import LADDER, RUNGS

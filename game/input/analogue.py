@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Final
+from typing import Final, NamedTuple
 
 import pygame
 
+from ai.flights.recording import STEPS, Shares, full
+from ai.lander.rules import nearest_action
 from game.input.bindings import TRIGGERS, Bindings, Command, Held
 
 # Axis, direction, how far out of 32767 it must be pushed.
@@ -32,8 +34,41 @@ _FARTHEST: Final = 32767
 _STICK: Final = (0.16, 0.95)
 _TRIGGER: Final = (0.06, 0.95)
 _CURVE: Final = 1.5  # a stick near its rest turns the craft more finely
+_ENDS: Final = (-STEPS, 0, STEPS)  # shares that are always reached
+_TREMBLE: Final = 0.75  # of a step
 _TURN: Final = pygame.CONTROLLER_AXIS_LEFTX
 _RISE: Final = pygame.CONTROLLER_AXIS_RIGHTY
+
+
+class Stick(NamedTuple):
+    """Position of the stick in one step.
+
+    Attributes:
+        action: the action asked for, 0 to 5.
+        shares: its shares of thrust; None if all of it.
+
+    """
+
+    action: int = 0
+    shares: Shares | None = None
+
+
+def pushed(main: float, side: float, before: Shares | None = None) -> Stick:
+    """Return the stick at shares of thrust, `main` 0 to 1 and `side` -1, left, to 1, right, rounded to a step.
+
+    A share that is hardly another than `before` stays as it was, because hands tremble.
+    """
+    last_main, last_side = before or (None, None)
+    shares = _rounded(min(max(main, 0.0), 1.0), last_main), _rounded(min(max(side, -1.0), 1.0), last_side)
+    action = nearest_action(shares[0] / STEPS, shares[1] / STEPS)
+    return Stick(action, None if shares == full(action) else shares)
+
+
+def _rounded(share: float, before: int | None) -> int:
+    nearest = round(STEPS * share)
+    if not before or nearest in _ENDS or abs(STEPS * share - before) > _TREMBLE:
+        return nearest
+    return before
 
 
 class Axes:

@@ -104,8 +104,8 @@ class TargetChapter(RunsChapter):
         return [
             Code(DeepQAgent.targets, "targets", {"discount": f"γ = {SMALL_RUN.discount:g}"}),
             Code(DeepQAgent._next_value, "values", {"values": texts.LEARN_TARGET_JUDGE}),
-            Code(DeepQAgent._update_target, "train_count", {
-                "train_count": texts.LEARN_TARGET_EVERY.format(every=every),
+            Code(DeepQAgent._update_target, "gradient_steps", {
+                "gradient_steps": texts.LEARN_TARGET_EVERY.format(every=every),
             }),
         ]  # fmt: skip
 

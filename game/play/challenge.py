@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from typing import Final
 
-from ai.flights.easing import AS_IT_IS
+from ai.flights.recording import AS_IT_IS
 from ai.lander.environment import Cause, LanderEnv, Outcome
 from ai.lander.ground import Ground
 from ai.lander.missions import STARTS, Mission

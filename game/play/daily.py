@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from datetime import date
 
-from ai.flights.places import DAILY
+from ai.flights.verification import DAILY
 from game.core import texts
 from game.flight.flight import Flight
 from game.flight.flight_file import Entry, Record

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Annotated, Final
 
 from ai.files import Count, OneOf, Sized, append_line, read_lines
-from ai.flights.places import DAILY
+from ai.flights.verification import DAILY
 from ai.lander.environment import Outcome
 from game.core import texts
 from game.flight.flight_file import Entry, Record

@@ -14,8 +14,7 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.flights.places import DESCENT
-from ai.flights.score import landing_score
+from ai.flights.verification import DESCENT, landing_score
 from ai.lander.descent import TANK, LegStart, leg_of
 from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.ground import Ground

@@ -6,9 +6,10 @@ from typing import Final
 
 import pygame
 
-from ai.flights.stick import Stick, full, pushed
+from ai.flights.recording import full
 from ai.lander.pilots import COAST
 from game.core.settings import Settings
+from game.input.analogue import Stick, pushed
 from game.input.controls import Controls, Held
 from game.input.mouse import MouseStick
 

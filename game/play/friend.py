@@ -8,7 +8,7 @@ from typing import Final
 
 import pygame
 
-from ai.flights.shared import SharedFlight
+from ai.flights.recording import SharedFlight
 from ai.flights.verification import is_true
 from game.cockpit import hud
 from game.core import texts

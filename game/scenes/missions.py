@@ -8,7 +8,7 @@ from typing import Final
 
 import pygame
 
-from ai.flights.places import DAILY
+from ai.flights.verification import DAILY
 from ai.lander.missions import FIRST, MISSIONS
 from ai.lander.rules import tenths
 from game.cockpit.hud import draw_ring

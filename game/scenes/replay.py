@@ -12,7 +12,7 @@ import pygame
 
 from ai.files import free_path
 from ai.flights.code import code_of
-from ai.flights.shared import SharedFlight
+from ai.flights.recording import SharedFlight
 from ai.lander.environment import Outcome
 from game.audio.flight_sounds import FlightSound
 from game.cockpit import hud

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ai.flights.score import landing_score
+from ai.flights.verification import landing_score
 from ai.lander.descent import LegStart, leg_of
 from ai.lander.environment import Cause, LanderEnv, Outcome
 from ai.lander.pilots import Pilot

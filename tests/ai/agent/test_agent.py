@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ai.agent.agent import TOGETHER, DeepQAgent
-from ai.agent.replay import MemoryCell
+from ai.agent.replay import Transition
 from ai.agent.symmetry import Symmetry
 from ai.common.environment import StepResult
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES, LanderEnv
@@ -36,7 +36,7 @@ def fed(config, count=40, seed=0):
 def test_bellman_targets_by_hand():
     agent = DeepQAgent(3, 2, SMALL.changed(double=False, discount=0.9))
     states = np.eye(3, dtype=np.float32)
-    cell = MemoryCell(states, states, np.zeros(3, dtype=int), np.ones(3, dtype=np.float32),
+    cell = Transition(states, states, np.zeros(3, dtype=int), np.ones(3, dtype=np.float32),
                       np.array([False, True, False]), np.array([1, 1, 4]))  # fmt: skip
     values = agent.target.predict(states).max(axis=1)
     assert agent.targets(cell)[0] == pytest.approx([1 + 0.9 * values[0], 1.0, 1 + 0.9**4 * values[2]], rel=1e-5)
@@ -47,7 +47,7 @@ def test_the_targets_of_many_memories_are_those_of_each_alone(changes):
     agent, rng, count = DeepQAgent(3, 2, SMALL.changed(**changes)), np.random.default_rng(4), 2 * TOGETHER + 5
     agent.online.values = rng.normal(size=agent.online.values.shape)
     states = rng.normal(size=(count, 3)).astype(np.float32)
-    cells = MemoryCell(states, states, np.zeros(count, int), rng.normal(size=count).astype(np.float32),
+    cells = Transition(states, states, np.zeros(count, int), rng.normal(size=count).astype(np.float32),
                        rng.random(count) < 0.2, rng.integers(1, 5, count))  # fmt: skip
     targets, values = agent.targets(cells)
     for row in (0, 7, TOGETHER - 1, TOGETHER, count - 1):
@@ -63,7 +63,7 @@ def test_double_q_lets_the_online_network_pick():
     agent = DeepQAgent(3, 2, SMALL.changed(double=True, discount=0.9))
     agent.online.values = np.random.default_rng(1).normal(size=agent.online.values.shape)
     states = np.random.default_rng(2).normal(size=(20, 3)).astype(np.float32)
-    cell = MemoryCell(states, states, np.zeros(20, dtype=int), np.zeros(20, dtype=np.float32),
+    cell = Transition(states, states, np.zeros(20, dtype=int), np.zeros(20, dtype=np.float32),
                       np.zeros(20, dtype=bool), np.ones(20, dtype=int))  # fmt: skip
     best = agent.online.predict(states).argmax(axis=1)
     assert agent.targets(cell)[0] == pytest.approx(0.9 * agent.target.predict(states)[np.arange(20), best], rel=1e-5)
@@ -88,7 +88,7 @@ def test_the_target_network_is_copied_every_so_many_steps():
     agent.learn()
     assert np.array_equal(agent.target.values, first)
     agent.learn()
-    assert agent.train_count == 6
+    assert agent.gradient_steps == 6
     assert not np.array_equal(agent.target.values, first)
 
 
@@ -102,7 +102,7 @@ def test_a_soft_target_follows_by_its_rate():
 def test_nothing_is_learned_before_the_warm_up():
     agent = fed(SMALL.changed(learning_starts=41))
     assert agent.learn() is None
-    assert agent.train_count == 0
+    assert agent.gradient_steps == 0
 
 
 def test_a_memory_that_is_pruned_below_the_warm_up_does_not_stop_learning():
@@ -167,7 +167,7 @@ def test_the_success_pass_learns_from_good_endings_only():
 def test_a_mirrored_memory_is_its_own_mirror_image_twice():
     rng = np.random.default_rng(0)
     states = rng.normal(size=(6, NUM_FEATURES)).astype(np.float32)
-    cell = MemoryCell(states.copy(), states[::-1].copy(), np.arange(NUM_ACTIONS), np.zeros(6), np.zeros(6, bool))
+    cell = Transition(states.copy(), states[::-1].copy(), np.arange(NUM_ACTIONS), np.zeros(6), np.zeros(6, bool))
     mirrored = LANDER_SYMMETRY.apply(cell, 6, 6)
     assert mirrored.action.tolist() == [0, 2, 1, 3, 5, 4]
     assert np.array_equal(mirrored.state[:, 7], states[:, 8])
@@ -217,7 +217,7 @@ def test_an_error_that_is_not_finite_stops_learning_even_where_its_gradient_is(c
     with pytest.raises(FloatingPointError, match="cost was not finite at learning step 1"):
         agent.learn()
     assert np.array_equal(agent.online.values, before)
-    assert agent.train_count == 0
+    assert agent.gradient_steps == 0
 
 
 def fed_with_successes(config):
@@ -225,7 +225,7 @@ def fed_with_successes(config):
     agent = fed(config.changed(success_pass=True, success_batch_size=4))
     rng = np.random.default_rng(9)
     states = (5 + rng.normal(size=(20, 3))).astype(np.float32)
-    agent.successes.add(MemoryCell(states, states, np.zeros(20, int), np.ones(20), np.zeros(20, bool), np.ones(20)))
+    agent.successes.add(Transition(states, states, np.zeros(20, int), np.ones(20), np.zeros(20, bool), np.ones(20)))
     return agent
 
 
@@ -244,7 +244,7 @@ def test_the_target_counts_training_calls_and_the_second_pass_belongs_to_its_cal
         agent.learn()
         changed.append(not np.array_equal(agent.target.values, before))
     assert changed == ([False] * 4 + [True]) * 3
-    assert agent.train_count == 15
+    assert agent.gradient_steps == 15
     assert not np.array_equal(agent.target.values, first)
 
 
@@ -272,7 +272,7 @@ def test_loading_goes_on_exactly_where_saving_stopped(tmp_path):
     agent.learn()
     loaded.learn()
     assert np.array_equal(agent.online.values, loaded.online.values)
-    assert loaded.train_count == agent.train_count
+    assert loaded.gradient_steps == agent.gradient_steps
 
 
 PARAMETERS = DeepQAgent(3, 2, SMALL).online.values.size
@@ -323,7 +323,7 @@ def test_an_agent_learns_from_the_replay_and_with_the_optimizer_that_it_is_hande
     before = agent.online.values.copy()
     agent.learn()
     assert agent.replay is given
-    assert steps.steps == agent.train_count == SMALL.gradient_steps
+    assert steps.steps == agent.gradient_steps == SMALL.gradient_steps
     assert not np.array_equal(agent.online.values, before)
     usual = DeepQAgent(3, 2, SMALL)
     assert (len(usual.replay), usual.replay.capacity, usual.optimizer.steps) == (0, SMALL.replay_size, 0)
@@ -337,4 +337,4 @@ def test_one_step_of_training_acts_stores_and_learns():
     assert np.array_equal(stored.state, observation)
     assert np.array_equal(stored.next_state, after.observation)
     assert np.array_equal(stored.action, actions)
-    assert (agent.decisions, agent.train_count) == (4, SMALL.gradient_steps)
+    assert (agent.decisions, agent.gradient_steps) == (4, SMALL.gradient_steps)

@@ -4,14 +4,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ai.agent.n_step import Episodes, NStep
-from ai.agent.replay import MemoryCell, PrioritisedReplayBuffer, ReplayBuffer, SumTree
+from ai.agent.replay import PrioritisedReplayBuffer, ReplayBuffer, SumTree, Transition
 
 
 def cells(first, count):
     """Transitions numbered from `first`, told apart by their reward."""
     numbers = np.arange(first, first + count)
     states = np.repeat(numbers[:, None], 2, axis=1).astype(np.float32)
-    return MemoryCell(states, states + 1, numbers % 3, numbers.astype(np.float32), numbers % 2 == 0, numbers % 5 + 1)
+    return Transition(states, states + 1, numbers % 3, numbers.astype(np.float32), numbers % 2 == 0, numbers % 5 + 1)
 
 
 def kept(buffer):

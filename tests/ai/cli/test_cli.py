@@ -298,7 +298,7 @@ def test_a_gradient_that_is_not_finite_ends_the_run_with_the_reason_and_keeps_th
     learn = DeepQAgent.learn
 
     def blow_up(agent):
-        if agent.train_count == 20:
+        if agent.gradient_steps == 20:
             agent.replay.cells.reward[:] = np.inf
         return learn(agent)
 
@@ -308,7 +308,7 @@ def test_a_gradient_that_is_not_finite_ends_the_run_with_the_reason_and_keeps_th
     told = capsys.readouterr().err
     assert "learning step 21" in told
     assert "learning rate" in told
-    assert DeepQAgent.load(tmp_path / "run").train_count == 20
+    assert DeepQAgent.load(tmp_path / "run").gradient_steps == 20
 
 
 def test_weights_of_the_reward_that_are_not_named_stay_the_presets():

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.replay import MemoryCell, ReplayBuffer
+from ai.agent.replay import Transition, ReplayBuffer
 from ai.explain import learning_step
 from ai.explain.agent_lesson import Before, explain
 from ai.nn import Optimizer
@@ -30,7 +30,7 @@ SMALL = {
 
 def trained(name):
     training = Training(SMALL[name], seed=3, evaluate_every=0)
-    while training.agent.train_count < 40:
+    while training.agent.gradient_steps < 40:
         training.advance()
     return training.agent
 
@@ -49,7 +49,7 @@ class Drawn(ReplayBuffer):
 def unobserved(before, cell, agent):
     """The same step by an agent that nobody looks at: it is handed the same minibatch, and learns."""
     row = len(before.weights) // 2
-    cells = MemoryCell(*(np.array(part) for part in before.cells))
+    cells = Transition(*(np.array(part) for part in before.cells))
     for part, own in zip(cells, cell, strict=True):
         part[row] = own
     twin = DeepQAgent(9, 6, before.config.changed(gradient_steps=1, success_pass=False), np.random.default_rng(5),
@@ -63,7 +63,7 @@ def unobserved(before, cell, agent):
 def case(request):
     agent = trained(request.param)
     before = Before.of(agent, np.random.default_rng(1))
-    cell = MemoryCell(*(part[0] for part in agent.replay.at(np.array([7]))))
+    cell = Transition(*(part[0] for part in agent.replay.at(np.array([7]))))
     state = agent.online.values.copy(), agent.optimizer.state(), agent.rng.bit_generator.state
     lesson = explain(before, cell, agent)
     return agent, before, cell, lesson, state
@@ -86,7 +86,7 @@ def test_the_step_is_the_one_that_is_taken_when_nobody_looks(case):
 def test_the_target_is_the_agents(case):
     agent, before, cell, lesson, _ = case
     row = len(before.weights) // 2
-    cells = MemoryCell(*(np.array(part) for part in before.cells))
+    cells = Transition(*(np.array(part) for part in before.cells))
     for part, own in zip(cells, cell, strict=True):
         part[row] = own
     if agent.normalizer:
@@ -121,7 +121,7 @@ def test_the_shares_of_all_memories_add_up_to_the_gradient(case):
     agent, before, cell, lesson, _ = case
     config, size = before.config, len(before.weights)
     # A minibatch in which the same memory is drawn every time: each brings the same share.
-    cells = MemoryCell(*(np.repeat(np.asarray(part)[None], size, axis=0) for part in cell))
+    cells = Transition(*(np.repeat(np.asarray(part)[None], size, axis=0) for part in cell))
     again = replace(before, cells=cells, weights=np.ones(size, np.float32), config=replace(config, mirror=False))
     lesson = explain(again, cell, agent)
     unclipped = lesson.step.gradient * max(1.0, lesson.step.gradient_length / config.gradient_clip)

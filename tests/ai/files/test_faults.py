@@ -42,7 +42,7 @@ from ai.nn import (
     NeuralNetwork,
     atomic_folder,
 )
-from ai.nn.budget import MOST_LAYERS
+from ai.nn.layers import MOST_LAYERS
 from ai.training.checkpoints import resume_run, save_run
 from ai.training.config import PRESETS, load_agent
 from ai.training.demonstrations import Demonstration
@@ -244,7 +244,7 @@ def test_a_small_agent_cannot_ask_for_a_huge_network_or_message(run, changes):
 
 
 @pytest.mark.parametrize("wrong", [{"features": 1_000_000}, {"features": -1}, {"actions": True}, {"decisions": 0.5},
-                                   {"decisions": 10**400}, {"train_count": None}])  # fmt: skip
+                                   {"decisions": 10**400}, {"gradient_steps": None}])  # fmt: skip
 def test_counts_of_an_agent_are_checked(run, wrong):
     edit(run / "config.json", **wrong)
     with little_memory(), pytest.raises(ModelFormatError, match=r"config\.json"):
@@ -525,8 +525,8 @@ def test_a_reader_that_puts_the_old_folder_back_does_not_stop_a_save(run, monkey
 def test_two_writers_of_one_folder_never_mix(tmp_path):
     with atomic_folder(tmp_path / "run", KIND) as first, atomic_folder(tmp_path / "run", KIND) as second:
         assert first != second
-        write_agent(DeepQAgent(config=SMALL).saved(), first)
-        write_agent(DeepQAgent(config=SMALL).saved(), second)
+        write_agent(DeepQAgent(config=SMALL), first)
+        write_agent(DeepQAgent(config=SMALL), second)
     assert DeepQAgent.load(tmp_path / "run")
     assert [path.name for path in tmp_path.iterdir()] == ["run"]
 

@@ -6,16 +6,13 @@ import numpy as np
 import pytest
 
 from ai.flights.code import code_of, flight_of
-from ai.flights.easing import Easing
-from ai.flights.recording import Recording, StickHolder
-from ai.flights.shared import Claim, SharedFlight
-from ai.flights.starts import begun
-from ai.flights.stick import pushed, thrust
-from ai.flights.verification import earned, is_true, verified
+from ai.flights.recording import Claim, Easing, Recording, SharedFlight, StickHolder, thrust
+from ai.flights.verification import begun, earned, is_true, verified
 from ai.lander.descent import LegStart
 from ai.lander.environment import Outcome
 from ai.lander.pilots import ScriptedPilot
 from ai.lander.rules import ACTION_SHARES
+from game.input.analogue import pushed
 
 STARTS = {
     "a leg of a descent": {"leg": LegStart(2, 11.375)},

@@ -5,11 +5,8 @@ from datetime import date
 
 import numpy as np
 
-from ai.flights.easing import Easing
-from ai.flights.places import DAILY, DESCENT, in_its_place
-from ai.flights.recording import Recording
-from ai.flights.shared import Claim, SharedFlight
-from ai.flights.verification import fly_again, is_true
+from ai.flights.recording import Claim, Easing, Recording, SharedFlight
+from ai.flights.verification import DAILY, DESCENT, fly_again, in_its_place, is_true
 from ai.lander.descent import LegStart, leg
 from ai.lander.environment import Outcome
 from ai.lander.missions import MISSIONS
@@ -22,7 +19,7 @@ ACTIONS = [3, 0, 3, 3] * 9
 
 def flown(course="", seed=DAY, spawn="random", pads=1, **rest):
     """A short flight with a true claim but, maybe, for its course."""
-    recording = Recording(seed, spawn, pads, ACTIONS, [], **rest)
+    recording = Recording(seed, spawn, pads, actions=ACTIONS, **rest)
     return flown_as(recording, course)
 
 
@@ -42,7 +39,7 @@ def test_a_flight_from_its_place_is_true():
     for flight, real in (
         flown(),
         flown(pads=3),
-        flown(gravity=[(0, 0.5)]),
+        flown(gravity=((0, 0.5),)),
         flown(easing=Easing(wider_pads=True)),
         flown(spawn="rung_3"),
         flown(DAILY, pads=3),
@@ -63,12 +60,12 @@ def test_a_flight_from_elsewhere_is_not_whatever_it_earned():
         flown(DAILY, pads=3, seed=0),  # before the first day
         flown(DAILY, pads=3, seed=10**9),  # after the last
         flown(DAILY, pads=3, spawn="rung_1"),
-        flown(DAILY, pads=3, gravity=[(0, 0.7)]),
+        flown(DAILY, pads=3, gravity=((0, 0.7),)),
         flown(DAILY, mission="fall"),
         flown(DAILY, leg=LegStart()),
         flown("wind"),
         flown("wind", mission="fall"),
-        flown("wind", mission="wind", gravity=[(9, 0.7)]),
+        flown("wind", mission="wind", gravity=((9, 0.7),)),
         flown(mission="wind"),
         flown(DESCENT),
         flown(DESCENT, mission="fall"),
@@ -76,7 +73,7 @@ def test_a_flight_from_elsewhere_is_not_whatever_it_earned():
         flown(DESCENT, leg=LegStart(1, bare=True)),
         flown(DESCENT, leg=LegStart(2, 4.9)),  # a landing brings more
         flown(DESCENT, leg=LegStart(no_spot, 6.0, bare=True)),
-        flown(DESCENT, leg=LegStart(), gravity=[(0, 0.7)]),
+        flown(DESCENT, leg=LegStart(), gravity=((0, 0.7),)),
         flown("tank", leg=LegStart()),
         flown(spawn="rung_3", pads=3),
         *(flown(spawn=spawn) for spawn in set(SPAWNS) - {"random", *RUNGS}),
@@ -91,7 +88,7 @@ def test_a_medal_is_for_the_mission_as_it_is():
     while env.outcome[0] == Outcome.FLYING:
         actions += pilot.act(env.observe()).tolist()
         env.fly(np.array(actions[-1:]))
-    flight, real = flown_as(Recording(0, "random", 1, actions, [], mission="fall"), "fall")
+    flight, real = flown_as(Recording(0, "random", actions=actions, mission="fall"), "fall")
     assert real.medal == MISSIONS["fall"].medal(real.fuel, real.seconds) > 0
     assert is_true(replace(flight, claim=replace(flight.claim, medal=real.medal)), real)
     assert not is_true(replace(flight, claim=replace(flight.claim, medal=real.medal + 1)), real)

@@ -5,10 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ai.flights.recording import Recording, StickHolder
-from ai.flights.shared import Claim, SharedFlight
-from ai.flights.starts import begun
-from ai.flights.verification import TOLERANCE, earned, fly_again, is_true, verified
+from ai.flights.recording import Claim, Recording, SharedFlight, StickHolder
+from ai.flights.verification import TOLERANCE, begun, earned, fly_again, is_true, verified
 from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.missions import STARTS
 from ai.lander.pilots import ScriptedPilot
@@ -22,12 +20,13 @@ def flown(seed, pads=1, mission="", gravity=()):
             env.gravity = dict(gravity)[len(actions)] * env.params.gravity
         actions += pilot.act(env.observe()).tolist()
         env.fly(np.array(actions[-1:]))
-    recording = Recording(seed, "random", pads, actions, [StickHolder.HUMAN] * len(actions), mission, list(gravity))
+    hands = [StickHolder.HUMAN] * len(actions)
+    recording = Recording(seed, "random", pads, mission, gravity, actions=actions, hands=hands)
     real = earned(env, recording)
     return SharedFlight(recording, Claim(real.outcome, real.points, real.end), mission), real
 
 
-ROWS = [flown(3), flown(4), flown(5, pads=3), flown(0, mission="fall"), flown(6, gravity=[(0, 0.8), (60, 1.2)])]
+ROWS = [flown(3), flown(4), flown(5, pads=3), flown(0, mission="fall"), flown(6, gravity=((0, 0.8), (60, 1.2)))]
 
 
 def test_each_earns_the_same_in_any_company_bit_for_bit():

@@ -16,7 +16,7 @@ from ai.nn import (
     FullyConnectedLayer,
     MaxPoolingLayer,
     NeuralNetwork,
-    correlation,
+    images,
     network,
 )
 
@@ -32,13 +32,13 @@ def convolved(layer, image):
     return output
 
 
-@pytest.mark.parametrize("block", [1, 100, 1000, correlation.BLOCK])
+@pytest.mark.parametrize("block", [1, 100, 1000, images.BLOCK])
 @pytest.mark.parametrize(
     ("inputs", "kernel", "stride", "padding"),
     [((5, 8, 2), 3, 1, 0), ((7, 4, 1), 5, 1, 2), ((9, 6, 3), 3, 2, 1), ((4, 5, 2), 2, 3, 1), ((3, 3, 1), 3, 1, 0)],
 )
 def test_a_convolution_is_what_its_definition_says(monkeypatch, block, inputs, kernel, stride, padding):
-    monkeypatch.setattr(correlation, "BLOCK", block)
+    monkeypatch.setattr(images, "BLOCK", block)
     rng = np.random.default_rng(1)
     layer = ConvolutionLayer(inputs, 4, kernel, stride=stride, padding=padding, dtype=np.float64, rng=rng)
     layer.bias[...] = rng.normal(size=4)
@@ -57,22 +57,25 @@ def test_gradients_do_not_depend_on_the_blocks(monkeypatch):
         return [input_error, *(parameter.gradient for parameter in layer.parameters)]
 
     expected = gradients()
-    monkeypatch.setattr(correlation, "BLOCK", 200)
+    monkeypatch.setattr(images, "BLOCK", 200)
     for gradient, one in zip(gradients(), expected, strict=True):
         np.testing.assert_allclose(gradient, one, atol=1e-12)
 
 
 @pytest.mark.parametrize("padding", [0, 2])
-def test_gradients_do_not_depend_on_how_windows_are_copied(padding):
-    rng = np.random.default_rng(3)
-    images = np.pad(rng.normal(size=(2, 7, 6, 5)), [(0, 0), (padding, padding), (padding, padding), (0, 0)])
-    width, height = (size - 2 for size in images.shape[1:3])
-    error = rng.normal(size=(4, width, height, 5))
-    whole, by_columns = (
-        correlation.Correlation(3, 2, 4, width, padding=padding, columns=columns).gradient(images, error)
-        for columns in (3, 1)
-    )
-    np.testing.assert_allclose(by_columns.reshape(18, 4), whole.reshape(18, 4), atol=1e-12)
+@pytest.mark.parametrize("block", [1, 100, images.BLOCK])
+def test_a_convolution_does_not_depend_on_how_windows_are_copied(monkeypatch, block, padding):
+    monkeypatch.setattr(images, "BLOCK", block)
+    layer, x = ConvolutionLayer((7, 6, 2), 4, 3, padding=padding), np.random.default_rng(3).random((5, 7, 6, 2))
+    results = []
+    for layer.forward.whole in (True, False):
+        for layer.backward.whole in (True, False):
+            error = layer.predict(x)
+            np.testing.assert_array_equal(layer.forward_propagate(x), error)
+            results.append((error, layer.input_error(error).copy()))
+    for one in results[1:]:
+        for given, expected in zip(one, results[0], strict=True):
+            np.testing.assert_allclose(given, expected, rtol=1e-4, atol=1e-5)
 
 
 def test_the_largest_of_each_square_comes_through():
@@ -117,7 +120,7 @@ def test_flattening_moves_nothing():
     flat = layer.forward_propagate(x)
     assert flat.shape == (5, 24)
     assert np.shares_memory(flat, x)
-    np.testing.assert_array_equal(layer.predict(x[0]), flat[0])
+    np.testing.assert_array_equal(layer.predict(x), flat)
     np.testing.assert_array_equal(layer.input_error(np.array(flat)), x)
 
 

@@ -64,14 +64,14 @@ def test_each_step_is_undone_bit_for_bit(edits: list[tuple[Edit, bool]]) -> None
         if editor.edits.steps > was:
             before.append(now)
         was = editor.edits.steps
-        assert agent.held
+        assert agent.paused
     while editor.edits.steps:
         editor.undo()
         assert both(agent) == before.pop()
     assert both(agent) == before.pop()
     assert not before
     assert editor.edits == NetworkEdits()
-    assert not agent.held
+    assert not agent.paused
 
 
 @given(st.lists(EDITS, min_size=1, max_size=25))
@@ -127,7 +127,7 @@ def test_what_cannot_be_edited_is_refused_and_nothing_changes(subtests: pytest.S
             with pytest.raises(ValueError, match=said):
                 editor.apply(edit)
             assert both(agent) == before
-            assert not agent.held
+            assert not agent.paused
 
 
 def test_a_weight_of_a_dueling_layer_is_refused_with_the_reason() -> None:

@@ -114,7 +114,7 @@ class TestLearningOthersEnvironments:
             for _ in range(40):
                 training.advance()
         first, second = (training.agent for training in runs)
-        assert first.train_count > 0
+        assert first.gradient_steps > 0
         assert np.array_equal(first.online.values, second.online.values)
         assert first.normalizer.to_json() == second.normalizer.to_json()
 
@@ -218,7 +218,7 @@ class TestOurLanderForOthers:
         training = Training(gym_config(LANDER).changed(num_envs=2, learning_starts=8, gradient_steps=1))
         for _ in range(20):
             training.advance()
-        assert training.agent.train_count > 0
+        assert training.agent.gradient_steps > 0
 
 
 class Calm:

@@ -74,7 +74,7 @@ def test_without_commands_it_is_the_training_it_would_be_headless(begin, tmp_pat
     answer = run.send(Save(tmp_path / "run"))
     assert of(Saved, answer) == [Saved(tmp_path / "run")]
     saved = resume_run(tmp_path / "run")
-    assert headless.agent.train_count > 0
+    assert headless.agent.gradient_steps > 0
     for network in ("online", "target"):
         assert np.array_equal(getattr(saved.agent, network).values, getattr(headless.agent, network).values)
     assert saved.best == headless.best

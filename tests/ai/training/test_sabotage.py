@@ -34,7 +34,7 @@ def test_each_is_a_configuration_that_learns(subtests: pytest.Subtests):
             training = Training(sabotaged(small, name), evaluate_every=0)
             for _ in range(120 if training.env.num_envs == 1 else 30):
                 training.advance()
-            assert training.agent.train_count > 0
+            assert training.agent.gradient_steps > 0
 
 
 def test_taken_away_twice_is_gone_no_more_than_once(subtests: pytest.Subtests):

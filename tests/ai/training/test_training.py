@@ -40,7 +40,7 @@ def test_schedules():
 def test_the_same_seed_and_configuration_give_the_same_network(changes):
     first, _ = advanced(SMALL.changed(**changes), 60)
     second, _ = advanced(SMALL.changed(**changes), 60)
-    assert first.agent.train_count > 0
+    assert first.agent.gradient_steps > 0
     assert np.array_equal(first.agent.online.values, second.agent.online.values)
     assert np.array_equal(first.agent.target.values, second.agent.target.values)
     assert not np.array_equal(first.agent.online.values, advanced(SMALL, 59)[0].agent.online.values)
@@ -57,7 +57,7 @@ def test_progress_counts_what_happened():
     training, progress = advanced(SMALL, 80)
     assert progress.decisions == 80 * 8
     assert progress.steps == 80 * 8 * 4
-    assert progress.updates == training.agent.train_count
+    assert progress.updates == training.agent.gradient_steps
     assert progress.episodes == training.episodes > 0
     assert 0.0 <= progress.success_rate <= 1.0
     assert progress.epsilon == pytest.approx(linear(1.0, 0.05, 79 * 8, SMALL.epsilon_decisions))
@@ -152,10 +152,10 @@ def test_a_run_is_kept_and_gone_on_with(tmp_path):
     assert resumed.best == training.best
     assert resumed.episodes == training.episodes
     assert resumed.seconds == 12.0
-    before = resumed.agent.train_count
+    before = resumed.agent.gradient_steps
     for _ in range(40):
         resumed.advance()
-    assert resumed.agent.train_count > before
+    assert resumed.agent.gradient_steps > before
 
 
 @pytest.mark.parametrize("damage", ["", "{", '{"seed": 0}', "[]"])

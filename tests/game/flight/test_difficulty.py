@@ -59,13 +59,13 @@ def test_less_gravity_falls_more_slowly():
 
 def test_all_of_it_is_no_change_bit_for_bit():
     plain, told = fly({}), fly({0: 1.0, 7: 1.0})
-    assert told.recording.gravity == []
+    assert told.recording.gravity == ()
     assert np.array_equal(plain.poses.now, told.poses.now)
 
 
 def test_a_flight_under_changing_gravity_is_flown_again_bit_for_bit():
     flight = fly(CHANGES)
-    assert flight.recording.gravity == list(CHANGES.items())
+    assert flight.recording.gravity == tuple(CHANGES.items())
     record = flight_file.from_text(flight_file.to_text(record_of(flight)))
     assert record.recording == flight.recording
     again = ReplayedFlight(record.recording)
@@ -96,9 +96,9 @@ def test_two_changes_between_two_steps_are_one():
     flight = Flight(3)
     for share in (0.6, 0.7, 1.4, 0.9):
         flight.set_gravity(share)
-    assert flight.recording.gravity == [(0, 0.9)]
+    assert flight.recording.gravity == ((0, 0.9),)
     flight.set_gravity(1.0)
-    assert flight.recording.gravity == []
+    assert flight.recording.gravity == ()
 
 
 def test_flights_kept_by_the_first_version_can_be_read():
@@ -106,7 +106,7 @@ def test_flights_kept_by_the_first_version_can_be_read():
     old = text.replace('"version": 2', '"version": 1').replace(' "gravity": [],\n', "").replace(' "pace": 1.0', "")
     old = old.replace('"gravity": 1.0,\n', "").replace('"file": "",\n', '"file": ""\n')
     record = flight_file.from_text(old)
-    assert (record.recording.gravity, record.entry.practice) == ([], False)
+    assert (record.recording.gravity, record.entry.practice) == ((), False)
 
 
 @pytest.mark.parametrize(
@@ -142,7 +142,7 @@ def test_gravity_is_changed_in_flight_at_once_and_told(open_game: Open, context:
     game.frames(2)
     game.key(pygame.K_UP)
     game.frames(20)
-    assert play.flight.recording.gravity == []
+    assert play.flight.recording.gravity == ()
     game.keys(pygame.K_c)
     scene = game.top
     assert isinstance(scene, ChoicesScene)
@@ -162,7 +162,7 @@ def test_gravity_is_changed_in_flight_at_once_and_told(open_game: Open, context:
     assert (entry.practice, entry.alone, entry.gravity) == (True, False, pytest.approx(0.8))
     context.settings.gravity = 1.2  # for the flights to come
     game.frames(5)
-    assert play.flight.recording.gravity == [(step, share)]
+    assert play.flight.recording.gravity == ((step, share),)
 
 
 def test_a_mission_keeps_its_own_gravity(open_game: Open, context: Context):
@@ -173,7 +173,7 @@ def test_a_mission_keeps_its_own_gravity(open_game: Open, context: Context):
     game.key(pygame.K_UP)
     game.frames(10)
     assert len(game.top.flight.recording.actions) > 5
-    assert game.top.flight.recording.gravity == []
+    assert game.top.flight.recording.gravity == ()
     assert not game.top.flown.difficulty.practice
 
 
@@ -186,7 +186,7 @@ def test_nothing_but_the_pace_can_be_chosen_in_a_course(open_game: Open):
 
 
 def test_a_recording_says_what_a_step_was_flown_under():
-    recording = Recording(1, "random", gravity=[(5, 0.8), (9, 1.0)])
+    recording = Recording(1, "random", gravity=((5, 0.8), (9, 1.0)))
     assert [recording.gravity_at(step) for step in (0, 4, 5, 8, 9, 99)] == [1.0, 1.0, 0.8, 0.8, 1.0, 1.0]
 
 

@@ -5,8 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ai.flights.easing import UNHURRIED, WIDER, Easing
-from ai.flights.stick import STEPS, full, pushed
+from ai.flights.recording import STEPS, UNHURRIED, WIDER, Easing, full
 from ai.lander.environment import Outcome
 from ai.lander.missions import MISSIONS
 from ai.lander.pilots import ScriptedPilot
@@ -15,6 +14,7 @@ from game.flight.flight import Flight, Recording, StickHolder
 from game.flight.flight_file import Record
 from game.flight.logbook import describe
 from game.flight.replay import FlightReplay, ReplayedFlight
+from game.input.analogue import pushed
 from tests.support.one_switch import one_switch
 
 
@@ -91,7 +91,7 @@ shares = st.tuples(st.integers(0, STEPS), st.integers(-STEPS, STEPS))
 @settings(max_examples=40, deadline=None)
 def test_any_shares_survive_their_file(steps: list, wider: bool, untimed: bool):
     recording = Recording(
-        4, "hard", 3, [action for action, _ in steps], [StickHolder.HUMAN] * len(steps),
+        4, "hard", 3, actions=[action for action, _ in steps], hands=[StickHolder.HUMAN] * len(steps),
         shares={number: share for number, (_, share) in enumerate(steps) if share}, easing=Easing(wider, untimed),
     )  # fmt: skip
     record = record_of(Flight(3))

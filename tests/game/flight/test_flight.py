@@ -1,5 +1,4 @@
 from pathlib import Path
-from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -320,7 +319,7 @@ def test_a_forecast_is_flown_under_the_gravity_of_the_flight(share: float):
 class TrainedAtSeven(ScriptedPilot):
     """Pilot of a network that was trained with seven steps to a decision, and counts its decisions."""
 
-    run_settings: ClassVar = {"frame_skip": 7}
+    run_settings: dict[str, object] = {"frame_skip": 7}  # noqa: RUF012
     asked = 0
 
     def act(self, observation, *, held=None):

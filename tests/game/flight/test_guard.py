@@ -7,8 +7,8 @@ import pytest
 
 from ai.agent.agent import DeepQAgent
 from ai.copilot.futures import KEYS, Lookahead, Push
-from ai.flights.starts import begun
-from ai.flights.stick import thrust
+from ai.flights.recording import thrust
+from ai.flights.verification import begun
 from ai.lander.environment import Outcome
 from ai.lander.moment import Moment
 from game.core import texts

@@ -304,7 +304,8 @@ def test_totals_are_of_what_was_flown():
 @settings(max_examples=50, deadline=None)
 def test_any_recording_survives_its_file(actions: list[int], seed: int):
     hands = [StickHolder.HUMAN if action % 2 else StickHolder.NETWORK for action in actions]
-    recording = Recording(seed, "hard", 3, actions, hands, leg=LegStart(7, 12.345, bare=True) if seed % 2 else None)
+    leg = LegStart(7, 12.345, bare=True) if seed % 2 else None
+    recording = Recording(seed, "hard", 3, leg=leg, actions=actions, hands=hands)
     record = Record(recording, replace(entry(), file="x"), (1.0, 2.0, -0.25))
     assert from_text(to_text(record)) == record
     assert json.loads(to_text(record))["version"] == 5

@@ -5,8 +5,9 @@ from collections.abc import Callable
 import pygame
 import pytest
 
-from ai.flights.stick import STEPS, Stick
+from ai.flights.recording import STEPS
 from game.core.settings import Settings
+from game.input.analogue import Stick
 from game.input.controls import Controls
 from game.play.flight_controls import FINE, FlightControls
 from game.scenes.play import PlayScene

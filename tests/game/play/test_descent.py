@@ -6,7 +6,7 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.flights.score import landing_score
+from ai.flights.verification import landing_score
 from ai.lander.descent import LegStart, refill
 from ai.lander.environment import Outcome
 from game.core import texts

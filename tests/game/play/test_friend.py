@@ -94,8 +94,9 @@ def test_a_text_is_dropped_too(open_game: Open, record: Record):
 @pytest.mark.parametrize(
     ("content", "why"),
     [
-        (b"tranq-000-over", texts.CODE_REFUSED["damaged"]),
-        (b"tranq-000", texts.CODE_REFUSED["cut"]),
+        (b"tranq2-000-over", texts.CODE_REFUSED["damaged"]),
+        (b"tranq2-000", texts.CODE_REFUSED["cut"]),
+        (b"tranq-000-over", texts.CODE_REFUSED["older"]),
         (b"hello", texts.CODE_REFUSED["none"]),
         (b"\xff\xfe", texts.CODE_REFUSED["none"]),
         (b"x" * 2_000_000, ""),
@@ -120,7 +121,7 @@ def test_a_folder_and_a_file_that_is_gone_are_refused(open_game: Open, tmp_path)
 
 def test_pasting_what_is_no_code_is_refused(open_game: Open, clipboard: list[str]):
     driver = open_game()
-    paste(driver, "tranq-000", clipboard)
+    paste(driver, "tranq2-000", clipboard)
     assert driver.said == texts.CODE_PASTE_REFUSED.format(reason=texts.CODE_REFUSED["cut"])
 
 

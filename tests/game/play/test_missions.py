@@ -5,7 +5,7 @@ import pygame
 import pytest
 
 from ai.agent.agent import DeepQAgent
-from ai.flights.score import landing_score
+from ai.flights.verification import landing_score
 from ai.lander.environment import PARAMS, Cause, Outcome
 from ai.lander.missions import MISSIONS
 from game.cockpit.hud import flight_readouts

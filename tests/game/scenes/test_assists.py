@@ -6,7 +6,7 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.flights.easing import UNHURRIED
+from ai.flights.recording import UNHURRIED
 from ai.lander.environment import Outcome
 from ai.lander.missions import MISSIONS
 from game.core import texts
