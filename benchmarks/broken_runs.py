@@ -32,9 +32,9 @@ from ai.explain.inspection import NetworkHealth
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.training.config import PRESETS, Config
 from ai.training.history import Point
+from ai.training.lander_session import live
 from ai.training.messages import ChangeSetting, NetworkState
 from ai.training.sabotage import SABOTAGES, sabotaged
-from ai.training.session import live
 
 COLUMNS: Final = (
     "seconds", "decisions", "episodes", "success", "mean_return", "loss", "mean_q", "epsilon", "stage",

@@ -59,13 +59,13 @@ from game.scenes import scene_of
 from game.scenes.ahead import load
 from game.scenes.chapter import ChapterScene
 from game.scenes.choices import ChoicesScene
-from game.scenes.dialog import ListDialog, NameDialog, QuestionDialog
 from game.scenes.digit_inside import DigitInsideScene
 from game.scenes.dream import DreamScene
 from game.scenes.error_screen import ErrorScene
 from game.scenes.lesson import LessonScene
-from game.scenes.menu import MenuScene
-from game.scenes.menu_background import LOADER
+from game.scenes.menus.background import LOADER
+from game.scenes.menus.dialogs import ListDialog, NameDialog, QuestionDialog
+from game.scenes.menus.menu import MenuScene
 from game.scenes.pause import PauseScene
 from game.scenes.physics import PhysicsScene
 from game.scenes.physics_step import PhysicsStepScene

@@ -2,10 +2,18 @@
 
     python -m benchmarks.guardian [--flights 20] [--dials 0.04 0.27 1]     hands of all families, alone and guarded
     python -m benchmarks.guardian --costs [--rounds 100]                   how long futures take
+    python -m benchmarks.guardian --live [--flights 4]                     decisions of flights in real time
 
 With the dial at 0.04, 0.27 and 1, there must be a landing after 1, 4 and 12 decisions of an action. Starts are fresh:
 no network was trained with them. The costs are of moments of flights by random keys, with the network that comes with
 the game; processor time is that of this process alone, so that others lengthen it little.
+
+Live flights take as long as in the game, with futures from a process of their own, and a machine that does nothing
+else is needed for figures that say something. Of the decisions, those are *late* in which the plan was flown on only
+because what was asked for was not flown ahead in time, and those *wait* in which a new wish was not, so that the one
+before counted once more. *Known* is how many of the six actions were flown ahead. The *delay* is from a change of the
+stick to the decision that goes by it, *first* and *all* how old answers are when they are there. The window looks 60
+times a second.
 """
 
 import os
@@ -15,21 +23,31 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is imported, 
 import argparse
 import platform
 import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from itertools import product
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ai.agent.agent import DeepQAgent
 from ai.copilot import futures
 from ai.copilot.copilot import Mode
-from ai.copilot.futures import KEYS, Lookahead
+from ai.copilot.futures import DECISION_STEPS, KEYS, Future, Lookahead, Push
 from ai.copilot.guardian import decisions_of
 from ai.copilot.measurement import ALONE, PILOTS, rows
+from ai.flights.recording import STEPS, Shares
 from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.moment import Moment
+from engine import DT
+from game.flight.flight import Flight
+from game.flight.futures import FuturesProcess
+from game.flight.guard import Guard
 
 MODEL = Path(__file__).parent.parent / "models" / "lander" / "modern"
 BATCHES = (1, 6, 12, 18, 42)
+LIVE_STEPS = 480  # of a flight in real time at most: hands that crash are kept in the air for long
 
 
 def moments(rounds: int) -> list[Moment]:
@@ -52,7 +70,6 @@ def costs(agent: DeepQAgent, rounds: int) -> None:
     """Print how long batches of futures take, in plain floats one after another, and in arrays."""
     print(f"{platform.processor() or platform.machine()}, Python {platform.python_version()}, NumPy {np.__version__}")
     print("| | median | 99% within | processor, median | 99% within |\n|---|---|---|---|---|")
-    found = moments(rounds)
     found = moments(rounds)
     usual = futures._size
     for name, size_of, together in (
@@ -78,6 +95,98 @@ def costs(agent: DeepQAgent, rounds: int) -> None:
     futures._size = usual
 
 
+class Watched(FuturesProcess):
+    """Futures' process that notes how old its answers are when they are there."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.ages: list[list[float]] = []  # of the answers to each request, in seconds
+        self._asked_at = 0.0
+
+    def ask(self, *asked: Any) -> None:
+        """Ask for the futures of a moment."""
+        self._asked_at = time.perf_counter()
+        self.ages.append([])
+        super().ask(*asked)
+
+    def hint(self, asked: Push) -> None:
+        """Say what the stick asks for now."""
+        super().hint(asked)
+        self.known()
+
+    def known(self) -> Mapping[Push, Future]:
+        """Return what is known by now."""
+        known = super().known()
+        if self.ages:
+            self.ages[-1] += [time.perf_counter() - self._asked_at] * (len(known) - len(self.ages[-1]))
+        return known
+
+
+@dataclass
+class Live:
+    """What came of the decisions of flights in real time."""
+
+    decisions: int = 0
+    late: int = 0
+    waited: int = 0
+    known: list[int] = field(default_factory=list)  # futures of each decision
+    delays: list[float] = field(default_factory=list)  # seconds from a change of the stick to its decision
+
+    def fly(self, flight: Flight, guard: Guard, rng: np.random.Generator, hands: str, period: int, ready: int) -> None:
+        """Fly with random keys, or a random stick, changed every `period` steps, once it has hung for `ready` steps."""
+        asked: tuple[int, Shares | None] = 0, None
+        changed: int | None = None
+        due = time.perf_counter()
+        for step in range(-ready, LIVE_STEPS):
+            due += DT
+            time.sleep(max(0.0, due - time.perf_counter()))
+            if step < 0:
+                guard.hang(0)
+                continue
+            if step % period == 0:
+                asked, changed = _stick(rng, hands), step
+            flight.step(*asked)
+            if flight.over:
+                break
+            if step % DECISION_STEPS == 0 and flight.decision and flight.decision.known:
+                self.known.append(len(flight.decision.known[0]))
+                if changed is not None and not guard.waits:
+                    self.delays.append((step - changed) * DT)
+                    changed = None
+        self.decisions += guard.decisions
+        self.late += guard.late
+        self.waited += guard.waited
+
+
+def _stick(rng: np.random.Generator, hands: str) -> tuple[int, Shares | None]:
+    """Return a random key, or a random position of the stick."""
+    if hands == "keys":
+        return int(rng.integers(6)), None
+    main, side = int(rng.integers(STEPS + 1)), int(rng.integers(-STEPS, STEPS + 1))
+    return Push.of(main / STEPS, side / STEPS).action, (main, side)
+
+
+def live(agent: DeepQAgent, dials: list[float], flights: int, seed: int) -> None:
+    """Print how the decisions of flights in real time fare, by random keys and by a random stick."""
+    print("| hands, changed each | ahead | decisions | late | wait | known | delay, 99% | first, 99% | all, 99% |")
+    print("|---|---|---|---|---|---|---|---|---|")
+    for (hands, period), dial in product((("keys", 61), ("keys", 13), ("stick", 61), ("stick", 13)), dials):
+        rng, ahead, found = np.random.default_rng(seed), Watched(), Live()
+        for number in range(flights):
+            flight = Flight(int(rng.integers(1 << 30)), agent)
+            flight.guard = Guard(flight, ahead)
+            flight.help(dial, "guardian")
+            found.fly(flight, flight.guard, rng, hands, period, ready=30 if number else 120)
+        ahead.close()
+        first, every = [ages[0] for ages in ahead.ages if ages], [age for ages in ahead.ages for age in ages]
+        times = [f"{1e3 * np.median(each):.0f}, {1e3 * np.quantile(each, 0.99):.0f} ms"
+                 for each in (found.delays, first, every)]  # fmt: skip
+        shares = [f"{each / found.decisions:.1%}" for each in (found.late, found.waited)]
+        told = [f"{hands}, {period * DT:.1f} s", decisions_of(dial), found.decisions, *shares,
+                f"{np.mean(found.known):.1f}", *times]  # fmt: skip
+        print("| " + " | ".join(map(str, told)) + " |", flush=True)
+
+
 def promises(agent: DeepQAgent, names: list[str], dials: list[float], flights: int, seed: int) -> None:
     """Print how many flights of each family land, alone and guarded, and what that takes."""
     helps = [(ALONE, 0.0), *((str(Mode.GUARDIAN), dial) for dial in dials)]
@@ -86,17 +195,18 @@ def promises(agent: DeepQAgent, names: list[str], dials: list[float], flights: i
     )
     (network,) = rows(agent, agent, "one_pad", ["good"], helps[:1], flights, seed)
     print(f"| the network alone | | {network.success:.1%} | {network.crash:.1%} | | | |")
-    for name in names:
-        for row in rows(agent, agent, "one_pad", [name], helps, flights, seed):
+    for help_ in helps:  # all hands at once: futures of many flights take little longer than those of a few
+        for row in rows(agent, agent, "one_pad", names, [help_], flights, seed):
             dial = "" if row.mode == ALONE else decisions_of(row.assist)
-            print(f"| {name} | {dial} | {row.success:.1%} | {row.crash:.1%} | {row.overridden:.1%} | {row.held:.1%} |"
-                  f" {row.lost_held:.1%} |", flush=True)  # fmt: skip
+            print(f"| {row.pilot} | {dial} | {row.success:.1%} | {row.crash:.1%} | {row.overridden:.1%} |"
+                  f" {row.held:.1%} | {row.lost_held:.1%} |", flush=True)  # fmt: skip
 
 
 def main() -> None:
     """Measure what is asked for."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--costs", action="store_true", help="measure how long futures take")
+    parser.add_argument("--live", action="store_true", help="fly in real time, with futures from another process")
     parser.add_argument("--rounds", type=int, default=100, help="moments from which futures are flown")
     parser.add_argument("--flights", type=int, default=20, help="of each family with each dial")
     parser.add_argument("--hands", nargs="*", default=list(PILOTS), choices=list(PILOTS), metavar="NAME")
@@ -106,6 +216,8 @@ def main() -> None:
     agent = DeepQAgent.load(MODEL)
     if arguments.costs:
         costs(agent, arguments.rounds)
+    elif arguments.live:
+        live(agent, arguments.dials, arguments.flights, arguments.seed)
     else:
         promises(agent, arguments.hands, arguments.dials, arguments.flights, arguments.seed)
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import argparse
 
 from ai.training.history import Checkpoint
-from ai.training.session import live
+from ai.training.lander_session import live
 from game.learn.pay import DECISIONS, FLIGHTS, PAYS, Flown, Trial, config_of
 
 

@@ -53,11 +53,10 @@ def swept(plan: Plan, folder: Path, workers: int) -> tuple[Study, float, float, 
     """Run a study; return it, the seconds of Ray's start, of all trials, and the driver's processor seconds of them."""
     study, began = Study.create(folder, plan), time.monotonic()
     with joined(None, workers):
-        from ai.sweep.table import Table
-        from ai.sweep.tuning import run_trials
+        from ai.sweep.driver import Driver
 
         started, spent = time.monotonic(), time.process_time()
-        run_trials(study, Table(study, workers), [])
+        Driver(study, workers, print, lambda: None).run([])
         return study, started - began, time.monotonic() - started, time.process_time() - spent
 
 

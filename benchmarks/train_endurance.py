@@ -113,10 +113,10 @@ def kill(game: Game, rounds: int, rng: np.random.Generator) -> list[str]:
             problems.append(f"round {number}: nobody noticed")
         if not lander_run.problem:
             problems.append(f"round {number}: no reason was given")
-        if lander_run.library.rescued() and rng.random() < 0.5:
-            lander_run.save(lander_run.library.free_name(f"rescued {number}"))
+        if lander_run.collection.rescued() and rng.random() < 0.5:
+            lander_run.save(lander_run.collection.free_name(f"rescued {number}"))
     game.leave()
-    runs = lander_run.library.runs()
+    runs = lander_run.collection.items()
     for run in runs:
         try:
             resume_run(run.folder)

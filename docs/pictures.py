@@ -36,7 +36,7 @@ from game.scenes import scene_of
 from game.scenes.chapter import ChapterScene
 from game.scenes.digits import DigitsScene
 from game.scenes.lesson import LessonScene
-from game.scenes.menu import MenuScene
+from game.scenes.menus.menu import MenuScene
 from game.scenes.physics import PhysicsScene
 from game.scenes.play import PlayScene
 from game.scenes.train import TrainScene

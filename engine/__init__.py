@@ -1,7 +1,7 @@
 """Two-dimensional rigid bodies on NumPy, in batches of independent worlds.
 
-Reading order: `vector`, `shapes`, `state`, `integrate`, `collide`, `broad_phase`, `contact_set`, `solver`, `rest`,
-`contacts`, `world`, `body`, `sprite`.
+Reading order: `vector`, `state`, `shapes`, `integrate`, `broad_phase`, `collide`, `contacts`, `solver`, `rest`,
+`body`, `world`, `sprite`.
 
     from engine import Circle, Polygon, World
 
@@ -11,15 +11,12 @@ Reading order: `vector`, `shapes`, `state`, `integrate`, `collide`, `broad_phase
     for _ in range(60):
         world.step()
     print(ball.position)        # (batch, 2)
-
-`free_flight` flies one body of one world in plain floats, as long as it touches nothing.
 """
 
 from engine.body import Body
 from engine.collide import Manifold, collide
-from engine.free_flight import FreeFlight
 from engine.shapes import Circle, Polygon, Shape
 from engine.sprite import Sprite
-from engine.world import DT, World
+from engine.world import DT, World, memory_of_worlds
 
-__all__ = ["DT", "Body", "Circle", "FreeFlight", "Manifold", "Polygon", "Shape", "Sprite", "World", "collide"]
+__all__ = ["DT", "Body", "Circle", "Manifold", "Polygon", "Shape", "Sprite", "World", "collide", "memory_of_worlds"]

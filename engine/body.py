@@ -2,17 +2,33 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeVar
+from typing import Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from engine.state import BodyParams, BodyState
 from engine.vector import Array, Bools, cross, finite
 
-if TYPE_CHECKING:
-    from engine.world import World
-
 T = TypeVar("T", bound=np.generic)
+
+
+class Bodies(Protocol):
+    """What a handle needs of its world."""
+
+    batch: int
+    state: BodyState
+    params: BodyParams
+
+    @property
+    def asleep(self) -> Bools:
+        """Whether each body sleeps, (batch, bodies)."""
+
+    def wake(self, chosen: Bools) -> None:
+        """Wake the chosen bodies (batch, bodies), and all that they lie with."""
+
+    def moved(self, body: int, worlds: Bools | None) -> None:
+        """Take note that a body was put elsewhere, in these worlds or in all."""
 
 
 class Body:
@@ -22,7 +38,7 @@ class Body:
     property, or use `set` for some of the worlds, so that cached rotations, boxes and contacts are updated.
     """
 
-    def __init__(self, world: World, index: int) -> None:
+    def __init__(self, world: Bodies, index: int) -> None:
         self.world = world
         self.index = index
 
@@ -78,11 +94,9 @@ class Body:
 
     def wake(self, mask: Bools | None = None) -> None:
         """Wake the body, and all that it lies with, in the worlds of `mask` (batch,), or in all."""
-        rest = self.world.detector.rest
-        if rest is not None:
-            chosen = np.zeros_like(rest.asleep)
-            chosen[:, self.index] = True if mask is None else mask
-            rest.wake(chosen)
+        chosen = np.zeros(self.world.state.active.shape, dtype=bool)
+        chosen[:, self.index] = True if mask is None else mask
+        self.world.wake(chosen)
 
     @property
     def static(self) -> bool:
@@ -104,11 +118,14 @@ class Body:
         push = np.broadcast_to(finite("force", force), (self.world.batch, 2))
         if point is not None:
             self.apply_torque(cross(finite("point", point) - self.position, push))
-        self.world.state.force[:, self.index, :2] += push
+        if not self.static:
+            self.world.state.force[:, self.index, :2] += push
 
     def apply_torque(self, torque: object) -> None:
         """Add a torque, one or (batch,), in newton metres for the next step."""
-        self.world.state.force[:, self.index, 2] += finite("torque", torque)
+        turn = finite("torque", torque)
+        if not self.static:
+            self.world.state.force[:, self.index, 2] += turn
 
     def set(
         self,
@@ -137,7 +154,7 @@ class Body:
         for table, part, value in given:
             table[rows, self.index, part] = value
         if self.static or position is not None or angle is not None:
-            self.world.moved(self, worlds)
+            self.world.moved(self.index, worlds)
 
     def _inverse(self, row: int) -> float:
         value = float(self.world.params.inverse_mass[self.index, row])

@@ -1,154 +1,119 @@
-"""Broad phase: find the pairs of shapes whose bounding boxes overlap, the only ones worth an exact test."""
+"""Broad phase: find the pairs of shapes whose bounding boxes overlap, the only ones worth an exact test.
+
+What moves is boxed by a circle, which needs no trigonometry; what is fixed by its corners, once. For up to some
+hundreds of bodies, comparing all moving boxes with all boxes in one go is faster in NumPy than any tree. Bodies are
+compared first, then the shapes of bodies that are near.
+
+A box is four numbers: low x, low y, high x, high y. Arrays of boxes lead with these four, and end with the batch: NumPy
+is quickest along the last axis, and that is the longest one.
+"""
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 
-from engine.state import BodyParams, BodyState, ShapeTable, span
-from engine.vector import Array, Bools, Ints, every
-
-_NONE: Ints = np.zeros(0, dtype=np.intp)
-_SLACK = 1e-6  # metres, far more than rounding makes of a box
-_PAUSE = 8
+from engine.shapes import ShapeTable
+from engine.state import ALL, BodyParams, BodyState, Span, span
+from engine.vector import Array, Bools, Ints
 
 
 class BroadPhase:
-    """Table of all pairs of shapes that may ever meet, and search for those whose boxes overlap now.
+    """Table of all `pairs` of shapes that may ever meet, (pairs, 2), and the search for those that are near now.
 
-    Bodies that move are boxed by the circle around their centre of mass, which needs no trigonometry; fixed
-    ones by their corners, once. For up to some hundreds of bodies, comparing all moving boxes with all boxes
-    in one go is faster in NumPy than any tree. Shapes of near bodies are then compared in the same way.
+    Of a polygon and a circle, the polygon comes first.
     """
 
     def __init__(self, params: BodyParams, shapes: ShapeTable, margin: float) -> None:
         self._shapes = shapes
         self._moving = span(params.dynamic)
-        self._is_fixed = ~params.dynamic
-        self._several = len(shapes) > len(params.group)
+        self._fixed = ~params.dynamic
         self._shape_reach = shapes.reach + margin
+        self._reach = np.zeros(len(params.group))  # of bodies, from the centre of mass
         far = np.sqrt(shapes.centre[:, 0] ** 2 + shapes.centre[:, 1] ** 2) + self._shape_reach
-        self._reach = np.zeros(len(params.group))
         np.maximum.at(self._reach, shapes.body, far)
-        self.version = 0  # of where fixed bodies are: one more each time any is put elsewhere
-        self._boxes: Array | None = None  # (4, batch, bodies): low x and y, high x and y
-        self._stale = self._is_fixed.copy()  # fixed bodies (bodies,) whose boxes are to be computed anew
-        self._clear: tuple[Array, Array] | None = None  # where nothing was near, and how far all may go from there
-        self._pause = 0  # searches to wait before that is measured again, if it was of no use
-        self._shape_boxes = np.zeros((4, 0, 0))  # the same of shapes; only those of fixed bodies are filled
+        self._boxes: Array | None = None  # (4, bodies, batch)
+        self._shape_boxes = np.zeros((4, 0, 0))  # (4, shapes, batch); only those of fixed bodies are filled
+        self._stale = self._fixed.copy()  # fixed bodies (bodies,) whose boxes are to be computed anew
         self._movers_first, self._first, self._count = _meeting_pairs(params, shapes)
         a, b = self._movers_first.T
         turned = shapes.is_circle[a] & ~shapes.is_circle[b]
         self.pairs = np.where(turned[:, None], self._movers_first[:, ::-1], self._movers_first)
 
-    def forget_boxes(self, bodies: int | slice = slice(None)) -> None:
-        """Discard the cached boxes of `bodies`: those that forces do not move were put elsewhere, or will be."""
-        self._stale[bodies] = self._is_fixed[bodies]
-        self._clear = None
-        self.version += 1
+    def forget_boxes(self, bodies: Span = ALL) -> None:
+        """Discard the kept boxes of fixed bodies, which were put elsewhere."""
+        self._stale[bodies] = self._fixed[bodies]
 
     def near(self, state: BodyState, awake: Bools | None = None) -> tuple[Ints, Ints]:
         """Return world and row of `pairs`, each (n,), where boxes overlap; sorted by world, then by row.
 
         Given which bodies are `awake`, (batch, bodies), pairs without any are left out.
         """
-        if self._all_clear(state):
-            return _NONE, _NONE
-        fixed = not self._stale.any()
-        boxes = self._boxes_now(state)
-        worlds, active = None, state.active
+        boxes = self._body_boxes(state)
+        overlap = _overlap(boxes[:, self._moving, None], boxes[:, None])  # (moving, bodies, batch)
+        overlap &= self._count[..., None] > 0
+        if not state.active.all():
+            overlap &= (state.active[:, self._moving, None] & state.active[:, None]).transpose(1, 2, 0)
         if awake is not None:
-            worlds = np.flatnonzero(awake.any(axis=1))
-            boxes, active, awake = boxes[:, worlds], active[worlds], awake[worlds]
-        low_x, low_y, high_x, high_y = boxes[:, :, None, :]
-        my_low_x, my_low_y, my_high_x, my_high_y = boxes[:, :, self._moving, None]
-        near: Bools = (my_low_y <= high_y) & (self._count > 0)
-        near &= low_y <= my_high_y
-        near &= my_low_x <= high_x
-        near &= low_x <= my_high_x
-        if not every(active):
-            near &= active[:, self._moving, None] & active[:, None, :]
-        if awake is not None:
-            near &= awake[:, self._moving, None] | awake[:, None, :]
-        world, mover, other = near.nonzero()
-        pair = self._first[mover, other]
-        if worlds is not None:
-            world = worlds[world]
-        if fixed and worlds is None and not len(world):
-            self._pause -= 1
-            if self._pause < 0:
-                self._measure_clearance(state, boxes)
-        if not self._several or not len(world):
-            return world, pair
+            overlap &= (awake[:, self._moving, None] | awake[:, None]).transpose(1, 2, 0)
+        mover, other, world = overlap.nonzero()
+        if not len(world):
+            return world, world
+        order = np.argsort(world, kind="stable")
+        mover, other, world = mover[order], other[order], world[order]
+        # From pairs of bodies to the pairs of their shapes, which stand one after another in `pairs`.
         count = self._count[mover, other]
-        world, first = world.repeat(count), (pair - count.cumsum() + count).repeat(count)
-        pair = first + np.arange(len(first))
-        kept = self._shapes_near(state, world, pair)
-        return world[kept], pair[kept]
+        last = count.cumsum()
+        pair = np.arange(last[-1]) + (self._first[mover, other] - last + count).repeat(count)
+        world = world.repeat(count)
+        near = self._shapes_near(state, world, pair)
+        return world[near], pair[near]
 
-    def _all_clear(self, state: BodyState) -> bool:
-        """Whether no body has gone so far since nothing was near that it could have met another (Verlet, 1967)."""
-        if self._clear is None:
-            return False
-        place, room = self._clear
-        clear = every(np.abs(state.pose[:, self._moving, :2] - place) < room)
-        if clear:
-            self._pause = 0
-        else:
-            self._clear = None
-        return clear
-
-    def _measure_clearance(self, state: BodyState, boxes: Array) -> None:
-        """Note how far all bodies may go, (batch, 1, 1), before boxes can overlap: the least gap, or half of it."""
-        mine = boxes[:, :, self._moving, None]
-        others = boxes[:, :, None, :]
-        gaps = np.maximum(mine[:2] - others[2:], others[:2] - mine[2:]).max(axis=0)
-        gaps[:, self._count == 0] = np.inf
-        each = 1.0 if len(self._first) == 1 else 0.5
-        room = gaps.reshape(len(gaps), -1).min(axis=1, initial=np.inf) * each - _SLACK
-        self._clear = state.pose[:, self._moving, :2].copy(), room[:, None, None]
-        self._pause = _PAUSE
-
-    def _boxes_now(self, state: BodyState) -> Array:
+    def _body_boxes(self, state: BodyState) -> Array:
         if self._boxes is None:
-            self._boxes = np.empty((4, *state.active.shape))
-            self._shape_boxes = np.zeros((4, len(state.pose), len(self._shapes)))
+            batch, bodies = state.active.shape
+            self._boxes, self._shape_boxes = np.empty((4, bodies, batch)), np.zeros((4, len(self._shapes), batch))
         boxes = self._boxes
         if self._stale.any():
-            self._box(state, boxes, np.flatnonzero(self._stale))
+            self._box_fixed(state, boxes, np.flatnonzero(self._stale))
             # A lift has other boxes in the next step.
-            self._stale = self._is_fixed & state.velocity.any(axis=(0, 2))
-        centre, reach = state.pose[:, self._moving, :2], self._reach[self._moving]
-        for axis in (0, 1):
-            boxes[axis][:, self._moving] = centre[..., axis] - reach
-            boxes[2 + axis][:, self._moving] = centre[..., axis] + reach
+            self._stale = self._fixed & state.velocity.any(axis=(0, 2))
+        centre, reach = state.pose[:, self._moving, :2].transpose(2, 1, 0), self._reach[self._moving, None]
+        boxes[:2, self._moving], boxes[2:, self._moving] = centre - reach, centre + reach
         return boxes
 
-    def _box(self, state: BodyState, boxes: Array, bodies: Ints) -> None:
+    def _box_fixed(self, state: BodyState, boxes: Array, bodies: Ints) -> None:
         """Box some fixed bodies, in ascending order, and their shapes."""
         shapes = np.flatnonzero(np.isin(self._shapes.body, bodies))
         low, high = self._shapes.bounds(state, shapes)
-        self._shape_boxes[:2, :, shapes] = np.moveaxis(low, 2, 0)
-        self._shape_boxes[2:, :, shapes] = np.moveaxis(high, 2, 0)
+        self._shape_boxes[:2, shapes], self._shape_boxes[2:, shapes] = low.T, high.T
         first = self._shapes.body[shapes].searchsorted(bodies)  # a body's shapes stand side by side
-        boxes[:2, :, bodies] = np.minimum.reduceat(self._shape_boxes[:2, :, shapes], first, axis=2)
-        boxes[2:, :, bodies] = np.maximum.reduceat(self._shape_boxes[2:, :, shapes], first, axis=2)
+        boxes[:2, bodies] = np.minimum.reduceat(low.T, first, axis=1)
+        boxes[2:, bodies] = np.maximum.reduceat(high.T, first, axis=1)
 
     def _shapes_near(self, state: BodyState, world: Ints, pair: Ints) -> Bools:
-        """Whether the boxes of some pairs of shapes overlap, (n,)."""
+        """Whether the boxes of pairs of shapes overlap, (n,)."""
         mine, other = self._movers_first[pair].T
-        boxes = self._shape_boxes[:, world, other]
+        theirs = self._shape_boxes[:, other, world]
         loose = np.flatnonzero(~self._shapes.fixed[other])
         if len(loose):
-            centre = self._shapes.centres(state, world[loose], other[loose]).T
-            reach = self._shape_reach[other[loose]]
-            boxes[:2, loose], boxes[2:, loose] = centre - reach, centre + reach
-        x, y = self._shapes.centres(state, world, mine).T
-        reach = self._shape_reach[mine]
-        near: Bools = y - reach <= boxes[3]
-        near &= boxes[1] <= y + reach
-        near &= x - reach <= boxes[2]
-        near &= boxes[0] <= x + reach
-        return near
+            theirs[:, loose] = self._box_moving(state, world[loose], other[loose])
+        return _overlap(self._box_moving(state, world, mine), theirs)
+
+    def _box_moving(self, state: BodyState, world: Ints, shape: Ints) -> Array:
+        """Boxes (4, n) around the circles around moving shapes."""
+        centre, reach = self._shapes.centres(state, world, shape).T, self._shape_reach[shape]
+        return np.concatenate([centre - reach, centre + reach])
+
+
+def _overlap(a: Array, b: Array) -> Bools:
+    """Whether boxes overlap; their arrays are broadcast against each other."""
+    overlap: Bools = a[1] <= b[3]
+    for low, high in ((b[1], a[3]), (a[0], b[2]), (b[0], a[2])):
+        if overlap.any():
+            overlap &= low <= high
+    return overlap
 
 
 def _meeting_pairs(params: BodyParams, shapes: ShapeTable) -> tuple[Ints, Ints, Ints]:
@@ -159,16 +124,13 @@ def _meeting_pairs(params: BodyParams, shapes: ShapeTable) -> tuple[Ints, Ints, 
     """
     bodies = np.arange(len(params.group))
     moving = bodies[span(params.dynamic)]
-    met = params.dynamic[moving, None] & ((bodies > moving[:, None]) | ~params.dynamic)
-    met &= (params.group == 0) | (params.group != params.group[moving, None])
-    sizes = np.bincount(shapes.body, minlength=len(bodies))
-    count = np.where(met, sizes[moving, None] * sizes, 0)
-    first = (count.cumsum() - count.ravel()).reshape(count.shape)
-    starts = sizes.cumsum() - sizes
-    row, other = count.nonzero()
-    mover = moving[row]
-    repeats = count[row, other]
-    within = np.arange(repeats.sum()) - first[row, other].repeat(repeats)
-    a = starts[mover].repeat(repeats) + within // sizes[other].repeat(repeats)
-    b = starts[other].repeat(repeats) + within % sizes[other].repeat(repeats)
-    return np.stack([a, b], axis=1), first, count
+    meet = (bodies > moving[:, None]) | ~params.dynamic
+    meet &= (params.group == 0) | (params.group != params.group[moving, None])
+    shapes_of = [np.flatnonzero(shapes.body == body).tolist() for body in bodies]
+    first, count = np.zeros((2, *meet.shape), dtype=np.intp)
+    pairs: list[tuple[int, int]] = []
+    for row, other in np.argwhere(meet).tolist():
+        mine, theirs = shapes_of[moving[row]], shapes_of[other]
+        first[row, other], count[row, other] = len(pairs), len(mine) * len(theirs)
+        pairs += product(mine, theirs)
+    return np.array(pairs, dtype=np.intp).reshape(-1, 2), first, count

@@ -1,30 +1,29 @@
-"""Separating Axis Theorem: pure functions from two shapes and their poses to a contact manifold.
+"""Separating Axis Theorem: pure functions from pairs of shapes and their poses to contact manifolds.
 
-Two convex shapes are apart if and only if some axis parts their shadows, and for polygons it is enough to
-try the face normals. Of all axes, the one with the least overlap gives the contact normal; the other shape's
-most opposed face, clipped to the sides of the reference face, gives up to two contact points.
+Two convex shapes are apart if and only if some axis parts their shadows, and for polygons it is enough to try the
+normals of their faces (edges). Of all axes, the one with the least overlap gives the contact normal. The face it
+belongs to is the reference; the other shape's most opposed face, the incident one, clipped to the sides of the
+reference, gives up to two contact points.
 
-              incident
+           B   incident
            q1 ________ q0            normal: from A to B
      _______|________|_______        depth: how far a point lies below the reference face
-            x        x   reference   point: half-way between the two surfaces
+            x        x   reference   point x: half-way between the two surfaces
+           A
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
-from engine.shapes import Circle, Polygon, Shape
-from engine.vector import Array, Bools, Ints, dot, length, rotate
+from engine.shapes import Circle, PlacedPolygons, Polygon, Shape, ShapeTable
+from engine.state import BodyState
+from engine.vector import Array, Bools, Ints, dot, length
 
-# Two parallel faces are equally good references; a small bias keeps the choice from flickering.
+# Two parallel faces are equally good references; a small bias keeps the choice from flickering; metres.
 REFERENCE_BIAS = 5e-4
-# Pairs whose corners are all compared at once: as many as fit the cache.
-_BLOCK = 512
-_PARTS = ("normal", "points", "depth", "valid", "feature")
 
 
 @dataclass
@@ -37,91 +36,69 @@ class Manifold:
     valid: Bools  # (n, 2) which points are there
     feature: Ints  # (n, 2) the faces that made each point: the same number, the same contact as a step before
 
-    @classmethod
-    def empty(cls, count: int) -> Manifold:
-        """Return the manifold of `count` pairs that do not touch."""
-        return cls(
-            np.zeros((count, 2)),
-            np.zeros((count, 2, 2)),
-            np.zeros((count, 2)),
-            np.zeros((count, 2), dtype=bool),
-            np.zeros((count, 2), dtype=np.intp),
-        )
-
-    def rows(self, rows: Ints) -> Manifold:
-        """Return the manifold of these pairs alone."""
-        return Manifold(self.normal[rows], self.points[rows], self.depth[rows], self.valid[rows], self.feature[rows])
-
-    @classmethod
-    def join(cls, first: Manifold, second: Manifold) -> Manifold:
-        """Return the pairs of two manifolds, one after the other."""
-        return cls(*(np.concatenate([getattr(first, name), getattr(second, name)]) for name in _PARTS))
-
-    def put(self, rows: Ints, other: Manifold) -> None:
-        """Overwrite these pairs with those of `other`."""
-        for name in _PARTS:
-            getattr(self, name)[rows] = getattr(other, name)
-
-
-class PlacedPolygons(NamedTuple):
-    """n polygons in the world: where each edge starts and ends, and its outward normal, (n, corners, 2)."""
-
-    start: Array
-    end: Array
-    normal: Array
-
 
 def collide(a: Shape, pose_a: Array, b: Shape, pose_b: Array, margin: float = 0.0) -> Manifold:
     """Contacts of shape `a` with shape `b`; poses are (x, y, angle), (3,) or (n, 3).
 
     Points that are up to `margin` metres apart count as touching, with a depth below 0.
     """
-    poses = (np.atleast_2d(np.asarray(pose, dtype=float)) for pose in (pose_a, pose_b))
-    pose_a, pose_b = np.broadcast_arrays(*poses)
-    if isinstance(a, Circle) and isinstance(b, Circle):
-        return collide_circles(
-            _centre(a, pose_a),
-            np.full(len(pose_a), a.radius),
-            _centre(b, pose_b),
-            np.full(len(pose_b), b.radius),
-            margin,
-        )
-    if isinstance(a, Polygon) and isinstance(b, Circle):
-        return collide_polygon_circle(_place(a, pose_a), _centre(b, pose_b), np.full(len(pose_b), b.radius), margin)
     if isinstance(a, Circle) and isinstance(b, Polygon):
         turned = collide(b, pose_b, a, pose_a, margin)
         turned.normal *= -1
         return turned
-    assert isinstance(a, Polygon)
-    assert isinstance(b, Polygon)
-    return collide_polygons(_place(a, pose_a), _place(b, pose_b), margin)
+    poses = np.broadcast_arrays(*(np.atleast_2d(np.asarray(pose, dtype=float)) for pose in (pose_a, pose_b)))
+    state = BodyState.at_rest(np.stack(poses, axis=1))
+    table, world = ShapeTable([a, b], [0, 1], np.ones(2, dtype=bool)), np.arange(len(state.pose))
+    return collide_pairs(table, state, world, np.tile([0, 1], (len(world), 1)), margin)
 
 
-def collide_polygons(a: PlacedPolygons, b: PlacedPolygons, margin: float) -> Manifold:
-    """Contacts of n pairs of convex polygons."""
-    gap_a, face_a = deepest_face(a, b.start)
-    gap_b, face_b = deepest_face(b, a.start)
-    touching = np.maximum(gap_a, gap_b) <= margin
+def collide_pairs(shapes: ShapeTable, state: BodyState, world: Ints, pair: Ints, margin: float) -> Manifold:
+    """Contacts of pairs of shapes, `pair` (n, 2), in their worlds (n,), whatever kinds of shape they are.
+
+    Of a polygon and a circle, the polygon has to come first.
+    """
+    circles = shapes.is_circle[pair].sum(axis=1)
+    kinds, parts = [np.flatnonzero(circles == kind) for kind in (0, 1, 2)], []
+    for kind, rows in enumerate(kinds):
+        if not len(rows):
+            continue
+        here, (a, b) = world[rows], pair[rows].T
+        if kind == 0:
+            placed = shapes.placed(state, np.concatenate([here, here]), np.concatenate([a, b]))
+            parts.append(collide_polygons(placed, margin))
+            continue
+        centre, radius = shapes.centres(state, here, b), shapes.radius[b]
+        if kind == 1:
+            parts.append(collide_polygon_circle(shapes.placed(state, here, a), centre, radius, margin))
+        else:
+            parts.append(collide_circles(shapes.centres(state, here, a), shapes.radius[a], centre, radius, margin))
+    if len(parts) == 1:
+        return parts[0]
+    order = np.argsort(np.concatenate(kinds))
+    tables = zip(*(vars(part).values() for part in parts), strict=True)
+    return Manifold(*(np.concatenate(table)[order] for table in tables))
+
+
+def collide_polygons(ab: PlacedPolygons, margin: float) -> Manifold:
+    """Contacts of n pairs of convex polygons; `ab` has the n polygons A, and after them the n polygons B."""
+    count = len(ab.start) // 2
+    rows = np.arange(count)
+    gap, face = deepest_face(ab, np.concatenate([ab.start[count:], ab.start[:count]]))
+    gap_a, gap_b = gap[:count], gap[count:]
     flip = gap_b > gap_a + REFERENCE_BIAS  # B holds the reference face
-    rows = np.arange(len(flip))
-    swap = flip[:, None]
-    start = np.where(swap, b.start[rows, face_b], a.start[rows, face_a])
-    end = np.where(swap, b.end[rows, face_b], a.end[rows, face_a])
-    normal = np.where(swap, b.normal[rows, face_b], a.normal[rows, face_a])
-    incident_a, incident_b = _most_opposed(a, normal), _most_opposed(b, normal)
-    incident_start = np.where(swap, a.start[rows, incident_a], b.start[rows, incident_b])
-    incident_end = np.where(swap, a.end[rows, incident_a], b.end[rows, incident_b])
-
-    corners = _clip(start, end, incident_start, incident_end)
-    depth = -dot(corners - start[:, None], normal[:, None])
-    points = corners + normal[:, None] * (depth / 2)[..., None]
-    reference, incident = np.where(flip, face_b, face_a), np.where(flip, incident_a, incident_b)
-    number = (flip * 64 + reference) * 64 + incident
+    reference, incident = np.where(flip, rows + count, rows), np.where(flip, rows, rows + count)
+    reference_face = face[reference]
+    start, end, out = (table[reference, reference_face] for table in ab)
+    incident_face = dot(ab.normal[incident], out[:, None]).argmin(axis=1)  # the most opposed
+    corners = _clip(start, end, ab.start[incident, incident_face], ab.end[incident, incident_face])
+    depth = -dot(corners - start[:, None], out[:, None])
+    normal = np.where(flip[:, None], -out, out)
+    number = (flip * 64 + reference_face) * 64 + incident_face
     return Manifold(
-        normal=np.where(swap, -normal, normal),
-        points=points,
+        normal=normal,
+        points=corners + out[:, None] * (depth / 2)[..., None],
         depth=depth,
-        valid=touching[:, None] & (depth >= -margin),
+        valid=(np.maximum(gap_a, gap_b) <= margin)[:, None] & (depth >= -margin),
         feature=number[:, None] * 2 + np.arange(1, 3),
     )
 
@@ -157,29 +134,13 @@ def collide_circles(centre_a: Array, radius_a: Array, centre_b: Array, radius_b:
 
 def deepest_face(a: PlacedPolygons, corners: Array) -> tuple[Array, Ints]:
     """Largest gap between a face of `a` and all `corners`, (n,), below 0 for an overlap; and which face."""
-    gaps = np.empty(a.normal.shape[:2])
-    for first in range(0, len(gaps), _BLOCK):
-        rows = slice(first, first + _BLOCK)
-        gaps[rows] = _lowest(a.normal[rows], corners[rows])
-    gaps -= dot(a.normal, a.start)
+    x, y = np.moveaxis(corners[:, :, None], (3, 1), (0, 1))  # each (corners, n, 1)
+    # Corners first, in memory too: a minimum along the last axis would be several times slower.
+    along = np.multiply(x, a.normal[..., 0], order="C")
+    along += np.multiply(y, a.normal[..., 1], order="C")
+    gaps = along.min(axis=0) - dot(a.normal, a.start)
     face = gaps.argmax(axis=1)
     return gaps[np.arange(len(face)), face], face
-
-
-def _lowest(normal: Array, corners: Array) -> Array:
-    """Return the position of the lowest corner (n, k, 2) along each normal (n, faces, 2): (n, faces)."""
-    x, y = np.moveaxis(corners[:, :, None], (3, 1), (0, 1))
-    # Corners first, in memory too: a minimum along the last axis would be several times slower.
-    along = np.multiply(x, normal[..., 0], order="C")
-    along += np.multiply(y, normal[..., 1], order="C")
-    lowest: Array = along.min(axis=0)
-    return lowest
-
-
-def _most_opposed(polygon: PlacedPolygons, normal: Array) -> Ints:
-    """Return the face of each polygon whose normal is most opposed to `normal` (n, 2): (n,)."""
-    faces: Ints = dot(polygon.normal, normal[:, None]).argmin(axis=1)
-    return faces
 
 
 def _clip(start: Array, end: Array, incident_start: Array, incident_end: Array) -> Array:
@@ -208,13 +169,3 @@ def _single(normal: Array, point: Array, depth: Array, margin: float) -> Manifol
         valid=valid,
         feature=np.broadcast_to(np.arange(1, 3), (count, 2)),
     )
-
-
-def _centre(circle: Circle, pose: Array) -> Array:
-    return rotate(circle.centroid, np.cos(pose[:, 2]), np.sin(pose[:, 2])) + pose[:, :2]
-
-
-def _place(polygon: Polygon, pose: Array) -> PlacedPolygons:
-    cos, sin = np.cos(pose[:, 2, None]), np.sin(pose[:, 2, None])
-    start = rotate(polygon.vertices[None], cos, sin) + pose[:, None, :2]
-    return PlacedPolygons(start, np.roll(start, -1, axis=1), rotate(polygon.normals[None], cos, sin))

@@ -1,312 +1,158 @@
-"""Contact detection: the narrow phase for pairs that are near, and the last step's impulses for a warm start."""
+"""Contacts of one step: what touches in all worlds, in the solver's order, with the last step's impulses."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from engine.broad_phase import BroadPhase
-from engine.collide import Manifold, PlacedPolygons, collide_circles, collide_polygon_circle, collide_polygons
-from engine.contact_set import Contacts
-from engine.rest import Rest
-from engine.solver import colour
-from engine.state import BodyParams, BodyState, ShapeTable
-from engine.vector import Array, Bools, Ints, dot, length, rotate
+from engine.collide import Manifold, collide_pairs
+from engine.shapes import ShapeTable
+from engine.state import BodyParams, BodyState
+from engine.vector import Array, Bools, Ints, dot, length
 
-_DEFAULT_FRICTION = 0.5
 # Distance in metres below which shapes count as touching: a contact that came and went with rounding errors would
 # start from no impulse each time, and a heap would never come to rest.
 MARGIN = 0.002
+_DEFAULT_FRICTION = 0.5
 # Metres within which a point takes over the impulse of one that is gone, and how alike the normals must be (a cosine).
 _NEAR = 0.2
 _ALIKE = 0.9
 
 
-@dataclass(frozen=True)
-class WarmStart:
-    """Impulses of the last step's k manifolds, sorted by world and pair, for a warm start."""
+@dataclass
+class Contacts(Manifold):
+    """The touching pairs of one step, m of them, with all that is known of each; every array leads with them."""
 
-    key: Ints  # (k,) world · pairs + pair, rising
-    feature: Ints  # (k, 2), 0 for a point that was not there
-    impulse: Array  # (3, k)
-    points: Array  # (k, 2, 2)
-    normal: Array  # (k, 2)
-    age: Ints  # (k,)
+    world: Ints  # (m,)
+    pair: Ints  # (m,) row of the world's table of shape pairs
+    body: Ints  # (m, 2) A and B
+    friction: Array  # (m,)
+    restitution: Array  # (m,)
+    impulse: Array  # (m, 3) N·s: normal at each point, friction; begins with what the last step needed
+    approach: Array  # (m, 3) m/s before the impulses: closing at each point, then sliding
+    age: Ints  # (m,) steps for which the pair has touched without a break
+    colour: Ints  # (m,) rising: contacts of one colour share no body that can move, so they are solved at once
 
-    @classmethod
-    def of(cls, contacts: Contacts, pairs: int) -> WarmStart:
-        """Return the features and impulses of a solved step."""
-        key = contacts.world * pairs + contacts.pair
-        rising = np.argsort(key)
-        manifold = contacts.manifold
-        feature = manifold.feature * manifold.valid
-        return cls(
-            key[rising],
-            feature[rising],
-            contacts.impulse[:, rising],
-            manifold.points[rising],
-            manifold.normal[rising],
-            contacts.age[rising],
-        )
+    def __len__(self) -> int:
+        return len(self.world)
 
-    def where(self, kept: Bools | Ints) -> WarmStart:
-        """Return the memory of these manifolds alone, which are marked, or named by their rows."""
-        return WarmStart(
-            self.key[kept],
-            self.feature[kept],
-            self.impulse[:, kept],
-            self.points[kept],
-            self.normal[kept],
-            self.age[kept],
-        )
+    def take(self, rows: Ints) -> Contacts:
+        """Return these contacts alone."""
+        return Contacts(*(table[rows] for table in vars(self).values()))
 
-    def with_others(self, others: WarmStart) -> WarmStart:
-        """Return this memory and another together."""
-        order = np.argsort(np.concatenate([self.key, others.key]), kind="stable")
-        return WarmStart(
-            np.concatenate([self.key, others.key])[order],
-            np.concatenate([self.feature, others.feature])[order],
-            np.concatenate([self.impulse, others.impulse], axis=1)[:, order],
-            np.concatenate([self.points, others.points])[order],
-            np.concatenate([self.normal, others.normal])[order],
-            np.concatenate([self.age, others.age])[order],
-        )
+    def with_others(self, others: Contacts | None) -> Contacts:
+        """Return these contacts, and others after them."""
+        if others is None:
+            return self
+        return Contacts(*map(np.concatenate, zip(vars(self).values(), vars(others).values(), strict=True)))
 
 
-_NOTHING = WarmStart(
-    np.zeros(0, dtype=np.intp),
-    np.zeros((0, 2), dtype=np.intp),
-    np.zeros((3, 0)),
-    np.zeros((0, 2, 2)),
-    np.zeros((0, 2)),
-    np.zeros(0, dtype=np.intp),
-)
+class NarrowPhase:
+    """Exact test of pairs of shapes that are near, rows of `pairs`, and what is known of each pair beforehand."""
 
+    def __init__(self, params: BodyParams, shapes: ShapeTable, pairs: Ints) -> None:
+        self._shapes = shapes
+        self.pairs = pairs  # (pairs, 2) of shapes
+        self._body = shapes.body[pairs]
+        self._free = params.dynamic[self._body]  # (pairs, 2): which of the two bodies can move
+        self._friction = _mix(params.friction[self._body], _geometric_mean, _DEFAULT_FRICTION)
+        self._restitution = _mix(params.restitution[self._body], np.maximum, 0.0)
+        self._coloured: tuple[Ints, Ints, Ints] | None = None  # keys of the last step's contacts, their order, colours
 
-@dataclass(frozen=True)
-class Memory:
-    """All that the next step takes over from the last ones: impulses, and what sleeps."""
-
-    impulses: WarmStart
-    rest: Rest | None
-    forgotten: list[tuple[int, Bools | None]]
-    gravity: Array | None
-    pairs: int  # of shapes, in every world
-
-    def of_worlds(self, worlds: Ints) -> Memory:
-        """Return the memory of some worlds (m,), each as often as it is named; raises ValueError where bodies sleep."""
-        if self.rest:
-            raise ValueError("worlds in which bodies sleep are remembered as a whole")
-        last = self.impulses
-        first, behind = last.key.searchsorted([worlds * self.pairs, (worlds + 1) * self.pairs])
-        count = behind - first
-        ends = count.cumsum()
-        row = np.arange(count.sum()) + (first - ends + count).repeat(count)
-        key = last.key[row] + ((np.arange(len(worlds)) - worlds) * self.pairs).repeat(count)
-        gravity = self.gravity if self.gravity is None or self.gravity.ndim == 1 else self.gravity[worlds]
-        return replace(self, impulses=replace(last.where(row), key=key), gravity=gravity)
-
-
-class Detector:
-    """Contact detector of every world. It remembers impulses (warm starting), so that a resting stack starts solved.
-
-    With `rest`, bodies sleep, and no contact of theirs is looked for.
-    """
-
-    def __init__(self, params: BodyParams, shapes: ShapeTable, rest: Rest | None = None) -> None:
-        self.shapes = shapes
-        self.rest = rest
-        self.broad = BroadPhase(params, shapes, MARGIN)
-        self.pairs = self.broad.pairs  # (pairs, 2) of shapes, a polygon before a circle
-        self.body_pairs = shapes.body[self.pairs]
-        self.free = params.dynamic[self.body_pairs]  # (pairs, 2): which of the two can move
-        self.friction = _mix(params.friction[self.body_pairs], _geometric_mean, _DEFAULT_FRICTION)
-        self.restitution = _mix(params.restitution[self.body_pairs], np.maximum, 0.0)
-        self._kinds = shapes.is_circle[self.pairs].sum(axis=1)  # how many of the two are circles
-        self.impulses = _NOTHING
-        self.gravity: Array | None = None  # under which these were needed
-        self._forgotten: list[tuple[int, Bools | None]] = []  # bodies, and in which worlds: see `forget`
-        self._colours = (np.zeros(0, dtype=np.intp), np.zeros(0, dtype=np.intp), [0])  # of what, order, ends
-
-    def find(self, state: BodyState) -> Contacts | None:
-        """Return every touching pair of active bodies, one of them awake, in the solver's order; None if there is none.
-
-        What an awake body touches wakes.
-        """
-        while True:
-            world, pair = self.broad.near(state, self.rest.awake if self.rest else None)
-            if not len(world):
-                return None
-            manifold = self._touch(state, world, pair)
-            touching = np.flatnonzero(manifold.valid.any(axis=1))
-            if not len(touching):
-                return None
-            if not (self.rest and self.rest.wake_touched(world[touching], self.body_pairs[pair[touching]])):
-                break
-        order, ends = self._colour(world[touching], pair[touching], state.pose.shape[1])
-        kept = touching[order]
-        world, pair, manifold = world[kept], pair[kept], manifold.rows(kept)
-        impulse, age = self._recall(world, pair, manifold)
+    def touching(self, state: BodyState, world: Ints, pair: Ints) -> Contacts | None:
+        """Return those of the pairs (n,) that touch, in the solver's order; None if none does."""
+        if not len(world):
+            return None
+        manifold = collide_pairs(self._shapes, state, world, self.pairs[pair], MARGIN)
+        rows = np.flatnonzero(manifold.valid.any(axis=1))
+        if not len(rows):
+            return None
+        order, colours = self._colour(world[rows], pair[rows], state.pose.shape[1])
+        rows = rows[order]
+        world, pair = world[rows], pair[rows]
         return Contacts(
+            **{name: table[rows] for name, table in vars(manifold).items()},
             world=world,
             pair=pair,
-            body=self.body_pairs[pair],
-            manifold=manifold,
-            friction=self.friction[pair],
-            restitution=self.restitution[pair],
-            impulse=impulse,
-            approach=np.zeros((3, len(kept))),
-            age=age,
-            colour_ends=ends,
+            body=self._body[pair],
+            friction=self._friction[pair],
+            restitution=self._restitution[pair],
+            impulse=np.zeros((len(rows), 3)),
+            approach=np.zeros((len(rows), 3)),
+            age=np.zeros(len(rows), dtype=np.intp),
+            colour=colours,
         )
 
-    def remember(self, contacts: Contacts | None) -> None:
-        """Keep the impulses of a step to warm-start the next one, and only that."""
-        self.impulses = WarmStart.of(contacts, len(self.pairs)) if contacts else _NOTHING
-        if self.rest:
-            self.rest.woken = None
-            self._forgotten = []
+    def _key(self, world: Ints, pair: Ints) -> Ints:
+        """A number for each pair of each world, (n,)."""
+        return world * len(self.pairs) + pair
 
-    def memory(self) -> Memory:
-        """Return the impulses that `remember` has kept, and what sleeps, to be put back by `recall_memory`."""
-        return Memory(self.impulses, self.rest.copy() if self.rest else None, self._forgotten.copy(), self.gravity,
-                      len(self.pairs))  # fmt: skip
+    def _colour(self, world: Ints, pair: Ints, bodies: int) -> tuple[Ints, Ints]:
+        """Return order and colours of contacts; those of the last step if the same pairs touch."""
+        key = self._key(world, pair)
+        if self._coloured is None or not np.array_equal(key, self._coloured[0]):
+            colours = colour(world[:, None] * bodies + self._body[pair], self._free[pair])
+            order = np.argsort(colours, kind="stable")
+            self._coloured = (key, order, colours[order])
+        return self._coloured[1:]
 
-    def recall_memory(self, memory: Memory) -> None:
-        """Put back what a call of `memory` returned."""
-        self.impulses, self._forgotten, self.gravity = memory.impulses, memory.forgotten.copy(), memory.gravity
-        self.rest = memory.rest.copy() if memory.rest else None
-        self.broad.forget_boxes()
+    def warm_start(self, contacts: Contacts, last: Contacts | None, share: Array | None, pass_on: bool) -> None:
+        """Begin with the last step's impulses, or a `share` (batch,), at points that the same faces make as then.
 
-    def feel(self, gravity: Array, batch: int) -> None:
-        """Expect of contacts no more than another `gravity` (2,) or (batch, 2) asks of them.
-
-        Impulses that bore a stack under a stronger one would throw it up, and a few iterations do not take that back.
+        A resting stack so starts solved. With `pass_on`, a point that other faces make now takes over the impulse of
+        the nearest one that is gone. Two boxes that lie face to face make the same points by one's face or the other's,
+        whichever happens to be a little less deep; if their impulses were lost with it, a heap would start afresh here
+        and there in every step, and never come to rest.
         """
-        before, self.gravity = self.gravity, gravity
-        if before is None or not before.any():
+        if not last:
             return
-        strength = dot(before, before)
-        share = np.where(strength > 0, dot(before, gravity) / np.where(strength > 0, strength, 1.0), 1.0)
-        shares = np.broadcast_to(np.clip(share, 0.0, 1.0), (batch,))
-        if (shares == 1).all():
-            return
-        last = self.impulses
-        if len(last.key):
-            self.impulses = replace(last, impulse=last.impulse * shares[last.key // len(self.pairs)])
-        if self.rest and (slept := self.rest.contacts):
-            self.rest.contacts = replace(slept, impulse=slept.impulse * shares[slept.world])
-
-    def forget(self, body: int, worlds: Bools | None) -> None:
-        """Forget the contacts of a body that was put elsewhere, in these worlds or in all: they no longer apply."""
-        self.impulses = self._without(self.impulses, body, worlds)
-        if self.rest:  # it may sleep, and wake with the next step
-            self._forgotten.append((body, worlds))
-
-    def _without(self, memory: WarmStart, body: int, worlds: Bools | None) -> WarmStart:
-        if not len(memory.key):
-            return memory
-        world, pair = np.divmod(memory.key, len(self.pairs))
-        gone = (self.body_pairs[pair] == body).any(axis=1)
-        if worlds is not None:
-            gone &= worlds[world]
-        return memory.where(~gone)
-
-    def _last(self) -> WarmStart:
-        """Return the impulses of the last step, and those that what has woken fell asleep with."""
-        if not (self.rest and self.rest.woken):
-            return self.impulses
-        woken = WarmStart.of(self.rest.woken, len(self.pairs))
-        for body, worlds in self._forgotten:
-            woken = self._without(woken, body, worlds)
-        return self.impulses.with_others(woken)
-
-    def _colour(self, world: Ints, pair: Ints, bodies: int) -> tuple[Ints, list[int]]:
-        """Return the order and ends of the colours; those of the last step if the same pairs touch."""
-        key = world * len(self.pairs) + pair
-        if not np.array_equal(key, self._colours[0]):
-            slots = world[:, None] * bodies + self.body_pairs[pair]
-            self._colours = (key, *colour(slots, self.free[pair]))
-        return self._colours[1:]
-
-    def _touch(self, state: BodyState, world: Ints, pair: Ints) -> Manifold:
-        """Narrow phase: the manifolds of n pairs, whatever kinds of shape they are."""
-        kinds = self._kinds[pair]
-        if not kinds.any():
-            return self._touch_kind(0, state, world, pair)
-        manifold = Manifold.empty(len(pair))
-        for kind in (0, 1, 2):
-            rows = np.flatnonzero(kinds == kind)
-            if len(rows):
-                manifold.put(rows, self._touch_kind(kind, state, world[rows], pair[rows]))
-        return manifold
-
-    def _touch_kind(self, circles: int, state: BodyState, world: Ints, pair: Ints) -> Manifold:
-        a, b = self.pairs[pair].T
-        if circles == 0:
-            return collide_polygons(self._place(state, world, a), self._place(state, world, b), MARGIN)
-        radius = self.shapes.radius
-        if circles == 1:
-            disc = self.shapes.centres(state, world, b)
-            return collide_polygon_circle(self._place(state, world, a), disc, radius[b], MARGIN)
-        disc_a, disc_b = self.shapes.centres(state, world, a), self.shapes.centres(state, world, b)
-        return collide_circles(disc_a, radius[a], disc_b, radius[b], MARGIN)
-
-    def _place(self, state: BodyState, world: Ints, shape: Ints) -> PlacedPolygons:
-        """Return polygons in their worlds, from their bodies' poses."""
-        body = self.shapes.body[shape]
-        cos, sin = state.cos[world, body, None], state.sin[world, body, None]
-        position = state.pose[world, body, None, :2]
-        start = rotate(self.shapes.start[shape], cos, sin)
-        start += position
-        end = rotate(self.shapes.end[shape], cos, sin)
-        end += position
-        return PlacedPolygons(start, end, rotate(self.shapes.normal[shape], cos, sin))
-
-    def _recall(self, world: Ints, pair: Ints, manifold: Manifold) -> tuple[Array, Ints]:
-        """Return the last step's impulses (3, m) for points made by the same faces as then, 0 for others; and ages."""
-        impulse, age = np.zeros((3, len(world))), np.zeros(len(world), dtype=np.intp)
-        last = self._last()
-        if not len(last.key):
-            return impulse, age
-        key = world * len(self.pairs) + pair
-        row = np.minimum(last.key.searchsorted(key), len(last.key) - 1)
-        known = last.key[row] == key
-        same = known[:, None] & (last.feature[row] == manifold.feature) & manifold.valid
-        np.multiply(last.impulse[:2, row], same.T, out=impulse[:2])
-        rubs = same.all(axis=1) | (same.any(axis=1) & (manifold.valid.sum(axis=1) == 1))
-        np.multiply(last.impulse[2, row], rubs, out=impulse[2])
-        if self.rest:
-            np.multiply(last.age[row] + 1, known, out=age)
-            lost = known & ~(rubs & (same == manifold.valid).all(axis=1))
-            if lost.any():
-                rows = np.flatnonzero(lost)
-                _pass_on(last, row[rows], same[rows], manifold.rows(rows), impulse, rows)
-        return impulse, age
+        last_key, key = self._key(last.world, last.pair), self._key(contacts.world, contacts.pair)
+        rising = np.argsort(last_key)
+        place = np.minimum(last_key.searchsorted(key, sorter=rising), len(rising) - 1)
+        row = rising[place]
+        known = last_key[row] == key
+        there, valid = last.valid[row], contacts.valid
+        same = known[:, None] & there & valid & (last.feature[row] == contacts.feature)
+        impulse = last.impulse[row]
+        if share is not None:
+            impulse = impulse * share[contacts.world, None]
+        contacts.age = (last.age[row] + 1) * known
+        # There is one friction for both points: it stays if all of the points have.
+        rubs = same.all(axis=1) | (same.any(axis=1) & (valid.sum(axis=1) == 1))
+        contacts.impulse = impulse * np.column_stack([same, rubs])
+        lost = np.flatnonzero(known & ~(rubs & (same == valid).all(axis=1)))
+        if pass_on and len(lost):
+            old, same = row[lost], same[lost]
+            alike = dot(last.normal[old], contacts.normal[lost]) > _ALIKE
+            new, gone = valid[lost] & ~same, there[lost] & ~same & alike[:, None]
+            away = length(contacts.points[lost][:, :, None] - last.points[old][:, None])  # (lost, new, gone)
+            away = np.where(new[:, :, None] & gone[:, None], np.minimum(away, _NEAR), _NEAR)
+            crossed = away[:, 0, 1] + away[:, 1, 0] < away[:, 0, 0] + away[:, 1, 1]
+            heir = np.where(crossed[:, None], (1, 0), (0, 1))  # (lost, 2): which of the old points each new one follows
+            passed = np.take_along_axis(away, heir[:, :, None], axis=2)[..., 0] < _NEAR
+            inherited = np.take_along_axis(impulse[lost, :2], heir, axis=1)
+            contacts.impulse[lost, :2] += np.where(passed, inherited, 0.0)
+            rubs = alike & (passed | same).any(axis=1)  # friction stays if any push does
+            contacts.impulse[lost, 2] = np.where(rubs, impulse[lost, 2], contacts.impulse[lost, 2])
 
 
-def _pass_on(last: WarmStart, row: Ints, same: Bools, manifold: Manifold, impulse: Array, rows: Ints) -> None:
-    """Give points that other faces make now the impulses of the nearest that are gone; fill `impulse` at `rows`.
+def colour(slots: Ints, free: Bools) -> Ints:
+    """Colour m contacts so that no two of a colour share a body that can move: numbers from 0 on, (m,).
 
-    Two boxes that lie face to face make the same points by one's face or the other's, whichever happens to be a
-    little less deep. If their impulses were lost with it, a heap would start afresh here and there in every step, and
-    never come to rest. Friction stays if any push does.
+    slots (m, 2) name the bodies and `free` (m, 2) says which can move. Each contact takes the first colour that neither
+    of its bodies has yet, so a world is solved in the same order alone and among others.
     """
-    alike = dot(last.normal[row], manifold.normal) > _ALIKE
-    gone = (last.feature[row] > 0) & ~same & alike[:, None]
-    new = manifold.valid & ~same
-    away = length(manifold.points[:, :, None] - last.points[row][:, None])  # (n, new, gone)
-    away = np.where(new[:, :, None] & gone[:, None], np.minimum(away, _NEAR), _NEAR)
-    crossed = away[:, 0, 1] + away[:, 1, 0] < away[:, 0, 0] + away[:, 1, 1]
-    passed = np.zeros_like(same)
-    for point in (0, 1):
-        heir = np.where(crossed, 1 - point, point)
-        passed[:, point] = away[np.arange(len(row)), point, heir] < _NEAR
-        impulse[point, rows] += np.where(passed[:, point], last.impulse[heir, row], 0.0)
-    rubs = alike & (passed | same).any(axis=1)
-    impulse[2, rows] = np.where(rubs, last.impulse[2, row], impulse[2, rows])
+    taken = [0] * (int(slots.max(initial=-1)) + 1)  # for each body, one bit for each colour of its contacts
+    colours = []
+    for (a, b), (a_free, b_free) in zip(slots.tolist(), free.tolist(), strict=True):
+        busy = taken[a] | taken[b]
+        bit = ~busy & (busy + 1)  # the lowest that is not set
+        taken[a] |= bit * a_free
+        taken[b] |= bit * b_free
+        colours.append(bit.bit_length() - 1)
+    return np.array(colours, dtype=np.intp)
 
 
 def _mix(values: Array, combine: Callable[[Array, Array], Array], default: float) -> Array:

@@ -4,78 +4,50 @@ from __future__ import annotations
 
 import numpy as np
 
-from engine.state import BodyParams, BodyState, Span, span
-from engine.vector import Array, Bools, every
-
-
-class MovingBodies:
-    """Bodies that a step moves, as `chosen` (bodies,) marks them, with the parameters it needs gathered once."""
-
-    def __init__(self, params: BodyParams, chosen: Bools) -> None:
-        self.bodies: Span = span(chosen)
-        self.inverse_mass = params.inverse_mass[self.bodies]
-        self.linear_drag = params.linear_drag[self.bodies]
-        self.quadratic_drag = params.quadratic_drag[..., self.bodies, :]
-        self.falls = params.dynamic[self.bodies, None]
-        self.all_fall = bool(self.falls.all())
-        # Whether any grows with the square of the speed; the air of each world may be changed in place.
-        self.fast_drag = self.quadratic_drag.ndim == 3 or bool(self.quadratic_drag.any())
-        self.any_drag = self.fast_drag or bool(self.linear_drag.any())
-        self._ease = (np.nan, self.inverse_mass)
-
-    def ease(self, dt: float) -> Array:
-        """Change of velocity (bodies, 3) per unit of force in a step of `dt` seconds, kept from the last call."""
-        if self._ease[0] != dt:
-            self._ease = (dt, self.inverse_mass * dt)
-        return self._ease[1]
+from engine.state import BodyParams, BodyState, Span
+from engine.vector import Array, Bools
 
 
 def integrate_velocity(
-    state: BodyState, movers: MovingBodies, gravity: Array, dt: float, awake: Bools | None = None
+    state: BodyState, params: BodyParams, movers: Span, gravity: Array, dt: float, awake: Bools | None = None
 ) -> None:
-    """Apply gravity (2,) or (batch, 2), accumulated forces and drag to the velocities of `movers`, in place.
+    """Change the velocities of `movers` by gravity (2,) or (batch, 2), by the accumulated forces, and by drag.
 
-    Of them, those move that are active, and `awake` (batch, bodies) if that is given.
+    Of them, those move that are active, and `awake` (batch, bodies) if that is given. Gravity pulls only at bodies that
+    forces can move.
 
-    Drag is the force -(linear + quadratic·|v|)·v, for translation and rotation apart. It is taken implicitly
-    in v, so that no coefficient, however large, can reverse a motion; terminal speeds are exact.
+    Drag is the force -(linear + quadratic·|v|)·v, for translation and rotation apart. With v taken as it is after the
+    step (implicitly), no coefficient, however large, can turn a motion round; terminal speeds are exact.
     """
-    bodies = movers.bodies
-    velocity = state.velocity[:, bodies]
-    ease = movers.ease(dt)
-    fall = np.asarray(gravity)[..., None, :] * dt
-    if not movers.all_fall:
-        fall = np.where(movers.falls, fall, 0.0)
-    active = state.active[:, bodies, None]
-    if awake is not None:
-        active = active & awake[:, bodies, None]
-    if not every(active):
-        ease, fall = ease * active, fall * active
-    damping = movers.linear_drag
-    if movers.fast_drag:
-        damping = damping + movers.quadratic_drag * _speeds(velocity)
-    velocity += state.force[:, bodies] * ease
-    places = velocity[..., :2]
-    places += fall
-    if movers.any_drag:
-        velocity /= 1.0 + damping * ease
-    if not isinstance(bodies, slice):  # indexing made a copy; a slice is a view
-        state.velocity[:, bodies] = velocity
+    velocity = state.velocity[:, movers]
+    per_force = params.inverse_mass[movers] * dt
+    fall = gravity[..., None, :] * (dt * params.dynamic[movers, None])
+    moving = _moving(state, movers, awake)
+    if moving is not None:
+        per_force, fall = per_force * moving, fall * moving
+    drag, quadratic = params.linear_drag[movers], params.quadratic_drag[..., movers, :]
+    if quadratic.any():
+        drag = drag + quadratic * _speeds(velocity)
+    velocity = velocity + state.force[:, movers] * per_force
+    velocity[..., :2] += fall
+    if drag.any():
+        velocity /= 1.0 + drag * per_force
+    state.velocity[:, movers] = velocity
 
 
-def integrate_position(state: BodyState, bodies: Span, dt: float, awake: Bools | None = None) -> None:
-    """Move `bodies`, if active, and awake if that is given, along their velocities, in place."""
-    step = state.velocity[:, bodies] * dt
-    active = state.active[:, bodies, None]
-    if awake is not None:
-        active = active & awake[:, bodies, None]
-    if not every(active):
-        step *= active
-    if isinstance(bodies, slice):
-        pose = state.pose[:, bodies]
-        pose += step
-    else:
-        state.pose[:, bodies] += step
+def integrate_position(state: BodyState, movers: Span, dt: float, awake: Bools | None = None) -> None:
+    """Move `movers`, if active, and awake if that is given, along their velocities."""
+    step = state.velocity[:, movers] * dt
+    moving = _moving(state, movers, awake)
+    if moving is not None:
+        step *= moving
+    state.pose[:, movers] += step
+
+
+def _moving(state: BodyState, movers: Span, awake: Bools | None) -> Bools | None:
+    """Which of the movers are active and awake, (batch, movers, 1); None if all are."""
+    moving = state.active[:, movers] if awake is None else state.active[:, movers] & awake[:, movers]
+    return None if moving.all() else moving[..., None]
 
 
 def _speeds(velocity: Array) -> Array:

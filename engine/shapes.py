@@ -1,21 +1,18 @@
-"""Convex shapes, discs and polygons, with their area, centroid and second moment of area."""
+"""Convex shapes, discs and polygons: area, centroid, second moment of area; and a table of all shapes of a world."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
-from engine.vector import Array, cross, dot, length, right_of, rotate
+from engine.state import BodyState
+from engine.vector import Array, Bools, Ints, cross, dot, length, right_of, rotate
 
 Point = Sequence[float] | Array
-
-
-def following(rows: Array) -> Array:
-    """Return for each row (k, 2) the next one, and for the last the first; `np.roll` takes ten times as long."""
-    return np.concatenate((rows[1:], rows[:1]))
 
 
 @dataclass(frozen=True)
@@ -56,19 +53,25 @@ class Circle:
 
 
 class Polygon:
-    """A convex polygon in its body's frame, corners (k, 2) in metres, kept counter-clockwise; immutable.
+    """A convex polygon in its body's frame, vertices (k, 2) in metres, kept counter-clockwise; immutable.
 
-    Raises ValueError for fewer than three corners, no area, or a corner that points inwards.
+    Raises ValueError for fewer than three vertices, no area, or a corner that points inwards.
+
+          v3 ---- edge 2 ---- v2
+          |                   |         edge i leads from vertex i to vertex i + 1;
+        edge 3              edge 1      its normal points outwards, to its right
+          |                   |
+          v0 ---- edge 0 ---- v1
     """
 
     def __init__(self, vertices: Sequence[Point] | Array) -> None:
         corners = np.array(vertices, dtype=float)
         if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3 or not np.isfinite(corners).all():
             raise ValueError(f"a polygon needs at least three finite (x, y) corners, not {vertices!r}")
-        if cross(corners, following(corners)).sum() < 0:
+        if cross(corners, _following(corners)).sum() < 0:
             corners = corners[::-1].copy()
-        edges = following(corners) - corners
-        after = following(edges)
+        edges = _following(corners) - corners
+        after = _following(edges)
         if (length(edges) < 1e-9).any() or (cross(edges, after) <= 0).any():
             raise ValueError(f"a polygon must be convex, its corners distinct and not in line: {vertices!r}")
         turns = np.arctan2(cross(edges, after), dot(edges, after))
@@ -86,7 +89,7 @@ class Polygon:
     @cached_property
     def _fans(self) -> Array:
         """Twice the signed area of the triangle between the origin and each edge, (k,)."""
-        return cross(self.vertices, following(self.vertices))
+        return cross(self.vertices, _following(self.vertices))
 
     @cached_property
     def area(self) -> float:
@@ -96,29 +99,25 @@ class Polygon:
     @cached_property
     def centroid(self) -> Array:
         """Centre of area, (2,)."""
-        sums = self.vertices + following(self.vertices)
+        sums = self.vertices + _following(self.vertices)
         centre: Array = (sums * self._fans[:, None]).sum(axis=0) / (6 * self.area)
         return centre
 
     @cached_property
     def second_moment(self) -> float:
         """Polar second moment of area about the centroid, m⁴; times density it is the inertia."""
-        a, b = self.vertices, following(self.vertices)
+        a, b = self.vertices, _following(self.vertices)
         about_origin = (self._fans * (dot(a, a) + dot(a, b) + dot(b, b))).sum() / 12
         return float(about_origin - self.area * dot(self.centroid, self.centroid))
 
     @cached_property
     def bounding_radius(self) -> float:
-        """Distance of the farthest corner from the centroid, metres."""
+        """Distance of the farthest vertex from the centroid, metres."""
         return float(length(self.vertices - self.centroid).max())
 
     def moved(self, offset: Array) -> Polygon:
         """Return the same polygon shifted by `offset` (2,)."""
         return Polygon(self.vertices + offset)
-
-    def __deepcopy__(self, memo: object) -> Polygon:
-        """Return itself, for it does not change."""
-        return self
 
     def __repr__(self) -> str:
         return f"Polygon({self.vertices.tolist()})"
@@ -127,11 +126,78 @@ class Polygon:
 Shape = Circle | Polygon
 
 
+def _following(rows: Array) -> Array:
+    """Return for each row (k, 2) the next one, and for the last the first; `np.roll` takes ten times as long."""
+    return np.concatenate((rows[1:], rows[:1]))
+
+
 def mass_properties(shapes: Sequence[Shape]) -> tuple[Array, float]:
     """Common centroid (2,) of `shapes` of one density, and their inertia about it per unit of mass, m²."""
     areas = np.array([shape.area for shape in shapes])
     centroids = np.array([shape.centroid for shape in shapes])
     centre = (areas[:, None] * centroids).sum(axis=0) / areas.sum()
     moments = np.array([shape.second_moment for shape in shapes])
-    spread = centroids - centre
-    return centre, float((moments + areas * dot(spread, spread)).sum() / areas.sum())
+    away = centroids - centre
+    return centre, float((moments + areas * dot(away, away)).sum() / areas.sum())  # parallel axis theorem
+
+
+class PlacedPolygons(NamedTuple):
+    """n polygons in the world: where each edge starts and ends, and its outward normal, (n, edges, 2)."""
+
+    start: Array
+    end: Array
+    normal: Array
+
+
+class ShapeTable:
+    """Every shape of a world as rows of arrays, so that one set of array operations serves them all.
+
+    Polygons are padded to one number of edges by repeating the last. That is harmless: a repeated face can't separate
+    what the first did not.
+    """
+
+    def __init__(self, shapes: Sequence[Shape], bodies: Sequence[int], dynamic: Bools) -> None:
+        self.body = np.array(bodies, dtype=np.intp)
+        self.fixed = ~dynamic[self.body]
+        self.is_circle = np.array([isinstance(shape, Circle) for shape in shapes], dtype=bool)
+        self.radius = np.array([shape.radius if isinstance(shape, Circle) else 0.0 for shape in shapes])
+        self.centre = np.array([shape.centroid for shape in shapes]).reshape(-1, 2)
+        self.reach = np.array([shape.bounding_radius for shape in shapes])
+        edges = max([len(shape.vertices) for shape in shapes if isinstance(shape, Polygon)], default=3)
+        self.start, self.end, self.normal = np.zeros((3, len(shapes), edges, 2))
+        for row, shape in enumerate(shapes):
+            if isinstance(shape, Polygon):
+                edge = np.minimum(np.arange(edges), len(shape.vertices) - 1)
+                self.start[row] = shape.vertices[edge]
+                self.end[row] = _following(shape.vertices)[edge]
+                self.normal[row] = shape.normals[edge]
+
+    def __len__(self) -> int:
+        return len(self.body)
+
+    def centres(self, state: BodyState, world: Ints, shape: Ints) -> Array:
+        """Centroids (n, 2) of shapes (n,) in their worlds (n,)."""
+        body = self.body[shape]
+        return rotate(self.centre[shape], state.cos[world, body], state.sin[world, body]) + state.pose[world, body, :2]
+
+    def placed(self, state: BodyState, world: Ints, shape: Ints) -> PlacedPolygons:
+        """Polygons (n,) in their worlds (n,)."""
+        body = self.body[shape]
+        cos, sin = state.cos[world, body, None], state.sin[world, body, None]
+        position = state.pose[world, body, None, :2]
+        return PlacedPolygons(
+            rotate(self.start[shape], cos, sin) + position,
+            rotate(self.end[shape], cos, sin) + position,
+            rotate(self.normal[shape], cos, sin),
+        )
+
+    def bounds(self, state: BodyState, shape: Ints) -> tuple[Array, Array]:
+        """Low and high corner (batch, n, 2) of the axis-aligned boxes around some shapes in every world."""
+        body = self.body[shape]
+        cos, sin, position = state.cos[:, body, None], state.sin[:, body, None], state.pose[:, body, None, :2]
+        corners = rotate(self.start[shape], cos, sin) + position
+        centre = rotate(self.centre[shape, None], cos, sin) + position
+        is_circle, radius = self.is_circle[shape, None, None], self.radius[shape, None, None]
+        low = np.where(is_circle, centre - radius, corners).min(axis=2)
+        high = np.where(is_circle, centre + radius, corners).max(axis=2)
+        return low, high

@@ -1,26 +1,20 @@
-"""Arrays of body state, which each step changes, and of body parameters and shapes, which it does not.
+"""What each step changes, `BodyState`, and what it does not, `BodyParams`.
 
-Position and angle share an array, and so do velocity and spin, because everything that is integrated, solved
-or reset treats the three components alike.
+Position and angle share an array, and so do velocity and spin: all three numbers are integrated, solved and set alike.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-from engine.shapes import Circle, Polygon, Shape
-from engine.vector import Array, Bools, Ints, rotate
+from engine.vector import Array, Bools, Ints
 
 Span = slice | Ints
-_MOST: Final = {  # largest values of tables; none may be below 0, or infinite
-    **dict.fromkeys(("inverse_mass", "linear_drag", "quadratic_drag", "friction"), float(np.finfo(float).max)),
-    "restitution": 1.0,
-}
-_LEFT_OUT: Final = ("restitution", "friction")  # in which NaN stands for what the other body says
 ALL: Final = slice(None)
+_LARGEST: Final = float(np.finfo(float).max)
 
 
 def span(chosen: Bools) -> Span:
@@ -33,33 +27,27 @@ def span(chosen: Bools) -> Span:
 
 @dataclass
 class BodyState:
-    """State of the bodies, which each step changes. All arrays lead with (batch, bodies)."""
+    """State of the bodies. All arrays lead with (batch, bodies)."""
 
     pose: Array  # (..., 3): x, y in metres, angle in radians
     velocity: Array  # (..., 3): m/s, m/s, rad/s
-    force: Array  # (..., 3): N, N, N·m, cleared by each step
+    force: Array  # (..., 3): N, N, N·m; each step clears it
     active: Bools  # (...): an inactive body neither moves nor touches
     cos: Array  # (...) of the angle, kept beside it because every phase needs them
     sin: Array
 
     @classmethod
-    def empty(cls, batch: int) -> BodyState:
-        """Return the state of `batch` worlds without bodies."""
-        triple, single = (batch, 0, 3), (batch, 0)
-        return cls(np.zeros(triple), np.zeros(triple), np.zeros(triple),
-                   np.zeros(single, dtype=bool), np.zeros(single), np.zeros(single))  # fmt: skip
+    def at_rest(cls, pose: Array) -> BodyState:
+        """Return the state of bodies at rest at `pose` (batch, bodies, 3)."""
+        zeros, shape = np.zeros_like(pose), pose.shape[:2]
+        state = cls(pose, zeros, zeros.copy(), np.ones(shape, dtype=bool), np.empty(shape), np.empty(shape))
+        state.refresh_rotation()
+        return state
 
     def append(self, pose: Array) -> None:
         """Add a body at rest in every world, at `pose` (batch, 3)."""
-        batch = len(self.pose)
-        zeros = np.zeros((batch, 1, 3))
-        self.pose = np.concatenate([self.pose, pose[:, None, :]], axis=1)
-        self.velocity = np.concatenate([self.velocity, zeros], axis=1)
-        self.force = np.concatenate([self.force, zeros], axis=1)
-        self.active = np.concatenate([self.active, np.ones((batch, 1), dtype=bool)], axis=1)
-        self.cos = np.concatenate([self.cos, zeros[..., 0]], axis=1)
-        self.sin = np.concatenate([self.sin, zeros[..., 0]], axis=1)
-        self.refresh_rotation()
+        for name, row in vars(BodyState.at_rest(pose[:, None])).items():
+            setattr(self, name, np.concatenate([getattr(self, name), row], axis=1))
 
     def refresh_rotation(self, bodies: Span = ALL) -> None:
         """Bring `cos` and `sin` of some bodies up to date after their poses have changed."""
@@ -68,100 +56,58 @@ class BodyState:
         self.cos[:, bodies], self.sin[:, bodies] = np.cos(angle), np.sin(angle)
 
 
-@dataclass
 class BodyParams:
     """Mass, drag and surface of the bodies. Rows are bodies, the same in every world of the batch.
 
-    A table may be replaced at any time by another of its shape, and holds from the next step on, which begins without
-    sleep and without the last one's impulses. Once all bodies are there, `quadratic_drag` may be made (batch, bodies,
-    3), one air for each world, and written into; the others can't be written into. Raises ValueError for values without
-    physical sense.
+    A table may be replaced at any time by another of its shape. The next step goes by it, and begins without sleep and
+    without the last one's impulses. Tables can't be written into, except a `quadratic_drag` of shape (batch, bodies,
+    3), which gives each world an air of its own. Raises ValueError for values without physical sense.
     """
 
-    inverse_mass: Array = field(default_factory=lambda: np.zeros((0, 3)))  # 1/kg twice, 1/(kg·m²); 0: static
-    linear_drag: Array = field(default_factory=lambda: np.zeros((0, 3)))  # kg/s, kg/s, kg·m²/s
-    quadratic_drag: Array = field(default_factory=lambda: np.zeros((0, 3)))  # kg/m, kg/m, kg·m²
-    restitution: Array = field(default_factory=lambda: np.zeros(0))  # NaN: takes the other body's
-    friction: Array = field(default_factory=lambda: np.zeros(0))
-    group: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
-    version: int = 0  # one more each time a table is replaced
+    inverse_mass: Array  # (bodies, 3): 1/kg, 1/kg, 1/(kg·m²); 0 for a body that no force moves
+    linear_drag: Array  # (bodies, 3): kg/s, kg/s, kg·m²/s
+    quadratic_drag: Array  # (bodies, 3): kg/m, kg/m, kg·m²
+    restitution: Array  # (bodies,): 0 to 1; NaN leaves it to the other body
+    friction: Array  # (bodies,): Coulomb's coefficient; NaN leaves it to the other body
+    group: Ints  # (bodies,): bodies of the same group do not meet, but for group 0
+    version: int  # one more each time a table is replaced
 
-    def __setattr__(self, name: str, value: object) -> None:
-        """Replace a table by a copy of this one."""
-        before = self.__dict__.get(name)
-        if name == "version" or before is None:
-            object.__setattr__(self, name, value)
-            return
-        table = np.array(value, dtype=before.dtype)
-        shape, expected = ((each.shape[1:] if each.ndim == 3 else each.shape) for each in (table, before))
-        if shape != expected or (table.ndim == 3 and name != "quadratic_drag"):
-            raise ValueError(f"{name} must be of shape {expected}, not {table.shape}")
-        said = table[~np.isnan(table)] if name in _LEFT_OUT else table
-        if name in _MOST and not ((said >= 0) & (said <= _MOST[name])).all():
-            raise ValueError(f"{name} must be from 0 to {_MOST[name]}, not {table.tolist()}")
-        self._put(name, table)
+    def __init__(self, **tables: object) -> None:
+        self.__dict__["version"] = 0
+        for name, value in tables.items():
+            self._put(name, np.array(value, dtype=np.intp if name == "group" else float))
 
-    def append(self, **row: object) -> None:
-        """Add one body's row to every table."""
-        for name, value in row.items():
-            table = getattr(self, name)
-            self._put(name, np.concatenate([table, np.asarray(value, dtype=table.dtype)[None]]))
-
-    def _put(self, name: str, table: Array | Ints) -> None:
-        table.flags.writeable = table.ndim == 3
-        object.__setattr__(self, name, table)
-        self.version += 1
+    @classmethod
+    def empty(cls) -> BodyParams:
+        """Return tables without bodies."""
+        rows, row = np.zeros((0, 3)), np.zeros(0)
+        return cls(inverse_mass=rows, linear_drag=rows, quadratic_drag=rows, restitution=row, friction=row, group=row)
 
     @property
     def dynamic(self) -> Bools:
         """Whether forces can move each body, (bodies,)."""
         return self.inverse_mass[:, 0] > 0
 
+    def append(self, row: BodyParams) -> None:
+        """Add the rows of `row` to every table."""
+        for name in BodyParams.__annotations__:
+            if name != "version":
+                self._put(name, np.concatenate([getattr(self, name), getattr(row, name)]))
 
-class ShapeTable:
-    """Every shape of a world, padded to one number of corners so that one kernel serves them all.
+    def __setattr__(self, name: str, value: object) -> None:
+        """Replace a table by a copy of `value`."""
+        before = getattr(self, name)
+        table = np.array(value, dtype=before.dtype)
+        most_axes = 3 if name == "quadratic_drag" else before.ndim
+        if table.shape[-2:] != before.shape[-2:] or table.ndim > most_axes:
+            raise ValueError(f"{name} must be of shape {before.shape[-2:]}, not {table.shape}")
+        self._put(name, table)
 
-    Padding repeats the last edge, which is harmless: a repeated face can't separate what the first did not.
-    """
-
-    def __init__(self, shapes: list[Shape], bodies: list[int], dynamic: Bools) -> None:
-        count = max([len(s.vertices) for s in shapes if isinstance(s, Polygon)], default=3)
-        self.body = np.array(bodies, dtype=np.intp)
-        self.fixed = ~dynamic[self.body]
-        self.is_circle = np.array([isinstance(s, Circle) for s in shapes], dtype=bool)
-        self.radius = np.array([s.radius if isinstance(s, Circle) else 0.0 for s in shapes])
-        self.centre = np.array([s.centroid for s in shapes]).reshape(-1, 2)
-        self.reach = np.array([s.bounding_radius for s in shapes])
-        self.start = np.zeros((len(shapes), count, 2))  # where each edge begins
-        self.end = np.zeros_like(self.start)
-        self.normal = np.zeros_like(self.start)
-        for row, shape in enumerate(shapes):
-            if isinstance(shape, Polygon):
-                last = len(shape.vertices) - 1
-                for table, edges in (
-                    (self.start[row], shape.vertices),
-                    (self.end[row], shape.vertices[[*range(1, last + 1), 0]]),
-                    (self.normal[row], shape.normals),
-                ):
-                    table[:last], table[last:] = edges[:last], edges[last]
-
-    def __len__(self) -> int:
-        return len(self.body)
-
-    def centres(self, state: BodyState, world: Ints, shape: Ints) -> Array:
-        """Centroids (n, 2) of some shapes in their worlds."""
-        body = self.body[shape]
-        centre = rotate(self.centre[shape], state.cos[world, body], state.sin[world, body])
-        centre += state.pose[world, body, :2]
-        return centre
-
-    def bounds(self, state: BodyState, shape: Ints) -> tuple[Array, Array]:
-        """Low and high corner (batch, n, 2) of the axis-aligned boxes around some shapes in every world."""
-        body = self.body[shape]
-        cos, sin, position = state.cos[:, body, None], state.sin[:, body, None], state.pose[:, body, None, :2]
-        corners = rotate(self.start[shape], cos, sin) + position
-        centre = rotate(self.centre[shape, None], cos, sin) + position
-        round_, radius = self.is_circle[shape, None, None], self.radius[shape, None, None]
-        low = np.where(round_, centre - radius, corners).min(axis=2)
-        high = np.where(round_, centre + radius, corners).max(axis=2)
-        return low, high
+    def _put(self, name: str, table: Array | Ints) -> None:
+        given = table[~np.isnan(table)] if name in ("restitution", "friction") else table
+        most = 1.0 if name == "restitution" else _LARGEST
+        if name != "group" and not ((given >= 0) & (given <= most)).all():
+            raise ValueError(f"{name} must be from 0 to {most}, not {table.tolist()}")
+        table.flags.writeable = table.ndim == 3
+        self.__dict__[name] = table
+        self.__dict__["version"] += 1

@@ -14,11 +14,6 @@ Bools = NDArray[np.bool_]
 Ints = NDArray[np.intp]
 
 
-def every(flags: Bools) -> bool:
-    """Whether all flags are set; of a few, they are counted in a quarter of the time that `all` takes."""
-    return bool(np.count_nonzero(flags) == flags.size)
-
-
 def finite(name: str, value: object) -> Array:
     """Return `value` as an array of floats; raise ValueError, with its `name`, if any is not finite."""
     numbers = np.asarray(value, dtype=float)
@@ -43,7 +38,7 @@ def length(a: Array) -> Array:
 
 
 def right_of(a: Array) -> Array:
-    """`a` turned a quarter clockwise: along an edge (counter-clockwise polygon) this points outwards."""
+    """`a` turned a quarter clockwise: along an edge of a counter-clockwise polygon, this points outwards."""
     turned = np.empty_like(a)
     turned[..., 0] = a[..., 1]
     turned[..., 1] = -a[..., 0]

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import copy
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
 from engine.body import Body
-from engine.contact_set import Contacts
-from engine.contacts import Detector
-from engine.integrate import MovingBodies, integrate_position, integrate_velocity
+from engine.broad_phase import BroadPhase
+from engine.contacts import MARGIN, Contacts, NarrowPhase
+from engine.integrate import integrate_position, integrate_velocity
 from engine.rest import Rest
-from engine.shapes import Point, Shape, mass_properties
+from engine.shapes import Point, Shape, ShapeTable, mass_properties
 from engine.solver import Solver
-from engine.state import BodyParams, BodyState, ShapeTable
-from engine.vector import Array, Bools, dot, finite
+from engine.state import ALL, BodyParams, BodyState, Span, span
+from engine.vector import Array, Bools, Ints, dot, finite
 
 DT = 1.0 / 60.0
 
@@ -22,16 +24,15 @@ DT = 1.0 / 60.0
 class World:
     """`batch` independent worlds under `gravity` (m/s²), advanced together by `step`.
 
-    Bodies live in fixed slots, the same in every world; `active` masks, not shorter lists, take one out.
-    `gravity` may be reassigned at any time to (2,) or (batch, 2), and so may `iterations` of the solver and
-    `restitution_threshold`, the closing speed (m/s) from which bodies rebound; each raises ValueError for a value
-    without physical sense. After a step, `contacts` holds what touched in it (or would have, but for 2 mm), with
-    closing speeds and impulses.
+    Bodies live in fixed slots, the same in every world; `active` masks, not shorter lists, take one out. `gravity` may
+    be reassigned at any time to (2,) or (batch, 2), and so may `iterations` of the solver. Bodies rebound if they close
+    at `restitution_threshold` m/s or more. After a step, `contacts` holds what touched in it (or would have, but for
+    2 mm), with closing speeds and impulses; contacts of sleeping bodies come last. Raises ValueError for values without
+    physical sense.
 
-    Unless `sleeping` is off, what lies still falls asleep and costs nothing, until something about it changes. So
-    that it comes to lie still, impulses pass over to the points that take the place of others, and overlaps of
-    up to 1.5 cm are left alone. Off, each step computes everything anew, as a flight needs that was
-    recorded so.
+    Unless `sleeping` is off, what lies still falls asleep and costs little, until something about it changes. So that
+    it comes to lie still, impulses pass over to the points that take the place of others, and overlaps of up to 1.5 cm
+    are left alone. Off, each step computes everything anew, as a flight needs that was recorded so.
     """
 
     def __init__(
@@ -45,20 +46,23 @@ class World:
     ) -> None:
         if batch < 1:
             raise ValueError(f"a world needs a batch of at least 1, not {batch}")
+        if not restitution_threshold >= 0:
+            raise ValueError(f"the speed from which bodies rebound must be 0 m/s or more, not {restitution_threshold}")
         self.batch = batch
         self.gravity = gravity
         self.iterations = iterations
         self.restitution_threshold = restitution_threshold
         self.sleeping = sleeping
-        self.state = BodyState.empty(batch)
-        self.params = BodyParams()
+        self.state = BodyState.at_rest(np.zeros((batch, 0, 3)))
+        self.params = BodyParams.empty()
         self.bodies: list[Body] = []
         self.shapes: list[Shape] = []
-        self._touched: tuple[Contacts | None, Contacts | None] = (None, None)  # in the last step, and of what slept
+        self.contacts: Contacts | None = None
         self._shape_bodies: list[int] = []
-        self._detector: Detector | None = None
-        self._movers: MovingBodies | None = None
-        self._version = 0  # of `params`, with which these were made
+        self._impulses: Contacts | None = None  # those of the last step's contacts whose impulses begin the next one
+        self._gravity_before = self.gravity  # under which these were needed
+        self._version = -1  # of `params`, for which the following were made
+        self._movers: Span | None = None
 
     @property
     def gravity(self) -> Array:
@@ -83,17 +87,6 @@ class World:
         if not isinstance(value, int | np.integer) or value < 1:
             raise ValueError(f"the solver needs a whole number of iterations, at least 1, not {value}")
         self._iterations = int(value)
-
-    @property
-    def restitution_threshold(self) -> float:
-        """Closing speed in m/s from which bodies rebound."""
-        return self._restitution_threshold
-
-    @restitution_threshold.setter
-    def restitution_threshold(self, value: float) -> None:
-        if not value >= 0:
-            raise ValueError(f"the speed from which bodies rebound must be 0 m/s or more, not {value}")
-        self._restitution_threshold = float(value)
 
     def add(
         self,
@@ -126,43 +119,28 @@ class World:
         shapes = list(shape) if isinstance(shape, Sequence) else [shape]
         if not shapes:
             raise ValueError("a body needs at least one shape")
-        if not static and not (np.isfinite(mass) and mass > 0):
-            raise ValueError(f"a body that can move needs a positive, finite mass, not {mass}")
-        if inertia is not None and not (np.isfinite(inertia) and inertia > 0):
-            raise ValueError(f"inertia must be positive and finite, not {inertia}")
-        drag = {
-            "linear_drag": linear_drag,
-            "quadratic_drag": quadratic_drag,
-            "angular_drag": angular_drag,
-            "angular_quadratic_drag": angular_quadratic_drag,
-        }
-        _refuse_outside(np.inf, friction=friction or 0.0, **drag)
-        _refuse_outside(1.0, restitution=restitution or 0.0)
-        centroid, spread = mass_properties(shapes)
-        origin = centroid if centre_of_mass is None else np.asarray(centre_of_mass, dtype=float)
-        if static:
-            inverse_mass = np.zeros(3)
-        else:
+        inverse_mass = np.zeros(3)
+        if not static:
+            centroid, spread = mass_properties(shapes)
+            origin = centroid if centre_of_mass is None else np.asarray(centre_of_mass, dtype=float)
             shapes = [part.moved(-origin) for part in shapes] if origin.any() else shapes
             offset = centroid - origin
             turning = mass * (spread + float(dot(offset, offset))) if inertia is None else inertia
-            with np.errstate(all="ignore"):
-                inverse_mass = 1.0 / np.array([mass, mass, turning])
-            if not (np.isfinite(inverse_mass) & (inverse_mass > 0)).all():
-                raise ValueError(f"a mass of {mass} kg and an inertia of {turning} kg·m² are beyond all numbers")
+            if not (0 < mass < np.inf and 0 < turning < np.inf):
+                raise ValueError(f"mass and inertia must be positive and finite, not {mass} kg and {turning} kg·m²")
+            inverse_mass = np.array([1 / mass, 1 / mass, 1 / turning])
         pose = np.empty((self.batch, 3))
-        pose[:, :2], pose[:, 2] = position, angle
-        if not np.isfinite(pose).all():
-            raise ValueError(f"position and angle must be finite, not {position} and {angle}")
-        self.state.append(pose)
-        self.params.append(
-            inverse_mass=inverse_mass,
-            linear_drag=(linear_drag, linear_drag, angular_drag),
-            quadratic_drag=(quadratic_drag, quadratic_drag, angular_quadratic_drag),
-            restitution=np.nan if restitution is None else restitution,
-            friction=np.nan if friction is None else friction,
-            group=group,
+        pose[:, :2], pose[:, 2] = finite("position", position), finite("angle", angle)
+        row = BodyParams(
+            inverse_mass=[inverse_mass],
+            linear_drag=[(linear_drag, linear_drag, angular_drag)],
+            quadratic_drag=[(quadratic_drag, quadratic_drag, angular_quadratic_drag)],
+            restitution=[np.nan if restitution is None else finite("restitution", restitution)],
+            friction=[np.nan if friction is None else finite("friction", friction)],
+            group=[group],
         )
+        self.params.append(row)
+        self.state.append(pose)
         self.shapes += shapes
         self._shape_bodies += [len(self.bodies)] * len(shapes)
         self.bodies.append(Body(self, len(self.bodies)))
@@ -173,86 +151,142 @@ class World:
 
         Skipping is cheaper, and gives the same result, bit for bit, as long as nothing touches.
         """
-        rest = self.detector.rest
-        if self.gravity is not self.detector.gravity:
-            self.detector.feel(self.gravity, self.batch)
-        if rest and rest.undisturbed(self.state, self.gravity):
-            self._touched = (rest.contacts, None)
+        self._prepare()
+        state, params, movers, gravity, rest = self.state, self.params, self.movers, self.gravity, self._rest
+        rest.wake_disturbed(state, gravity, self.contacts)
+        contacts, solver = None, None
+        while touching:
+            world, pair = self._broad_phase.near(state, rest.awake)
+            contacts = self._narrow_phase.touching(state, world, pair)
+            if not rest.wake_touched(contacts, state, self.contacts):
+                break  # else contacts of what has woken are to be found, too
+        if contacts:
+            self._narrow_phase.warm_start(contacts, self._impulses, self._weaker(), pass_on=self.sleeping)
+            solver = Solver(state, params, contacts)
+        integrate_velocity(state, params, movers, gravity, DT, rest.awake)
+        if solver:
+            solver.solve_velocities(state, self.iterations, self.restitution_threshold, DT)
+        integrate_position(state, movers, DT, rest.awake)
+        if solver:
+            solver.correct_positions(state, max(2, self.iterations // 3), DT, lenient=self.sleeping)
+        state.refresh_rotation(movers)
+        state.force[:, movers] = 0.0
+        self._keep(contacts)
+        rest.settle(state, gravity, self.contacts)
+
+    def _keep(self, contacts: Contacts | None) -> None:
+        """Remember a step's contacts, and those of bodies that slept in it."""
+        slept, awake = None, self._rest.awake
+        if self.contacts and awake is not None:
+            met = awake[self.contacts.world[:, None], self.contacts.body]
+            slept = self.contacts.take(np.flatnonzero(~met.any(axis=1)))
+            slept.approach[:] = 0.0
+        self.contacts = self._impulses = contacts.with_others(slept) if contacts else slept or None
+        self._gravity_before = self.gravity
+
+    def _weaker(self) -> Array | None:
+        """How much of the last step's impulses a changed gravity asks of contacts now, (batch,) 0 to 1; None for all.
+
+        Impulses that bore a stack under a stronger one would throw it up, and a few iterations do not take that back.
+        """
+        before, now = self._gravity_before, self.gravity
+        if before is now:
+            return None
+        strength = dot(before, before)
+        share = np.where(strength > 0, dot(before, now) / np.where(strength > 0, strength, 1.0), 1.0)
+        return np.broadcast_to(np.clip(share, 0.0, 1.0), (self.batch,))
+
+    def _prepare(self) -> None:
+        """Make anew what depends on bodies and their parameters, if any has been added or replaced."""
+        if self._version == self.params.version:
             return
-        contacts = self.detector.find(self.state) if touching else None
-        awake = rest.awake if rest else None
-        solver = Solver(self.state, self.params, contacts) if contacts else None
-        integrate_velocity(self.state, self.movers, self.gravity, DT, awake)
-        if solver:
-            solver.solve_velocities(self.state, self.iterations, self.restitution_threshold, DT)
-        integrate_position(self.state, self.movers.bodies, DT, awake)
-        if solver:
-            solver.solve_overlaps(self.state, max(2, self.iterations // 3), DT, lenient=rest is not None)
-        self.state.refresh_rotation(self.movers.bodies)
-        self.state.force[:] = 0.0
-        self._touched = (contacts, rest.settle(self.state, contacts, self.gravity) if rest else None)
-        self.detector.remember(contacts)
+        self._version = self.params.version
+        self._shape_table = ShapeTable(self.shapes, self._shape_bodies, self.params.dynamic)
+        self._broad_phase = BroadPhase(self.params, self._shape_table, MARGIN)
+        self._narrow_phase = NarrowPhase(self.params, self._shape_table, self._broad_phase.pairs)
+        self._rest = Rest(self.params, self.state, self.gravity, self.sleeping)
+        self._movers = self._impulses = None
 
     @property
-    def contacts(self) -> Contacts | None:
-        """What touched in the last step, those of sleeping bodies last; joined when it is asked for."""
-        if self._touched[1] is not None:
-            self._touched = (Contacts.join(*self._touched), None)
-        return self._touched[0]
+    def movers(self) -> Span:
+        """Bodies that a step may move: those that forces can move, and static ones that have a velocity."""
+        self._prepare()
+        if self._movers is None:
+            self._movers = span(self.params.dynamic | self.state.velocity.any(axis=(0, 2)))
+        return self._movers
+
+    @property
+    def shape_table(self) -> ShapeTable:
+        """All shapes."""
+        self._prepare()
+        return self._shape_table
+
+    @property
+    def pairs(self) -> Ints:
+        """All pairs of shapes that may ever meet, (pairs, 2) rows of `shapes`; of a polygon and a circle, it first."""
+        self._prepare()
+        return self._broad_phase.pairs
 
     @property
     def asleep(self) -> Bools:
         """Whether each body sleeps, (batch, bodies)."""
-        rest = self.detector.rest
-        return rest.asleep.copy() if rest else np.zeros(self.state.active.shape, dtype=bool)
+        self._prepare()
+        return self._rest.asleep.copy()
 
-    def wake(self) -> None:
-        """Wake every body in every world."""
-        rest = self.detector.rest
-        if rest:
-            rest.wake(np.ones_like(rest.asleep))
+    def wake(self, chosen: Bools | None = None) -> None:
+        """Wake the chosen bodies (batch, bodies) and all that they lie with, or every body in every world."""
+        self._prepare()
+        every = np.ones(self.state.active.shape, dtype=bool)
+        self._rest.wake(every if chosen is None else chosen, self.state, self.contacts)
+
+    def moved(self, body: int, worlds: Bools | None = None) -> None:
+        """Take note that a body was put elsewhere by hand, in these worlds or in all: its contacts no longer apply."""
+        self.state.refresh_rotation(slice(body, body + 1))
+        if not self.params.dynamic[body]:
+            self.forget_boxes(slice(body, body + 1))
+        if self._impulses:
+            gone = (self._impulses.body == body).any(axis=1)
+            if worlds is not None:
+                gone &= worlds[self._impulses.world]
+            self._impulses = self._impulses.take(np.flatnonzero(~gone))
+
+    def forget_boxes(self, bodies: Span = ALL) -> None:
+        """Take note that static bodies were put elsewhere, or were given a velocity, by writing into `state`."""
+        self._movers = None
+        if self._version == self.params.version:
+            self._broad_phase.forget_boxes(bodies)
 
     def untouched(self) -> None:
-        """Note that nothing touched in the latest step, which `free_flight` took."""
-        self.detector.remember(None)
-        self._touched = (None, None)
+        """Take note that nothing touched in the latest step, which was not taken here."""
+        self.contacts = self._impulses = None
+        self._gravity_before = self.gravity
 
-    @property
-    def detector(self) -> Detector:
-        """Contact detector; made anew when a body has been added, or a parameter replaced."""
-        self._heed_params()
-        if self._detector is None:
-            table = ShapeTable(self.shapes, self._shape_bodies, self.params.dynamic)
-            self._detector = Detector(self.params, table, Rest(self.params, self.batch) if self.sleeping else None)
-        return self._detector
+    def memory(self) -> dict[str, Any]:
+        """Return what the next step takes over from the last one, as copies of arrays, to be put back by `recall`.
 
-    @property
-    def movers(self) -> MovingBodies:
-        """Bodies that a step may move: those that forces can move, and static ones that have a velocity."""
-        self._heed_params()
-        if self._movers is None:
-            self._movers = MovingBodies(self.params, self.params.dynamic | self.state.velocity.any(axis=(0, 2)))
-        return self._movers
+        Together with `state`, `gravity` and `params`, it is all that a world's future depends on.
+        """
+        self._prepare()
+        contacts = vars(self._impulses) if self._impulses else {}
+        rest = {"rest": copy.deepcopy(vars(self._rest))} if self.sleeping else {}
+        return {"gravity": self._gravity_before, "contacts": dict(contacts), **rest}
 
-    def _heed_params(self) -> None:
-        """Forget what was made with other parameters."""
-        if self._version != self.params.version:
-            self._version = self.params.version
-            self._detector = self._movers = None
-
-    def moved(self, body: Body, worlds: Bools | None) -> None:
-        """Update what is cached about a body that was changed by hand, in these worlds or in all."""
-        self.state.refresh_rotation(slice(body.index, body.index + 1))
-        if body.static:
-            self._movers = None
-        if self._detector is not None:
-            self._detector.forget(body.index, worlds)
-            if body.static:
-                self._detector.broad.forget_boxes()
+    def recall(self, memory: Mapping[str, Any]) -> None:
+        """Put back what a call of `memory` returned."""
+        self._prepare()
+        contacts = memory["contacts"]
+        self.contacts = self._impulses = Contacts(**contacts) if contacts else None
+        self._gravity_before = memory["gravity"]
+        vars(self._rest).update(copy.deepcopy(memory.get("rest", {})))
+        self.forget_boxes()
 
 
-def _refuse_outside(most: float, **values: float) -> None:
-    """Raise ValueError if one of the values is not finite, or not from 0 to `most`."""
-    for name, value in values.items():
-        if not (np.isfinite(value) and 0 <= value <= most):
-            raise ValueError(f"{name} must be a number from 0 to {most}, not {value}")
+def memory_of_worlds(memory: Mapping[str, Any], worlds: Ints) -> dict[str, Any]:
+    """Return the memory of some worlds (m,), each as often as it is named; of worlds without sleep."""
+    contacts, gravity = memory["contacts"], memory["gravity"]
+    if "rest" in memory:
+        raise ValueError("worlds in which bodies sleep are remembered as a whole")
+    if contacts:
+        world, row = np.nonzero(worlds[:, None] == contacts["world"])
+        contacts = {name: table[row] for name, table in contacts.items()} | {"world": world}
+    return {"gravity": gravity if gravity.ndim == 1 else gravity[worlds], "contacts": contacts}

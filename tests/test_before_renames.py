@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from ai.agent import DeepQAgent
-from ai.digits.checkpoints import resume_digit_run
 from ai.digits.config import DigitConfig
 from ai.training.checkpoints import resume_run
 from ai.training.config import Config, load_agent
+from ai.training.digit_run import resume_digit_run
 from ai.training.history import History, SettingChange
+from ai.training.lander_session import live
 from ai.training.messages import ChangeSetting
-from ai.training.session import live
 from game.flight import flight_file
 from game.flight.replay import FlightReplay
 
@@ -76,8 +76,8 @@ def test_a_history_shows_the_same_marks_by_the_words_of_now():
     assert history.points[-1].tolist() == expected["last_point"]
     assert [each.decisions for each in history.checkpoints] == expected["checkpoints"]
     names = ["gradient_steps", "target_update_interval", "tau", "reward_weights.time"]
-    assert [vars(mark) for mark in history.setting_changes] == [
-        {**then, "name": name} for then, name in zip(expected["alterations"], names, strict=True)
+    assert [{**vars(mark), "seconds": 0.0} for mark in history.setting_changes] == [
+        {**then, "name": name, "seconds": 0.0} for then, name in zip(expected["alterations"], names, strict=True)
     ]
 
 

@@ -20,6 +20,7 @@ OPENED = {
     "ai.files.reading": ({"open", "os.open", "archive.open", "zipfile.ZipFile"}, "the door"),
     "ai.files.writing": ({"os.open", "temporary.open", "path.open"}, "writes, appends, and waits for the disk"),
     "ai.cli.command_line": ({"os.open"}, "the null device"),
+    "ai.sweep.journal": ({"self._path.open"}, "appends to the journal of a study that is claimed"),
     "ai.sweep.trial": ({"zipfile.ZipFile", "reader.extractall", "path.read_bytes"}, "bytes; its own code for a hash"),
     "game.audio.mixer": ({"self.open"}, "the sound device"),
     "game.core.catalogue": ({"path.read_bytes"}, "comes with the program"),

@@ -23,8 +23,8 @@ LATE = {
 # What is there for the users of an extra alone.
 EXTRA = {
     "ai.gym.lander": {"gymnasium"},
-    "ai.sweep.searches": {"ray", "optuna"},
-    "ai.sweep.tuning": {"ray", "optuna"},
+    "ai.sweep.driver": {"ray"},
+    "ai.sweep.journal": {"optuna"},
 }
 # The floors inside `ai` and `game`, from the bottom up: a package imports from itself and from those before it.
 AI_FLOORS = (

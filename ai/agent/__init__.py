@@ -1,10 +1,10 @@
-"""Deep Q-learning agent: its settings, network, replay buffers and schedules.
+"""Deep Q-learning agent: its settings, network, replay buffers, schedules and files.
 
-May be imported by `training`, `copilot`, `digits`, `gym` and `cli`.
+To read in this order: config, network, replay, n_step, normalizer, symmetry, schedule, agent, storage.
 """
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.config import AgentConfig
-from ai.agent.replay import PrioritisedReplayBuffer, ReplayBuffer, Transition
+from ai.agent.replay import MemoryCell, PrioritisedReplayBuffer, ReplayBuffer, Transition
 
-__all__ = ["AgentConfig", "DeepQAgent", "PrioritisedReplayBuffer", "ReplayBuffer", "Transition"]
+__all__ = ["AgentConfig", "DeepQAgent", "MemoryCell", "PrioritisedReplayBuffer", "ReplayBuffer", "Transition"]

@@ -36,6 +36,7 @@ In no paper: half of each minibatch is mirrored (`mirror`); `classic` has a seco
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from copy import deepcopy
 from functools import cached_property, partial
 from pathlib import Path
@@ -53,6 +54,7 @@ from ai.agent.storage import read_agent, save_agent
 from ai.agent.symmetry import Symmetry
 from ai.common.decision import Decision, decide
 from ai.common.environment import Bools, Doubles, Env, Floats, Ints, StepResult
+from ai.files import array_like, count_of, number_of
 from ai.nn import NeuralNetwork, Optimizer
 
 TOGETHER: Final = 1024  # states that are judged at a time: fewer calls, and what layers make of them stays in the cache
@@ -297,6 +299,33 @@ class DeepQAgent:
         self.optimizer.load_state(other.optimizer.state(), self.online.values)
         self.decisions, self.gradient_steps = other.decisions, other.gradient_steps
         self.normalizer = deepcopy(other.normalizer)
+
+    def state(self) -> dict[str, Any]:
+        """Return copies of all that its learning goes on from, besides its settings and replay buffers."""
+        return {
+            "decisions": self.decisions, "gradient_steps": self.gradient_steps, "loss": self.loss,
+            "mean_q": self.mean_q, "rng": self.rng.bit_generator.state, "online": self.online.values.copy(),
+            "target": self.target.values.copy(), "optimizer": self.optimizer.state(),
+            "normalizer": self.normalizer.to_json() if self.normalizer else None,
+            "n_step": self._n_step.state(), "episodes": self._episodes.state(),
+        }  # fmt: skip
+
+    def load_state(self, state: Mapping[str, Any], num_envs: int) -> None:
+        """Go on from what `state` returned, in an environment of so many slots.
+
+        Raises KeyError, TypeError, OverflowError or ValueError for what no such agent can have been.
+        """
+        self.rng.bit_generator.state = state["rng"]
+        for name in ("online", "target"):
+            network: NeuralNetwork = getattr(self, name)
+            network.values = array_like(network.values, state[name], name)
+        self.optimizer.load_state(state["optimizer"], self.online.values)
+        if self.normalizer:
+            self.normalizer.load(state["normalizer"])
+        self._n_step.load_state(state["n_step"], np.zeros((num_envs, self.num_features), np.float32))
+        self._episodes.load_state(state["episodes"], self.num_features)
+        self.decisions, self.gradient_steps = count_of(state["decisions"]), count_of(state["gradient_steps"])
+        self.loss, self.mean_q = float(number_of(state["loss"])), float(number_of(state["mean_q"]))
 
     # Files: ai.agent.storage has their format
 

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, Final
 
 import numpy as np
 
 from ai.agent.replay import Transition
 from ai.common.environment import Bools, Floats, Ints
+from ai.files import array_like, count_of
+
+_KEPT: Final = ("_states", "_actions", "_returns", "_ages", "_open")
 
 
 class NStep:
@@ -57,6 +61,23 @@ class NStep:
         )
         return cells, slot
 
+    def state(self) -> dict[str, Any]:
+        """Return copies of all that the next `add` depends on, besides the settings."""
+        if self._states is None:
+            return {}
+        return {"count": self._count} | {name: getattr(self, name).copy() for name in _KEPT}
+
+    def load_state(self, state: Mapping[str, Any], observation: Floats) -> None:
+        """Go on from what `state` returned, for observations like this one (n, features).
+
+        Raises KeyError, TypeError or ValueError for anything else.
+        """
+        if state:
+            self._start(observation)
+            for name in _KEPT:
+                setattr(self, name, array_like(getattr(self, name), state[name], name))
+            self._count = count_of(state["count"])
+
     def _start(self, state: Floats) -> None:
         shape = (self.n, len(state))
         self._count = 0
@@ -84,4 +105,38 @@ class Episodes:
             if ended[slot]:
                 parts = self._parts.pop(slot)
                 if success[slot]:
-                    yield Transition(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+                    yield joined(parts)
+
+    def state(self) -> dict[str, Any]:
+        """Return copies of all that was collected of episodes that go on: transitions by field, and their slots."""
+        slots = [np.full(len(part.action), slot) for slot, parts in self._parts.items() for part in parts]
+        cells = joined([part for parts in self._parts.values() for part in parts]) if slots else None
+        return {"slots": np.concatenate(slots), **cells._asdict()} if cells else {}
+
+    def load_state(self, state: Mapping[str, Any], num_features: int) -> None:
+        """Go on from what `state` returned, for observations of so many features.
+
+        Raises KeyError, TypeError or ValueError for anything else.
+        """
+        self._parts = {}
+        if not state:
+            return
+        slots = state["slots"]
+        kinds = (
+            (num_features, np.float32),
+            (num_features, np.float32),
+            (0, np.intp),
+            (0, np.float32),
+            (0, bool),
+            (0, np.intp),
+        )
+        like = (np.empty((len(slots), size) if size else len(slots), dtype) for size, dtype in kinds)
+        names = zip(Transition._fields, like, strict=True)
+        cells = Transition(*(array_like(template, state[name], name) for name, template in names))
+        for slot in dict.fromkeys(slots.tolist()):
+            self._parts[count_of(slot)] = [Transition(*(part[slots == slot] for part in cells))]
+
+
+def joined(parts: Sequence[Transition]) -> Transition:
+    """Return batches of transitions as one."""
+    return Transition(*(np.concatenate(column) for column in zip(*parts, strict=True)))

@@ -26,6 +26,9 @@ class Transition(NamedTuple):
     steps: Any = 1
 
 
+MemoryCell = Transition  # as the first description of this project calls it
+
+
 class ReplayBuffer:
     """Replay buffer of the last `capacity` transitions. When it is full, the oldest `prune` are dropped at once.
 
@@ -102,7 +105,7 @@ def _fields(records: NDArray[np.void]) -> Transition:
 class PrioritisedReplayBuffer(ReplayBuffer):
     """Prioritised replay: sampling with probability proportional to |error|^exponent (Schaul et al. 2016).
 
-    New ones get the largest priority seen, so that each is drawn soon. `importance`, which the agent raises
+    New ones get the `largest` priority seen, so that each is drawn soon. `importance`, which the agent raises
     towards 1, is the exponent β by which the weights undo the bias that this brings; `exponent` is the paper's α.
     """
 
@@ -112,12 +115,12 @@ class PrioritisedReplayBuffer(ReplayBuffer):
         super().__init__(capacity, num_features, prune)
         self.exponent, self.importance = exponent, importance
         self.tree = SumTree(capacity)
-        self._largest = 1.0
+        self.largest = 1.0
 
     def add(self, cells: Transition) -> Ints:
         """Keep a batch of n transitions, oldest first, and return where they lie, (n,)."""
         rows = super().add(cells)
-        self.tree.set(rows, np.full(len(rows), self._largest))
+        self.tree.set(rows, np.full(len(rows), self.largest))
         return rows
 
     def sample(self, count: int, rng: np.random.Generator) -> tuple[Transition, Ints, Floats]:
@@ -135,7 +138,7 @@ class PrioritisedReplayBuffer(ReplayBuffer):
     def update_priorities(self, rows: Ints, errors: Floats) -> None:
         """Set the priorities of the transitions at `rows` by their errors (n,)."""
         priorities = (np.abs(errors).astype(float) + 1e-3) ** self.exponent
-        self._largest = max(self._largest, float(priorities.max()))
+        self.largest = max(self.largest, float(priorities.max()))
         self.tree.set(rows, priorities)
 
     def _drop(self, count: int) -> None:

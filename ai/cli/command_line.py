@@ -171,15 +171,6 @@ def keep(save: Callable[[Path], Kept], output: Path) -> tuple[Path, Kept]:
         return beside, save(beside)
 
 
-def keep_checkpoint(save: Callable[[Path], object], output: Path) -> str:
-    """Save a checkpoint; return the error as text, if any: a disk that is full now may have room by the end."""
-    try:
-        save(output)
-    except OSError as error:
-        return f"could not write to {output}: {error.strerror or error}; training goes on"
-    return ""
-
-
 def fail_diverged(stopped: str, output: Path, *, measured: bool) -> int:
     """Report that training diverged, what is kept of it, and whether that was measured; return the exit code."""
     kept = "What was best until then" if measured else "The last network, which has not been measured,"

@@ -71,7 +71,7 @@ def _table(arguments: argparse.Namespace) -> int:
     from ai.copilot.copilot import Mode
     from ai.copilot.measurement import HELPS, seconds
     from ai.sweep.cluster import each
-    from ai.sweep.copilot_table import fly, parts, tables_of
+    from ai.sweep.shards import fly_part, parts, tables_of
     from ai.training.config import ANYWHERE, LANDER
 
     if problem := out_of_range(arguments, episodes=EPISODES, seed=SEEDS, workers=WORKERS):
@@ -91,7 +91,7 @@ def _table(arguments: argparse.Namespace) -> int:
             f"this takes about {minutes:.0f} minutes" if minutes > 1 else "this takes about a minute", file=sys.stderr
         )
         with progress_bar(len(asked), "flying", unit="part") as bar:
-            for index, rows in each(fly, asked, arguments.address, arguments.workers or 1):
+            for index, rows in each(fly_part, asked, arguments.address, arguments.workers or 1):
                 done[index] = rows
                 bar.update()
     except REFUSED as error:

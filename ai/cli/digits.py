@@ -7,18 +7,15 @@ from __future__ import annotations
 
 import argparse
 import json
-import time
-from collections.abc import Callable, Iterator
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ai.cli.command_line import REFUSED, SECONDS, SEEDS, configured, fail, folder, out_of_range, reason
-from ai.cli.training_run import RunCommand, add_run_options, show_progress, train
+from ai.cli.training_run import RunCommand, add_run_options, train
 
 if TYPE_CHECKING:
     from ai.digits.config import DigitConfig
-    from ai.digits.training import DigitProgress, DigitTraining
+    from ai.digits.training import DigitProgress
 
 
 def add_commands(commands: Any) -> None:
@@ -46,51 +43,30 @@ def add_commands(commands: Any) -> None:
 
 
 def _train(arguments: argparse.Namespace) -> int:
-    from ai.digits.checkpoints import resume_digit_run, save_digit_run
-    from ai.digits.classifier import KIND
     from ai.digits.training import DigitTraining
+    from ai.training.digit_run import DIGITS, resume_digit_run
+    from ai.training.run import Limit
 
     if arguments.resume is None and arguments.output is None:
         return fail("say where to keep the network: --output DIR, or --resume DIR")
     if problem := out_of_range(arguments, seed=SEEDS, seconds=SECONDS):
         return fail(problem)
-    seconds: float | None = arguments.seconds
 
     def used_up(training: DigitTraining) -> str:
-        if seconds is None or training.seconds < seconds:
-            return ""
         spent = f"this run has trained for {training.seconds:,.1f} seconds already"
         return f"{spent}; --seconds is of the whole run: ask for more"
+
+    def shown(progress: DigitProgress) -> str:
+        best = f", held out {progress.best:.2%}" if progress.best is not None else ""
+        return f"epoch {progress.epoch:.1f}, loss {progress.loss:.3f}{best}"
 
     def verdict(_: DigitTraining, described: dict[str, Any]) -> str:
         return f"{described['test']:.2%} of MNIST's test images read right"
 
     return train(arguments, RunCommand(
-        KIND, partial(config_of, arguments), DigitTraining, resume_digit_run, used_up, partial(_advance, seconds),
-        save_digit_run, verdict,
+        DIGITS, partial(config_of, arguments), DigitTraining, resume_digit_run, Limit(arguments.seconds), used_up,
+        shown, verdict,
     ))  # fmt: skip
-
-
-def _advance(seconds: float | None, training: DigitTraining, output: Path, stop: list[int]) -> None:
-    """Train until the last epoch, the clock or the user says stop, and keep the work after each epoch."""
-    from ai.digits.checkpoints import save_digit_run
-
-    def steps() -> Iterator[DigitProgress]:
-        while not training.done and (seconds is None or training.seconds < seconds):
-            began = time.monotonic()
-            progress = training.advance()
-            training.seconds += time.monotonic() - began
-            yield progress
-
-    def shown(progress: DigitProgress) -> tuple[int, str]:
-        best = f", held out {progress.best:.2%}" if progress.best is not None else ""
-        return progress.step, f"epoch {progress.epoch:.1f}, loss {progress.loss:.3f}{best}"
-
-    def checkpoint(progress: DigitProgress) -> Callable[[Path], object] | None:
-        ended = progress.step % training.steps_per_epoch == 0 and not training.done
-        return partial(save_digit_run, training) if ended else None
-
-    show_progress(steps(), training.steps, training.step, shown, checkpoint, output, stop)
 
 
 def _evaluate(arguments: argparse.Namespace) -> int:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -26,13 +25,12 @@ from ai.cli.command_line import (
     progress_bar,
     reason,
 )
-from ai.cli.training_run import RunCommand, add_run_options, show_progress, train
+from ai.cli.training_run import RunCommand, add_run_options, train
 
 if TYPE_CHECKING:
     from ai.agent.agent import DeepQAgent
-    from ai.training.checkpoints import TrainingClock
     from ai.training.config import Config
-    from ai.training.loop import Progress, Training
+    from ai.training.loop import Progress
     from ai.training.task import Score, Task
 
 DECISIONS: Final = (1, 10**12)
@@ -74,9 +72,10 @@ def add_commands(commands: Any) -> None:
 
 
 def _train(arguments: argparse.Namespace) -> int:
-    from ai.agent.storage import KIND
-    from ai.training.checkpoints import TrainingClock, resume_run, save_run
+    from ai.training.checkpoints import AGENTS, resume_run
+    from ai.training.config import ANYWHERE, LANDER
     from ai.training.loop import Training
+    from ai.training.run import Limit
 
     if arguments.resume is None and arguments.output is None:
         return fail("say where to keep the network: --output DIR, or --resume DIR")
@@ -85,7 +84,6 @@ def _train(arguments: argparse.Namespace) -> int:
     problem = out_of_range(arguments, seed=SEEDS, seconds=SECONDS, decisions=DECISIONS, validation=EPISODES)
     if problem:
         return fail(problem)
-    clock = TrainingClock(arguments.seconds, arguments.decisions)
 
     def begin(config: Config, seed: int) -> Training:
         return Training(config, seed, validation_episodes=arguments.validation)
@@ -96,37 +94,22 @@ def _train(arguments: argparse.Namespace) -> int:
             training.validation_episodes = arguments.validation
         return training
 
-    return train(arguments, RunCommand(
-        KIND, partial(config_of, arguments), begin, resume, partial(_used_up, clock), partial(_advance, clock),
-        save_run, lambda training, _: str(training.best),
-    ))  # fmt: skip
+    def used_up(training: Training) -> str:
+        return (
+            f"this run has taken {training.moment:,} decisions in {training.seconds:,.1f} seconds"
+            " already; --decisions and --seconds are of the whole run: ask for more"
+        )
 
-
-def _used_up(clock: TrainingClock, training: Training) -> str:
-    if clock.share(training) < 1.0:
-        return ""
-    return (
-        f"this run has taken {training.agent.decisions:,} decisions in {training.seconds:,.1f} seconds"
-        " already; --decisions and --seconds are of the whole run: ask for more"
-    )
-
-
-def _advance(clock: TrainingClock, training: Training, output: Path, stop: list[int]) -> None:
-    """Train until the clock or the user says stop, with a progress bar, keeping the work now and then."""
-    from ai.training.checkpoints import save_run
-    from ai.training.config import ANYWHERE, LANDER
-
-    def shown(progress: Progress) -> tuple[int, str]:
+    def shown(progress: Progress) -> str:
         best = f" best {progress.best.figure}" if progress.best else ""
-        lander = training.config.env in (LANDER, ANYWHERE)
+        lander = progress.env in (LANDER, ANYWHERE)
         recent = f"landed {progress.success_rate:.0%}" if lander else f"return {progress.mean_return:.1f}, mean"
-        words = f"{recent} of the last 100, ε {progress.epsilon:.2f}, {progress.decisions:,} decisions{best}"
-        return int(clock.share(training) * 1000), words
+        return f"{recent} of the last 100, ε {progress.epsilon:.2f}, {progress.decisions:,} decisions{best}"
 
-    def checkpoint(_: Progress) -> Callable[[Path], None] | None:
-        return partial(save_run, training) if clock.checkpoint_due() else None
-
-    show_progress(clock.run(training), 1000, 0, shown, checkpoint, output, stop)
+    return train(arguments, RunCommand(
+        AGENTS, partial(config_of, arguments), begin, resume, Limit(arguments.seconds, arguments.decisions), used_up,
+        shown, lambda training, _: str(training.best),
+    ))  # fmt: skip
 
 
 def _evaluate(arguments: argparse.Namespace) -> int:

@@ -14,11 +14,13 @@ from ai.cli.command_line import (
     REFUSED,
     SEEDS,
     WORKERS,
+    Unheard,
     add_where,
     exit_code,
     fail,
     folder,
     out_of_range,
+    progress_bar,
     readable,
     reason,
     say,
@@ -28,6 +30,7 @@ from ai.cli.command_line import (
 if TYPE_CHECKING:
     from ai.common.knobs import Knobs
     from ai.sweep.plan import Plan
+    from ai.sweep.results import FinishedTrial
     from ai.sweep.study import Study
 
 TRIALS: Final = (1, 100_000)
@@ -113,25 +116,45 @@ def _complete(study: Study) -> bool:
 def _run(arguments: argparse.Namespace, study: Study, stop: list[int]) -> int:
     """Run the trials that a study has left; return the exit code: that of a failure if some could not be made."""
     from ai.sweep.cluster import joined
-    from ai.sweep.report import importance_of
 
     with joined(arguments.address, arguments.workers) as workers:
         if stop:
             return 0
-        from ai.sweep.table import Table
-        from ai.sweep.tuning import run_trials
+        from ai.sweep.driver import Driver
+        from ai.sweep.journal import importance_of
 
-        table = Table(study, workers)
-        recorder = run_trials(study, table, stop)
-        table.clear()
+        with progress_bar(study.plan.trials, study.folder.name, initial=len(study.trials), unit="trial") as bar:
+            best = study.best()
+
+            def told() -> None:
+                nonlocal best
+                done = len(study.trials)
+                new = study.best()
+                if new and new is not best and bar.disable:
+                    fail(f"{done} of {study.plan.trials} trials: best {_described(study, new)}")
+                best = new
+                bar.set_postfix_str(
+                    f"{len(driver.running)} running{f', best {_described(study, best)}' if best else ''}"
+                )
+                bar.update(done - bar.n)
+
+            driver = Driver(study, workers, lambda line: bar.write(readable(line), file=Unheard()), told)
+            driver.run(stop)
     with suppress(OSError):  # it is made from the rest, and only lists need it
-        study.write_summary({name: each.share for name, each in importance_of(study).items()})
-    if recorder.trouble:
-        return fail(recorder.trouble)
-    if recorder.lost and not stop:
-        numbers, why = ", ".join(map(str, sorted(recorder.lost))), "; ".join(sorted(set(recorder.lost.values())))
+        study.importance = importance_of(study)
+        study.write_summary()
+    if driver.trouble:
+        return fail(driver.trouble)
+    if driver.lost and not stop:
+        numbers, why = ", ".join(map(str, sorted(driver.lost))), "; ".join(sorted(set(driver.lost.values())))
         return fail(f"trials failed again and again: {numbers}: {why}")
     return 0
+
+
+def _described(study: Study, trial: FinishedTrial) -> str:
+    from ai.sweep.report import settings
+
+    return f"{study.shown(trial.value)}, trial {trial.number}: {settings(trial.params)}"
 
 
 def _again(arguments: argparse.Namespace, study: Study) -> str:

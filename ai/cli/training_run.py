@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Iterable
+import time
+from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Final, Generic, TypeVar
 
 from ai.cli.command_line import (
     REFUSED,
@@ -21,7 +22,6 @@ from ai.cli.command_line import (
     fail_diverged,
     folder,
     keep,
-    keep_checkpoint,
     progress_bar,
     readable,
     reason,
@@ -31,56 +31,41 @@ from ai.cli.command_line import (
 )
 
 if TYPE_CHECKING:
-    from ai.files import FolderKind
+    from ai.training.run import Limit, Run, RunKind
 
+_LINE_SECONDS: Final = 20.0  # between two lines where there is no terminal
+_PARTS: Final = 1000  # of the bar
 _BAR: Final = "{desc} {percentage:3.0f}%|{bar}| {elapsed}<{remaining} {postfix}"
 
 
-class TrainingRun(Protocol):
-    """What a command must know of a run: `ai.training.loop.Training` and `ai.digits.training.DigitTraining` have it."""
-
-    config: Any
-    seed: int
-
-    @property
-    def best(self) -> Any:
-        """Score of the best network so far; None if none has been measured."""
-
-    def apply_live(self, config: Any) -> None:
-        """Use the live knobs of another configuration."""
-
-    def restore_best(self) -> None:
-        """Restore the best networks so far, if there are any."""
-
-
-Run = TypeVar("Run", bound=TrainingRun)
+TrainedRun = TypeVar("TrainedRun", bound="Run")
 
 
 @dataclass(frozen=True)
-class RunCommand(Generic[Run]):
+class RunCommand(Generic[TrainedRun]):
     """What is a command's own.
 
     Attributes:
-        kind: what its folder may hold.
+        kind: the kind of run.
         config: returns the settings asked for, given those that a resumed run was begun with, else None; raises
             ValueError.
         begin: makes a new run of the settings and the seed.
         resume: reads a run from its folder; raises ModelFormatError.
-        used_up: says why a run has no time left to train; "" if it has.
-        train: trains until the run, its clock or the user, who adds to the list, says stop; keeps checkpoints.
-        save: saves a run; `final` measures it as well. Returns a description.
+        limit: when to stop.
+        used_up: says what a run has used up that has no time left to train.
+        shown: what is written of the progress behind the bar.
         verdict: says how good the saved run is, given its description.
 
     """
 
-    kind: FolderKind
+    kind: RunKind
     config: Callable[[Any], Any]
-    begin: Callable[[Any, int], Run]
-    resume: Callable[[Path], Run]
-    used_up: Callable[[Run], str]
-    train: Callable[[Run, Path, list[int]], None]
-    save: Callable[..., Any]
-    verdict: Callable[[Run, Any], str]
+    begin: Callable[[Any, int], TrainedRun]
+    resume: Callable[[Path], TrainedRun]
+    limit: Limit
+    used_up: Callable[[TrainedRun], str]
+    shown: Callable[[Any], str]
+    verdict: Callable[[TrainedRun, Any], str]
 
 
 def add_run_options(train: argparse.ArgumentParser, example: str) -> None:
@@ -99,7 +84,7 @@ def add_run_options(train: argparse.ArgumentParser, example: str) -> None:
                        help=f"change a setting of the preset, such as --set {example}")  # fmt: skip
 
 
-def train(arguments: argparse.Namespace, command: RunCommand[Run]) -> int:
+def train(arguments: argparse.Namespace, command: RunCommand[TrainedRun]) -> int:
     """Begin or resume a run, train, keep what comes of it, and return the exit code."""
     from ai.files import claimed_folder
 
@@ -107,9 +92,9 @@ def train(arguments: argparse.Namespace, command: RunCommand[Run]) -> int:
     with ExitStack() as claims:
         try:
             training = _begun_or_resumed(arguments, command)
-            if used_up := command.used_up(training):
-                raise ValueError(used_up)
-            claims.enter_context(claimed_folder(output, command.kind))
+            if command.limit.share(training) >= 1.0:
+                raise ValueError(command.used_up(training))
+            claims.enter_context(claimed_folder(output, command.kind.folder))
             if not arguments.replace and _holds_another(output, arguments.resume):
                 raise ValueError(f"{output} holds an earlier run: --resume {output} goes on with it, --replace ends it")
         except REFUSED as error:
@@ -122,31 +107,35 @@ def _holds_another(output: Path, resumed: Path | None) -> bool:
     return output.is_dir() and any(output.iterdir()) and not (resumed and output.samefile(resumed))
 
 
-def _begun_or_resumed(arguments: argparse.Namespace, command: RunCommand[Run]) -> Run:
+def _begun_or_resumed(arguments: argparse.Namespace, command: RunCommand[TrainedRun]) -> TrainedRun:
     """Return the run to train; raises ValueError for changes of a resumed one that are not live."""
     if arguments.resume is None:
         return command.begin(command.config(None), arguments.seed or 0)
     training = command.resume(arguments.resume)
+    if training.lost:
+        fail(f"{arguments.resume}: {training.lost}")
     wanted = command.config(training.config)
     refuse_fixed(training.config, wanted, training.seed, arguments.seed)
     training.apply_live(wanted)
     return training
 
 
-def _train_and_keep(training: Run, output: Path, command: RunCommand[Run]) -> int:
+def _train_and_keep(training: TrainedRun, output: Path, command: RunCommand[TrainedRun]) -> int:
+    from ai.training.keeping import save
+
     stopped, saved = "", False
     try:
         with stoppable() as stop:
             try:
-                command.train(training, output, stop)
+                _advance(training, output, command, stop)
             except FloatingPointError as error:
                 stopped = f"training stopped: {error}. "
                 training.restore_best()
             # Save before measuring, which takes seconds: the user may stop the program meanwhile.
-            output, described = keep(partial(command.save, training), output)
+            output, described = keep(partial(save, training, command.kind), output)
             saved = True
         if not stopped:
-            output, described = keep(partial(command.save, training, final=True), output)
+            output, described = keep(partial(save, training, command.kind, final=True), output)
     except OSError as error:
         return fail(f"{stopped}could not write to {output}: {error.strerror or error}")
     except ValueError as error:
@@ -157,30 +146,26 @@ def _train_and_keep(training: Run, output: Path, command: RunCommand[Run]) -> in
     return exit_code(stop)
 
 
-def show_progress(
-    steps: Iterable[Any],
-    total: int,
-    initial: int,
-    shown: Callable[[Any], tuple[int, str]],
-    checkpoint: Callable[[Any], Callable[[Path], object] | None],
-    output: Path,
-    stop: list[int],
-) -> None:
-    """Take steps of a run, with a progress bar, until there are no more or `stop` has an entry.
+def _advance(training: TrainedRun, output: Path, command: RunCommand[TrainedRun], stop: list[int]) -> None:
+    """Train until the limit or the user, who adds to `stop`, says so; keep the run now and then, and show how it goes.
 
-    `shown` gives, for what a step yields, how much of `total` is done and what is written behind the bar;
-    `checkpoint` what saves one now, or None when none is due. A checkpoint that cannot be written is reported once.
+    That is a progress bar on a terminal, and elsewhere a line now and then. That the run could not be kept is told
+    once: a disk that is full now may have room by the end.
     """
-    trouble = ""
-    with progress_bar(total, "training", initial=initial, bar_format=_BAR) as bar:
-        for progress in steps:
-            done, words = shown(progress)
-            bar.update(done - bar.n)
+    from ai.training.keeping import Keeper
+
+    keeper, line_at = Keeper(training, command.kind, output), time.monotonic() + _LINE_SECONDS
+    with progress_bar(_PARTS, "training", bar_format=_BAR) as bar:
+        for progress in command.limit.run(training):
+            share, words = command.limit.share(training), command.shown(progress)
+            bar.update(int(_PARTS * share) - bar.n)
             bar.set_postfix_str(words, refresh=False)
+            if bar.disable and time.monotonic() >= line_at:
+                line_at = time.monotonic() + _LINE_SECONDS
+                print(f"training {share:.0%}: {words}", file=Unheard(), flush=True)
             if stop:
                 break
-            if save := checkpoint(progress):
-                new = keep_checkpoint(save, output)
-                if new and new != trouble:
-                    bar.write(readable(new), file=Unheard())
-                trouble = new
+            for told in keeper.go_on(training.clock()):
+                said = f"could not write to {output}: {told.problem}; training goes on"
+                bar.write(readable(said), file=Unheard())
+    keeper.wait()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import cached_property
 from typing import Any, Final, Protocol
@@ -87,6 +87,42 @@ def guardian_margin(assist: Any) -> Any:
     """Return by how many points of reward the guardian must be better than the pilot, for assist (n,), 0 to 1."""
     with np.errstate(divide="ignore"):
         return GUARDIAN_MARGIN * (1.0 - np.asarray(assist)) / assist
+
+
+@dataclass(frozen=True, eq=False)
+class _Asked:
+    """What a decision of n pilots is asked for by."""
+
+    observation: Floats  # (n, pads, 9)
+    pilot: Ints  # (n,)
+    surroundings: Floats | None
+    shares: Doubles  # (n, 2)
+    env: LanderEnv | None
+    known: Sequence[Mapping[Push, Future]] | None = None
+    whole: bool = False  # whether what is corrected is flown with all thrust
+
+    @classmethod
+    def of(
+        cls, observation: Floats, pilot: Any, around: Floats | None, shares: Doubles | None, env: LanderEnv | None
+    ) -> _Asked:
+        """Return what is asked for; raises as `CoPilot.share` does."""
+        observation, pilot = np.atleast_2d(observation), np.atleast_1d(pilot)
+        if observation.ndim == 2:
+            observation = observation[:, None]
+        slots = len(observation)
+        if pilot.shape != (slots,) or pilot.dtype.kind not in "iu":
+            raise ValueError(f"pilot actions must be {slots} whole numbers, not {pilot.dtype} {pilot.shape}")
+        if ((pilot < 0) | (pilot >= NUM_ACTIONS)).any():
+            raise ValueError(f"actions run from 0 to {NUM_ACTIONS - 1}, not {pilot.min()} to {pilot.max()}")
+        pushed = ACTION_SHARES[pilot] if shares is None else np.asarray(shares, dtype=float)
+        if pushed.shape != (slots, 2):
+            raise ValueError(f"shares of thrust must be {slots} rows of two, not {pushed.shape}")
+        return cls(observation, pilot, around, pushed, env)
+
+    @property
+    def pushes(self) -> list[Push]:
+        """What each pilot pushes."""
+        return [Push(*push) for push in zip(self.pilot.tolist(), *self.shares.T.tolist(), strict=True)]
 
 
 class CoPilot:
@@ -187,7 +223,8 @@ class CoPilot:
         mode goes by futures: ask every four physics steps, at the same time as `env` flies what was
         returned. Raises ValueError for others.
         """
-        decision = self._decide(observation, pilot_action, surroundings, shares, env, None, whole=True)
+        asked = _Asked.of(observation, pilot_action, surroundings, shares, env)
+        decision = self._decide(replace(asked, whole=True))
         return decision.action, decision.overridden
 
     def decide(
@@ -204,36 +241,17 @@ class CoPilot:
         Here, what is corrected keeps the pilot's share of thrust, so fly `SharedDecision.shares`. Futures that are
         `known` (n) were flown beforehand: then none is flown now, and what is missing counts as lost.
         """
-        return self._decide(observation, pilot_action, surroundings, shares, env, known, whole=False)
+        asked = _Asked.of(observation, pilot_action, surroundings, shares, env)
+        return self._decide(replace(asked, known=known))
 
-    def _decide(
-        self,
-        observation: Floats,
-        pilot_action: Any,
-        surroundings: Floats | None,
-        shares: Doubles | None,
-        env: LanderEnv | None,
-        known: Sequence[Mapping[Push, Future]] | None,
-        *,
-        whole: bool,
-    ) -> SharedDecision:
-        observation = np.atleast_2d(observation)
-        if observation.ndim == 2:
-            observation = observation[:, None]
+    def _decide(self, asked: _Asked) -> SharedDecision:
+        observation, pilot = asked.observation, asked.pilot
         slots, pads, _ = observation.shape
-        pilot = np.atleast_1d(pilot_action)
-        if pilot.shape != (slots,) or pilot.dtype.kind not in "iu":
-            raise ValueError(f"pilot actions must be {slots} whole numbers, not {pilot.dtype} {pilot.shape}")
-        if ((pilot < 0) | (pilot >= NUM_ACTIONS)).any():
-            raise ValueError(f"actions run from 0 to {NUM_ACTIONS - 1}, not {pilot.min()} to {pilot.max()}")
-        pushed = ACTION_SHARES[pilot] if shares is None else np.asarray(shares, dtype=float)
-        if pushed.shape != (slots, 2):
-            raise ValueError(f"shares of thrust must be {slots} rows of two, not {pushed.shape}")
-        seen = self._seen(observation, surroundings)
+        seen = self._seen(observation, asked.surroundings)
         values = self.agent.q_values(seen.reshape(slots * pads, -1)).reshape(slots, pads, NUM_ACTIONS)
         likely, meant = self._read(values, pilot, np.abs(observation[:, :, 0]))
-        if self.mode is Mode.GUARDIAN and env is not None:
-            return self._save(observation, env, values, meant, likely, pilot, pushed, known, whole)
+        if self.mode is Mode.GUARDIAN and asked.env is not None:
+            return self._save(asked, asked.env, values, meant, likely)
         assist = np.where(pilot == COAST, 1.0, self.assist)
         weigh = self._guard if self.mode is Mode.GUARDIAN else self._tolerate
         best, feasible = weigh(meant, pilot, assist)
@@ -243,7 +261,7 @@ class CoPilot:
         action = candidates[source, rows]
         overridden = action != pilot
         source[(pilot == COAST) & overridden] = ActionSource.HANDS_OFF
-        flown = np.where(overridden[:, None], ACTION_SHARES[action], pushed)
+        flown = np.where(overridden[:, None], ACTION_SHARES[action], asked.shares)
         return SharedDecision(observation, action, pilot, best, source, values, meant, feasible, likely,
                               self.assist, self.mode, self.reward_scale, flown, overridden)  # fmt: skip
 
@@ -266,19 +284,9 @@ class CoPilot:
         pad = np.where(open_, np.arange(pads), likeliest)
         return likely, values[np.arange(slots)[:, None], pad]
 
-    def _save(
-        self,
-        observation: Floats,
-        env: LanderEnv,
-        values: Floats,
-        meant: Floats,
-        likely: Doubles,
-        pilot: Ints,
-        pushed: Doubles,
-        known: Sequence[Mapping[Push, Future]] | None,
-        whole: bool,
-    ) -> SharedDecision:
+    def _save(self, asked: _Asked, env: LanderEnv, values: Floats, meant: Floats, likely: Doubles) -> SharedDecision:
         """Let each pilot fly what a landing plan begins with; else do the least that such a plan begins with."""
+        observation = asked.observation
         slots, pads, _ = observation.shape
         if env.num_envs != slots or DECISION_STEPS % env.frame_skip:
             raise ValueError(
@@ -290,40 +298,33 @@ class CoPilot:
         pad = target if pads == len(env.ground.pads) else np.zeros(slots, dtype=np.intp)
         best = values[np.arange(slots), pad].argmax(axis=1)
         self._void(env)
-        asks = [Push(*push) for push in zip(pilot.tolist(), *pushed.T.tolist(), strict=True)]
-        futures = [dict(each) for each in known or [{}] * slots]
+        futures = [dict(each) for each in asked.known or [{}] * slots]
         if self.assist > 0:
-            choices = self._choose(env, target, asks, best, futures, flies=known is None, whole=whole)
+            choices = self._choose(asked, env, target, best, futures)
         else:
-            choices = [Choice(push, ActionSource.PILOT, held=False) for push in asks]
+            choices = [Choice(push, ActionSource.PILOT, held=False) for push in asked.pushes]
         action = np.array([choice.push.action for choice in choices])
         feasible = np.ones((slots, NUM_ACTIONS), dtype=bool)
         for slot, each in enumerate(futures):
             for push in KEYS:
                 feasible[slot, push.action] = push not in each or each[push].passes
-        return SharedDecision(observation, action, pilot, best, np.array([choice.source for choice in choices]), values,
-                              meant, feasible, likely, self.assist, self.mode, self.reward_scale,
-                              np.array([choice.push[1:] for choice in choices]),
-                              np.array([choice.source is not ActionSource.PILOT for choice in choices]),
-                              tuple(asks), tuple(futures), np.array([choice.held for choice in choices]))  # fmt: skip
+        source = np.array([choice.source for choice in choices])
+        shares = np.array([choice.push[1:] for choice in choices])
+        held = np.array([choice.held for choice in choices])
+        return SharedDecision(observation, action, asked.pilot, best, source, values, meant, feasible, likely,
+                              self.assist, self.mode, self.reward_scale, shares, source != ActionSource.PILOT,
+                              tuple(asked.pushes), tuple(futures), held)  # fmt: skip
 
     def _choose(
-        self,
-        env: LanderEnv,
-        target: Ints,
-        asks: Sequence[Push],
-        best: Ints,
-        known: list[dict[Push, Future]],
-        *,
-        flies: bool,
-        whole: bool,
+        self, asked: _Asked, env: LanderEnv, target: Ints, best: Ints, known: list[dict[Push, Future]]
     ) -> list[Choice]:
-        """Return every guardian's choice, after all futures that it needs have been flown, if it `flies`."""
+        """Return every guardian's choice, after all futures that it needs were flown, unless they are known already."""
+        asks, whole = asked.pushes, asked.whole
         flying = np.flatnonzero(env.outcome == Outcome.FLYING).tolist()
         here = {slot: Here.of(env, slot) for slot in flying}
         wishes = [KEYS[action] for action in best]
         moment: Moment | None = None
-        while flies:
+        while asked.known is None:
             needed = [
                 (slot, push)
                 for slot in flying

@@ -7,9 +7,9 @@ bits; so a plan is flown as it is written down, and never decided anew.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Final, NamedTuple, Protocol
+from typing import Final, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
@@ -20,6 +20,8 @@ from ai.lander.pilots import Pilot
 from ai.lander.route import Route
 from ai.lander.rules import ACTION_SHARES, nearest_action
 from engine import DT
+
+T = TypeVar("T")
 
 DECISION_STEPS: Final = 4  # physics steps of a decision, whatever rate a network was trained with
 LONGEST: Final = 30.0  # seconds after which a future that has not landed counts as one that does not
@@ -150,10 +152,23 @@ class FlownAhead(Protocol):
         """
 
     def hint(self, asked: Push) -> None:
-        """Say what the stick asks for now."""
+        """Say what the stick asks for now; call it in every step between two requests, so that answers are fetched."""
 
     def known(self) -> Mapping[Push, Future]:
         """Return what is known by now of the moment asked for; never waits."""
+
+
+Flying = Generator[None, None, list[T]]  # yields after each decision, and returns what comes of it
+
+
+def _finished(flying: Flying[T]) -> list[T]:
+    """Fly to the end; return what comes of it."""
+    while True:
+        try:
+            next(flying)
+        except StopIteration as end:
+            found: list[T] = end.value
+            return found
 
 
 class Lookahead:
@@ -187,27 +202,50 @@ class Lookahead:
             Future(plan, last is not None) for plan, last in zip(plans[: len(once)], plans[len(once) :], strict=True)
         ]
 
+    def look(
+        self, moment: Moment, push: Push, decisions: int = 1, before: Opening = ()
+    ) -> Generator[Future | None, None, None]:
+        """Fly what comes of one push for one lander; yield None after each decision, so that one can leave off.
+
+        The future is yielded once it is known. If the network lands after all `decisions`, that plan comes first: it
+        begins with the push as well, so there is no need to wait for the one after a single decision, which follows.
+        """
+        longest: Plan | None = None
+        if decisions > 1:
+            (longest,) = yield from self._plans(moment, [(0, (*before, *(push,) * decisions))])
+            if longest:
+                yield Future(longest)
+        (plan,) = yield from self._plans(moment, [(0, (*before, push))])
+        yield Future(plan or longest, decisions == 1 or longest is not None)
+
     def plans(self, moment: Moment, asked: Sequence[tuple[int, Opening]]) -> list[Plan | None]:
         """Return for each lander and opening in `asked` a plan that lands, or None.
 
         A landing on any pad counts; of several plans, that to the target is returned, else that to the nearest pad.
         """
+        return _finished(self._plans(moment, asked))
+
+    def _plans(self, moment: Moment, asked: Sequence[tuple[int, Opening]]) -> Flying[Plan | None]:
         pads = [_pads_of(moment, row) for row in range(len(moment))]
-        if len(asked) < _TOGETHER:
-            alone = ((self._fly(moment, [(row, opening, pad)])[0] for pad in pads[row]) for row, opening in asked)
-            return [next((plan for plan in tried if plan), None) for tried in alone]
-        each = len(pads[0])
         plans: list[Plan | None] = [None] * len(asked)
+        if len(asked) < _TOGETHER:
+            for index, (row, opening) in enumerate(asked):
+                for pad in pads[row]:
+                    (plans[index],) = yield from self._fly(moment, [(row, opening, pad)])
+                    if plans[index]:
+                        break
+            return plans
+        each = len(pads[0])
         # Most land where they were meant to: of many, the other pads are tried where that fails.
         for tried in [range(each)] if each * len(asked) <= _AT_ONCE else [range(1), range(1, each)]:
             left = [(index, pads[row][pad])
                     for index, (row, _) in enumerate(asked) if plans[index] is None for pad in tried]  # fmt: skip
-            found = self._fly(moment, [(*asked[index], pad) for index, pad in left])
+            found = yield from self._fly(moment, [(*asked[index], pad) for index, pad in left])
             for (index, _), plan in zip(left, found, strict=True):
                 plans[index] = plans[index] or plan
         return plans
 
-    def _fly(self, moment: Moment, asked: Sequence[tuple[int, Opening, int]]) -> list[Plan | None]:
+    def _fly(self, moment: Moment, asked: Sequence[tuple[int, Opening, int]]) -> Flying[Plan | None]:
         """Fly landers with openings to pads; return the plans of those that land."""
         if not asked:
             return []
@@ -224,6 +262,8 @@ class Lookahead:
         env, future = self._begin(start, np.arange(count))  # future (n,) of every slot, fewer than there are slots
         states[0] = _states(env)[:count]
         flies = np.arange(env.num_envs) < count
+        left = np.flatnonzero(flies)
+        soonest = float(((env.limits.time - SPARE - env.time) / DT).min()) // DECISION_STEPS - 1  # decisions in time
         for number in range(_MOST):
             n = len(future)
             action, share = self._choose(env)
@@ -231,9 +271,13 @@ class Lookahead:
                 opens, given = number < length[future], pushed[number, future]
                 action[:n] = np.where(opens, given[:, 0], action[:n])
                 share[:n] = np.where(opens[:, None], given[:, 1:], share[:n])
-            actions[number, future], shares[number, future] = action[:n], share[:n]
+            rows = future if n < count else slice(None)
+            actions[number, rows], shares[number, rows] = action[:n], share[:n]
             env.fly(action, share)
-            states[number + 1, future] = _states(env)[:n]
+            states[number + 1, rows] = _states(env)[:n]
+            yield
+            if number < soonest and np.count_nonzero(env.outcome) == env.num_envs - len(left):
+                continue  # none has ended, and none is late
             late = env.time > env.limits.time - SPARE
             over = np.flatnonzero(flies & (late | (env.outcome != Outcome.FLYING)))
             landed[future[over]] = (env.outcome == Outcome.LANDED)[over] & ~late[over]

@@ -55,6 +55,10 @@ class Guardian:
     def __init__(self) -> None:
         self.plan: Plan | None = None
 
+    def knows(self, here: Here, asked: Push, known: Mapping[Push, Future]) -> bool:
+        """Whether it is known what comes of a push: it was flown ahead, or the held plan begins with it."""
+        return asked in known or (self.plan is not None and self.plan.push(here) == asked)
+
     def needs(self, here: Here, asked: Push, network: Push, known: Mapping[Push, Future], *, whole: bool) -> list[Push]:
         """Return the pushes whose futures `choose` would have to know, and does not yet."""
         offers, head = self._offers(here, asked, network, whole)

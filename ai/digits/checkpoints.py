@@ -18,7 +18,7 @@ from ai.files import Count, Duration, OneOf, Seed, Share, Sized, inside, problem
 from ai.nn import ModelFormatError, atomic_folder
 
 TRAINING_FILE: Final = "training.json"
-LAST_FILE: Final = "last.npz"  # as long as there are epochs to come
+LAST_FILE: Final = "last.npz"  # the state of runs that were kept before states were
 _OPTIMIZERS: Final = "optimizer."  # what the names of its arrays begin with
 _SLACK: Final = 1 << 16  # bytes of an archive beside its numbers
 
@@ -54,11 +54,30 @@ def read_summary(folder: Path, file: str = TRAINING_FILE) -> DigitRunSummary:
     return read_as(DigitRunSummary, read_json(folder / file))
 
 
-def save_digit_run(training: DigitTraining, folder: str | Path, final: bool = False) -> dict[str, Any]:
-    """Save a run's best network and the state to resume from, whole or not at all; return its description.
+@dataclass(frozen=True)
+class DigitSnapshot:
+    """Copy of what a run's folder holds, at one moment: it may be saved while training goes on.
 
-    `final` measures it on MNIST's test images. Raises OSError if it cannot be written, MnistError if there
-    are no test images.
+    `history` writes one more file into the folder; None for a run that is not watched.
+    """
+
+    described: dict[str, Any]
+    best: DigitClassifier
+    history: Any
+
+    def save(self, folder: str | Path) -> None:
+        """Write it, whole or not at all; raises OSError if it cannot be written."""
+        with atomic_folder(folder, KIND) as temporary:
+            self.best.write(temporary)
+            if self.history is not None:
+                self.history.write(temporary)
+            (temporary / TRAINING_FILE).write_text(json.dumps(self.described, indent=2) + "\n", encoding="utf-8")
+
+
+def snapshot(training: DigitTraining, history: Any = None, final: bool = False) -> DigitSnapshot:
+    """Copy what is to be kept of a run; a `final` one is measured on MNIST's test images.
+
+    Raises MnistError if there are none.
     """
     best = training.best_classifier()
     described = {
@@ -68,54 +87,30 @@ def save_digit_run(training: DigitTraining, folder: str | Path, final: bool = Fa
         "epochs": training.step // training.steps_per_epoch,
         "seconds": round(training.seconds, 3),
         "held_out": training.best,
-        "history": training.history,
+        "kept_epoch": training.best_epoch,
+        "history": [*training.history],
     }
     if final:
         described["test"] = accuracy(best, *load_part(TEST))
-    with atomic_folder(folder, KIND) as temporary:
-        best.write(temporary)
-        (temporary / TRAINING_FILE).write_text(json.dumps(described, indent=2) + "\n", encoding="utf-8")
-        if not training.done:
-            state = {f"{_OPTIMIZERS}{name}": array for name, array in training.optimizer.state().items()}
-            values = training.classifier.network.values
-            np.savez(temporary / LAST_FILE, allow_pickle=False, values=values, average=training.average, **state)
-    return described
+    return DigitSnapshot(described, best, None if history is None else history.copy())
 
 
-def resume_digit_run(folder: str | Path, **options: Any) -> DigitTraining:
-    """Resume an unfinished run that `save_digit_run` saved; raises ModelFormatError for anything else."""
-    folder = Path(folder)
-    best = DigitClassifier.load(folder).network.values
+def read_settings(folder: Path) -> tuple[DigitConfig, int, int]:
+    """Return the settings and the seed of a run in a folder, and its steps so far; raises ModelFormatError."""
+    DigitClassifier.load(folder)
     try:
         described = read_as(_TrainingFile, read_json(inside(folder, TRAINING_FILE)))
         preset = DIGIT_PRESETS[described.preset].to_json()
         config = DigitConfig.from_json(preset | DigitConfig.renamed(described.changes))
-        training = DigitTraining(config, described.seed, **options)
-        training.step, training.seconds, training.best = described.step, described.seconds, described.held_out
-        training.history = list(described.history)
     except OSError as error:
         raise ModelFormatError(folder, [f"{TRAINING_FILE}: {error.strerror or error}"]) from error
     except (ValueError, TypeError, ArithmeticError) as error:
         raise ModelFormatError(folder, [f"{TRAINING_FILE}: {problem_in(error)}"]) from error
-    if not (folder / LAST_FILE).exists():
-        raise ModelFormatError(folder, ["the run is finished: there is nothing to go on with"])
-    if best.shape != training.average.shape:
-        raise ModelFormatError(folder, ["the network's sizes are not those of the run's settings"])
-    try:
-        state = _read_last(inside(folder, LAST_FILE), training)
-        training.classifier.network.values, training.average[...] = state.pop("values"), state.pop("average")
-        known = {name.removeprefix(_OPTIMIZERS): array for name, array in state.items()}
-        training.optimizer.load_state(known, training.classifier.network.values)
-    except OSError as error:
-        raise ModelFormatError(folder, [f"{LAST_FILE}: {error.strerror or error}"]) from error
-    except (ValueError, KeyError) as error:
-        raise ModelFormatError(folder, [f"{LAST_FILE}: {problem_in(error)}"]) from error
-    training.best_values = None if training.best is None else best.copy()
-    return training
+    return config, described.seed, described.step
 
 
-def _read_last(path: Path, training: DigitTraining) -> dict[str, Any]:
-    """Read the arrays to resume from; raises OSError, or ValueError for others than such a run has."""
+def read_last(folder: Path, training: DigitTraining) -> dict[str, Any] | None:
+    """Return the state of a run that was kept before states were; None if there is none. Raises ModelFormatError."""
     remembered = [f"{_OPTIMIZERS}{name}" for name in training.optimizer.remembers]
     names = {"values", "average", *remembered}
 
@@ -124,7 +119,17 @@ def _read_last(path: Path, training: DigitTraining) -> dict[str, Any]:
         if not steps and not (name in names and shape == training.average.shape and dtype == np.float32):
             raise ValueError(f"{name} is no part of such a run")
 
-    state = read_arrays(path, len(names) * training.average.nbytes + _SLACK, expect)
-    if not all(np.isfinite(array).all() for array in state.values()):
-        raise ValueError("holds numbers that are not finite")
-    return state
+    try:
+        described = read_as(_TrainingFile, read_json(inside(folder, TRAINING_FILE)))
+        arrays = read_arrays(inside(folder, LAST_FILE), len(names) * training.average.nbytes + _SLACK, expect)
+        best = None if described.held_out is None else DigitClassifier.load(folder).network.values
+        optimizer = {name.removeprefix(_OPTIMIZERS): arrays[name] for name in arrays if name.startswith(_OPTIMIZERS)}
+        return {
+            "step": described.step, "seconds": described.seconds, "best": described.held_out, "best_values": best,
+            "history": [*described.history], "loss": 0.0, "accuracy": 0.0, "optimizer": optimizer,
+            "values": arrays["values"], "average": arrays["average"],
+        }  # fmt: skip
+    except FileNotFoundError:
+        return None
+    except (OSError, ValueError, KeyError) as error:
+        raise ModelFormatError(folder, [f"{LAST_FILE}: {problem_in(error)}"]) from error

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
 
@@ -16,6 +16,7 @@ from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DigitConfig, build_digit_network
 from ai.digits.handwriting import drawings
 from ai.digits.mnist import TRAIN, Images, Labels, load_part
+from ai.files import array_like, count_of, number_of
 from ai.nn import OPTIMIZERS, Array
 
 SPLIT_SEED: Final = 28  # which images are held out does not depend on the run
@@ -49,6 +50,10 @@ class DigitTraining:
     best: float | None = None
     best_values: Array | None = None
     history: list[dict[str, Any]] = field(default_factory=list)  # an entry for each epoch
+    lost: str = ""  # this and what follows is described in `ai.training.run.Run`
+    diverged: bool = False
+    around: dict[str, Any] = field(default_factory=dict)
+    states: Any = None
 
     def __post_init__(self) -> None:
         images, labels = self.data or load_part(TRAIN)
@@ -79,6 +84,37 @@ class DigitTraining:
     def done(self) -> bool:
         """Whether all epochs are over."""
         return self.step >= self.steps
+
+    @property
+    def moment(self) -> int:
+        """Learning steps so far."""
+        return self.step
+
+    @property
+    def buffers(self) -> dict[str, Any]:
+        """Replay buffers; there are none."""
+        return {}
+
+    def state(self) -> dict[str, Any]:
+        """Return copies of all that the run goes on from, besides its settings; each step has its own randomness."""
+        return {
+            "step": self.step, "seconds": self.seconds, "best": self.best, "history": [*self.history],
+            "best_values": None if self.best_values is None else self.best_values.copy(),
+            "loss": self._loss, "accuracy": self._accuracy, "values": self.classifier.network.values.copy(),
+            "average": self.average.copy(), "optimizer": self.optimizer.state(),
+        }  # fmt: skip
+
+    def load_state(self, state: Mapping[str, Any]) -> None:
+        """Go on from what `state` returned; raises KeyError, TypeError or ValueError for what no run can have been."""
+        network, best = self.classifier.network, state["best_values"]
+        network.values = array_like(network.values, state["values"], "values")
+        self.average[...] = array_like(self.average, state["average"], "average")
+        self.optimizer.load_state(state["optimizer"], network.values)
+        self.best_values = None if best is None else array_like(self.average, best, "best_values")
+        self.best = None if state["best"] is None else float(number_of(state["best"], 0))
+        self.step, self.seconds = count_of(state["step"]), float(number_of(state["seconds"], 0))
+        self._loss, self._accuracy = float(number_of(state["loss"])), float(number_of(state["accuracy"]))
+        self.history = list(state["history"])
 
     @property
     def learning_rate(self) -> float:

@@ -16,14 +16,6 @@ EXAMPLES: Final = 12  # misread images of a kind that are shown
 _SLICE: Final = 100  # images that are read between two steps
 
 
-@dataclass(frozen=True)
-class HeldOutScore:
-    """Accuracy on the images held out, of the network as it would be kept now."""
-
-    seconds: float
-    accuracy: float
-
-
 @dataclass(frozen=True, eq=False)
 class Confusion:
     """Confusion matrix of the images held out, with some that were misread.
@@ -63,8 +55,8 @@ class ValidationReading:
         """The network's parameters."""
         return self._classifier.network.values
 
-    def told(self, at: float) -> tuple[HeldOutScore, Confusion]:
-        """Return score and confusion matrix of the network, which had learnt for so many seconds."""
+    def told(self) -> tuple[float, Confusion]:
+        """Return accuracy and confusion matrix of the network."""
         labels, read = self._labels.astype(np.int64), np.concatenate(self._read)
         table = np.zeros((DIGITS, DIGITS), np.int64)
         np.add.at(table, (labels, read), 1)
@@ -75,4 +67,4 @@ class ValidationReading:
         )
         images = (self._images[chosen] * 255).astype(np.uint8)
         accuracy = float(table.trace() / len(labels))
-        return HeldOutScore(at, accuracy), Confusion(table, np.stack([labels[chosen], read[chosen]], axis=1), images)
+        return accuracy, Confusion(table, np.stack([labels[chosen], read[chosen]], axis=1), images)

@@ -37,6 +37,8 @@ def traces(network: NeuralNetwork, observation: npt.ArrayLike) -> list[Array]:
     """
     data: Array = np.asarray(observation, network.dtype)
     with np.errstate(all="ignore"):
+        if data.ndim % 2:  # one example
+            return [values[0] for values in traces(network, data[None])]
         given = [data, *network.activations(data)]
     return [*(values for layer, values in zip(network.layers, given, strict=False) if _links(layer)), given[-1]]
 

@@ -9,14 +9,18 @@ from ai.files.folder import (
     FolderKind,
     atomic_folder,
     claimed_folder,
+    move_state,
     new_folder,
     recover_all,
     recover_folder,
+    remove_state,
+    state_folder,
 )
 from ai.files.lock import take, take_folder
 from ai.files.reading import (
     CONTROLS,
     MOST,
+    array_like,
     brief,
     count_of,
     described,
@@ -50,8 +54,9 @@ from ai.files.writing import append_line, free_path, write_bytes, write_text
 
 __all__ = [
     "CONFIG", "CONTROLS", "MOST", "NETWORK", "Above", "Count", "Duration", "FolderKind", "OneOf", "SchemaError", "Seed",
-    "Share", "Sized", "Within", "append_line", "atomic_folder", "brief", "check_header", "claimed_folder", "count_of",
-    "described", "free_path", "inside", "new_folder", "number_of", "parse_json", "problem_in", "read_array",
-    "read_arrays", "read_as", "read_bytes", "read_json", "read_lines", "read_text", "recover_all", "recover_folder",
-    "shown", "sound_fields", "take", "take_folder", "write_bytes", "write_text",
+    "Share", "Sized", "Within", "append_line", "array_like", "atomic_folder", "brief", "check_header", "claimed_folder",
+    "count_of", "described", "free_path", "inside", "move_state", "new_folder", "number_of", "parse_json", "problem_in",
+    "read_array", "read_arrays", "read_as", "read_bytes", "read_json", "read_lines", "read_text", "recover_all",
+    "recover_folder", "remove_state", "shown", "sound_fields", "state_folder", "take", "take_folder", "write_bytes",
+    "write_text",
 ]  # fmt: skip

@@ -136,6 +136,24 @@ def recover_all(folder: Path) -> None:
         _clear_away(folder / name)
 
 
+def state_folder(folder: str | Path) -> Path:
+    """Return the folder of the state that belongs to a run's folder: hidden, and beside it."""
+    folder = Path(folder)
+    return folder.with_name(f".{folder.name}.state")
+
+
+def remove_state(folder: str | Path) -> None:
+    """Delete the state of a run that has ended for good; the network in its folder stays."""
+    shutil.rmtree(state_folder(folder), ignore_errors=True)
+
+
+def move_state(source: Path, target: Path) -> None:
+    """Let the state follow a run's folder to another name."""
+    remove_state(target)
+    with suppress(OSError):
+        state_folder(source).rename(state_folder(target))
+
+
 def _clear_away(path: Path) -> None:
     """Delete the folders beside a path that were begun for it long ago and never finished."""
     for left in _aside(path, _NEW):

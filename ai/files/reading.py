@@ -194,6 +194,20 @@ def read_array(path: str | Path, shape: tuple[int, ...], dtype: npt.DTypeLike) -
         return _read_member(file, name, expect)
 
 
+def array_like(
+    template: npt.NDArray[Any], value: Any, name: str = "an array", *, finite: bool = True
+) -> npt.NDArray[Any]:
+    """Return a copy of an array that has the shape and dtype of another; raises ValueError if not.
+
+    Its numbers must be finite, or else at least be numbers.
+    """
+    if not isinstance(value, np.ndarray) or (value.shape, value.dtype) != (template.shape, template.dtype):
+        raise ValueError(f"{name} should hold {described(template.shape, template.dtype)}")
+    if value.dtype.kind == "f" and (not np.isfinite(value).all() if finite else np.isnan(value).any()):
+        raise ValueError(f"{name} holds numbers that are not finite")
+    return value.copy()
+
+
 def described(shape: tuple[int, ...], dtype: np.dtype[Any]) -> str:
     """Describe an array, as in "float32 [9, 128]"."""
     return brief(f"{dtype.name} {list(shape)}", 60)

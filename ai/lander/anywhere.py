@@ -147,7 +147,7 @@ class AnywhereEnv(LanderEnv):
         self.kind: Ints = np.zeros(num_envs, dtype=np.intp)
         self.settled: Doubles = np.tile(np.array(Site()), (num_envs, 1))
         self.world.params.quadratic_drag = np.tile(self.world.params.quadratic_drag, (num_envs, 1, 1))
-        self._air: Doubles = self.world.movers.quadratic_drag  # (n, 1, 3), the lander's
+        self._air: Doubles = self.world.params.quadratic_drag[:, self.lander.index]  # (n, 3), a view
         self.settle(self.settled)
 
     def reset(self, mask: Bools | None = None) -> Floats:
@@ -165,7 +165,7 @@ class AnywhereEnv(LanderEnv):
         self.settled[:] = sites
         site = Site(*self.settled.T.copy())
         self.world.gravity = np.stack([np.zeros(self.num_envs), -site.gravity], axis=1)
-        self._air[:, 0, :2] = np.array(site.air)[:, None]
+        self._air[:, :2] = np.array(site.air)[:, None]
         self.params = replace(PARAMS, main_thrust=site.thrust, quadratic_drag=site.air)
         self.limits = replace(LIMITS, touch_speed=site.touch_speed, slide_speed=site.slide_speed, time=site.time)
         self.conditions = Conditions(site.wind, site.gust, site.gust_period, site.tank, (site.dead, site.back),

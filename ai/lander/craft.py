@@ -64,7 +64,7 @@ def move_pads(env: LanderEnv, time: Doubles) -> None:
     shift, velocity = env.conditions.shift(time)
     state.pose[:, bodies, 0] = env.ground.middles[:, 0] + shift[:, None]
     state.velocity[:, bodies, 0] = velocity[:, None]
-    env.world.detector.broad.forget_boxes(bodies)
+    env.world.forget_boxes(bodies)
 
 
 def carry_pads(env: LanderEnv, time: Doubles) -> None:

@@ -131,7 +131,7 @@ class FreeFlight:
         if self._rocks_of == (sway, pad):
             return
         self._rocks, self._rocks_of = [], (sway, pad)
-        shapes, pads = env.world.detector.shapes, env.pad_bodies
+        shapes, pads = env.world.shape_table, env.pad_bodies
         for row, body in enumerate(shapes.body.tolist()):
             is_pad = pads.start <= body < pads.stop
             if body == env.lander.index or (is_pad and pad not in (-1, body - pads.start)):

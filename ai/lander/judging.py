@@ -38,7 +38,7 @@ def _touch(env: LanderEnv, flying: Bools) -> Bools:
     touches = env.world.contacts
     if touches is None:
         return np.zeros(env.num_envs, dtype=bool)
-    shapes = env.world.detector.pairs[touches.pair]
+    shapes = env.world.pairs[touches.pair]
     world, part = touches.world, shapes.min(axis=1)  # 0 hull, 1 left foot, 2 right foot
     pad = shapes.max(axis=1) - 3  # the pad's number; the plain, hills and roofs come after the pads
     on_pad = pad < len(env.ground.pads)
@@ -46,8 +46,8 @@ def _touch(env: LanderEnv, flying: Bools) -> Bools:
     env.contacts[world[foot], part[foot] - 1] = True
     env.touched[world[foot]] = pad[foot]
     felt = np.zeros((env.num_envs, 3))
-    np.maximum.at(felt[:, 0], world, touches.approach[:2].max(axis=0))
-    np.maximum.at(felt[:, 1], world, np.abs(touches.approach[2]))
+    np.maximum.at(felt[:, 0], world, touches.approach[:, :2].max(axis=1))
+    np.maximum.at(felt[:, 1], world, np.abs(touches.approach[:, 2]))
     felt[world, 2] = env.tilt[world]
     env.impact = np.maximum(env.impact, felt)
     wrong_part, wrong_place = np.zeros((2, env.num_envs), dtype=bool)

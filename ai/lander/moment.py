@@ -6,7 +6,7 @@ its landers, and pickled for another process.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -15,7 +15,7 @@ from ai.common.environment import Doubles, Ints
 from ai.lander.conditions import Conditions
 from ai.lander.ground import Ground
 from ai.lander.rules import LanderParams, Limits
-from engine.contacts import Memory, WarmStart
+from engine.world import memory_of_worlds
 
 if TYPE_CHECKING:
     from ai.lander.environment import LanderEnv
@@ -28,8 +28,8 @@ _BUILT: Final = ("mass", "inertia", "linear_drag", "angular_drag", "angular_quad
 def snapshot(env: LanderEnv) -> dict[str, Any]:
     """Return the state of an environment as `LanderEnv.snapshot` says."""
     world, count = env.world, env.num_envs
-    memory = world.detector.memory()
-    felt = np.broadcast_to(world.gravity if memory.gravity is None else memory.gravity, (count, 2)).copy()
+    memory = world.memory()
+    felt = np.broadcast_to(memory["gravity"], (count, 2)).copy()
     return {
         "built": _built(env.params, env.ground),
         **{name: _values(getattr(env, name)) for name in _RULES},
@@ -38,7 +38,7 @@ def snapshot(env: LanderEnv) -> dict[str, Any]:
         "air": np.broadcast_to(world.params.quadratic_drag, (count, len(world.bodies), 3)).copy(),
         "landers": {name: getattr(env, name).copy() for name in env.kept},
         "bodies": {name: value.copy() for name, value in _values(world.state).items()},
-        "contacts": _contacts(replace(memory, gravity=felt)),
+        "contacts": {**memory, "gravity": felt},
         "landings": env.landings,
     }
 
@@ -56,7 +56,7 @@ def restore(env: LanderEnv, state: dict[str, Any]) -> None:
     _put_air(world.params, state["air"])
     for name, value in state["bodies"].items():
         setattr(world.state, name, value.copy())
-    world.detector.recall_memory(_memory(state["contacts"]))
+    world.recall(state["contacts"])
     env.strictness, env.landings = state["strictness"], state["landings"]
 
 
@@ -80,14 +80,6 @@ def _put_air(params: Any, air: Doubles) -> None:
         params.quadratic_drag[:] = air
     elif not (params.quadratic_drag == air).all():
         params.quadratic_drag = _one(air)
-
-
-def _contacts(memory: Memory) -> dict[str, Any]:
-    return {"pairs": memory.pairs, "gravity": memory.gravity, "impulses": _values(memory.impulses)}
-
-
-def _memory(contacts: dict[str, Any]) -> Memory:
-    return Memory(WarmStart(**contacts["impulses"]), None, [], contacts["gravity"], contacts["pairs"])
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +124,7 @@ class Moment:
     def take(self, rows: Ints) -> Moment:
         """Return the moment of the landers `rows` (m,), each of them as often as it is named."""
         state = {name: _taken(value, rows) for name, value in self.state.items() if name != "contacts"}
-        return Moment(self.ground, {**state, "contacts": _contacts(_memory(self.state["contacts"]).of_worlds(rows))})
+        return Moment(self.ground, {**state, "contacts": memory_of_worlds(self.state["contacts"], rows)})
 
     def put(self, env: LanderEnv) -> None:
         """Put it into an environment of as many slots as it has landers, as `LanderEnv.restore` does."""

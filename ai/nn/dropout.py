@@ -27,8 +27,10 @@ class DropoutLayer(HalvedLayer):
         # Drawn in the order that images have in memory; for small arrays the order does not matter.
         drawn = self.rng.random(input_data.shape[::-1], np.float32).T
         self.factors = self.kept("factors", input_data.shape, input_data.dtype)
+        self.output = self.kept("output", input_data.shape, input_data.dtype)
         np.multiply(drawn >= self.rate, 1 / (1 - self.rate), out=self.factors, casting="same_kind")
-        return np.multiply(input_data, self.factors, out=self.kept("output", input_data.shape, input_data.dtype))
+        np.multiply(input_data, self.factors, out=self.output)
+        return self.output
 
     def predict(self, input_data: Array) -> Array:
         """Return the input as it is."""
@@ -36,4 +38,6 @@ class DropoutLayer(HalvedLayer):
 
     def input_error(self, output_error: Array) -> Array:
         """Return the error of what was kept, enlarged alike, and 0 elsewhere."""
-        return np.multiply(output_error, self.factors, out=self.kept("error", self.factors.shape, self.factors.dtype))
+        self.error = self.kept("error", self.factors.shape, self.factors.dtype)
+        np.multiply(output_error, self.factors, out=self.error)
+        return self.error

@@ -120,6 +120,7 @@ class ConvolutionLayer(FullyConnectedLayer):
     settings = ("inputs", "filters", "kernel", "stride", "padding")
     inputs: ImageShape
     outputs: ImageShape
+    framed: Array  # images of the last forward pass, with zeros around them
 
     def __init__(
         self,

@@ -45,6 +45,8 @@ class Layer(ABC):
     rng: np.random.Generator | None = None
     dtype: npt.DTypeLike = np.float32
     joined = False  # whether it belongs to a network
+    output: Array  # of the last forward pass, and the input error of the last way back, in layers that keep them
+    error: Array
 
     @cached_property
     def parameters(self) -> tuple[Parameter, ...]:
@@ -76,12 +78,12 @@ class Layer(ABC):
         """Return what the constructor needs to make such a layer again."""
         return {name: getattr(self, name) for name in self.settings}
 
-    def kept(self, name: str, shape: tuple[int, ...], dtype: npt.DTypeLike) -> Array:
+    def kept(self, name: str, shape: tuple[int, ...], dtype: npt.DTypeLike) -> npt.NDArray[Any]:
         """Return the attribute `name`, an array that begins as zeros, made anew where shape or dtype are others.
 
         Images are in Fortran order, as in `ai.nn.images`.
         """
-        array: Array | None = self.__dict__.get(name)
+        array: npt.NDArray[Any] | None = self.__dict__.get(name)
         if array is None or array.shape != shape or array.dtype != dtype:
             array = self.__dict__[name] = np.zeros(shape, dtype, "F" if len(shape) == 4 else "C")
         return array

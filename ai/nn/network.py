@@ -100,16 +100,17 @@ class NeuralNetwork:
         is for one thread at a time.
         """
         data: Array = np.asarray(input_data, self.dtype)
-        if data.ndim % 2:
-            return self.predict(data[None])[0]
-        if data.ndim == 4 and len(data) > IMAGES:
-            return np.concatenate([self.predict(part) for part in np.split(data, range(IMAGES, len(data), IMAGES))])
         example, steps, answer = self._row
         if data.shape == example.shape:
             example[...] = data
             for step in steps:
                 step()
-            return answer.copy()
+            found: Array = answer.copy()
+            return found
+        if data.ndim % 2:
+            return self.predict(data[None])[0]
+        if data.ndim == 4 and len(data) > IMAGES:
+            return np.concatenate([self.predict(part) for part in np.split(data, range(IMAGES, len(data), IMAGES))])
         for layer in self.layers:
             data = layer.predict(data)
         return data

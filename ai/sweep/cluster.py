@@ -26,12 +26,6 @@ _ROOT: Final = Path(__file__).parents[2]
 _STORE: Final = 256 << 20  # bytes of Ray's object store on one machine; results are some hundred KB each
 _QUIET: Final = {
     "RAY_USAGE_STATS_ENABLED": "0",  # Ray reports its use by default
-    "RAY_AIR_NEW_OUTPUT": "0",  # with verbose=0, Tune then prints nothing; the table is ours
-    "RAY_TRAIN_ENABLE_V2_MIGRATION_WARNINGS": "0",
-    "TUNE_DISABLE_AUTO_CALLBACK_LOGGERS": "1",  # results are kept once, in the study
-    "TUNE_DISABLE_SIGINT_HANDLER": "1",  # Ctrl-C is ours too
-    "TUNE_GLOBAL_CHECKPOINT_S": "1000000",  # and so is what a killed driver goes on from
-    "TUNE_WARN_THRESHOLD_S": "60",
 }
 # Ray binds its ports to the loopback interface alone only if it takes itself to be on a system without clusters; by
 # itself, "127.0.0.1" is replaced by the machine's address on the network, and the ports are open to all.
@@ -86,14 +80,12 @@ def joined(address: str | None = None, workers: int | None = None) -> Iterator[i
             if address is not None:
                 _join(address, runtime_env={"env_vars": worker_environment()}, **quiet)
             else:
-                with _environment(worker_environment()):
-                    ray.init(address="local", num_cpus=workers or cores(), include_dashboard=False,
-                             _node_ip_address=LOOPBACK, object_store_memory=_STORE, **quiet)  # fmt: skip
-        if address is None and (opened := _opened()):
+                os.environ.update(worker_environment())
+                ray.init(address="local", num_cpus=workers or cores(), include_dashboard=False,
+                         _node_ip_address=LOOPBACK, object_store_memory=_STORE, **quiet)  # fmt: skip
+        if address is None and (opened := ray.util.get_node_ip_address()) != LOOPBACK:
             raise ConnectionError(f"Ray would listen on {opened}, and not on this machine alone; nothing was started")
         count = int(ray.cluster_resources().get("CPU", 1))
-        # Trials that wait for a worker: one is enough for a search that learns, but fills a large cluster slowly.
-        os.environ["TUNE_MAX_PENDING_TRIALS_PG"] = str(max(1, count // 8))
         yield count
     finally:
         ray.shutdown()
@@ -177,29 +169,6 @@ def _tell(news: Mapping[str, Any], ignore_prefix: bool = False) -> None:  # noqa
 def _is_local(address: str) -> bool:
     """Whether an address leads to this machine by its loopback interface."""
     return address.removeprefix("ray://").startswith(("127.", "localhost", "[::1]"))
-
-
-def _opened() -> str:
-    """Return the address that Ray's node has on the network; empty if it is the loopback address."""
-    import ray
-
-    node = ray.util.get_node_ip_address()
-    return "" if node == LOOPBACK else str(node)
-
-
-@contextmanager
-def _environment(values: Mapping[str, str]) -> Iterator[None]:
-    """Set variables of the environment while a block runs; processes started there keep them."""
-    before = {name: os.environ.get(name) for name in values}
-    os.environ.update(values)
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = value
 
 
 def each(

@@ -12,6 +12,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final, Self
 
+from ai.files import Count, Share
+
 JUDGES: Final = ("median", "worst")
 NAMES: Final = "success, accuracy, return, mean, or time_to_99 with any percentage"
 _TIME: Final = re.compile(r"time_to_(\d{1,3})")
@@ -28,8 +30,8 @@ class Point:
 
     """
 
-    at: int
-    success: float | None
+    at: Count
+    success: Share | None
     mean_return: float
 
 
@@ -87,10 +89,6 @@ class Metric:
         if judge == "median":
             return statistics.median(known)
         return max(known) if self.mode == "min" else min(known)
-
-    def better(self, value: float, other: float) -> bool:
-        """Whether a value is better than another one."""
-        return value < other if self.mode == "min" else value > other
 
     def shown(self, value: float | None, budget: int) -> str:
         """Return a value as a table shows it."""

@@ -7,11 +7,10 @@ from html import escape
 from typing import Final
 
 from ai.sweep.metric import Point
-from ai.sweep.report import importance_of
+from ai.sweep.report import duration
 from ai.sweep.results import FinishedTrial
 from ai.sweep.space import Dimension, shown_value
 from ai.sweep.study import Study
-from ai.sweep.table import duration
 
 _SHOWN: Final = 300  # curves, and rows of the table; the JSON has all
 _WIDE, _HIGH, _LEFT, _FOOT = 420, 190, 46, 26  # of a plot, in pixels
@@ -56,23 +55,18 @@ def page(study: Study) -> str:
 
 
 def _importance(study: Study) -> str:
-    rows = importance_of(study)
-    if not rows:
+    if not study.importance:
         return ""
-    lines = []
-    for row, (name, each) in enumerate(rows.items()):
-        y, long = row * 24, 300 * each.share
-        low, high = (280 + 300 * max(0.0, each.share + sign * each.spread) for sign in (-1, 1))
-        lines.append(
-            f'<text x="250" y="{y + 14}" text-anchor="end">{escape(name)}</text>'
-            f'<rect class="bar" x="280" y="{y + 5}" width="{long:.1f}" height="10"/>'
-            f'<line class="spread" x1="{low:.1f}" x2="{high:.1f}" y1="{y + 10}" y2="{y + 10}"/>'
-            f'<text x="{high + 10:.1f}" y="{y + 14}">{each.share:.0%}</text>'
-        )
+    lines = [
+        f'<text x="250" y="{24 * row + 14}" text-anchor="end">{escape(name)}</text>'
+        f'<rect class="bar" x="280" y="{24 * row + 5}" width="{300 * share:.1f}" height="10"/>'
+        f'<text x="{290 + 300 * share:.1f}" y="{24 * row + 14}">{share:.0%}</text>'
+        for row, (name, share) in enumerate(study.importance.items())
+    ]
     return (
-        "<h2>Which knobs matter</h2><p>Share of the differences between trials that a knob explains by itself (fANOVA);"
-        " what is missing to 100% comes from knobs together, and from chance. Thin lines: how far the trees of the"
-        f' forest disagree.</p><svg width="720" height="{24 * len(rows)}">{"".join(lines)}</svg>'
+        "<h2>Which knobs matter</h2>"
+        "<p>Share of each knob in setting the best tenth of the trials apart (PED-ANOVA).</p>"
+        f'<svg width="720" height="{24 * len(lines)}">{"".join(lines)}</svg>'
     )
 
 

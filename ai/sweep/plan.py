@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Annotated, Any, Final
 
 from ai.files import Count, OneOf, Seed, Sized, Within
@@ -11,7 +11,7 @@ from ai.sweep.runs import AGENT, DIGITS, read_config
 from ai.sweep.space import Space, read_dimension
 
 FORMAT: Final = "tranquility study"
-VERSION: Final = 1
+VERSION: Final = 2
 TPE, RANDOM, POPULATION = "tpe", "random", "population"
 SEARCHES: Final = (TPE, RANDOM, POPULATION)
 MOST_TRIALS: Final = 100_000
@@ -104,7 +104,3 @@ class Plan:
     def unit(self) -> str:
         """Word for what the budget counts."""
         return "epochs" if self.kind == DIGITS else "decisions"
-
-    def to_json(self) -> dict[str, Any]:
-        """Return it as JSON can hold it."""
-        return asdict(self)

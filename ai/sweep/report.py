@@ -2,24 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Any, Final
 
 from ai.files import brief
-from ai.sweep.importance import Importance, importances
+from ai.sweep.space import shown_value
 from ai.sweep.study import Study
-from ai.sweep.table import settings
 
 _BEST: Final = 10
-
-
-def importance_of(study: Study) -> dict[str, Importance]:
-    """Return how much each knob matters; nothing for a population, whose knobs change on the way."""
-    if study.plan.population:
-        return {}
-    known = [trial for _, trial in sorted(study.trials.items()) if trial.value is not None]
-    return importances(
-        study.plan.dimensions(), [trial.params for trial in known], [trial.value or 0.0 for trial in known]
-    )
 
 
 def report(study: Study) -> dict[str, Any]:
@@ -28,16 +18,13 @@ def report(study: Study) -> dict[str, Any]:
     best = study.best()
     return {
         "study": study.folder.name,
-        "plan": study.plan.to_json(),
+        "plan": asdict(study.plan),
         "finished": len(study.trials),
-        "interrupted": sorted(study.begun),
         "damaged": study.damaged,
         "best": best.number if best else None,
-        "importance": {
-            name: {"share": each.share, "spread": each.spread} for name, each in importance_of(study).items()
-        },
+        "importance": study.importance,
         "ranking": [trial.number for trial in ranked],
-        "trials": [trial.to_json() for _, trial in sorted(study.trials.items())],
+        "trials": [asdict(trial) for _, trial in sorted(study.trials.items())],
     }
 
 
@@ -63,9 +50,22 @@ def told(study: Study) -> str:
         spread = f"{study.shown(low)} to {study.shown(high)}"
         ended = f", stopped after {trial.at:,} {plan.unit}" if trial.stopped else ""
         lines.append(f"{trial.number:>5} {study.shown(trial.value):>12} {spread:>24}  {settings(trial.params)}{ended}")
-    if known := importance_of(study):
-        lines.append("\nshare of the differences that a knob explains by itself (fANOVA)")
-        lines += [f"  {name:24} {each.share:5.0%} ± {each.spread:.0%}" for name, each in known.items()]
+    if study.importance:
+        lines.append("\nshare of each knob in setting the best trials apart (PED-ANOVA)")
+        lines += [f"  {name:24} {share:5.0%}" for name, share in study.importance.items()]
     if best and (seed := best.best_seed) and (folder := study.run_folder(best, seed.seed)):
         lines.append(f"\nbest network: {folder}")
     return "\n".join(lines)
+
+
+def settings(params: dict[str, Any]) -> str:
+    """Return the settings of a trial in one line."""
+    return " ".join(f"{name}={shown_value(value)}" for name, value in params.items())
+
+
+def duration(seconds: float) -> str:
+    """Return a length of time as a person says it."""
+    minutes = round(seconds / 60)
+    if seconds < 90:
+        return f"{seconds:.0f} s"
+    return f"{minutes} min" if minutes < 120 else f"{minutes // 60} h {minutes % 60:02} min"

@@ -1,12 +1,17 @@
-"""Results of a trial, as a study keeps them."""
+"""Results of a trial, as a study keeps them: `ai.files.read_as` reads them from JSON, `asdict` makes it."""
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
-from typing import Annotated, Any, Self
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any, Final, Self
 
-from ai.files import Count, Duration, Seed, Share, Sized, read_as
+from ai.files import Count, Duration, Seed, Share, Sized, read_as, read_json
 from ai.sweep.metric import Point
+
+STUDIES: Final = "studies"  # folder of all studies, in the user's
+STUDY_FILE: Final = "study.json"
+SUMMARY_FILE: Final = "summary.json"
 
 _Words = Annotated[str, Sized(2000)]
 
@@ -16,7 +21,6 @@ class SeedResult:
     """Result of one seed of a trial.
 
     Attributes:
-        seed: of the run.
         curve: what was measured on the way.
         value: of the metric; None if there is none.
         problem: why the run ended before its time; empty if it did not.
@@ -26,7 +30,7 @@ class SeedResult:
     """
 
     seed: Seed
-    curve: tuple[Point, ...]
+    curve: Annotated[tuple[Point, ...], Sized(100_000)]
     value: float | None
     problem: _Words
     seconds: Duration
@@ -47,7 +51,7 @@ class FinishedTrial:
         seeds: the result of each seed; none if the settings made no sense.
         parent: number of the trial whose runs it went on with; None without a population.
         problem: why there is no result; empty if there is one.
-        restarts: times that it went on from its last checkpoint, with an empty memory, as its worker had died.
+        restarts: times that it went on from its last checkpoint, as its worker had died.
 
     """
 
@@ -57,10 +61,15 @@ class FinishedTrial:
     at: Count
     stopped: bool
     seconds: Duration
-    seeds: tuple[SeedResult, ...]
+    seeds: Annotated[tuple[SeedResult, ...], Sized(1000)]
     parent: Count | None = None
     problem: _Words = ""
     restarts: Count = 0
+
+    @classmethod
+    def senseless(cls, number: int, params: dict[str, Any], problem: str) -> Self:
+        """Return the result of a trial whose settings make no sense together."""
+        return cls(number, params, None, 0, False, 0.0, (), problem=problem)
 
     @property
     def values(self) -> list[float]:
@@ -70,43 +79,41 @@ class FinishedTrial:
     @property
     def best_seed(self) -> SeedResult | None:
         """Seed whose network is the best, by the figures of its own validation; None if none was kept."""
-        kept = [seed for seed in self.seeds if seed.figures]
-        return max(kept, key=_rank, default=None)
-
-    def to_json(self) -> dict[str, Any]:
-        """Return it as JSON can hold it."""
-        told = asdict(self)
-        for seed in told["seeds"]:
-            seed["curve"] = [[point["at"], point["success"], point["mean_return"]] for point in seed["curve"]]
-        return told
-
-    @classmethod
-    def from_json(cls, values: Any) -> Self:
-        """Read what `to_json` gave; raises ValueError, which names all that is wrong."""
-        told = read_as(_TrialFile, values)
-        seeds = tuple(
-            SeedResult(**vars(seed) | {"curve": tuple(Point(*point) for point in seed.curve)}) for seed in told.seeds
-        )
-        return cls(**vars(told) | {"seeds": seeds})
+        return max((seed for seed in self.seeds if seed.figures), key=_rank, default=None)
 
 
 def _rank(seed: SeedResult) -> tuple[float, float]:
-    figures = seed.figures
-    numbers = [figures.get(name) for name in ("success", "held_out", "mean_return")]
+    numbers = [seed.figures.get(name) for name in ("success", "held_out", "mean_return")]
     known = [float(number) if isinstance(number, int | float) else 0.0 for number in numbers]
     return known[0] + known[1], known[2]
 
 
-# As a file has them: points as lists, and no field left out.
-
-
 @dataclass(frozen=True)
-class _SeedFile(SeedResult):
-    curve: Annotated[tuple[tuple[Count, Share | None, float], ...], Sized(100_000)]  # type: ignore[assignment]
+class Summary:
+    """Summary of a study, for lists of many.
+
+    Attributes:
+        finished, trials: trials that are finished, and those asked for.
+        metric: what they are compared by.
+        env: environment of its runs; None for digits.
+        best: value of the best trial, as text; None before there is one.
+        run: folder of the best run, within the study's.
+        importance: share that each knob has in setting the best trials apart, once that is known.
+
+    """
+
+    finished: Count
+    trials: Count
+    metric: Annotated[str, Sized(200)]
+    env: str | None = None
+    best: Annotated[str, Sized(200)] | None = None
+    run: Annotated[str, Sized(200)] | None = None
+    importance: dict[str, Share] | None = None
 
 
-@dataclass(frozen=True)
-class _TrialFile(FinishedTrial):
-    seeds: Annotated[tuple[_SeedFile, ...], Sized(1000)]
-    parent: Count | None = field()
-    problem: _Words = field()
+def summary_of(folder: Path) -> Summary | None:
+    """Return the summary of a study; None without one that can be read."""
+    try:
+        return read_as(Summary, read_json(folder / SUMMARY_FILE))
+    except (OSError, ValueError, RecursionError):
+        return None

@@ -7,17 +7,19 @@ network in a sweep as alone, bit for bit.
 from __future__ import annotations
 
 import time
+from abc import ABC, abstractmethod
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Final, Protocol
+from typing import Any, Final
 
 from ai.common.knobs import Knobs
-from ai.digits.checkpoints import resume_digit_run, save_digit_run
 from ai.digits.config import DigitConfig
 from ai.digits.mnist import TRAIN, load_part
 from ai.digits.training import DigitTraining
 from ai.sweep.metric import Point
 from ai.training.checkpoints import resume_run, save_run
 from ai.training.config import Config
+from ai.training.digit_run import resume_digit_run, save_digit_run
 from ai.training.loop import VALIDATION_SEED, Training
 from ai.training.tasks import task_of
 
@@ -25,77 +27,57 @@ AGENT: Final = "agent"  # kinds of run
 DIGITS: Final = "digits"
 
 
-class SeedRun(Protocol):
-    """Run of one seed, in a trial."""
+class SeedRun(ABC):
+    """Run of one seed, in a trial; `save_run` is how its command keeps it."""
+
+    def __init__(self, training: Any, save_run: Callable[..., Any]) -> None:
+        self.training, self._save_run = training, save_run
 
     @property
     def seconds(self) -> float:
         """Time spent in training."""
+        return float(self.training.seconds)
 
+    @abstractmethod
     def advance(self, mark: int) -> Point:
         """Train up to so many decisions or epochs, and measure; raises FloatingPointError if it diverges."""
 
+    @abstractmethod
     def save(self, folder: Path) -> dict[str, Any]:
         """Save the run as its command does at its end; return the figures of the network that is kept."""
 
     def keep(self, folder: Path) -> None:
         """Save the run as it is now, to go on with."""
+        self._save_run(self.training, folder)
 
     def salvage(self, folder: Path) -> None:
         """Save what was best of a run that has diverged."""
+        self.training.restore_best()
+        self.keep(folder)
 
 
-class AgentRun:
+class AgentRun(SeedRun):
     """Run of an agent: our lander, or an environment of Gymnasium."""
 
-    def __init__(self, training: Training) -> None:
-        self.training = training
-
-    @property
-    def seconds(self) -> float:
-        """Time spent in training."""
-        return self.training.seconds
-
-    def advance(self, mark: int) -> Point:
-        """Train up to so many decisions, and fly the validation episodes, as often as that is asked for."""
+    def advance(self, mark: int) -> Point:  # noqa: D102
         training, began, score = self.training, time.monotonic(), None
         while training.agent.decisions < mark:
             score = training.advance().evaluation
         training.seconds += time.monotonic() - began
         if score is None:
-            assert training.validation_episodes is not None
             score = training.task.evaluate(training.agent, training.validation_episodes, VALIDATION_SEED)
         return Point(training.agent.decisions, score.success, score.mean_return)
 
-    def save(self, folder: Path) -> dict[str, Any]:
-        """Save the run as `train` does at its end."""
-        save_run(self.training, folder, final=True)
+    def save(self, folder: Path) -> dict[str, Any]:  # noqa: D102
+        self._save_run(self.training, folder, final=True)
         best = self.training.best
-        return {} if best is None else best.to_json()
-
-    def keep(self, folder: Path) -> None:
-        """Save the run as `train` does now and then."""
-        save_run(self.training, folder)
-
-    def salvage(self, folder: Path) -> None:
-        """Save what was best."""
-        self.training.restore_best()
-        self.keep(folder)
+        return {} if best is None else dict(best.to_json())
 
 
-class DigitRun:
-    """Run of a digit network; its moments are epochs."""
+class DigitRun(SeedRun):
+    """Run of a digit network; its moments are epochs, and each measures the images held out."""
 
-    def __init__(self, training: DigitTraining) -> None:
-        self.training = training
-
-    @property
-    def seconds(self) -> float:
-        """Time spent in training."""
-        return self.training.seconds
-
-    def advance(self, mark: int) -> Point:
-        """Train up to so many epochs; each measures the images held out."""
+    def advance(self, mark: int) -> Point:  # noqa: D102
         training, began, share = self.training, time.monotonic(), None
         while training.step < mark * training.steps_per_epoch and not training.done:
             share = training.advance().held_out
@@ -104,19 +86,9 @@ class DigitRun:
             raise ValueError("a study of digits needs images held out: held_out was 0")
         return Point(training.step // training.steps_per_epoch, share, share)
 
-    def save(self, folder: Path) -> dict[str, Any]:
-        """Save the run as `train-digits` does at its end."""
-        described = save_digit_run(self.training, folder, final=True)
+    def save(self, folder: Path) -> dict[str, Any]:  # noqa: D102
+        described = self._save_run(self.training, folder, final=True)
         return {"held_out": described["held_out"], "test": described["test"]}
-
-    def keep(self, folder: Path) -> None:
-        """Save the run as `train-digits` does now and then."""
-        save_digit_run(self.training, folder)
-
-    def salvage(self, folder: Path) -> None:
-        """Save what was best."""
-        self.training.restore_best()
-        self.keep(folder)
 
 
 def read_config(kind: str, settings: dict[str, Any]) -> Knobs:
@@ -145,12 +117,12 @@ def begin(
     if isinstance(config, DigitConfig):
         training = DigitTraining(config, seed) if parent is None else resume_digit_run(parent)
         training.apply_live(config)
-        return DigitRun(training)
+        return DigitRun(training, save_digit_run)
     assert isinstance(config, Config)
     if parent is None:
-        return AgentRun(Training(config, seed, validation_episodes=validation))
+        return AgentRun(Training(config, seed, validation_episodes=validation), save_run)
     resumed = resume_run(parent, env=config.env)
     if validation is not None:
         resumed.validation_episodes = validation
     resumed.apply_live(config)
-    return AgentRun(resumed)
+    return AgentRun(resumed, save_run)

@@ -1,4 +1,4 @@
-"""Evaluation of very many flights in shards, on many cores or nodes.
+"""Evaluation of very many flights in shards, and the co-pilot's tables in parts, on many cores or nodes.
 
 Flight i begins as the i-th of one large batch of the same seed would, whichever shard flies it. A shard is always the
 same number of flights. So the counts are the same bit for bit, however many workers there are, and whether Ray is
@@ -8,7 +8,7 @@ there or not; and sums are taken in the order of the shards.
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache, reduce
 from pathlib import Path
@@ -18,13 +18,17 @@ import numpy as np
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.storage import write_agent
+from ai.copilot import measurement
+from ai.copilot.measurement import AssistedFlights, Help
 from ai.lander.environment import LanderEnv
+from ai.lander.pilots import Pilot, ScriptedPilot
 from ai.sweep.cluster import each
 from ai.sweep.trial import archive, unpack
 from ai.training.config import Config
 from ai.training.lander_task import FlightSums, counted
 
 SHARD: Final = 10_000  # flights at once, in 5 KB each
+PILOTS: Final = 8  # of a part of a table: the more fly at once, the less time each takes
 
 
 @dataclass(frozen=True)
@@ -86,3 +90,47 @@ def packed_agent(packed: bytes) -> DeepQAgent:
     with tempfile.TemporaryDirectory() as folder:
         unpack(packed, Path(folder))
         return DeepQAgent.load(folder)
+
+
+# The co-pilot's tables in parts: some pilots of one table each.
+
+
+@dataclass(frozen=True)
+class Part:
+    """Part of a table: the rows of some of its pilots."""
+
+    agent: bytes  # the co-pilot, packed
+    scripted: bool  # whether the imperfect pilots are made of the scripted one, not of the network
+    table: str
+    names: tuple[str, ...]
+    helps: tuple[Help, ...]
+    episodes: int
+    seed: int
+
+
+def parts(
+    agents: Mapping[str, DeepQAgent], scripted: bool, helps: Sequence[Help], episodes: int, seed: int
+) -> list[Part]:
+    """Return all parts of the tables that have a network: `agents` are these by the table's name."""
+    packed = {table: pack_agent(agent) for table, agent in agents.items()}
+    return [
+        Part(agent, scripted, table, names[first : first + PILOTS], tuple(helps), episodes, seed)
+        for table, agent in packed.items()
+        for names in [measurement.TABLES[table][1]]
+        for first in range(0, len(names), PILOTS)
+    ]
+
+
+def fly_part(part: Part) -> list[AssistedFlights]:
+    """Fly a part; what comes of it does not depend on the others."""
+    agent = packed_agent(part.agent)
+    good: Pilot = ScriptedPilot() if part.scripted else agent
+    return measurement.rows(agent, good, part.table, part.names, part.helps, part.episodes, part.seed)
+
+
+def tables_of(asked: Sequence[Part], done: Mapping[int, list[AssistedFlights]]) -> dict[str, list[AssistedFlights]]:
+    """Return the rows of all tables from those of all parts."""
+    tables: dict[str, list[AssistedFlights]] = {}
+    for index, part in enumerate(asked):
+        tables.setdefault(part.table, []).extend(done[index])
+    return tables

@@ -1,9 +1,9 @@
-"""Study on disk: its plan, the trials that have begun, and those that are finished, each whole or not there.
+"""Study on disk: its plan, Optuna's journal, and the finished trials, each whole or not there.
 
     study.json            the plan
-    summary.json          the best so far, for lists; made from the rest
-    started/0007.json     what was asked of a trial that is not finished
-    trials/0007/          a finished trial: trial.json, and seed-N/ with the run as `train` keeps it
+    journal.jsonl         Optuna's: every trial that has begun, with its settings (`ai.sweep.journal`)
+    summary.json          the best so far and what matters, for lists; made from the rest
+    trials/0007/          a finished trial: trial.json with its curves, and seed-N/ with the run as `train` keeps it
 
 Only the process that runs a study writes it. It gets results through Ray, so workers need no common disk.
 """
@@ -14,24 +14,21 @@ import errno
 import json
 import re
 import secrets
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, Final, Self
 
 from ai.agent.storage import KIND
 from ai.digits.classifier import KIND as DIGITS_KIND
-from ai.files import Count, OneOf, Sized, brief, new_folder, read_as, read_json, recover_all, take_folder, write_text
+from ai.files import OneOf, Sized, brief, new_folder, read_as, read_json, recover_all, take_folder, write_text
 from ai.sweep.metric import Metric
 from ai.sweep.plan import FORMAT, VERSION, Plan
-from ai.sweep.results import FinishedTrial
+from ai.sweep.results import STUDIES, STUDY_FILE, SUMMARY_FILE, FinishedTrial, Summary, summary_of
 from ai.sweep.runs import DIGITS
 from ai.sweep.trial import archive, seed_folder, unpack
 
-STUDIES: Final = "studies"  # folder of all studies, in the user's
-STUDY_FILE: Final = "study.json"
-SUMMARY_FILE: Final = "summary.json"
 TRIAL_FILE: Final = "trial.json"
 _NAME: Final = re.compile(r"\d{4,6}")
 _MOST: Final = 64_000_000  # bytes of a trial's file
@@ -50,15 +47,6 @@ class _StudyFile:
     plan: Plan
 
 
-@dataclass(frozen=True)
-class Begun:
-    """Trial that has begun and is not finished."""
-
-    number: Count
-    params: dict[str, Any]
-    parent: Count | None = None
-
-
 class Study:
     """Study in a folder. Reading it changes nothing on disk.
 
@@ -67,8 +55,8 @@ class Study:
         id: hexadecimal digits that no other study has.
         plan: what was asked for.
         trials: finished ones by number.
-        begun: trials that have begun and are not finished, by number.
         damaged: numbers of trials whose files cannot be read.
+        importance: share that each knob has in setting the best trials apart, as it was last known.
 
     """
 
@@ -76,8 +64,8 @@ class Study:
         self.folder, self.id, self.plan = folder, study_id, plan
         self.metric = Metric.named(plan.metric)
         self.trials: dict[int, FinishedTrial] = {}
-        self.begun: dict[int, Begun] = {}
         self.damaged: list[int] = []
+        self.importance: dict[str, float] = {}
 
     @classmethod
     def create(cls, folder: Path, plan: Plan) -> Self:
@@ -94,50 +82,58 @@ class Study:
     def load(cls, folder: Path) -> Self:
         """Read a study; raises StudyError for a folder that is none. Trials that cannot be read are `damaged`."""
         try:
-            told = read_as(_StudyFile, read_json(folder / STUDY_FILE))
+            values = read_json(folder / STUDY_FILE)
+            if isinstance(values, dict) and (values.get("format"), values.get("version")) == (FORMAT, 1):
+                raise StudyError(f"{folder} is a study of an earlier version, which this one does not read")
+            told = read_as(_StudyFile, values)
             told.plan.check()
             if not re.fullmatch(r"[0-9a-f]{32}", told.id):
                 raise ValueError("its id is not 32 hexadecimal digits")
         except OSError as error:
             raise StudyError(f"{folder} is no study: {STUDY_FILE}: {error.strerror or error}") from error
+        except StudyError:
+            raise
         except (ValueError, RecursionError) as error:
             raise StudyError(f"{folder} is no study that can be read: {brief(error)}") from error
         study = cls(folder, told.id, told.plan)
         study._read_trials()
+        summary = summary_of(folder)
+        known = (summary and summary.importance) or {}
+        study.importance = {name: share for name, share in known.items() if name in told.plan.space}
         return study
 
     def _write_plan(self) -> None:
-        told = {"format": FORMAT, "version": VERSION, "id": self.id, "plan": self.plan.to_json()}
+        told = {"format": FORMAT, "version": VERSION, "id": self.id, "plan": asdict(self.plan)}
         write_text(self.folder / STUDY_FILE, json.dumps(told, indent=2) + "\n")
 
     def _read_trials(self) -> None:
         for path in _numbered(self.folder / "trials"):
             number = int(path.name)
             try:
-                trial = FinishedTrial.from_json(read_json(path / TRIAL_FILE, _MOST))
+                trial = read_as(FinishedTrial, read_json(path / TRIAL_FILE, _MOST))
                 self._check(number, trial)
             except _UNREADABLE:
                 self.damaged.append(number)
             else:
                 self.trials[number] = trial
-        for path in _numbered(self.folder / "started", ".json"):
-            if int(path.stem) not in self.trials:
-                with suppress(*_UNREADABLE):
-                    begun = read_as(Begun, read_json(path))
-                    self._check(int(path.stem), begun)
-                    self.begun[begun.number] = begun
 
-    def _check(self, number: int, trial: FinishedTrial | Begun) -> None:
+    def _check(self, number: int, trial: FinishedTrial) -> None:
         """Raise ValueError or TypeError for what a file says of a trial if it cannot be one of this study."""
-        if trial.number != number or set(trial.params) != set(self.plan.space):
-            raise ValueError("of another trial or another study")
-        for name, dimension in self.plan.dimensions().items():
-            dimension.place(trial.params[name])
-        if isinstance(trial, FinishedTrial) and (trial.seeds or trial.value is not None):
+        if trial.number != number:
+            raise ValueError("of another trial")
+        self.check_params(trial.params)
+        if trial.seeds or trial.value is not None:
             if tuple(seed.seed for seed in trial.seeds) != self.plan.seeds:
                 raise ValueError("of other seeds")
             if trial.value is not None and len(trial.values) < len(trial.seeds):
                 raise ValueError("a value without that of a seed")
+
+    def check_params(self, params: dict[str, Any]) -> None:
+        """Raise ValueError or TypeError for settings that are not of this study's space."""
+        if set(params) != set(self.plan.space):
+            raise ValueError("of another study")
+        for name, dimension in self.plan.dimensions().items():
+            dimension.place(params[name])
 
     # Writing
 
@@ -158,47 +154,27 @@ class Study:
         self.plan = plan
         self._write_plan()
 
-    @property
-    def next_number(self) -> int:
-        """Number that no trial has had."""
-        return max([*self.trials, *self.begun, *self.damaged], default=-1) + 1
-
-    def begin(self, number: int, params: dict[str, Any], parent: int | None = None) -> None:
-        """Note that a trial begins. A disk that is full does not keep it from that."""
-        self.begun[number] = Begun(number, params, parent)
-        told = {"number": number, "params": params, "parent": parent}
-        with suppress(OSError):
-            (self.folder / "started").mkdir(exist_ok=True)
-            write_text(self.folder / "started" / f"{number:04}.json", json.dumps(told), flush=False)
-
     def record(self, trial: FinishedTrial, packed: bytes = b"") -> None:
         """Keep a finished trial and the archive of its runs, whole or not at all; raises OSError."""
         target = self.trial_folder(trial.number)
         with new_folder(target) as new:
             if packed:
                 unpack(packed, new)
-            write_text(new / TRIAL_FILE, json.dumps(trial.to_json()) + "\n", flush=False)
+            write_text(new / TRIAL_FILE, json.dumps(asdict(trial)) + "\n", flush=False)
         self.trials[trial.number] = trial
-        self.begun.pop(trial.number, None)
         with suppress(OSError):
-            (self.folder / "started" / f"{trial.number:04}.json").unlink(missing_ok=True)
             self.write_summary()
 
-    def write_summary(self, importance: Mapping[str, float] | None = None) -> None:
-        """Write what a list of studies shows, at the end with how much each knob matters; raises OSError."""
+    def write_summary(self) -> None:
+        """Write what a list of studies shows; raises OSError."""
         best = self.best()
         seed = best.best_seed if best else None
-        told = {
-            "finished": len(self.trials),
-            "trials": self.plan.trials,
-            "kind": self.plan.kind,
-            "env": self.plan.settings.get("env"),
-            "metric": self.plan.metric,
-            "best": self.shown(best.value) if best else None,
-            "run": f"trials/{best.number:04}/{seed_folder(seed.seed)}" if best and seed else None,
-            "importance": importance,
-        }
-        write_text(self.folder / SUMMARY_FILE, json.dumps(told, indent=2) + "\n", flush=False)
+        summary = Summary(
+            len(self.trials), self.plan.trials, self.plan.metric, self.plan.settings.get("env"),
+            self.shown(best.value) if best else None,
+            f"trials/{best.number:04}/{seed_folder(seed.seed)}" if best and seed else None, self.importance,
+        )  # fmt: skip
+        write_text(self.folder / SUMMARY_FILE, json.dumps(asdict(summary), indent=2) + "\n", flush=False)
 
     # Reading
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from ai.agent.symmetry import Symmetry
 from ai.common.environment import Env
+from ai.files import array_like
 from ai.lander.anywhere import SITES, AnywhereEnv
 from ai.lander.environment import MIRROR_ACTIONS, MIRROR_FEATURES, MIRROR_SIGNS, NUM_FEATURES
 from ai.lander.pilots import Pilot
@@ -17,6 +18,7 @@ from ai.lander.spawns import CURRICULA
 from ai.training.config import Config
 from ai.training.lander_task import Evaluation, LanderTask, flown
 from ai.training.schedule import touchdown_limits
+from ai.training.state import State
 
 ANYWHERE_SYMMETRY: Final = Symmetry(
     np.concatenate([MIRROR_SIGNS, SURROUNDINGS_MIRROR]),
@@ -45,6 +47,12 @@ class AnywhereTask(LanderTask):
         """Tighten the limits of a touchdown over the schedule, from those that are told to a share of them."""
         if isinstance(env, AnywhereEnv):
             env.strictness = touchdown_limits(self.config, decisions)
+
+    def restore_env(self, env: Env, state: State) -> str:
+        """Let new landers go on from what `env_state` gave, at the same sites."""
+        assert isinstance(env, AnywhereEnv)
+        env.settle(array_like(env.settled, state["flights"]["landers"]["settled"], "sites", finite=False))
+        return super().restore_env(env, state)
 
     def trial(self, pilot: Pilot, episodes: int, seed: int) -> Generator[None, None, Evaluation]:
         """Fly so many flights at once from random spawns, one decision at a time."""

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import time
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -19,44 +17,14 @@ from ai.nn import ModelFormatError, atomic_folder
 from ai.training.config import ANYWHERE, LANDER, LANDS_ANYWHERE, PRESETS, Config, load_agent
 from ai.training.gym_task import gym_config
 from ai.training.history import Checkpoint, History
-from ai.training.loop import Progress, Training
+from ai.training.keeping import save
+from ai.training.loop import Training
+from ai.training.run import RunKind
+from ai.training.state import read_state
 from ai.training.statistics import EpisodeStatistics
 from ai.training.task import TEST_SEED, Score
 
 TRAINING_FILE: Final = "training.json"
-CHECKPOINT_SECONDS: Final = 20.0
-
-
-class TrainingClock:
-    """Ends a run after so many seconds of training or so many decisions, and says when a checkpoint is due.
-
-    Both are counted from the run's own beginning, however often it was interrupted in between.
-    """
-
-    def __init__(self, seconds: float | None = None, decisions: int | None = None) -> None:
-        self.seconds, self.decisions = seconds, decisions
-        self._saved = time.monotonic()
-
-    def share(self, training: Training) -> float:
-        """Return the share of its time or decisions that a run has used up, from 0 to 1, whichever is more."""
-        elapsed = training.seconds / self.seconds if self.seconds else 0.0
-        taken = training.agent.decisions / self.decisions if self.decisions else 0.0
-        return min(1.0, max(elapsed, taken))
-
-    def run(self, training: Training) -> Iterator[Progress]:
-        """Advance until the time or the decisions are used up."""
-        while self.share(training) < 1.0:
-            before = time.monotonic()
-            progress = training.advance()
-            training.seconds += time.monotonic() - before
-            yield progress
-
-    def checkpoint_due(self) -> bool:
-        """Whether it is time to save; asking counts as having saved."""
-        due = time.monotonic() - self._saved > CHECKPOINT_SECONDS
-        if due:
-            self._saved = time.monotonic()
-        return due
 
 
 @dataclass(frozen=True)
@@ -78,11 +46,15 @@ class Snapshot:
             (temporary / TRAINING_FILE).write_text(json.dumps(self.described, indent=2) + "\n", encoding="utf-8")
 
 
-def snapshot(training: Training, history: History | None = None) -> Snapshot:
+def snapshot(training: Training, history: History | None = None, final: bool = False) -> Snapshot:
     """Copy what is to be kept of a run. One that has not been evaluated yet has its latest network for its best.
 
-    This measures nothing: the clock may decide when it is called, but never which network is best.
+    This measures nothing: the clock may decide when it is called, but never which network is best. But a `final` one
+    considers the latest network for the best too, and measures the best one on test spawns, which neither trained nor
+    chose it.
     """
+    if final:
+        training.conclude()
     agent, config = training.agent, training.config
     if config.env == LANDER:
         presets = PRESETS
@@ -102,31 +74,25 @@ def snapshot(training: Training, history: History | None = None) -> Snapshot:
         "best": training.best.to_json() if training.best else None,
         "flights": training.statistics.to_json(),
     }
-    return Snapshot(
-        described, training.best_agent(), training.last_agent(), None if history is None else history.copy()
-    )
-
-
-def save_run(training: Training, folder: str | Path, final: bool = False) -> None:
-    """Save the best network of a run, and the state to resume from, whole or not at all.
-
-    `final` considers the latest network for the best too, and measures the best one on test spawns, which neither
-    trained nor chose it. Raises OSError if it cannot be written, and ValueError, with the disk left
-    as it was, if the numbers of the network are not finite.
-    """
+    best = training.best_agent()
     if final:
-        training.conclude()
-    kept = snapshot(training)
-    if final:
-        score = training.task.evaluate(kept.best, training.task.test_episodes, TEST_SEED)
-        kept.described["evaluation"] = score.to_json()
-    kept.save(folder)
+        described["evaluation"] = training.task.evaluate(best, training.task.test_episodes, TEST_SEED).to_json()
+    return Snapshot(described, best, training.last_agent(), None if history is None else history.copy())
+
+
+AGENTS: Final = RunKind(KIND, snapshot)
+
+
+def save_run(training: Training, folder: str | Path, final: bool = False, *, state: bool = False) -> dict[str, Any]:
+    """Save a run of an agent as `ai.training.keeping.save` does, by default its networks alone."""
+    return save(training, AGENTS, folder, final=final, state=state)
 
 
 def resume_run(folder: str | Path, *, env: str | None = None) -> Training:
-    """Resume a run that `save_run` saved, with an empty memory; raises ModelFormatError for anything else.
+    """Resume a run of an agent: the very same, if its state lies beside its folder, else with an empty memory.
 
-    `env` is the environment as the user names it, without which "module:Name" is refused: see `load_agent`.
+    `Training.lost` says what is missing. Raises ModelFormatError for anything else. `env` is the environment as the
+    user names it, without which "module:Name" is refused: see `load_agent`.
     """
     folder = Path(folder)
     best, _ = load_agent(folder, env=env)
@@ -157,6 +123,9 @@ def resume_run(folder: str | Path, *, env: str | None = None) -> Training:
     except (KeyError, TypeError, ValueError, ArithmeticError) as error:
         raise ModelFormatError(folder, [f"{TRAINING_FILE}: {problem_in(error)}"]) from error
     training.agent.copy_from(last)
+    state = read_state(folder, last.decisions)
+    if state is None or not training.load_state(state, folder):
+        training.lost = "its state is not there, so it goes on with an empty memory"
     return training
 
 

@@ -6,6 +6,7 @@ it, it is flown again, with the learner's rewards.
 
 from __future__ import annotations
 
+import hashlib
 import json
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
@@ -61,6 +62,11 @@ class Demonstration:
     def __post_init__(self) -> None:
         if problems := sound_fields(Demonstration, vars(self))[1]:
             raise ValueError(f"this is no flight: {SchemaError(problems)}")
+
+    @property
+    def digest(self) -> str:
+        """A few letters that tell it from any other flight."""
+        return hashlib.sha256(json.dumps(asdict(self)).encode()).hexdigest()[:16]
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,10 @@ import numpy as np
 
 from ai.agent.symmetry import Symmetry
 from ai.common.environment import SUCCESS, Bools, Doubles, Env, Floats, Ints, StepResult
+from ai.files import count_of
 from ai.lander.pilots import Pilot
 from ai.training.config import Config
+from ai.training.state import State
 from ai.training.task import checked_score
 
 if TYPE_CHECKING:
@@ -82,7 +84,11 @@ class GymScore:
 
 
 class GymEnv:
-    """Vectorised environment (`ai.common.environment.Env`) of several Gymnasium ones, stepped one by one."""
+    """Vectorised environment (`ai.common.environment.Env`) of several Gymnasium ones, stepped one by one.
+
+    Nothing of theirs can be stored. So that each can be brought to where it was, its random numbers before its last
+    reset are kept, and its actions since: see `restore`.
+    """
 
     def __init__(
         self,
@@ -104,31 +110,74 @@ class GymEnv:
         self.lengths: Ints = np.zeros(num_envs, dtype=np.intp)
         self.outcome: Ints = np.zeros(num_envs, dtype=np.intp)
         self._terminated, self._truncated = np.zeros((2, num_envs), dtype=bool)
+        self._begun: list[Any] = [None] * num_envs  # a seed, or the state of a generator
+        self._actions: list[list[int]] = [[] for _ in range(num_envs)]
 
     def reset(self, mask: Bools | None = None) -> Floats:
         """Begin a new episode in the slots of `mask`, or in all; return every slot's observation."""
         for slot in range(self.num_envs) if mask is None else np.flatnonzero(mask).tolist():
             # Seeded once; from then on each environment goes on with its own stream.
-            observation, _ = self._envs[slot].reset(seed=self._seeds[slot])
-            self._seeds[slot] = None
-            self._observation[slot] = np.ravel(observation)
-            for kept in (self.returns, self.lengths, self.outcome, self._terminated, self._truncated):
-                kept[slot] = 0
+            seed, self._seeds[slot] = self._seeds[slot], None
+            self._begin(slot, self._envs[slot].unwrapped.np_random.bit_generator.state if seed is None else seed)
         return self._observation.copy()
+
+    def _begin(self, slot: int, begun: Any) -> None:
+        """Begin an episode from a seed, or from the state of the environment's own generator."""
+        if isinstance(begun, dict):
+            self._envs[slot].unwrapped.np_random.bit_generator.state = begun
+        observation, _ = self._envs[slot].reset(seed=begun if isinstance(begun, int) else None)
+        self._begun[slot] = begun
+        self._actions[slot].clear()
+        self._observation[slot] = np.ravel(observation)
+        for kept in (self.returns, self.lengths, self.outcome, self._terminated, self._truncated):
+            kept[slot] = 0
+
+    def state(self) -> State:
+        """Return what each episode began from and its actions, and what came of them."""
+        count = max(map(len, self._actions))
+        actions = [taken + [-1] * (count - len(taken)) for taken in self._actions]
+        return {
+            "landings": self.landings, "begun": self._begun.copy(),
+            "actions": np.array(actions, np.intp).reshape(self.num_envs, count),
+            "observation": self._observation.copy(), "returns": self.returns.copy(), "outcome": self.outcome.copy(),
+        }  # fmt: skip
+
+    def restore(self, state: State) -> bool:
+        """Begin the episodes of a state again, and take its actions again; return whether that led to the same moment.
+
+        It does where an environment's chance is all drawn from the generator that Gymnasium gives it; else, all
+        episodes begin anew. Raises KeyError, TypeError, OverflowError or ValueError for what no state can be.
+        """
+        if not (state["actions"] < self._envs[0].action_space.n).all():  # type: ignore[attr-defined]
+            raise ValueError("actions are none of the environment's")
+        for slot, (begun, taken) in enumerate(zip(state["begun"], state["actions"].tolist(), strict=True)):
+            self._envs[slot].reset(seed=self._seeds[slot])  # gives it a generator
+            self._seeds[slot] = None
+            self._begin(slot, begun if isinstance(begun, dict) else count_of(begun))
+            for action in taken:
+                if action >= 0 and self.outcome[slot] == GOING_ON:
+                    self._step_one(slot, action)
+        names = ("_observation", "returns", "outcome")
+        same = all(np.array_equal(getattr(self, name), state[name.lstrip("_")]) for name in names)
+        self.landings = count_of(state["landings"])
+        if not same:
+            self.reset()
+        return same
 
     def step(self, actions: Ints) -> StepResult:
         """Take one action in every slot that has not ended."""
         reward = np.zeros(self.num_envs, dtype=np.float32)
         for slot in np.flatnonzero(self.outcome == GOING_ON).tolist():
-            reward[slot] = self._step_one(slot, int(actions[slot]) + self._first_action)
+            reward[slot] = self._step_one(slot, int(actions[slot]))
         return StepResult(
             self._observation.copy(), reward, self._terminated.copy(), self._truncated.copy(), self.outcome.copy()
         )
 
     def _step_one(self, slot: int, action: int) -> float:
         total, ended = 0.0, False
+        self._actions[slot].append(action)
         for _ in range(self.frame_skip):
-            observation, reward, terminated, truncated, _ = self._envs[slot].step(action)
+            observation, reward, terminated, truncated, _ = self._envs[slot].step(action + self._first_action)
             total += float(reward)
             if ended := terminated or truncated:
                 break
@@ -188,6 +237,18 @@ class GymTask:
 
     def update_env(self, decisions: int, env: Env) -> None:
         """Do nothing: an environment of Gymnasium does not change with experience."""
+
+    def env_state(self, env: Env) -> State:
+        """Return all that the environments go on from."""
+        assert isinstance(env, GymEnv)
+        return env.state()
+
+    def restore_env(self, env: Env, state: State) -> str:
+        """Let new environments go on from what `env_state` gave, as far as they can be restored."""
+        assert isinstance(env, GymEnv)
+        if env.restore(state):
+            return ""
+        return f"{self.config.env} cannot be brought back to a moment, so its episodes begin anew"
 
     def evaluate(self, pilot: Pilot, episodes: int, seed: int) -> GymScore:
         """Play so many episodes side by side, without exploration.

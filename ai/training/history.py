@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from copy import copy
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Final
+from typing import Annotated, Any, ClassVar, Final, NamedTuple
 
 import numpy as np
 
@@ -31,12 +32,52 @@ from ai.lander.rewards import REWARDS
 from ai.nn import ModelFormatError
 from ai.training.config import Config
 
-COLUMNS: Final = (
-    "seconds", "decisions", "episodes", "success", "mean_return", "loss", "mean_q", "epsilon", "stage",
-    "steps_per_second",
-)  # fmt: skip
-SHARES: Final = ("landed", "crashed", "out_of_bounds", "timed_out")  # in the order of ai.lander.environment.Outcome
 PARTS: Final = tuple(REWARDS)
+
+
+class Column(NamedTuple):
+    """What a run measures at each of its points.
+
+    Attributes:
+        name: as `History` has it.
+        unit: of its numbers; empty for a plain number.
+        help: what it is, in a few words.
+
+    """
+
+    name: str
+    unit: str
+    help: str
+
+
+_SECONDS: Final = Column("seconds", "s", "training so far, pauses left out")
+_LOSS: Final = Column("loss", "", "error of the last learning step")
+COLUMNS: Final = (
+    _SECONDS,
+    Column("decisions", "", "decisions so far, of single landers"),
+    Column("episodes", "", "flights that have ended"),
+    Column("success", "share", "of the last hundred flights that landed, chance moves included"),
+    Column("mean_return", "points", "earned by each of them, on average"),
+    _LOSS,
+    Column("mean_q", "scaled points", "what the network expects, on average"),
+    Column("epsilon", "share", "of actions that are random"),
+    Column("stage", "", "of the curriculum"),
+    Column("steps_per_second", "1/s", "physics steps, of all landers"),
+    Column("landed", "share", "of the last hundred flights"),  # the next ones too, in the order of Outcome
+    Column("crashed", "share", "of the last hundred flights"),
+    Column("out_of_bounds", "share", "of the last hundred flights"),
+    Column("timed_out", "share", "of the last hundred flights"),
+    *(Column(part, "points", "paid by this part of the reward per flight") for part in PARTS),
+)
+DIGIT_COLUMNS: Final = (
+    _SECONDS,
+    Column("step", "", "learning steps so far"),
+    Column("epoch", "", "how often every image was seen"),
+    _LOSS,
+    Column("accuracy", "share", "of images read right as they were learnt from: bent, and with dropout"),
+    Column("learning_rate", "", "how far a step moves the weights"),
+    Column("images_per_second", "1/s", "learnt from"),
+)
 REVERTED: Final = "checkpoint"  # the name of the change that goes back to one
 TURNING_SECONDS: Final = 1.0  # between two changes of a knob that is still being turned
 HISTORY_FILE: Final = "history.npz"
@@ -50,7 +91,7 @@ _MOST_COLUMNS: Final = 1000
 
 @dataclass(frozen=True)
 class Point:
-    """Point of a run's curves after one decision. Rates, shares and parts are of the last hundred flights.
+    """Point of an agent's curves after one decision, with the numbers of `COLUMNS`.
 
     Unknown values are NaN: before the first flight has ended, and before the first learning step, which after a
     resumption waits for new memories.
@@ -58,7 +99,7 @@ class Point:
 
     may_thin: ClassVar = True  # of those not fetched yet, every other may be dropped
 
-    seconds: float  # of training, pauses left out
+    seconds: float
     decisions: float
     episodes: float
     success: float
@@ -72,7 +113,33 @@ class Point:
     crashed: float = 0.0
     out_of_bounds: float = 0.0
     timed_out: float = 0.0
-    parts: tuple[float, ...] = (0.0,) * len(PARTS)  # what each part of the reward has paid per flight, as in PARTS
+    parts: tuple[float, ...] = (0.0,) * len(PARTS)
+
+    @property
+    def values(self) -> tuple[float, ...]:
+        """The numbers of `COLUMNS`."""
+        *values, parts = vars(self).values()
+        return (*values, *parts)
+
+
+@dataclass(frozen=True)
+class DigitPoint:
+    """Point of a digit run's curves; loss and accuracy are means of the batches since the last point."""
+
+    may_thin: ClassVar = True
+
+    seconds: float
+    step: int
+    epoch: float
+    loss: float
+    accuracy: float
+    learning_rate: float
+    images_per_second: float
+
+    @property
+    def values(self) -> tuple[float, ...]:
+        """The numbers of `DIGIT_COLUMNS`."""
+        return tuple(vars(self).values())
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +155,7 @@ class Checkpoint:
 
 @dataclass(frozen=True)
 class SettingChange:
-    """Change of a knob during the run.
+    """Change of a knob during the run, or (REVERTED) a way back: `after` is then where to.
 
     `amends` says that it replaces the last change of that name: the values that a drag passes through act only
     for a moment, and only the last one counts.
@@ -99,16 +166,21 @@ class SettingChange:
     before: Any
     after: Any
     amends: bool = False
+    seconds: float = field(default=0.0, compare=False)  # of training
 
 
 @dataclass(frozen=True)
 class Validation:
-    """Validation of the network without exploration, in flights that are used neither to train nor to test it."""
+    """Validation of the network, by what is used neither to train nor to test it.
+
+    Of an agent, flights without exploration; of a digit network, images, whose share read right is its `success`.
+    """
 
     decisions: Count
     success: float
     mean_return: float
     best: bool  # of the run so far
+    seconds: float = field(default=0.0, compare=False)  # of training
 
 
 # What a file holds of it
@@ -128,6 +200,7 @@ class _SettingChangeFile:
     name: str
     before: Any
     after: bool | int | float | str
+    seconds: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -152,9 +225,7 @@ class _AgentFile:
     config: _RewardFile
 
 
-Entry = Point | Checkpoint | SettingChange | Validation
-_NUMBERS: Final = (*COLUMNS, *SHARES)
-_COLUMN: Final = {name: column for column, name in enumerate((*_NUMBERS, *PARTS))}
+Entry = Point | DigitPoint | Checkpoint | SettingChange | Validation
 
 
 class History:
@@ -164,16 +235,19 @@ class History:
     are as the run was when asked for, until the next `append`.
 
     Attributes:
+        columns: what the points measure, of one kind of run.
         reward_scale: size of one point of reward in the unit of `history["mean_q"]`, which is the network's own.
 
     """
 
-    def __init__(self) -> None:
+    def __init__(self, columns: Sequence[Column] = COLUMNS) -> None:
+        self.columns = tuple(columns)
+        self._column = {each.name: number for number, each in enumerate(columns)}
         self.checkpoints: list[Checkpoint] = []
         self.setting_changes: list[SettingChange] = []
         self.validations: list[Validation] = []
         self.reward_scale = 1.0
-        self._table: Doubles = np.empty((CAPACITY, len(_COLUMN)))
+        self._table: Doubles = np.empty((CAPACITY, len(self.columns)))
         self._length = 0
         self._stride = 1  # how many points told for one kept
         self._told = 0
@@ -183,7 +257,7 @@ class History:
 
     @property
     def points(self) -> Doubles:
-        """All points, (n, columns): COLUMNS, SHARES and PARTS."""
+        """All points, (n, columns)."""
         return self._table[: self._length]
 
     @property
@@ -192,13 +266,13 @@ class History:
         return self.points[:, -len(PARTS) :]
 
     def __getitem__(self, name: str) -> Doubles:
-        """Return one column, (n,), by a name of COLUMNS, SHARES or PARTS."""
-        return self.points[:, _COLUMN[name]]
+        """Return one column, (n,), by its name."""
+        return self.points[:, self._column[name]]
 
     def append(self, entry: Entry) -> None:
         """Record an entry of any kind."""
         match entry:
-            case Point():
+            case Point() | DigitPoint():
                 self._append_point(entry)
             case Checkpoint():
                 self._append_checkpoint(entry)
@@ -207,15 +281,13 @@ class History:
             case Validation():
                 self.validations.append(entry)
 
-    def _append_point(self, point: Point) -> None:
+    def _append_point(self, point: Point | DigitPoint) -> None:
         # The latest point is always the last row; the next takes its place, unless its number is on the stride.
         if self._length == 0 or (self._told - 1) % self._stride == 0:
             if self._length == CAPACITY:
                 self._thin()
             self._length += 1
-        row = self._table[self._length - 1]
-        row[: len(_NUMBERS)] = [getattr(point, name) for name in _NUMBERS]
-        row[len(_NUMBERS) :] = point.parts
+        self._table[self._length - 1] = point.values
         self._told += 1
 
     def _append_setting_change(self, entry: SettingChange) -> None:
@@ -259,7 +331,7 @@ class History:
     def write(self, folder: Path) -> None:
         """Write the history into a run's folder; raises OSError if it cannot be written."""
         described = {
-            "version": _VERSION, "columns": list(_COLUMN), "reward_scale": self.reward_scale,
+            "version": _VERSION, "columns": list(self._column), "reward_scale": self.reward_scale,
             "stride": self._stride, "told": self._told,
             "alterations": [_written(change) for change in self.setting_changes],
             "validations": [asdict(validation) for validation in self.validations],
@@ -279,16 +351,16 @@ class History:
         )
 
     @classmethod
-    def read(cls, folder: str | Path) -> History:
+    def read(cls, folder: str | Path, columns: Sequence[Column] = COLUMNS) -> History:
         """Read what `write` wrote; a run saved without a history has an empty one. Raises ModelFormatError."""
-        history = cls()
+        history = cls(columns)
         try:
             arrays = read_arrays(inside(folder, HISTORY_FILE), _MOST_VALUES * 4 + _MOST_TEXT * 8, _expect)
             described = read_as(_HistoryFile, parse_json(str(arrays["described"])))
             history._restore(described, arrays["points"], arrays["values"])
             history.reward_scale = described.reward_scale or _scale_beside(folder)
         except FileNotFoundError:
-            return cls()
+            return cls(columns)
         except OSError as error:
             raise ModelFormatError(folder, [f"{HISTORY_FILE}: {error.strerror or error}"]) from error
         except (ValueError, KeyError, TypeError, ArithmeticError) as error:
@@ -305,8 +377,8 @@ class History:
         # By name, so that a run from before a part was added can still be looked at.
         self.points[...] = 0.0
         for column, name in enumerate(described.columns):
-            if name in _COLUMN:
-                self.points[:, _COLUMN[name]] = points[:, column]
+            if name in self._column:
+                self.points[:, self._column[name]] = points[:, column]
         if not np.isfinite(values).all():
             raise ValueError("checkpoints that are not finite")
         self.checkpoints = [
@@ -340,7 +412,8 @@ def _checkpoint(told: _CheckpointFile, values: Floats) -> Checkpoint:
 
 def _setting_change(told: _SettingChangeFile) -> SettingChange:
     """Return a setting change of a file; an older run has the names of its day."""
-    return SettingChange(told.decisions, Config.name_now(told.name), told.before, told.after)
+    name = Config.name_now(told.name)
+    return SettingChange(told.decisions, name, told.before, told.after, seconds=told.seconds)
 
 
 def _scale_beside(folder: str | Path) -> float:

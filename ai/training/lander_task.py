@@ -10,6 +10,7 @@ import numpy as np
 
 from ai.agent.symmetry import Symmetry
 from ai.common.environment import Doubles, Env, Ints
+from ai.files import MOST
 from ai.lander.environment import (
     LIMITS,
     MIRROR_ACTIONS,
@@ -25,8 +26,11 @@ from ai.lander.pilots import Pilot
 from ai.lander.spawns import CURRICULA, SPAWNS, TEACH_HARD
 from ai.training.config import Config
 from ai.training.schedule import touchdown_limits
+from ai.training.state import State, rebuilt
 from ai.training.task import checked_score
 
+# What changes of landers as they fly; the rest of their snapshot follows from the settings, and from their sites.
+_CHANGED: Final = ("landers", "bodies", "contacts", "gravity", "strictness", "landings")
 LANDER_SYMMETRY: Final = Symmetry(MIRROR_SIGNS, MIRROR_FEATURES, MIRROR_ACTIONS)
 
 
@@ -187,6 +191,38 @@ class LanderTask:
         """Tighten the limits of a touchdown over the schedule, from the real ones to a share of them."""
         if isinstance(env, LanderEnv):
             env.limits = LIMITS.stricter(touchdown_limits(self.config, decisions))
+
+    def env_state(self, env: Env) -> State:
+        """Return all that the landers go on from."""
+        assert isinstance(env, LanderEnv)
+        snapshot = env.snapshot()
+        return {
+            "flights": {name: snapshot[name] for name in _CHANGED},
+            "streams": [stream.bit_generator.state for stream in env.streams],
+        }
+
+    def restore_env(self, env: Env, state: State) -> str:
+        """Let new landers go on from what `env_state` gave; they can be restored whole."""
+        assert isinstance(env, LanderEnv)
+        lengths: set[int] = set()
+        new = env.snapshot()
+        flights = rebuilt({name: new[name] for name in _CHANGED}, state["flights"], lengths)
+        touching, pairs = flights["contacts"]["impulses"]["key"], flights["contacts"]["pairs"]
+        landers = flights["landers"]
+        if (
+            len(lengths) > 1
+            or (touching < 0).any()
+            or (touching >= env.num_envs * pairs).any()
+            or pairs != new["contacts"]["pairs"]
+            or not np.isin(landers["outcome"], tuple(Outcome)).all()
+            or not np.isin(landers["target"], range(len(env.ground.pads))).all()
+            or not 0 <= flights["landings"] <= MOST
+        ):
+            raise ValueError("flights are of other landers, or of none")
+        env.restore(new | flights)
+        for stream, told in zip(env.streams, state["streams"], strict=True):
+            stream.bit_generator.state = told
+        return ""
 
     def evaluate(self, pilot: Pilot, episodes: int, seed: int) -> Evaluation:
         """Fly what `trial` says to its end."""

@@ -12,6 +12,7 @@ from collections import deque
 from collections.abc import Callable, Generator
 from copy import deepcopy
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,11 +20,13 @@ import numpy as np
 from ai.agent.agent import DeepQAgent
 from ai.agent.network import make_optimizer
 from ai.agent.normalizer import Normalizer
-from ai.agent.replay import make_replay
+from ai.agent.replay import ReplayBuffer, make_replay
 from ai.agent.schedule import exploration, exploration_of_each
 from ai.common.environment import Env, Floats, StepResult
-from ai.training.config import Config
+from ai.files import array_like, count_of, number_of
+from ai.training.config import LANDER, Config
 from ai.training.lander_task import LANDER_SYMMETRY, Evaluation, evaluate
+from ai.training.state import State, StateWriter, broken, restore_buffer
 from ai.training.statistics import EpisodeStatistics
 from ai.training.task import TEST_SEED, VALIDATION_SEED, Score, Task
 from ai.training.tasks import task_of
@@ -52,11 +55,12 @@ class Progress:
     parts: tuple[float, ...]  # of the mean return, what each part of the reward brought
     evaluation: Score | None = None  # when one was due
     best: Score | None = None
+    env: str = LANDER
 
 
 @dataclass
 class Training:
-    """Training run of the lander, or of another task: all state that changes as it goes on."""
+    """Training run of the lander, or of another task (`ai.training.run.Run`): all state that changes as it goes on."""
 
     config: Config
     seed: int = 0
@@ -71,6 +75,10 @@ class Training:
     seconds: float = 0.0  # spent, as the caller counts them
     clock: Callable[[], float] = time.monotonic
     on_step: Callable[[StepResult], None] | None = None  # is shown every step, before ended slots begin anew
+    lost: str = ""  # what could not be restored of a run that goes on, in words; empty for the very same run
+    diverged: bool = False  # whether its networks were put back after that: then there is no state to go on from
+    around: State = field(default_factory=dict)  # what whoever led it has kept in the state that it goes on from
+    states: StateWriter | None = None  # has the blocks of the state that it goes on from
 
     def __post_init__(self) -> None:
         self.task = task_of(self.config)
@@ -129,7 +137,7 @@ class Training:
         return Progress(
             agent.decisions, agent.decisions * self.config.frame_skip, agent.gradient_steps, self.episodes,
             statistics.success, statistics.mean_return, agent.loss, agent.mean_q, epsilon, self.env.stage, self._pace(),
-            statistics.shares, statistics.parts, evaluation, self.best,
+            statistics.shares, statistics.parts, evaluation, self.best, self.config.env,
         )  # fmt: skip
 
     def _pace(self) -> float:
@@ -180,8 +188,85 @@ class Training:
         agent.decisions, agent.gradient_steps = self.agent.decisions, self.agent.gradient_steps
         return agent
 
+    # What it goes on from
+
+    @property
+    def moment(self) -> int:
+        """Decisions so far, of single landers."""
+        return self.agent.decisions
+
+    @property
+    def steps(self) -> None:
+        """How many decisions there will be in all: it goes on without end."""
+
+    @property
+    def done(self) -> bool:
+        """Whether there is nothing left to train; there always is."""
+        return False
+
+    @property
+    def buffers(self) -> dict[str, ReplayBuffer]:
+        """Replay buffers that belong to its state."""
+        agent = self.agent
+        return {name: getattr(agent, name) for name in ("replay", "successes") if name in vars(agent)}
+
+    def state(self) -> State:
+        """Return copies of all that the run goes on from, besides its settings and replay buffers."""
+        best = None
+        if self.best is not None and self.best_values is not None:
+            scale = self.best_normalizer.to_json() if self.best_normalizer else None
+            best = {"score": self.best.to_json(), "values": self.best_values.copy(), "normalizer": scale}
+        return {
+            "episodes": self.episodes, "evaluated": self._evaluated, "seconds": self.seconds, "best": best,
+            "observation": self.observation.copy(), "held": self._held.copy(), "agent": self.agent.state(),
+            "env": self.task.env_state(self.env), "statistics": self.statistics.state(),
+        }  # fmt: skip
+
+    def load_state(self, state: State, folder: Path) -> bool:
+        """Go on from a state that lies beside `folder`; `lost` says what of it could not be restored.
+
+        Returns whether that was done: a state of other networks is that of another run. Raises ModelFormatError for
+        what no such run can have been.
+        """
+        agent, env = self.agent, self.env
+        try:
+            if not np.array_equal(state["agent"]["online"], agent.online.values):
+                return False
+            if lost := self.task.restore_env(env, state["env"]):
+                state = state | {"agent": state["agent"] | {"n_step": {}, "episodes": {}}}
+                self.observation = env.reset(np.zeros(env.num_envs, dtype=bool))
+            else:
+                self.observation = array_like(self.observation, state["observation"], "observation")
+                self._held = array_like(self._held, state["held"], "held")
+                if (self._held < 0).any() or (self._held >= self.task.num_actions).any():
+                    raise ValueError("actions are none of the environment's")
+                self.statistics.load_state(state["statistics"])
+            agent.load_state(state["agent"], env.num_envs)
+            whole = [
+                restore_buffer(folder, getattr(agent, name), state["buffers"][name], self.task.num_actions)
+                for name in ("replay", "successes") if name in state["buffers"]
+            ]  # fmt: skip
+            self.lost = lost if all(whole) else "its memory is too large to be kept whole, so the oldest of it is gone"
+            self.episodes, self.seconds = count_of(state["episodes"]), float(number_of(state["seconds"], 0))
+            self._evaluated = None if state["evaluated"] is None else count_of(state["evaluated"])
+            self._load_best(state["best"])
+        except (OSError, KeyError, TypeError, AttributeError, ValueError, ArithmeticError) as error:
+            raise broken(folder, error) from error
+        self.around, self.states = state.get("around", {}), StateWriter(folder, state)
+        return True
+
+    def _load_best(self, told: Any) -> None:
+        self.best = self.best_values = self.best_normalizer = None
+        if told is not None:
+            self.best = self.task.read_score(told["score"])
+            self.best_values = array_like(self.agent.network.values, told["values"], "best")
+            if self.agent.normalizer:
+                self.best_normalizer = Normalizer(self.task.num_features)
+                self.best_normalizer.load(told["normalizer"])
+
     def restore_best(self) -> None:
         """Restore the best networks so far, if there are any: training cannot go on from diverged ones."""
+        self.diverged = True
         if self.best_values is not None:
             self.agent.restore(self.best_values, deepcopy(self.best_normalizer))
 

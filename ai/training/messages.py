@@ -1,4 +1,4 @@
-"""Messages of a live run, and commands to it. All of them can be pickled."""
+"""Messages of a session, and commands to it; entries of the history are messages too. All of them can be pickled."""
 
 from __future__ import annotations
 
@@ -10,20 +10,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ai.common.environment import Floats
-from ai.explain.agent_lesson import Lesson
-from ai.training.config import Config
-from ai.training.edits import EditCommand, NetworkEdits
-from ai.training.history import Checkpoint, Point, SettingChange, Validation
-from ai.training.schedule import InForce
 
 
 @dataclass(frozen=True)
 class RunStarted:
     """First message of a run: its settings; of a resumed run, those it was begun with."""
 
-    config: Config
+    config: Any
     seed: int
-    decisions: int  # so far; 0 for a new run
+    decisions: int  # so far, or learning steps of digits; 0 for a new run
+    lost: str = ""  # what could not be restored of a run that goes on, in words
+    steps: int | None = None  # there will be in all; None for a run without end
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,6 +58,11 @@ class ChangeSetting:
 
 
 @dataclass(frozen=True)
+class Finish:
+    """Command to take no more steps: keep the run, measure it, and end."""
+
+
+@dataclass(frozen=True)
 class Save:
     """Command to save the run, as it is now, to a folder."""
 
@@ -90,21 +92,35 @@ class AddDemonstrations:
 
 @dataclass(frozen=True)
 class Explain:
-    """Command to explain the learning step that follows from a lander's latest memory; a Lesson is the answer.
+    """Command to explain a learning step: the one that follows from a lander's latest memory; a Lesson is the answer.
 
-    `decisions` of the run name a moment in the past, of which the nearest that was kept is taken; None is now.
+    `decisions` of the run name a moment in the past, of which the nearest that was kept is taken; None is now. Of
+    digits, the next step around the image in row `slot` of its batch; a DigitLesson is the answer.
     """
 
-    slot: int
+    slot: int = 0
     decisions: int | None = None
 
 
 @dataclass(frozen=True)
+class RestoreBest:
+    """Command to restore the digit network that read the images held out best."""
+
+
+@dataclass(frozen=True)
 class Saved:
-    """Result of a save; no problem means that it is on the disk, whole."""
+    """Result of a save; no problem means that it is on the disk, whole.
+
+    Attributes:
+        test: accuracy on the test images, of digits that have been measured.
+        epoch: the epoch after which their network that is kept was best; None if it is the last one.
+
+    """
 
     folder: Path
     problem: str = ""
+    test: float | None = None
+    epoch: int | None = None
 
 
 @dataclass(frozen=True)
@@ -118,20 +134,3 @@ class Refused:
 def problem_of(error: Exception) -> str:
     """Return an error in the words of a message: those of the system for a file, else its own."""
     return getattr(error, "strerror", None) or str(error)
-
-
-Message = (
-    RunStarted
-    | SwarmState
-    | NetworkState
-    | InForce
-    | Point
-    | Checkpoint
-    | Validation
-    | SettingChange
-    | Saved
-    | Refused
-    | Lesson
-    | NetworkEdits
-)
-Command = ChangeSetting | Save | AutosaveTo | RestoreCheckpoint | AddDemonstrations | Explain | EditCommand

@@ -1,320 +1,188 @@
-"""Live lander training, which can be inspected and steered while it goes on."""
+"""A run that is watched and steered while it goes on, of any kind.
+
+A session is pulled as a generator (`conduct`): each turn takes one step of the run, and yields its messages. What is
+around every run is here: how it begins and ends, knobs, history, files. `lander_session` and `digit_session` say what
+is shown of each kind, and which further commands it knows.
+"""
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Generator
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Generator, Iterator
 from operator import attrgetter
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, ClassVar, Final, Generic, TypeVar
 
-import numpy as np
+from ai.training.history import Entry, History, SettingChange
+from ai.training.keeping import Keeper
+from ai.training.messages import AutosaveTo, ChangeSetting, Finish, Refused, RunStarted, Save
+from ai.training.run import Run, RunKind
+from ai.training.state import State
 
-from ai.common.environment import Ints, StepResult
-from ai.lander.environment import LanderEnv
-from ai.training.autosave import Autosave
-from ai.training.checkpoints import restore_checkpoint, resume_run
-from ai.training.config import Config
-from ai.training.demonstrations import Demonstration, read, taught, teach
-from ai.training.edits import EDITED, EditCommand, NetworkEditor
-from ai.training.explanations import Explanations
-from ai.training.history import (
-    PARTS,
-    REVERTED,
-    TURNING_SECONDS,
-    Checkpoint,
-    Entry,
-    History,
-    Point,
-    SettingChange,
-    Validation,
-)
-from ai.training.loop import Progress, Training
-from ai.training.messages import (
-    AddDemonstrations,
-    AutosaveTo,
-    ChangeSetting,
-    Command,
-    Explain,
-    Message,
-    NetworkState,
-    Refused,
-    RestoreCheckpoint,
-    RunStarted,
-    Save,
-    SwarmState,
-    problem_of,
-)
-from ai.training.schedule import InForce, in_force
-from ai.training.validation_flights import ValidationFlights
+TURNING_SECONDS: Final = 1.0  # between two changes of a knob that is still being turned
 
-POINT_DECISIONS: Final = 256  # at least so many between two points
-NETWORK_SECONDS: Final = 0.25
-TAUGHT: Final = "demonstrations"  # the name of the change that gives it some to learn from
-NOTHING_PAID: Final = (0.0,) * len(PARTS)
-CAREFUL: Final = 0  # the lander with the fewest random actions; the last one has the most (Config.epsilon_spread)
+Training = TypeVar("Training", bound=Run)
+Messages = tuple[Any, ...]
 
 
-def live(
-    config: Config,
-    seed: int = 0,
-    *,
-    keep: Path | None = None,
-    resume: Path | None = None,
-    clock: Callable[[], float] = time.monotonic,
-) -> Generator[tuple[Message, ...], Command | None, None]:
-    """Train landers without end; every turn is one decision of all landers, and yields its messages.
+class Session(ABC, Generic[Training]):
+    """Session of one run: the run, its history, its messages, and the folder that it is kept in.
 
-    The first turn only says how the run begins. A turn that is sent a command carries that out, at once and
-    without a decision, and yields the answer. The run saves itself to `keep` now and then and when it is closed.
-    With `resume`, it goes on from a saved run, with the settings, seed and history of that. `clock` counts seconds.
+    Attributes:
+        kind: the kind of run.
+        commands: the method that carries out each command, by its class; a subclass adds its own.
 
-    Raises ModelFormatError if there is nothing to resume from, ValueError for settings that are not a lander's, and
-    FloatingPointError, which names the learning step and the likely cause, when training diverges.
     """
-    if resume is None:
-        run = _LiveRun(Training(config, seed), History(), keep, clock)
-    else:
-        run = _LiveRun(resume_run(resume), History.read(resume), keep, clock)
-    try:
-        told = run.begin()
-        while True:
-            command = yield told
-            told = run.advance() if command is None else run.carry_out(command)
-    except FloatingPointError:
-        run.restore_last_checkpoint()
-        raise
-    finally:
-        run.end()
 
+    kind: ClassVar[RunKind]
+    commands: ClassVar[dict[type, Callable[..., None]]]
 
-class _LiveRun:
-    """Live run: a Training, its history, its messages, and the folder it is saved to."""
-
-    def __init__(self, training: Training, history: History, keep: Path | None, clock: Callable[[], float]) -> None:
-        if not isinstance(training.env, LanderEnv):
-            raise ValueError(f"only landers can be looked into, not {training.config.env}")
-        self.training, self.history, self.env = training, history, training.env
-        history.reward_scale = training.config.reward_scale
-        training.clock = clock
-        training.on_step = self._on_step
-        training.evaluate_every = 0  # that is done here, bit by bit, so that the landers never stand still for it
-        self._validation = ValidationFlights(training)
-        self._autosave = Autosave(training, history, keep)
-        self._explanations = Explanations(training)
-        self._editor = NetworkEditor(training.agent)
-        self._swarm_state = self._swarm_state_of(self.env.outcome)
-        self._network_state_at = 0.0
-        self._point_at = 0
-        self._checkpoint_at = training.agent.decisions + self._checkpoint_every
-        self._began_learning = training.agent.gradient_steps
+    def __init__(self, training: Training, history: History, keep: Path | None) -> None:
+        self.training, self.history = training, history
+        self.keeper = Keeper(training, self.kind, keep, history, self.state)
         self._turned_at: dict[str, float] = {}  # by the clock, when each knob was turned last
-        self._learned_from: set[Demonstration] = set()
-        self._messages: list[Message] = []
+        self.messages: list[Any] = []
+
+    # What a kind says
 
     @property
-    def _checkpoint_every(self) -> int:
-        """Decisions between checkpoints: sparser as the run gets longer, so that the first hours keep them all."""
-        return max(40 * self.env.num_envs, 2_500, self.training.agent.decisions // 50)
+    def keeps_still(self) -> bool:
+        """Whether the run is not to be kept as it is now."""
+        return False
 
-    def begin(self) -> tuple[Message, ...]:
+    @abstractmethod
+    def show(self) -> None:
+        """Tell how it stands, at the beginning."""
+
+    def turned(self) -> None:
+        """Tell what else has changed with a knob that was turned."""
+
+    @abstractmethod
+    def step(self) -> None:
+        """Take one step of the run, and tell of it."""
+
+    @abstractmethod
+    def state(self) -> State:
+        """Return what the session goes on from, besides the run."""
+
+    def finish_measuring(self) -> None:
+        """Bring a measurement that is under way to its end, before a save that was asked for."""
+
+    def last_words(self) -> Iterator[None]:
+        """Do what is left when no more steps are taken, in as many turns as it likes."""
+        yield
+
+    def go_back(self) -> None:
+        """Put the networks back to the last good ones, when training has diverged."""
+        self.training.restore_best()
+
+    # What is around it
+
+    def begin(self) -> Messages:
         """Say how the run begins."""
         training = self.training
-        self._messages = [
-            RunStarted(training.config, training.seed, training.agent.decisions),
-            self._swarm_state,
-            *self._state_messages(),
-        ]
-        if not self.history.checkpoints:
-            self._record(self._checkpoint(0.0))
+        self.messages.append(RunStarted(training.config, training.seed, training.moment, training.lost, training.steps))
+        self.show()
         return self._flush()
 
-    def advance(self) -> tuple[Message, ...]:
-        """Let every lander take one decision; return the messages about it."""
-        training = self.training
-        began, before = training.clock(), training.agent.decisions
-        progress = training.advance()
-        self._record_validation(self._validation.go_on(before, 1 + self.env.num_envs // 256))
-        now = training.clock()
-        training.seconds += now - began
-        self._messages.append(self._swarm_state)
-        if now >= self._network_state_at:
-            self._network_state_at = now + NETWORK_SECONDS
-            self._messages += self._state_messages()
-        if progress.decisions >= self._point_at:
-            self._point_at = progress.decisions + POINT_DECISIONS
-            self._record(self._point(progress))
-        if progress.decisions >= self._checkpoint_at and not training.agent.paused:
-            self._record(self._checkpoint(progress.success_rate))
-            self._checkpoint_at = progress.decisions + self._checkpoint_every
-        self._explanations.keep()
-        if not training.agent.paused:  # what is edited is only looked at, until it learns on from there
-            self._messages += self._autosave.go_on(now)
+    def advance(self) -> Messages:
+        """Take one step of the run; return the messages about it."""
+        self.step()
+        if not self.keeps_still:
+            self.messages += self.keeper.go_on(self.training.clock())
         return self._flush()
 
-    def carry_out(self, command: Command) -> tuple[Message, ...]:
-        """Carry out a command, without a decision; return the answer."""
-        match command:
-            case ChangeSetting():
-                self._change(command)
-            case RestoreCheckpoint():
-                self._restore_checkpoint(command)
-            case AddDemonstrations():
-                self._teach(command)
-            case Explain():
-                self._explain(command)
-            case AutosaveTo(folder):
-                self._autosave.move_to(folder)
-            case Save(folder):
-                self._record_validation(self._validation.finish())
-                self._messages.append(self._autosave.save(folder))
-            case _:
-                self._edit(command)
+    def carry_out(self, command: Any) -> Messages:
+        """Carry out a command, without a step; return the answer."""
+        self.commands[type(command)](self, command)
         return self._flush()
 
-    def restore_last_checkpoint(self) -> None:
-        """Restore the networks from the last checkpoint, when training has diverged since."""
-        self._editor.forget()
-        restore_checkpoint(self.training.agent, self.history.checkpoints[-1])
+    def over(self, command: Any) -> bool:
+        """Whether no more steps are to be taken."""
+        return self.training.done or isinstance(command, Finish)
 
     def end(self) -> None:
-        """Save what has not been saved, without an edit that was only looked at; wait until it is on the disk."""
-        if self.training.agent.paused:
-            self._editor.restore()
-        self._autosave.end()
+        """Keep what has not been kept, and wait until it is on the disk."""
+        self.keeper.end()
 
-    def _flush(self) -> tuple[Message, ...]:
-        told, self._messages = tuple(self._messages), []
+    def _flush(self) -> Messages:
+        told, self.messages = tuple(self.messages), []
         return told
 
-    def _record(self, entry: Entry) -> None:
+    def record(self, entry: Entry) -> None:
+        """Add an entry to the history, and tell it."""
         self.history.append(entry)
-        self._messages.append(entry)
+        self.messages.append(entry)
 
-    def _on_step(self, result: StepResult) -> None:
-        self._swarm_state = self._swarm_state_of(result.outcome)
-        self._explanations.follow(self.env.actions, result)
-
-    def _swarm_state_of(self, outcome: Ints) -> SwarmState:
-        env, training = self.env, self.training
-        return SwarmState(
-            env.position.astype(np.float32),
-            env.angle.astype(np.float32),
-            env.actions.astype(np.int8),
-            outcome.astype(np.int8),
-            training.statistics.earned.astype(np.float32),
-            training.agent.decisions,
-        )
-
-    def _network_state(self) -> NetworkState:
-        agent = self.training.agent
-        return NetworkState(
-            agent.online.values.copy(),
-            agent.online.gradients.copy(),
-            self.training.observation[CAREFUL].copy(),
-            agent.decisions,
-        )
-
-    def _state_messages(self) -> tuple[NetworkState, InForce]:
-        """Return what is sent a few times a second, and whenever a command has changed it."""
+    def record_change(self, name: str, before: Any, after: Any, amends: bool = False) -> None:
+        """Record that a knob was turned, or what else was changed from outside."""
         training = self.training
-        return self._network_state(), in_force(training.config, training.agent.decisions, training.episodes)
+        self.record(SettingChange(training.moment, name, before, after, amends, training.seconds))
 
-    def _point(self, progress: Progress) -> Point:
-        flown = 1.0 if self.training.statistics.known else np.nan
-        agent = self.training.agent
-        learnt = 1.0 if agent.gradient_steps > self._began_learning and not agent.paused else np.nan
-        landed, crashed, out_of_bounds, timed_out = (flown * share for share in progress.shares)
-        return Point(
-            self.training.seconds, progress.decisions, progress.episodes, flown * progress.success_rate,
-            flown * progress.mean_return, learnt * progress.loss, learnt * progress.mean_q, progress.epsilon,
-            progress.stage, progress.steps_per_second, landed, crashed, out_of_bounds,
-            timed_out, progress.parts or NOTHING_PAID,
-        )  # fmt: skip
+    def amends(self, name: str, after: Any) -> bool:
+        """Whether a knob is still being turned: a moment after the last time, or without a step in between."""
+        now, last = self.training.clock(), self._turned_at.get(name)
+        self._turned_at[name] = now
+        earlier = next((each for each in reversed(self.history.setting_changes) if each.name == name), None)
+        if last is None or earlier is None:
+            return False
+        amends = now - last < TURNING_SECONDS or earlier.decisions == self.training.moment
+        if amends and earlier.before == after:  # back where it was: the mark will be gone
+            del self._turned_at[name]
+        return amends
 
-    def _checkpoint(self, success: float) -> Checkpoint:
-        agent = self.training.agent
-        values = agent.network.values.copy()
-        if not np.isfinite(values).all():
-            raise FloatingPointError(
-                f"the network was not finite after learning step {agent.gradient_steps}; "
-                f"most likely the learning rate of {agent.optimizer.learning_rate:g} is too high"
-            )
-        normalizer = agent.normalizer.to_json() if agent.normalizer else None
-        return Checkpoint(self.training.seconds, agent.decisions, success, values, normalizer)
-
-    def _record_validation(self, validation: Validation | None) -> None:
-        if validation is not None:
-            self._record(validation)
-
-    def _change(self, command: ChangeSetting) -> None:
+    def change(self, command: ChangeSetting) -> None:
+        """Turn a live knob."""
         before = self.training.config
         try:
             self.training.apply_live(before.turned(command.name, command.value))
         except ValueError as error:
-            self._messages.append(Refused(command, str(error)))
+            self.refuse(command, error)
             return
         name = before.name_now(command.name)
         value = attrgetter(name)
         after = value(self.training.config)
         if after != value(before):
-            self._record_change(name, value(before), after, self._amends(name, after))
-        self._messages.append(self._state_messages()[1])
+            self.record_change(name, value(before), after, self.amends(name, after))
+        self.turned()
 
-    def _teach(self, command: AddDemonstrations) -> None:
-        agent = self.training.agent
-        try:
-            new = [each for each in read(command.path) if each not in self._learned_from]
-            used = teach(agent, new)
-        except (OSError, ValueError) as error:
-            self._messages.append(Refused(command, problem_of(error)))
-            return
-        self._learned_from.update(new)
-        if not used:
-            self._messages.append(Refused(command, "there are no landings that this run has not learnt from already"))
-            return
-        if not self.training.config.success_pass:
-            self._change(ChangeSetting("success_pass", taught(self.training.config).success_pass))
-        self._record_change(TAUGHT, None, used)
+    def refuse(self, command: Any, problem: object) -> None:
+        """Tell that a command could not be carried out, and why."""
+        self.messages.append(Refused(command, str(problem)))
 
-    def _explain(self, command: Explain) -> None:
-        try:
-            self._messages.append(self._explanations.explain(command.slot, command.decisions))
-        except (ValueError, FloatingPointError) as error:
-            self._messages.append(Refused(command, str(error)))
+    def _save(self, command: Save) -> None:
+        self.finish_measuring()
+        self.messages.append(self.keeper.save(command.folder))
 
-    def _record_change(self, name: str, before: Any, after: Any, amends: bool = False) -> None:
-        self._record(SettingChange(self.training.agent.decisions, name, before, after, amends))
+    def _autosave_to(self, command: AutosaveTo) -> None:
+        self.keeper.move_to(command.folder)
 
-    def _amends(self, name: str, after: Any) -> bool:
-        """Whether a knob is still being turned: a moment after the last time, or without a decision in between."""
-        now, last = self.training.clock(), self._turned_at.get(name)
-        self._turned_at[name] = now
-        if last is None:
-            return False
-        earlier = next(each for each in reversed(self.history.setting_changes) if each.name == name)
-        amends = now - last < TURNING_SECONDS or earlier.decisions == self.training.agent.decisions
-        if amends and earlier.before == after:  # back where it was: the mark will be gone
-            del self._turned_at[name]
-        return amends
 
-    def _edit(self, command: EditCommand) -> None:
-        editor, before = self._editor, self._editor.count
-        try:
-            editor.carry_out(command)
-        except ValueError as error:
-            self._messages.append(Refused(command, str(error)))
-            return
-        if editor.count != before:
-            self._record_change(EDITED, before, editor.count, self._amends(EDITED, editor.count))
-        self._messages += (editor.edits, *self._state_messages())
+Session.commands = {
+    ChangeSetting: Session.change, Save: Session._save, AutosaveTo: Session._autosave_to, Finish: lambda *_: None
+}  # fmt: skip
 
-    def _restore_checkpoint(self, command: RestoreCheckpoint) -> None:
-        checkpoint = self.history.checkpoint_at(command.decisions)
-        if checkpoint is None:
-            self._messages.append(Refused(command, "this run has no checkpoints yet"))
-            return
-        self._editor.forget()
-        restore_checkpoint(self.training.agent, checkpoint)
-        self._record_change(REVERTED, None, checkpoint.decisions)
-        self._messages += (self._editor.edits, *self._state_messages())
+
+def conduct(session: Session[Any], command: Any = None) -> Generator[Messages, Any, None]:
+    """Take a run to its end, or without end; every turn yields the messages of one step.
+
+    The first turn only says how the run begins. A turn that is sent a command carries that out, at once and without a
+    step, and yields the answer; `command` is one that came before. The run is kept now and then, when it is over, and
+    when the generator is closed. Raises FloatingPointError, which names the learning step and the likely cause, when
+    training diverges.
+    """
+    try:
+        command = (yield session.begin()) or command
+        while not session.over(command):
+            command = yield (session.advance() if command is None else session.carry_out(command))
+        for _ in session.last_words():
+            while command is not None:
+                command = yield session.carry_out(command)
+            command = yield session._flush()
+        while command is not None:
+            command = yield session.carry_out(command)
+    except FloatingPointError:
+        session.go_back()
+        raise
+    finally:
+        session.end()

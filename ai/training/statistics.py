@@ -9,6 +9,7 @@ from typing import Any, Final
 import numpy as np
 
 from ai.common.environment import SUCCESS, Doubles, StepResult
+from ai.files import array_like
 
 RECENT: Final = 100
 OUTCOMES: Final = 4  # an environment has that many at the most; 0, going on, is not counted
@@ -71,11 +72,22 @@ class EpisodeStatistics:
             raise ValueError("the last flights have outcomes, returns and parts of different numbers")
         if not np.isfinite([*returns, *(part for each in parts for part in each)]).all():
             raise ValueError("the last flights have returns that are no numbers")
-        self._outcomes.extend(outcomes)
-        self._returns.extend(returns)
-        self._parts.extend(parts)
+        self._outcomes, self._returns = deque(outcomes, maxlen=RECENT), deque(returns, maxlen=RECENT)
+        self._parts = deque(parts, maxlen=RECENT)
         if outcomes:
             self._sum_up()
+
+    def state(self) -> dict[str, Any]:
+        """Return copies of all of it, so that a run goes on in the middle of its episodes."""
+        return {"recent": self.to_json(), "earned": self.earned.copy(),
+                "paid": None if self._paid is None else self._paid.copy()}  # fmt: skip
+
+    def load_state(self, state: Mapping[str, Any]) -> None:
+        """Go on from what `state` returned; raises KeyError, TypeError or ValueError for anything else."""
+        self.load(state["recent"])
+        self.earned = array_like(self.earned, state["earned"], "earned")
+        if (paid := state["paid"]) is not None:
+            self._paid = array_like(np.empty((len(paid), len(self.earned))), paid, "paid")
 
     def _sum_up(self) -> None:
         count = len(self._outcomes)

@@ -11,6 +11,7 @@ from ai.common.environment import Doubles, Env
 from ai.files import number_of, shown
 from ai.lander.pilots import Pilot
 from ai.training.config import Config
+from ai.training.state import State
 
 VALIDATION_SEED = 1_000_003  # episodes that choose the best checkpoint
 TEST_SEED = 2_000_003  # episodes that have no say in anything, to measure a finished network by
@@ -63,6 +64,15 @@ class Task(Protocol):
 
     def update_env(self, decisions: int, env: Env) -> None:
         """Bring what changes with experience up to date in an environment that `make_env` made."""
+
+    def env_state(self, env: Env) -> State:
+        """Return all that an environment of `make_env` goes on from."""
+
+    def restore_env(self, env: Env, state: State) -> str:
+        """Let a new environment go on from what `env_state` gave; return what of it could not be restored, or "".
+
+        Raises KeyError, TypeError, OverflowError or ValueError for what no environment can have been.
+        """
 
     def evaluate(self, pilot: Pilot, episodes: int, seed: int) -> Score:
         """Measure a pilot over so many episodes, which follow from `seed`."""

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from itertools import repeat
 
+from ai.agent.normalizer import Normalizer
+from ai.files import array_like, count_of
 from ai.training.history import Validation
 from ai.training.lander_task import Evaluation, LanderTask
 from ai.training.loop import Training, passed
+from ai.training.state import State
 from ai.training.task import VALIDATION_SEED
 
 
@@ -32,6 +35,25 @@ class ValidationFlights:
         elif self._trial is not None and self._trial.go_on(decisions):
             finished = self.finish()
         return finished
+
+    def state(self) -> State | None:
+        """Return the network whose flights are under way, if any; they begin again where a run goes on."""
+        if self._trial is None:
+            return None
+        agent = self._trial.agent
+        scale = agent.normalizer.to_json() if agent.normalizer else None
+        return {"decisions": agent.decisions, "values": agent.network.values.copy(), "normalizer": scale}
+
+    def load_state(self, state: State | None) -> None:
+        """Begin the flights of a network that `state` returned; raises KeyError, TypeError or ValueError for others."""
+        if state is not None:
+            self._trial = _Trial(self._training)
+            agent = self._trial.agent
+            normalizer = Normalizer(agent.num_features) if agent.normalizer else None
+            if normalizer:
+                normalizer.load(state["normalizer"])
+            agent.restore(array_like(agent.network.values, state["values"], "validated network"), normalizer)
+            agent.decisions = count_of(state["decisions"])
 
     def finish(self) -> Validation | None:
         """Fly all that is left of a trial; return its result, or None if there is none going on."""

@@ -20,6 +20,7 @@ _LINE: Final = 59.0
 _HOLD: Final = pygame.Rect(_TRACK[0] - 14, _LINE - 12, 208, 24)  # where the mouse can grab the handle
 _KEY_STEP: Final = 0.1
 _WHEEL_STEP: Final = 0.05
+_LEAST: Final = 0.04  # the first place above none, where a guardian looks one decision ahead
 _EASE: Final = 0.2
 
 
@@ -39,7 +40,7 @@ class AssistDial:
         hold = _HOLD.move(moved(self._view, 0, -1))
         match event.type:
             case pygame.MOUSEWHEEL:
-                self._turn(self._settings.assist + _WHEEL_STEP * event.y)
+                self._step(_WHEEL_STEP * event.y)
             case pygame.MOUSEBUTTONDOWN if event.button == 1 and hold.collidepoint(event.pos):
                 self._dragged = True
                 self._drag(event.pos[0])
@@ -51,7 +52,7 @@ class AssistDial:
                 command = translate(event)
                 if command not in (Command.SLOWER, Command.FASTER):
                     return False
-                self._turn(self._settings.assist + (_KEY_STEP if command is Command.FASTER else -_KEY_STEP))
+                self._step(_KEY_STEP if command is Command.FASTER else -_KEY_STEP)
         return True
 
     def follow(self, stick: FlownBy) -> None:
@@ -82,7 +83,13 @@ class AssistDial:
 
     def _drag(self, x: float) -> None:
         share = (x - _TRACK[0]) / (_TRACK[1] - _TRACK[0])
-        self._turn(round(share / _WHEEL_STEP) * _WHEEL_STEP)
+        self._turn(_LEAST if _LEAST / 2 < share <= _LEAST else round(share / _WHEEL_STEP) * _WHEEL_STEP)
+
+    def _step(self, by: float) -> None:
+        """Turn by a step; one that would skip the least help ends there, and the next goes on from none."""
+        now = self._settings.assist
+        beyond = (0.0 if now == _LEAST and by > 0 else now) + by
+        self._turn(_LEAST if min(now, beyond) < _LEAST < max(now, beyond) else beyond)
 
     def _turn(self, assist: float) -> None:
         self._settings.assist = round(min(max(assist, 0.0), 1.0), 2)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from ai.lander.environment import ACTION_NAMES
 from game.core import texts
@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from ai.copilot.copilot import CoPilot, SharedDecision
 
 Why = tuple[str, str, str]  # a title, and two lines
+_PLACES: Final = {1: "guard", 8: "guide"}  # of the dial that have names, by the decisions it looks ahead there
 
 
 def dial_words(assist: float, copilot: CoPilot | None, problem: str = "") -> str:
@@ -31,7 +32,9 @@ def dial_words(assist: float, copilot: CoPilot | None, problem: str = "") -> str
     if problem:
         by_points = texts.DIAL_BY_POINTS.format(margin=float(guardian_margin(assist)))
         return f"{by_values(problem)} {by_points}"
-    return texts.DIAL_LOOKS_AHEAD.format(seconds=f"{decisions_of(assist) * DECISION_STEPS * DT:.1f}")
+    ahead = decisions_of(assist)
+    words = texts.DIAL_LOOKS_AHEAD.format(seconds=f"{ahead * DECISION_STEPS * DT:.1f}")
+    return texts.DIAL_PLACES[_PLACES[ahead]].format(words=words) if ahead in _PLACES else words
 
 
 def by_values(problem: str) -> str:

@@ -14,7 +14,16 @@ from typing import Final, Generic, TypeVar
 
 import platformdirs
 
-from ai.files import brief, free_path, new_folder, recover_all, recover_folder, take_folder
+from ai.files import (
+    brief,
+    free_path,
+    move_state,
+    new_folder,
+    recover_all,
+    recover_folder,
+    remove_state,
+    take_folder,
+)
 from game.core import texts
 from game.core.names import (
     LONGEST_NAME,
@@ -125,6 +134,7 @@ class Collection(Generic[Item]):
             target = self.new_folder(new)
         with library_errors(texts.LIBRARY_NOT_RENAMED, old):
             source.rename(target)
+        move_state(source, target)
         return target
 
     def export(self, name: str, folder: Path | None = None) -> Path:
@@ -155,8 +165,10 @@ class Collection(Generic[Item]):
     # Deleted items
 
     def delete(self, name: str) -> None:
-        """Delete an item; `undo_delete` restores it."""
-        self._trash.add(self.existing(name), name)
+        """Delete an item; `undo_delete` restores it, without the state of a run that could go on."""
+        source = self.existing(name)
+        self._trash.add(source, name)
+        remove_state(source)
 
     @property
     def last_deleted(self) -> str:
@@ -214,12 +226,14 @@ class Collection(Generic[Item]):
         target = self.new_folder(name)
         with library_errors(texts.LIBRARY_NOT_KEPT, name):
             self.unsaved.rename(target)
+        move_state(self.unsaved, target)
         return self.kind.read(target, target.name)
 
     def discard_rescued(self) -> None:
         """Delete the item without a name, if any; `undo_delete` restores it."""
         if self.left_behind:
             self._trash.add(self.unsaved, self.free_name(self.kind.rescued))
+            remove_state(self.unsaved)
 
 
 def looks_like_item(folder: Path, parts: Iterable[str]) -> bool:

@@ -26,10 +26,11 @@ class Scene:
         takes_switch: whether a press of the one switch is the scene's own now, and chooses nothing on it.
         fills: whether it is laid out for the whole view, which changes with the window; otherwise for a page of
             1280 × 720 points, in the middle of the window.
+        flows: whether it is laid out anew for each window and size of text, on `Canvas.reading`.
 
     """
 
-    takes_files = typing = takes_switch = fills = False
+    takes_files = typing = takes_switch = fills = flows = False
 
     def __init__(self, context: Context) -> None:
         self.context = context
@@ -62,10 +63,14 @@ class Scene:
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw between the last two steps (alpha 0 to 1). Changes nothing but pixels."""
 
+    def laid_on(self, canvas: Canvas) -> Canvas:
+        """Return the canvas in whose points this scene is laid out, and is told of the mouse."""
+        return canvas.whole.reading if self.flows else canvas.whole
+
     def draw_on(self, canvas: Canvas, alpha: float) -> None:
         """Draw into the whole window, or onto its page where the scene is laid out for that."""
-        if self.fills:
-            self.draw(canvas.whole, alpha)
+        if self.fills or self.flows:
+            self.draw(self.laid_on(canvas), alpha)
         else:
             canvas.whole.clear_around()
             self.draw(canvas.whole.page, alpha)

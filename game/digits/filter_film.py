@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 
 from ai.digits.filters import FilterMoment
+from ai.training.history import History
 from game.charts.charts import Charts
 from game.core import texts
 from game.digits.answer import percent
@@ -15,7 +16,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
 from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import LABEL, MUTE, SMALL
-from game.training.digit_run import DigitCurves
+from game.training.run import TrainingRun
 
 _LEFT, _TOP = 40.0, 358.0
 _ROOM: Final = (600.0, 320.0)
@@ -27,13 +28,15 @@ class FilterFilm:
     """Filters at one moment of a run.
 
     Attributes:
-        curves: the run's curves, with all moments that it has told of.
+        history: the run's history; another one belongs to another run.
+        moments: all that the run has told of.
         at: number of the chosen moment; None for the newest, whichever that is.
 
     """
 
     def __init__(self, charts: Charts) -> None:
-        self.curves = DigitCurves()
+        self.history = History()
+        self.moments: list[FilterMoment] = []
         self.at: int | None = None
         self._charts = charts
         self._painted = PaintCache()
@@ -41,12 +44,12 @@ class FilterFilm:
     @property
     def moment(self) -> FilterMoment | None:
         """The moment that is shown; None before the first."""
-        moments = self.curves.filters
+        moments = self.moments
         return moments[-1 if self.at is None else min(self.at, len(moments) - 1)] if moments else None
 
     def choose(self, place: float | int) -> None:
         """Choose the moment nearest to a place on the charts (float), or the one before or after (int -1 or 1)."""
-        moments = self.curves.filters
+        moments = self.moments
         if not moments:
             return
         last = len(moments) - 1
@@ -57,10 +60,10 @@ class FilterFilm:
         self.at = None if at == last else at
         self._mark()
 
-    def follow(self, curves: DigitCurves) -> None:
+    def follow(self, run: TrainingRun) -> None:
         """Follow a run; another one begins with its newest moment."""
-        if curves is not self.curves:
-            self.curves = curves
+        if run.filters is not self.moments:
+            self.history, self.moments = run.history, run.filters
             self.release()
 
     def release(self) -> None:
@@ -85,7 +88,7 @@ class FilterFilm:
         words = texts.DIGIT_RUN_FILTERS_AT.format(seconds=f"{moment.seconds:.1f}", steps=moment.step)
         canvas.text(words, (_LEFT, _TOP - 18), size=LABEL, colour=MUTE, weight="medium", tabular=True)
         self._painted.draw(canvas, (_LEFT, _TOP, *_ROOM), moment, lambda sheet: _paint(sheet, moment))
-        scores = [score.accuracy for score in self.curves.scores if score.seconds <= moment.seconds]
+        scores = [score.success for score in self.history.validations if score.seconds <= moment.seconds]
         left, width = _SAID
         y = _TOP + 14
         if scores:

@@ -58,6 +58,8 @@ class Canvas:
         size: the page's width and height in pixels.
         offset: where the page's top left corner lies in the window, in pixels.
         palette: the player's colours for within and beyond limits.
+        zoom: factor by which the player wants text enlarged; `reading` follows it.
+        grows: whether small text is enlarged by `typeface.grow`, instead of everything by `zoom`.
         pointer: position of the mouse in points; None while it is not in use.
         words: boxes of words, widgets and panels of the last frame with a margin, in the window's pixels.
         explained: areas of this frame that can be explained, in the order in which they were drawn.
@@ -66,7 +68,7 @@ class Canvas:
 
     def __init__(self, window: pygame.Surface, palette: Palette = PALETTE) -> None:
         self.palette = palette
-        self.scale = 0.0
+        self.scale, self.zoom, self.grows = 0.0, 1.0, True
         self.view = PAGE.copy()
         self._whole: Canvas | None = None
         self._corner = (0, 0)  # of the surface in the window, in pixels
@@ -106,6 +108,23 @@ class Canvas:
         page.view = PAGE.copy()
         page.surface = self.surface.subsurface(pygame.Rect(self.offset, self.size).clip(self.surface.get_rect()))
         return page
+
+    @property
+    def reading(self) -> Canvas:
+        """The whole window as a canvas for text that flows, with the window's own corner as the point (0, 0).
+
+        A point is never less than a pixel, so text of 12 points can be read in any window: in a small or narrow one
+        there are fewer points, and what is laid out in them takes more lines. Larger text is a larger point.
+        """
+        whole = self.whole
+        reading = copy(whole)
+        reading._whole, reading.grows = whole, False
+        reading.scale = max(whole.scale, 1.0) * self.zoom
+        reading.size, reading.offset, reading.origin = whole.surface.get_size(), (0, 0), (0, 0)
+        width, height = reading.size
+        reading.view = pygame.FRect(0, 0, width / reading.scale, height / reading.scale)
+        reading.pointer = None if whole.pointer is None else reading.points(whole.pixels(whole.pointer))
+        return reading
 
     def at(self, across: int, down: int) -> Canvas:
         """Return this canvas with its page moved to an edge of the view: -1 left or top, 1 right or bottom, 0 neither.
@@ -248,7 +267,9 @@ class Canvas:
         the English shrinks to it, to seven tenths of its size at least.
         """
         scale, (left, top) = self.scale, self.origin
-        parts, width, above, below = typeface.line(string, size, weight, colour, tabular, scale, room, LEAST)
+        parts, width, above, below = typeface.line(
+            string, self.grown(size), weight, colour, tabular, scale, room, LEAST * size
+        )
         x, y = left + position[0] * scale - _SHIFT[align] * width, top + round(position[1] * scale)
         if alpha >= 1:
             self.surface.fblits([(surface, (round(x + across), y - baseline)) for surface, across, baseline in parts])
@@ -263,8 +284,12 @@ class Canvas:
         self, string: str, *, size: float = TEXT, weight: Weight = "regular", tabular: bool = False
     ) -> float:
         """Return the width in points of `text` with the same arguments."""
-        pixels = typeface.fitting(string, size, weight, tabular, self.scale, math.inf, LEAST)
+        pixels = typeface.fitting(string, self.grown(size), weight, tabular, self.scale, math.inf, size)
         return typeface.span(string, pixels, weight, tabular) / self.scale
+
+    def grown(self, size: float) -> float:
+        """Return the size at which a text of this size is written here, both in points."""
+        return typeface.grown(size) if self.grows else size
 
     def _blit(self, surface: pygame.Surface, position: tuple[int, int], alpha: float = 1.0) -> None:
         if alpha >= 1:  # as it is kept

@@ -31,10 +31,11 @@ TITLE: Final = 22.0
 TEXT: Final = 15.0
 SMALL: Final = 12.5
 LABEL: Final = 11.5
+CAPTION: Final = 12.0  # the least size where text flows
 
-# Factors by which small text is enlarged, by the setting's name. Between the two sizes of GROWS the factor
-# falls to 1: large text can be read as it is, and has no room to grow.
-TEXT_SIZES: Final = {"normal": 1.0, "large": 1.12, "largest": 1.25}
+# Factors by which text is enlarged, by the setting's name. Where words are placed by hand there is room for less, and
+# between the two sizes of GROWS the factor falls to 1: large text can be read as it is.
+TEXT_SIZES: Final = {"normal": 1.0, "large": 1.3, "largest": 1.6}
 GROWS: Final = (15.0, 34.0)
 
 STEP: Final = 8

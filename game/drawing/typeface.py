@@ -156,15 +156,15 @@ def _coverage(factor: int) -> npt.NDArray[np.uint8]:
 
 @lru_cache(maxsize=4096)
 def fitting(string: str, size: float, weight: Weight, tabular: bool, scale: float, room: float, least: float) -> float:
-    """Return the size in pixels at which a text is rendered: no wider than `room`, nor smaller than a share `least`.
+    """Return the size in pixels at which a text is rendered: no wider than `room`, nor smaller than `least`.
 
-    `size` and `room` are in points, of `scale` pixels.
+    `size`, `room` and `least` are in points, of `scale` pixels.
     """
-    pixels = round(grown(size) * scale, 2)
-    if room < math.inf and pixels > least * size * scale:
+    pixels = round(size * scale, 2)
+    if room < math.inf and pixels > least * scale:
         too_wide = span(string, pixels, weight, tabular) / max(room * scale, 1.0)
         if too_wide > 1:
-            pixels = round(max(pixels / too_wide, least * size * scale), 2)
+            pixels = round(max(pixels / too_wide, least * scale), 2)
     return pixels
 
 

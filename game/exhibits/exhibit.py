@@ -198,7 +198,7 @@ class Exhibit:
     def contact_count(self) -> int:
         """Number of contact points."""
         contacts = self.world.contacts
-        return int(contacts.manifold.valid.sum()) if contacts else 0
+        return int(contacts.valid.sum()) if contacts else 0
 
     def push(self, *bodies: Body) -> float:
         """Return the last step's normal force, in newtons: between two bodies, or of all others on a single one."""
@@ -206,7 +206,7 @@ class Exhibit:
         if contacts is None:
             return 0.0
         rows = np.all([(contacts.body == body.index).any(axis=1) for body in bodies], axis=0)
-        return float(contacts.impulse[:2, rows].sum()) / DT
+        return float(contacts.impulse[rows, :2].sum()) / DT
 
 
 def extent(shape: Shape) -> tuple[float, float]:

@@ -102,9 +102,9 @@ class Slopes(Exhibit):
         if len(rows) != 1:
             return None
         (row,) = rows
-        right, up = np.abs(contacts.manifold.normal[row])
+        right, up = np.abs(contacts.normal[row])
         fixed = not self.world.params.dynamic[contacts.body[row]].all()
-        return float(right / up) if fixed and contacts.manifold.valid[row].all() and up > _WALL else None
+        return float(right / up) if fixed and contacts.valid[row].all() and up > _WALL else None
 
 
 class Bounce(Exhibit):

@@ -88,7 +88,7 @@ def _pushes(kind: str, impulses: list[Impulse], touching: dict[int, Pair]) -> It
     for impulse in impulses:
         if pair := touching.get(impulse.contact):
             notes = _notes(Rows.relax, impulse.call, impulse.column)
-            yield Piece(kind, Rows.relax, impulse.call.lines[-1].number, notes, pair, impulse)
+            yield Piece(kind, Rows.relax, impulse.call.numbers["velocity"], notes, pair, impulse)
 
 
 def _notes(function: Callable[..., Any], call: Call, row: int) -> dict[int, str]:

@@ -148,7 +148,6 @@ class StepRecord:
     def __init__(self, exhibit: Exhibit, grip: Grip | None = None) -> None:
         exhibit.world.wake()
         self.exhibit, grip = copy.deepcopy((exhibit, grip))
-        self.exhibit.world.detector.broad.forget_boxes()  # or it may know that nothing is near, and make none
         state = self.exhibit.world.state
         self.before = (state.pose[0].copy(), state.velocity[0].copy())
         with Recorder(_RECORDED) as recorder:
@@ -156,8 +155,7 @@ class StepRecord:
         self.after = (state.pose[0].copy(), state.velocity[0].copy())
         self.contacts = self.exhibit.world.contacts
         self.call = recorder.call
-        self._axes_tried = recorder.calls(deepest_face)
-        self.boxes: Array = self.call(BroadPhase.near).values["boxes"][:, 0].T
+        self.boxes: Array = self.call(BroadPhase.near).values["boxes"][..., 0].T
         self.fallen = self._of_movers(self.call(integrate_velocity).values["velocity"], self.before[1])
         self.steps = self._of_movers(self.call(integrate_position).values["step"], np.zeros_like(self.fallen))
         self.pairs = list(self._read_pairs())
@@ -169,13 +167,13 @@ class StepRecord:
     def _of_movers(self, values: Array, others: Array) -> Array:
         """Return values (1, movers, 3) of the bodies that move, in the rows of all bodies; `others` for the rest."""
         rows = others.copy()
-        rows[self.exhibit.world.movers.bodies] = values[0]
+        rows[self.exhibit.world.movers] = values[0]
         return rows
 
     def _read_pairs(self) -> Iterator[Pair]:
         world = self.exhibit.world
         found = self.call(BroadPhase.near).values[f"{RETURN}.1"].tolist()
-        shapes, table = world.detector.pairs, world.detector.shapes
+        shapes, table = world.pairs, world.shape_table
         row_of = dict(zip(self.contacts.pair.tolist(), range(len(self.contacts)), strict=True)) if self.contacts else {}
         seen = [0, 0, 0]
         for pair in found:
@@ -189,12 +187,12 @@ class StepRecord:
     def _axes(self, circles: int, number: int, shapes: tuple[int, int]) -> tuple[list[Axis], int, Call, int]:
         """Return the axes of a pair, the chosen one, and the call and the line in which it was chosen."""
         if circles == 0:
-            first, second = self._axes_tried
-            values = self.call(collide_polygons).values
-            axes = [*self._faces(first, number, shapes[0]), *self._faces(second, number, shapes[1], of_first=False)]
-            if not values["flip"][number]:
-                return axes, int(values["face_a"][number]), first, first.numbers["face"]
-            return axes, self._corners(shapes[0]) + int(values["face_b"][number]), second, second.numbers["face"]
+            call, flip = self.call(deepest_face), self.call(collide_polygons).values["flip"]
+            other = number + len(flip)  # the second shapes stand after the first ones
+            axes = [*self._faces(call, number, shapes[0]), *self._faces(call, other, shapes[1], of_first=False)]
+            face = call.values["face"]
+            chosen = self._corners(shapes[0]) + face[other] if flip[number] else face[number]
+            return axes, int(chosen), call, call.numbers["face"]
         call = self.call(NARROW[circles])
         values = call.values
         if circles == 2:
@@ -231,9 +229,8 @@ class StepRecord:
         contacts = self.contacts
         if contacts is None:
             return
-        colours = len(contacts.colour_ends)
-        starts = [0, *contacts.colour_ends[:-1]]
+        colours = int(contacts.colour[-1]) + 1
         for number, call in enumerate(calls):
             iteration, colour = divmod(number, colours)
-            for column, row in enumerate(range(starts[colour], contacts.colour_ends[colour])):
+            for column, row in enumerate(np.flatnonzero(contacts.colour == colour).tolist()):
                 yield Impulse(iteration + 1, row, column, call, contacts.body[row])

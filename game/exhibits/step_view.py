@@ -115,11 +115,11 @@ class StepView:
         contacts = self._record.contacts
         assert contacts is not None
         assert pair.contact is not None
-        manifold, row = contacts.manifold, pair.contact
-        for number in np.flatnonzero(manifold.valid[row]).tolist():
-            x, y = view.points(manifold.points[row, number]).tolist()
+        row = pair.contact
+        for number in np.flatnonzero(contacts.valid[row]).tolist():
+            x, y = view.points(contacts.points[row, number]).tolist()
             if with_normal:
-                right, up = manifold.normal[row].tolist()
+                right, up = contacts.normal[row].tolist()
                 _arrow(canvas, (x, y), (x + _NORMAL * right, y - _NORMAL * up), NET, 2)
             canvas.dot((x, y), 3.5, NET)
             canvas.text(str(number + 1), (x + 8, y + 15), size=SMALL, colour=NET)
@@ -139,8 +139,8 @@ class StepView:
         contacts = self._record.contacts
         if contacts is None or pair.contact is None:
             return pair.axes[pair.chosen].start
-        manifold, row = contacts.manifold, pair.contact
-        middle: Array = manifold.points[row][manifold.valid[row]].mean(axis=0)
+        row = pair.contact
+        middle: Array = contacts.points[row][contacts.valid[row]].mean(axis=0)
         return middle
 
     def _draw_impulse(self, canvas: Canvas, view: View, piece: Piece) -> list[tuple[Colour, float, str]]:
@@ -155,13 +155,13 @@ class StepView:
         if most < 1e-9:
             return []
         size, length = _scale(most)
-        manifold, row = contacts.manifold, impulse.contact
-        normal, along = manifold.normal[row], right_of(manifold.normal[row])
+        row = impulse.contact
+        normal, along = contacts.normal[row], right_of(contacts.normal[row])
         first, second, rub = (impulse.after * (length / size if on_b else -length / size)).tolist()
-        valid = manifold.valid[row]
+        valid = contacts.valid[row]
         for number, reach in ((0, first), (1, second)):
             if valid[number]:
-                _arrow_from(canvas, view, manifold.points[row, number], normal * reach, NET)
+                _arrow_from(canvas, view, contacts.points[row, number], normal * reach, NET)
         if piece.kind == "impulses":
             _arrow_from(canvas, view, self._middle(pair), along * rub, NET)
         words = texts.STEP_SCALE["impulse" if piece.kind == "impulses" else "push"]

@@ -28,7 +28,7 @@ def sentence(record: StepRecord, piece: Piece) -> str:
     runs = record.overlaps if piece.kind == "overlap" else record.impulses
     figures = {
         "pairs": len(record.pairs),
-        "all": len(record.exhibit.world.detector.pairs),
+        "all": len(record.exhibit.world.pairs),
         "iteration": impulse.iteration if impulse else 0,
         "total": runs[-1].iteration if runs else 0,
     }
@@ -75,9 +75,9 @@ def _length(metres: float) -> str:
 def _points(record: StepRecord, pair: Pair) -> Iterator[tuple[str, bool]]:
     assert record.contacts is not None
     assert pair.contact is not None
-    manifold = record.contacts.manifold
-    for number in np.flatnonzero(manifold.valid[pair.contact]).tolist():
-        depth = float(manifold.depth[pair.contact, number])
+    contacts = record.contacts
+    for number in np.flatnonzero(contacts.valid[pair.contact]).tolist():
+        depth = float(contacts.depth[pair.contact, number])
         yield texts.STEP_ROWS["point"].format(count=number + 1, size=_MM * depth + 0.0), True
 
 

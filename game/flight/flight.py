@@ -37,7 +37,7 @@ class Flight:
         pads: 1 on a plain, or 3 among hills.
         hands: handicap of the keys, a name of `game.flight.handicap.HANDS`.
         mission: name of one of `ai.lander.missions.STARTS`, which sets the start and the conditions; empty for none.
-        shares: whether the network may share the stick, and not only take it; it never shares a leg's.
+        shares: whether the network may share the stick, and not only take it.
         easing: changes of the rules that give the pilot more room.
         area: version of the area's edges, an index of `ai.lander.rules.AREAS`.
         leg: where a flight of a descent begins, which sets the start and the conditions; None for any other.
@@ -72,7 +72,7 @@ class Flight:
         self.env = begun(self.recording)
         self.route = Route(leg_of(seed, leg).route) if leg else None
         self.observation: Floats = self.env.observe()
-        self.hand, self.shares = StickHolder.HUMAN, shares and leg is None
+        self.hand, self.shares = StickHolder.HUMAN, shares
         self.steered = False
         self.poses = Poses(self.env)
         self.asked, self.overridden = COAST, False
@@ -168,11 +168,14 @@ class Flight:
             self.hand = StickHolder.HUMAN
         before, self.copilot = self.copilot, None
         if self.shares and isinstance(network, QPolicy):
-            from ai.copilot.copilot import CoPilot, Mode
+            from ai.copilot.copilot import CoPilot
 
-            self.copilot = CoPilot(network, before.assist if before else 0.0, before.mode if before else Mode.TOLERANCE)
+            self.copilot = CoPilot(network, route=self.route)
             if before:
+                self.copilot.assist, self.copilot.mode = before.assist, before.mode
                 self.copilot.hold_plans_of(before)
+            else:
+                self.copilot.assist = 0.0
 
     def help(self, assist: float, mode: str) -> None:
         """Set the co-pilot's assist, 0 to 1, and its mode, from the next decision on."""
@@ -230,6 +233,12 @@ class Flight:
             return action, StickHolder.NETWORK, None
         return action, by, shares
 
+    def seen(self) -> tuple[Floats, Floats | None]:
+        """Return what a co-pilot reads of each pad, and what is around on the way there; on a leg, along its route."""
+        if self.route and self.network:
+            return self.route.observe(self.env, self.network), None
+        return self.env.observe_pads(self.network), self.env.around_pads()
+
     def ask_network(self) -> int:
         """Return the network's own action, decided every few steps, as `alone` shows it."""
         if self.alone is None or self._held_for == 0:
@@ -245,7 +254,7 @@ class Flight:
         assert self.copilot is not None
         decision = self.decision
         if decision is None or self._held_for == 0 or self.asked != decision.pilot[0]:
-            seen, around = self.env.observe_pads(self.network), self.env.around_pads()
+            seen, around = self.seen()
             self.decision = decision = self.copilot.decide(seen, np.array([self.asked]), around)
             self._held_for = 0
             self.aim(decision.likely[0])

@@ -115,7 +115,7 @@ def drift(env: LanderEnv) -> Iterator[Doubles]:
         before = velocity.copy()
         if env.conditions.pushes:
             state.force[0, body, 0] = env.conditions.push(np.array(time + (stride + 0.5) * span))
-        integrate_velocity(state, world.movers, world.gravity, span)
+        integrate_velocity(state, world.params, world.movers, world.gravity, span)
         # Closed form of many short steps at constant acceleration, each moved by the speed at its end.
         place += span / 2 * (before + velocity) + DT / 2 * (velocity - before)
         yield place.copy()

@@ -8,7 +8,10 @@ the keys. Each moment is a request with a number; what comes late is of an older
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+import sys
+from collections.abc import Generator, Iterable, Mapping
+from itertools import islice
+from math import hypot
 from typing import Final, NamedTuple
 
 from ai.agent.agent import DeepQAgent
@@ -24,6 +27,8 @@ from game.core.worker import Worker, WorkerState
 from game.core.worker_process import Turns
 
 _CORES: Final = 2  # with fewer, the futures would take the time that the window needs
+_AT_A_TIME: Final = 8  # decisions, of less than a millisecond together, between two looks for requests
+_SWITCH: Final = 5e-4  # seconds after which the thread that receives requests gets its turn
 
 
 class Flyer(NamedTuple):
@@ -131,29 +136,58 @@ class FuturesProcess:
             self.close()
 
 
+class _Order:
+    """Order in which the futures of one request are flown: as they are likely to be needed.
+
+    What the stick asks for comes first, then the keys, those next to it before others.
+
+    Attributes:
+        flown: what was found, in turn, and None after each decision that was flown.
+
+    """
+
+    def __init__(self, request: Request, lookahead: Lookahead) -> None:
+        self._request, self._lookahead = request, lookahead
+        self._asked: Push | None = request.asked
+        _, main, side = request.asked
+        self._left = sorted(KEYS, key=lambda key: hypot(key.main - main, key.side - side))
+        self._guesses = False  # whether what is flown now was not asked for
+        self.flown = self._fly()
+
+    def hint(self, asked: Push) -> None:
+        """Fly another position of the stick next, and in place of a future that was not asked for."""
+        self._asked = asked
+        if self._guesses:
+            self.flown = self._fly()
+
+    def _fly(self) -> Generator[Found | None, None, None]:
+        number, moment, before, _, decisions, _ = self._request
+        while self._asked or self._left:
+            push, self._guesses, self._asked = self._asked or self._left[0], self._asked is None, None
+            for future in self._lookahead.look(moment, push, decisions, before):
+                yield Found(number, push, future) if future else None
+                if future and self._guesses:
+                    break
+            self._left = [key for key in self._left if key != push]
+
+
 def fly_ahead() -> Turns:
-    """Fly futures in the order in which they are likely to be needed; for a `Worker`."""
-    request: Request | None = None
+    """Fly the futures of the latest request; for a `Worker`."""
+    sys.setswitchinterval(_SWITCH)
     lookahead = Lookahead(DeepQAgent())
-    done: set[Push] = set()
-    urgent: Push | None = None
+    order: _Order | None = None
     told: Iterable[Found] | None = None
     while True:
         command = yield told
         told = ()
         if isinstance(command, Request):
-            request, urgent = command, command.asked
-            done.clear()
-            if request.flyer:
-                flyer, route = request.flyer
+            if command.flyer:
+                flyer, route = command.flyer
                 lookahead = Lookahead(flyer.agent(), route)
+            order = _Order(command, lookahead)
         elif isinstance(command, Push):
-            urgent = command
+            if order:
+                order.hint(command)
         else:
-            push = next((push for push in (urgent, *KEYS) if push and push not in done), None)
-            if request is None or push is None:
-                told = None
-                continue
-            done.add(push)
-            (future,) = lookahead.futures(request.moment, [(0, push)], request.decisions, request.before)
-            told = (Found(request.number, push, future),)
+            turn = list(islice(order.flown, _AT_A_TIME)) if order else []
+            told = [found for found in turn if found] if turn else None

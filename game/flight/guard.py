@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from ai.copilot.copilot import Mode, SharedDecision
-from ai.copilot.futures import DECISION_STEPS, KEYS, FlownAhead, Future, Opening, Push
+from ai.copilot.futures import DECISION_STEPS, KEYS, FlownAhead, Future, Here, Opening, Push
 from ai.copilot.guardian import decisions_of
 from ai.flights.recording import STEPS, Shares, StickHolder, full
 from ai.lander.moment import Moment
@@ -52,11 +52,14 @@ class Taps:
         )
         self._before = now
 
-    def take(self) -> Push:
-        """Return what the stick asks for in the decision that begins, and forget the taps."""
-        main, side = (share or tapped for share, tapped in zip(self._before, self._tapped, strict=True))
+    @property
+    def asked(self) -> Push:
+        """What the stick asks for in the decision that begins."""
+        return Push.of(*(share or tapped for share, tapped in zip(self._before, self._tapped, strict=True)))
+
+    def forget(self) -> None:
+        """Forget the taps: they are flown."""
         self._tapped = (0.0, 0.0)
-        return Push.of(main, side)
 
 
 class Guard:
@@ -68,6 +71,8 @@ class Guard:
         saves: whether something else is flown now because what was asked for was seen not to land.
         decisions: decisions so far.
         late: those in which something else was flown only because what was asked for was not flown ahead in time.
+        waits: whether what is asked for now was not flown ahead in time, so that what was asked for before counts.
+        waited: decisions in which that was so.
 
     """
 
@@ -76,7 +81,9 @@ class Guard:
         self._taps = Taps()
         self.push: Push | None = None
         self.saves = False
-        self.decisions = self.late = 0
+        self.waits = False
+        self.decisions = self.late = self.waited = 0
+        self._wish = KEYS[COAST]  # what was asked for in the decision that is flown now
         self._decision: SharedDecision | None = None
         self._moment: tuple[object, ...] = ()  # that the futures asked for last belong to
         self._flown_by: tuple[object, ...] = ()  # and what they are flown by
@@ -129,11 +136,12 @@ class Guard:
     def _decide(self, by: StickHolder) -> None:
         """Decide what is flown in the next four steps, and let the futures after them be flown meanwhile."""
         flight, flight.alone = self._flight, None
-        wish = self._taps.take() if by is StickHolder.HUMAN else push_of(flight.ask_network())
         assert flight.copilot is not None
         known: Mapping[Push, Future] = self.ahead.known() if self._moment == self._here() else {}
-        wish, held = nearest(wish, known), self.safe
-        seen, around = flight.env.observe_pads(flight.network), flight.env.around_pads()
+        stick = self._taps.asked if by is StickHolder.HUMAN else push_of(flight.ask_network())
+        held = self.safe
+        self._wish = wish = self._wished(nearest(stick, known), known) if by is StickHolder.HUMAN else stick
+        seen, around = flight.seen()
         pilot, pushed = np.array([wish.action]), np.array([wish[1:]])
         self._decision = decision = flight.copilot.decide(seen, pilot, around, pushed, flight.env, [known])
         self.push = Push(int(decision.action[0]), *decision.shares[0].tolist())
@@ -142,7 +150,24 @@ class Guard:
         self.saves, self.late = bool(decision.overridden[0]) and not missing, self.late + missing
         if by is StickHolder.HUMAN:
             flight.aim(decision.likely[0])
-        self._ask((self.push,), wish)
+        self._ask((self.push,), stick)
+
+    def _wished(self, wish: Push, known: Mapping[Push, Future]) -> Push:
+        """Return what is asked for in this decision.
+
+        A new wish of which is not known yet what comes of it waits for one decision, in which the one before counts: so
+        a key is felt a little later at times.
+        """
+        flight, waited = self._flight, self.waits
+        assert flight.copilot is not None
+        self.waits = False
+        if self.safe and not waited:
+            guardian, here = flight.copilot.guardians[0], Here.of(flight.env)
+            self.waits = guardian.knows(here, self._wish, known) and not guardian.knows(here, wish, known)
+        self.waited += self.waits
+        if not self.waits:
+            self._taps.forget()
+        return self._wish if self.waits else wish
 
     def _ask(self, before: Opening, wish: Push) -> None:
         flight = self._flight

@@ -149,8 +149,8 @@ def struck_side(env: LanderEnv, slot: int = 0) -> bool:
     here = np.flatnonzero(touches.world == slot)
     if not len(here):
         return False
-    hardest = here[np.abs(touches.approach[:, here]).max(axis=0).argmax()]
-    return bool(abs(touches.manifold.normal[hardest, 1]) < _LEVEL)
+    hardest = here[np.abs(touches.approach[here]).max(axis=1).argmax()]
+    return bool(abs(touches.normal[hardest, 1]) < _LEVEL)
 
 
 def crash_reason(env: LanderEnv, slot: int = 0) -> str:

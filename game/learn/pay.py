@@ -15,8 +15,8 @@ from ai.lander.rewards import REWARDS, RewardWeights
 from ai.training.checkpoints import agent_of
 from ai.training.config import Config
 from ai.training.history import Checkpoint
+from ai.training.lander_session import live
 from ai.training.messages import SwarmState
-from ai.training.session import live
 from engine import DT
 from game.core import texts
 from game.core.scene import Route

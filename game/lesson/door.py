@@ -3,33 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Final, Generic, TypeVar
+from typing import Final
 
 import pygame
 
 from ai.explain.agent_lesson import Lesson
 from ai.explain.digit_lesson import DigitLesson
-from ai.training.session import CAREFUL
+from ai.training.lander_session import CAREFUL
 from game.core import texts
 from game.core.scene import Transition, push
-from game.training.digit_run import DigitRun
-from game.training.lander_run import LanderRun
+from game.training.run import TrainingRun
 from game.world.swarm import LearningSwarm
 
 _PATIENCE: Final = 30  # frames without an answer, after which the player is told that it is being made
-Run = TypeVar("Run", bound=LanderRun | DigitRun)
 
 
-class Door(Generic[Run]):
+class Door:
     """Door from a run to its lessons: one is asked for, and comes once; `note` shows a message to the player."""
 
-    def __init__(self, run: Run, note: Callable[[str], object]) -> None:
+    def __init__(self, run: TrainingRun, note: Callable[[str], object]) -> None:
         self._run, self._note = run, note
         self._shown = run.lesson
         self._asked = False
         self._waited = 0  # frames
 
-    def _ask(self, explain: Callable[[Run], object]) -> None:
+    def _ask(self, explain: Callable[[TrainingRun], object]) -> None:
         """Ask the run for a lesson, unless it is over: say so then."""
         if not self._run.alive:
             self._note(texts.LESSON_NO_RUN)
@@ -40,7 +38,7 @@ class Door(Generic[Run]):
 
     def answer(self) -> Lesson | DigitLesson | None:
         """Return the lesson that was asked for, once it has come; None before and afterwards. Call it once a frame."""
-        lesson = self._run.lesson
+        lesson: Lesson | DigitLesson | None = self._run.lesson
         if not self._asked:
             return None
         if lesson is None or lesson is self._shown:
@@ -52,7 +50,7 @@ class Door(Generic[Run]):
         return lesson
 
 
-class LessonDoor(Door[LanderRun]):
+class LessonDoor(Door):
     """Door to a lander's lessons. A click on a lander chooses it, a second one opens its lesson.
 
     `swarm` returns the landers that are shown, and `moment` when that is, in decisions, or None for now.
@@ -60,7 +58,7 @@ class LessonDoor(Door[LanderRun]):
 
     def __init__(
         self,
-        run: LanderRun,
+        run: TrainingRun,
         swarm: Callable[[], LearningSwarm],
         moment: Callable[[], int | None],
         note: Callable[[str], object],
@@ -92,7 +90,7 @@ class LessonDoor(Door[LanderRun]):
         return push("lesson", lesson) if lesson else None
 
 
-class ImageDoor(Door[DigitRun]):
+class ImageDoor(Door):
     """Door to the lessons of a digit run: the first image of its next batch, and from a lesson to the next image."""
 
     def open(self) -> None:

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from typing import Final
 
-from ai.training.digit_session import DigitSettingChanged
-from ai.training.history import REVERTED
+from ai.training.history import REVERTED, History, SettingChange
 from game.charts.chart import Chart, Series, Tick, draw_legend
 from game.charts.charts import Charts
 from game.charts.series import run_style
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import MUTE
-from game.training.digit_run import DigitCurves
+from game.training.beside import EarlierRun
 from game.training.knob_descriptions import figure, label
-from game.training.training_run import EarlierRun
 
 _CHARTS: Final = {"loss": (40, 146, 372, 152), "accuracy": (440, 146, 372, 152)}
 _LEGEND: Final = (440.0, 118.0)
@@ -32,48 +30,47 @@ class DigitCharts(Charts):
         )
         self._told: tuple[object, ...] = ()
 
-    def look(self, curves: DigitCurves, earlier: list[EarlierRun[DigitCurves]]) -> None:
+    def look(self, history: History, earlier: list[EarlierRun]) -> None:
         """Show the curves of this run and of earlier ones, if they have changed."""
         shown = [(beside.name, beside.style) for beside in earlier]
-        told = (curves.seconds, len(curves.points), len(curves.scores), shown, self.zoom.shown, *curves.turns)
+        told = (_seconds(history), len(history.validations), shown, self.zoom.shown, *history.setting_changes)
         if told == self._told:
             return
         self._told = told
-        runs = [EarlierRun(texts.TRAIN_THIS, curves, 0), *earlier]
-        self.zoom.end = max(10.0, *(beside.run.seconds for beside in runs))
+        runs = [EarlierRun(texts.TRAIN_THIS, history, 0), *earlier]
+        self.zoom.end = max(10.0, *(_seconds(beside.run) for beside in runs))
         losses, accuracies = [], []
         for beside in runs:
             name, each, (colour, dash) = beside.name, beside.run, run_style(beside.style)
-            if each.points:
-                seconds = [point.seconds for point in each.points]
-                losses.append(Series(seconds, [point.loss for point in each.points], name, colour, dash))
-                scores = ([score.seconds for score in each.scores], [100 * score.accuracy for score in each.scores])
+            if len(each):
+                losses.append(Series(each["seconds"].tolist(), each["loss"].tolist(), name, colour, dash))
+                read = each.validations
+                scores = ([score.seconds for score in read], [100 * score.success for score in read])
                 accuracies.append(Series(*scores, name, colour, dash, smooth=False))
-        if curves.points:
-            accuracies.append(_batches(curves))
-        ticks = [Tick(turn.seconds, _turn_told(turn), "knob") for turn in curves.turns]
+        if len(history):
+            accuracies.append(_batches(history))
+        ticks = [Tick(turn.seconds, _turn_told(turn), "knob") for turn in history.setting_changes]
         for chart, series in zip(self.charts, (losses, accuracies), strict=True):
             chart.set(series, self.zoom.shown, ticks)
 
 
-def draw_accuracy_legend(canvas: Canvas, curves: DigitCurves) -> None:
+def draw_accuracy_legend(canvas: Canvas, history: History) -> None:
     """Draw which curve of accuracy is which."""
-    draw_legend(canvas, [Series((), (), texts.DIGIT_RUN_HELD_OUT), _batches(curves)], _LEGEND)
+    draw_legend(canvas, [Series((), (), texts.DIGIT_RUN_HELD_OUT), _batches(history)], _LEGEND)
 
 
-def _turn_told(turn: DigitSettingChanged) -> str:
+def _turn_told(turn: SettingChange) -> str:
     if turn.name == REVERTED:
         return texts.DIGIT_RUN_WENT_BACK.format(part=turn.after)
     return f"{label(turn.name)} {figure(turn.after)}"
 
 
-def _batches(curves: DigitCurves) -> Series:
+def _seconds(history: History) -> float:
+    return float(history["seconds"][-1]) if len(history) else 0.0
+
+
+def _batches(history: History) -> Series:
     """Return the curve of the training batches' accuracy."""
     colour, dash = _BATCHES
-    return Series(
-        [point.seconds for point in curves.points],
-        [100 * point.accuracy for point in curves.points],
-        texts.DIGIT_RUN_BATCHES,
-        colour,
-        dash,
-    )
+    accuracy = (100 * history["accuracy"]).tolist()
+    return Series(history["seconds"].tolist(), accuracy, texts.DIGIT_RUN_BATCHES, colour, dash)

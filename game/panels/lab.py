@@ -20,7 +20,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import HUMAN, INK, LABEL, MUTE, NET, SMALL, TEXT
 from game.training.knob_descriptions import KnobDescription, figure, label
-from game.training.split_run import SplitRun
+from game.training.run import TrainingRun
 from game.ui.widget import OnPress, PointsManager, Widget
 from game.ui.widgets import TextButton
 
@@ -59,7 +59,7 @@ class Laboratory:
 
     """
 
-    def __init__(self, split: SplitRun, start: Start, leave: Callable[[bool], None]) -> None:
+    def __init__(self, split: TrainingRun, start: Start, leave: Callable[[bool], None]) -> None:
         self.split, self._start, self._leave = split, start, leave
         self.chosen: Chosen | None = None
         self.came: Kind | None = None

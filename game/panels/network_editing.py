@@ -22,7 +22,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, MUTE, SMALL
 from game.panels.network_picking import Link, Part, Unit, draw_marks, name_of, part_at
 from game.panels.network_view import NetworkView
-from game.training.lander_run import LanderRun
+from game.training.run import TrainingRun
 from game.ui.form import Form
 from game.ui.widget import Widget
 from game.ui.widgets import Slider, TextButton
@@ -51,7 +51,7 @@ class NetworkEditing:
 
     """
 
-    def __init__(self, form: Form, view: NetworkView, lander_run: LanderRun) -> None:
+    def __init__(self, form: Form, view: NetworkView, lander_run: TrainingRun) -> None:
         self._form, self._view, self._run = form, view, lander_run
         self.picked: Part | None = None
         self.past = self.split = self._large = False

@@ -23,7 +23,7 @@ from game.panels.network_editing import NetworkEditing
 from game.panels.network_plan import Show
 from game.panels.network_view import NetworkView
 from game.panels.reward_bar import RewardBar
-from game.training.lander_run import LanderRun
+from game.training.run import TrainingRun
 from game.ui.form import Form
 from game.ui.virtual_pointer import VirtualPointer
 from game.ui.widget import Widget
@@ -50,7 +50,7 @@ class NetworkPanel:
 
     """
 
-    def __init__(self, form: Form, on_closer: Callable[[], None], lander_run: LanderRun) -> None:
+    def __init__(self, form: Form, on_closer: Callable[[], None], lander_run: TrainingRun) -> None:
         self.large = False
         self._form = form
         self.view = NetworkView(_SMALL, texts.INPUTS, tuple(map(texts.said, ACTION_NAMES)))

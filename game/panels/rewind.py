@@ -16,7 +16,7 @@ from game.drawing.tokens import HUMAN, MUTE, SMALL
 from game.panels.network_panel import NetworkPanel
 from game.panels.run_timeline import RunTimeline
 from game.panels.training_charts import TrainingCharts
-from game.training.lander_run import LanderRun
+from game.training.run import TrainingRun
 from game.ui.form import Form
 from game.ui.widget import Widget
 from game.ui.widgets import TextButton
@@ -46,7 +46,7 @@ class Rewind:
 
     """
 
-    def __init__(self, form: Form, lander_run: LanderRun, width: float) -> None:
+    def __init__(self, form: Form, lander_run: TrainingRun, width: float) -> None:
         self._form, self._run = form, lander_run
         self.swarm = LearningSwarm(width)
         self._words: list[TextButton] = []

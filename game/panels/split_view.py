@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from ai.training.history import History
 from ai.training.verdict import Flown
 from game.charts.series import RUN_STYLES
 from game.core import texts
@@ -14,8 +13,8 @@ from game.drawing.canvas import Canvas
 from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import LINE, MUTE, NET, NIGHT0, SMALL, TEXT, VIEW_SIZE, Colour
 from game.panels.lab import Laboratory
-from game.training.lander_run import LanderRun
-from game.training.training_run import EarlierRun
+from game.training.beside import EarlierRun
+from game.training.run import TrainingRun
 from game.world.swarm import LearningSwarm
 
 _WIDTH: Final = 418.0  # of each half, in points
@@ -51,7 +50,7 @@ class SplitView:
         return texts.SPLIT_HEALTHY if self.shown else texts.TRAIN_THIS
 
     @property
-    def beside(self) -> Sequence[EarlierRun[History]]:
+    def beside(self) -> Sequence[EarlierRun]:
         """The runs whose curves are shown beside the run's: its experiment, or else earlier ones."""
         twin, chosen = self._split.twin, self._laboratory.chosen
         if twin is None:
@@ -105,7 +104,7 @@ class SplitView:
         self._write(canvas, 1, chosen.name, self._laboratory.differs, twin, RUN_STYLES[_STYLE][0])
         draw_wrapped(canvas, texts.SPLIT_STEP, _STEP, _STEP_WIDTH, colour=MUTE, most=3)
 
-    def _write(self, canvas: Canvas, half: int, name: str, told: str, run: LanderRun, colour: Colour) -> None:
+    def _write(self, canvas: Canvas, half: int, name: str, told: str, run: TrainingRun, colour: Colour) -> None:
         left, right = half * _WIDTH + _MARGIN[half], (half + 1) * _WIDTH - _MARGIN[1 - half]
         y = _TOP + _HEIGHT + 20
         figure = ""

@@ -14,7 +14,7 @@ from ai.common.decision import in_points
 from ai.common.environment import Doubles
 from ai.training.edits import EDITED
 from ai.training.history import REVERTED, History, SettingChange
-from ai.training.session import TAUGHT
+from ai.training.lander_session import TAUGHT
 from game.charts.chart import Chart, Series, Tick
 from game.charts.charts import Charts
 from game.charts.scrubber import Scrubber
@@ -26,8 +26,8 @@ from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
 from game.drawing.tokens import NIGHT0, SMALL
 from game.panels.run_legend import RunLegend
+from game.training.beside import EarlierRun
 from game.training.knob_descriptions import told
-from game.training.training_run import EarlierRun
 from game.ui.virtual_pointer import VirtualPointer
 from game.ui.widget import OnPress, PointsManager, Widget
 from game.ui.widgets import Choice, TextButton
@@ -97,7 +97,7 @@ class TrainingCharts:
             chart.read_x = texts.TRAIN_AXIS[axis].format
         self.charts.zoom.reset()
 
-    def look(self, history: History, beside: Sequence[EarlierRun[History]], name: str = texts.TRAIN_THIS) -> None:
+    def look(self, history: History, beside: Sequence[EarlierRun], name: str = texts.TRAIN_THIS) -> None:
         """Read new points of the current run, by its name there, and of those beside it; call it once a frame."""
         self._turn = (self._turn + 1) % _TURNS
         number, odd = divmod(self._turn, 2)
@@ -121,7 +121,7 @@ class TrainingCharts:
         ticks = [Tick(self._place(tick.x), tick.text, tick.kind) for tick in ticks_of(history)] if number == 0 else ()
         self.charts.charts[number].set(series, self.charts.zoom.shown, ticks)
 
-    def _series(self, name: str, beside: EarlierRun[History], emphasised: int | None) -> Series:
+    def _series(self, name: str, beside: EarlierRun, emphasised: int | None) -> Series:
         run, (colour, dash) = beside.run, run_style(beside.style)
         if emphasised not in (None, beside.style):
             colour = mix(colour, NIGHT0, _DIMMED)

@@ -7,8 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from game.core import texts
-from game.training.digit_run import DigitRun
-from game.training.lander_run import LanderRun
+from game.training.run import TrainingRun
 
 
 class TrainingStatus(NamedTuple):
@@ -19,7 +18,7 @@ class TrainingStatus(NamedTuple):
     words: str
 
 
-def lander_status(lander_run: LanderRun, moment: int | None = None, row: int = -1) -> TrainingStatus:
+def lander_status(lander_run: TrainingRun, moment: int | None = None, row: int = -1) -> TrainingStatus:
     """Return the landers, the time and the decisions so far, and the share that lands.
 
     `moment`, in decisions, and the `row` of the history say so of an earlier moment.
@@ -36,18 +35,20 @@ def lander_status(lander_run: LanderRun, moment: int | None = None, row: int = -
     return TrainingStatus(line, "" if np.isnan(landed) else f"{100 * landed:.0f}", texts.TRAIN_LANDED)
 
 
-def digit_status(digit_run: DigitRun) -> TrainingStatus:
+def digit_status(digit_run: TrainingRun) -> TrainingStatus:
     """Return the epoch, the time and the speed, and the share of images that are read rightly."""
-    curves, tested = digit_run.curves, digit_run.test is not None
+    history, tested = digit_run.history, digit_run.test is not None
     line = texts.DIGIT_RUN_LOADING if digit_run.alive else texts.DIGIT_RUN_LINE
-    if curves.points:
-        last = curves.points[-1]
+    if len(history):
+        last = {column.name: value for column, value in zip(history.columns, history.points[-1].tolist(), strict=True)}
         line = texts.DIGIT_RUN_FIGURES.format(
-            epoch=last.epoch, epochs=digit_run.config.epochs, seconds=last.seconds, rate=last.images_per_second
-        )
+            epoch=last["epoch"], epochs=digit_run.config.epochs, seconds=last["seconds"],
+            rate=last["images_per_second"],
+        )  # fmt: skip
+    scores = history.validations
     if tested and digit_run.kept_epoch is not None:
-        read = f"{100 * curves.scores[-1].accuracy:.2f}%" if curves.scores else "–"
+        read = f"{100 * scores[-1].success:.2f}%" if scores else "–"
         line = texts.DIGIT_RUN_KEPT_BEST.format(epoch=digit_run.kept_epoch, last=read)
-    part = digit_run.test if digit_run.test is not None else curves.scores[-1].accuracy if curves.scores else None
+    part = digit_run.test if digit_run.test is not None else scores[-1].success if scores else None
     figure = "" if part is None else f"{100 * part:.2f}"
     return TrainingStatus(line, figure, texts.DIGIT_RUN_TESTED if tested else texts.DIGIT_RUN_READ)

@@ -1,4 +1,4 @@
-"""The screens of the game, one scene to a file. A scene names the next one by a route, and imports none of them.
+"""The screens of the game, a folder or a file each. A scene names the next one by a route, and imports none of them.
 
 Dialogs and what lies behind the menu are parts of scenes, imported by those that show them.
 """
@@ -11,15 +11,16 @@ from game.ui.context import Context
 
 # The name of each scene that another may lead to: the module in this package, and the class in that.
 ROUTES: Final = {
-    "menu": "menu.MenuScene", "play": "play.PlayScene", "missions": "missions.MissionsScene",
+    "menu": "menus.menu.MenuScene", "flights": "menus.flights.FlightsScene", "play": "play.PlayScene",
+    "missions": "missions.MissionsScene",
     "days": "days.DaysScene",
     "watch": "watch.WatchScene", "train": "train.TrainScene", "runs": "runs.NetworksScene",
     "digits": "digits.DigitsScene", "digit_training": "digit_training.DigitTrainingScene",
     "digit_inside": "digit_inside.DigitInsideScene", "why_not": "why_not.WhyNotScene",
     "dream": "dream.DreamScene", "quiz": "quiz.QuizScene", "physics": "physics.PhysicsScene",
     "physics_step": "physics_step.PhysicsStepScene",
-    "logbook": "logbook.LogbookScene", "replay": "replay.ReplayScene", "settings": "settings.SettingsScene",
-    "bindings": "bindings.BindingsScene", "choices": "choices.ChoicesScene", "assists": "assists.AssistsScene",
+    "logbook": "logbook.LogbookScene", "replay": "replay.ReplayScene", "settings": "menus.settings.SettingsScene",
+    "bindings": "menus.keys.BindingsScene", "choices": "choices.ChoicesScene", "assists": "menus.settings.AssistsScene",
     "pause": "pause.PauseScene",
     "learn": "learn.LearnScene", "chapter": "chapter.ChapterScene", "lesson": "lesson.LessonScene",
     "error_screen": "error_screen.ErrorScene", "study": "study.StudyScene",
@@ -28,6 +29,6 @@ ROUTES: Final = {
 
 def scene_of(route: Route, context: Context) -> Scene:
     """Build the scene that a route names; its module is loaded when it is first needed."""
-    module, _, name = ROUTES[route.name].partition(".")
+    module, _, name = ROUTES[route.name].rpartition(".")
     scene: Scene = getattr(import_module(f"{__name__}.{module}"), name)(context, *route.arguments, **route.options)
     return scene

@@ -33,7 +33,7 @@ def load(context: Context) -> None:
     from game.scenes import ROUTES
 
     for place in ROUTES.values():
-        import_module(f"game.scenes.{place.partition('.')[0]}")
+        import_module(f"game.scenes.{place.rpartition('.')[0]}")
     for key in PATH:
         chapter_type(key)
     gc.freeze()  # modules live as long as the game

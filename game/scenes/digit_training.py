@@ -24,11 +24,11 @@ from game.panels.knobs import KnobsPanel
 from game.panels.run_status import draw_run_status
 from game.panels.training_status import digit_status
 from game.panels.way_back import WayBack
-from game.scenes.dialog import QuestionDialog
+from game.scenes.menus.dialogs import QuestionDialog
 from game.scenes.training_scene import DISPLAY_WIDTH, LEFT, PANEL_LEFT, TrainingScene
-from game.training.digit_models import runs_dir
-from game.training.digit_run import DigitRun
+from game.training.digit_models import DigitModels, figures_of, runs_dir
 from game.training.knob_descriptions import knob_descriptions
+from game.training.run import DIGITS, TrainingRun
 from game.training.run_settings import RunKind
 from game.ui.context import Context
 from game.ui.hints import HintRow
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier
 
 _OFFERED: Final = {name: preset for name, preset in DIGIT_PRESETS.items() if name in texts.DIGIT_RUN_PRESETS}
-DIGITS: Final = RunKind(tuple(knob_descriptions(DigitConfig)), _OFFERED, texts.DIGIT_RUN_PRESETS, "images")
+KNOBS: Final = RunKind(tuple(knob_descriptions(DigitConfig)), _OFFERED, texts.DIGIT_RUN_PRESETS, "images")
 _KNOBS: Final = pygame.Rect(868, 20, 384, 436)
 _MATRIX: Final = pygame.Rect(70, 372, 320, 320)
 _CELL: Final = pygame.Rect(440, 346, 372, 346)
@@ -50,7 +50,7 @@ _HINT: Final = pygame.Rect(868, 548, 384, 60)
 _EVERY: Final = 12  # frames between two drawings of the charts
 
 
-class DigitTrainingScene(TrainingScene[DigitRun]):
+class DigitTrainingScene(TrainingScene):
     """Digit training scene: charts, knobs, and the confusion matrix or the filters as they form.
 
     Attributes:
@@ -64,8 +64,8 @@ class DigitTrainingScene(TrainingScene[DigitRun]):
         self._asked = False
         self.stop_button: TextButton | None = None
         self._in_force_told: tuple[float, DigitConfig, InForce] | None = None
-        self.digit_run = DigitRun(runs_dir(context.user_dir))
-        super().__init__(context, self.digit_run, self.digit_run.collection, ((PANEL_LEFT, _SAID), 4))
+        self.digit_run = TrainingRun(DIGITS, DigitModels(runs_dir(context.user_dir)))
+        super().__init__(context, self.digit_run, ((PANEL_LEFT, _SAID), 4))
 
     def _build(self) -> None:
         self.digit_run.collection.hold()
@@ -75,7 +75,7 @@ class DigitTrainingScene(TrainingScene[DigitRun]):
         self._add_words()
         self.form.add(VirtualPointer(self.form.manager, self.charts.box, self.charts.follow))
         self.knobs = KnobsPanel(
-            self.form, _KNOBS, DIGIT_PRESETS["classic"], 0, self.digit_run.change, self._begin, DIGITS
+            self.form, _KNOBS, DIGIT_PRESETS["classic"], 0, self.digit_run.change, self._begin, KNOBS
         )
         self.film = FilterFilm(self.charts)
         self.matrix = self.form.add(ConfusionMatrix(self.form.manager, _MATRIX))
@@ -109,13 +109,13 @@ class DigitTrainingScene(TrainingScene[DigitRun]):
         self._follow_run()
         if self.matrix.confusion is not self.digit_run.confusion:
             self.matrix.set(self.digit_run.confusion)
-        self.film.follow(self.digit_run.curves)
+        self.film.follow(self.digit_run)
         if self.digit_run.alive:
             self.knobs.show_in_force(self._in_force())
         self._way_back.follow()
         self._frame += 1
         if self._frame % _EVERY == 0:
-            self.charts.look(self.digit_run.curves, self.digit_run.earlier)
+            self.charts.look(self.digit_run.history, self.digit_run.earlier)
             self._name_words()
         self.charts.update(at_once=self._settings.reduced_motion)
         return self._ask_or(self.form.update()) or self.lessons.update()
@@ -128,11 +128,11 @@ class DigitTrainingScene(TrainingScene[DigitRun]):
 
     def _in_force(self) -> InForce | None:
         """Values in force, as last reported by the run."""
-        points, config = self.digit_run.curves.points, self.digit_run.config
-        if not points:
+        history, config = self.digit_run.history, self.digit_run.config
+        if not len(history):
             return None
-        if self._in_force_told is None or self._in_force_told[:2] != (points[-1].learning_rate, config):
-            rate = points[-1].learning_rate
+        rate = float(history["learning_rate"][-1])
+        if self._in_force_told is None or self._in_force_told[:2] != (rate, config):
             self._in_force_told = rate, config, InForce({"learning_rate": rate}, config.unused())
         return self._in_force_told[2]
 
@@ -143,15 +143,16 @@ class DigitTrainingScene(TrainingScene[DigitRun]):
 
     def _begin(self, config: DigitConfig, seed: int) -> None:
         """Start a run; first ask whether to keep an unnamed earlier one."""
-        if not self.digit_run.nameless:
+        run = self.digit_run
+        if not (run.kept or (run.alive and run.steps)):
             self._start(config, seed)
             return
-        preset, seconds, part = self.digit_run.described()
-        named = (preset, "") if preset in _OFFERED else DIGITS.nearest(self.digit_run.config)
-        name = self.digit_run.collection.free_name(texts.DIGIT_RUN_NAME.format(preset=DIGITS.word(named)))
+        preset, seconds, part = figures_of(run)
+        named = (preset, "") if preset in _OFFERED else KNOBS.nearest(run.config)
+        name = run.collection.free_name(texts.DIGIT_RUN_NAME.format(preset=KNOBS.word(named)))
 
         def keep() -> None:
-            if problem := self.digit_run.save(name):
+            if problem := self._save_as(name):
                 self.context.note(problem)
             else:
                 self._start(config, seed)
@@ -171,7 +172,7 @@ class DigitTrainingScene(TrainingScene[DigitRun]):
         if self.digit_run.alive:
             self.digit_run.stop()
         elif self.digit_run.unfinished:
-            self._start(self.knobs.config, self.knobs.seed, resume=True)
+            self._start(self.knobs.config, self.knobs.seed, resume=self.digit_run.collection.unsaved)
         self._name_words()
 
     def _save(self) -> Transition | None:
@@ -179,12 +180,6 @@ class DigitTrainingScene(TrainingScene[DigitRun]):
             self.context.note(texts.DIGIT_RUN_NOTHING)
             return None
         return self._ask_name(texts.DIGIT_RUN_NAME.format(preset=self.knobs.name))
-
-    def _save_as(self, name: str) -> str:
-        problem, alive = self.digit_run.save(name), self.digit_run.alive
-        if not problem and not alive:
-            self.context.note(texts.DIGIT_RUN_SAVED.format(name=name))
-        return problem
 
     def _dream(self) -> Transition | None:
         classifier = self._classifier()
@@ -202,7 +197,7 @@ class DigitTrainingScene(TrainingScene[DigitRun]):
             self.context.note(texts.DIGIT_RUN_NOTHING)
             return None
         try:
-            return DigitClassifier.load(self.digit_run.unsaved)
+            return DigitClassifier.load(self.digit_run.collection.unsaved)
         except (OSError, ValueError) as error:
             self.context.note(str(error))
             return None
@@ -282,8 +277,8 @@ class DigitTrainingScene(TrainingScene[DigitRun]):
             self.form.replace(before, [self.start_button, *([self.stop_button] if self.stop_button else [])])
 
     def _draw_title(self, canvas: Canvas) -> None:
-        if self.digit_run.curves.points:
-            draw_accuracy_legend(canvas, self.digit_run.curves)
+        if len(self.digit_run.history):
+            draw_accuracy_legend(canvas, self.digit_run.history)
         status = digit_status(self.digit_run)
         draw_run_status(canvas, (LEFT, 46), texts.DIGIT_RUN_TITLE, *status, drop=72, room=DISPLAY_WIDTH - 2 * LEFT)
         self.draw_hints(canvas)

@@ -276,7 +276,7 @@ class DigitsScene(FormScene):
 
     def _pick(self) -> Transition:
         """Open a list of all networks with their accuracy."""
-        from game.scenes.dialog import ListDialog
+        from game.scenes.menus.dialogs import ListDialog
 
         damaged = self.live.reader.problems
         rows = [

@@ -15,9 +15,10 @@ from game.drawing.tokens import HUMAN, MARGIN, MUTE, SMALL, TEXT, TITLE, VIEW_SI
 from game.learn.path import FIRST, PATH
 from game.learn.progress import Progress
 from game.ui.context import Context
-from game.ui.list_scene import ListLayout, ListScene
+from game.ui.list_scene import VERB_LINE, VERB_SIZE, ListLayout, ListScene
 from game.ui.listing import Row
 from game.ui.widget import Widget
+from game.ui.widgets import TextButton
 
 _LEFT: Final = 720
 _WIDTH: Final = VIEW_SIZE[0] - MARGIN - _LEFT
@@ -38,6 +39,10 @@ class LearnScene(ListScene[str]):
     def __init__(self, context: Context) -> None:
         super().__init__(context, texts.LEARN_TITLE, _LAYOUT)
         self._progress = Progress(context.settings)
+        box = (MARGIN + 130, _LAYOUT.foot, 220, VERB_LINE)
+        self._physics = TextButton(
+            self.form.manager, box, texts.LEARN_PHYSICS, partial(push, "physics"), size=VERB_SIZE
+        )
         self._reload()
 
     def enter(self) -> None:
@@ -66,6 +71,10 @@ class LearnScene(ListScene[str]):
         key = self.items[self._list.index]
         verb = texts.LEARN_VERBS[self._state(key)]
         return self._buttons([(verb, partial(self._open, key))])
+
+    def _below_list(self) -> list[Widget]:
+        """Return the way back, and beside it the way to the gallery of small worlds."""
+        return [*super()._below_list(), self._physics]
 
     def _press_row(self) -> Transition | None:
         return self._open(self.items[self._list.index])

@@ -68,7 +68,7 @@ class PhysicsStepScene(FormScene):
         contacts = self.record.contacts
 
         def size(pair: Pair) -> float:
-            return -1.0 if contacts is None or pair.contact is None else float(contacts.impulse[:2, pair.contact].sum())
+            return -1.0 if contacts is None or pair.contact is None else float(contacts.impulse[pair.contact, :2].sum())
 
         return max(self.record.pairs, key=size, default=None)
 

@@ -158,7 +158,7 @@ class PlayScene(Scene):
         return partial(self._ask, stake, begin) if stake else begin
 
     def _ask(self, stake: tuple[str, str], begin: Callable[[], None]) -> Transition:
-        from game.scenes.dialog import QuestionDialog
+        from game.scenes.menus.dialogs import QuestionDialog
 
         answers = [(texts.STAKE_FLY_ON, lambda: None), (texts.STAKE_END, begin)]
         return Push(QuestionDialog(self, *stake, answers))

@@ -250,7 +250,7 @@ class ReplayScene(FormScene):
 
     def _begin_or_stop_export(self) -> Transition | None:
         """Ask for the film's format and start the export, or cancel the running one."""
-        from game.scenes.dialog import QuestionDialog
+        from game.scenes.menus.dialogs import QuestionDialog
 
         if self.export is None:
             answers: list[tuple[str, Callable[[], None]]] = [

@@ -13,21 +13,20 @@ import pygame
 from ai.training.config import PRESETS, Config
 from ai.training.experiments import Experiment, differences
 from game.core import texts
-from game.core.names import LibraryError
 from game.core.scene import Push, Transition
 from game.flight.demonstrations import FILE_NAME, count_demonstrations
 from game.panels.lab import Laboratory
 from game.panels.lab_knobs import LabKnobsPanel
 from game.panels.split_view import SplitView
 from game.panels.training_charts import BY_DECISIONS, TrainingCharts
-from game.scenes.dialog import QuestionDialog
+from game.scenes.menus.dialogs import QuestionDialog
 from game.scenes.training_scene import TrainingScene
-from game.training.split_run import SplitRun
+from game.training.run import TrainingRun
 
 _KNOBS: Final = pygame.Rect(868, 20, 384, 404)
 
 
-class SplitTrainingScene(TrainingScene[SplitRun]):
+class SplitTrainingScene(TrainingScene):
     """Training scene whose run an experiment can fly beside.
 
     Attributes:
@@ -39,7 +38,7 @@ class SplitTrainingScene(TrainingScene[SplitRun]):
     """
 
     knobs: LabKnobsPanel
-    lander_run: SplitRun
+    lander_run: TrainingRun
     training_charts: TrainingCharts
 
     @abstractmethod
@@ -79,19 +78,11 @@ class SplitTrainingScene(TrainingScene[SplitRun]):
         self.lander_run.teach(folder / FILE_NAME)
 
     def _save(self) -> Transition | None:
-        if not self.lander_run.kept:
+        if not (self.lander_run.alive or self.lander_run.kept):
             self.context.note(texts.TRAIN_NOTHING)
             return None
         name = texts.TRAIN_TAUGHT_NAME if self.lander_run.demonstrations else texts.TRAIN_NAME
         return self._ask_name(name.format(preset=self.knobs.name))
-
-    def _save_as(self, name: str) -> str:
-        try:
-            if note := self.lander_run.save(name):
-                self.context.note(note)
-        except LibraryError as error:
-            return str(error)
-        return ""
 
     # An experiment
 

@@ -19,7 +19,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import MARGIN, MUTE, NET, SMALL, TITLE, VIEW_SIZE
 from game.flight import networks
-from game.flight.study_runs import studies, summary_of
+from game.flight.study_runs import studies
 from game.panels.study_dots import StudyDots, knob_value
 from game.training.knob_descriptions import label
 from game.ui.context import Context
@@ -81,8 +81,7 @@ class StudyScene(ListScene[FinishedTrial]):
         except StudyError:
             self._line = texts.STUDY_UNREADABLE
             return
-        summary = summary_of(folder)
-        self._shares = (summary.importance if summary else None) or {}
+        self._shares = study.importance
         self._knobs = sorted(study.plan.space, key=lambda name: -self._shares.get(name, 0.0))
         self._study = study
         better = texts.STUDY_LESS if study.metric.mode == "min" else texts.STUDY_MORE

@@ -27,9 +27,8 @@ from game.panels.training_status import lander_status
 from game.scenes.split_scene import SplitTrainingScene
 from game.scenes.train_dialogs import TrainDialogs
 from game.scenes.training_scene import DISPLAY_WIDTH, LEFT
-from game.training.lander_run import PACES
 from game.training.library import Library
-from game.training.split_run import SplitRun
+from game.training.run import LANDERS, PACES, TrainingRun
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.hints import HintRow
@@ -54,11 +53,12 @@ class TrainScene(SplitTrainingScene):
     def __init__(self, context: Context, resume: Path | None = None) -> None:
         self._resume = resume
         self._compared = False
-        self.lander_run = SplitRun(Library(context.user_dir))
-        super().__init__(context, self.lander_run, self.lander_run.library, ((_SAID.left, _SAID.top + 17.0), 3))
+        self.library = Library(context.user_dir)
+        self.lander_run = TrainingRun(LANDERS, self.library)
+        super().__init__(context, self.lander_run, ((_SAID.left, _SAID.top + 17.0), 3))
 
     def _build(self) -> None:
-        left = self.lander_run.library.claim()  # the run left unnamed by the last visit
+        left = self.library.claim()  # the run left unnamed by the last visit
         self.swarm = LearningSwarm(DISPLAY_WIDTH / VIEW_SIZE[0])
         self.training_charts = TrainingCharts()
         self.captions = ChartCaptions()
@@ -67,7 +67,7 @@ class TrainScene(SplitTrainingScene):
         self._add_controls()
         self.inside = NetworkPanel(self.form, self._look_closer, self.lander_run)
         self._add_knobs()
-        self._dialogs = TrainDialogs(self, self.lander_run, self._ask, self._go_on)
+        self._dialogs = TrainDialogs(self, self.lander_run, self.library, self._ask, self._go_on)
         self.rewind = Rewind(self.form, self.lander_run, DISPLAY_WIDTH / VIEW_SIZE[0])
         self.lessons = LessonDoor(self.lander_run, lambda: self.shown_swarm, lambda: self.moment, self.context.note)
         self._advice = Advice(self.form, _SAID, self.knobs.turn, self._go_back)

@@ -9,10 +9,10 @@ from pathlib import Path
 from game.core import texts
 from game.core.names import LibraryError
 from game.core.scene import Push, Scene, Transition
-from game.scenes.dialog import ListDialog, NameDialog, QuestionDialog
-from game.training.lander_run import LanderRun
-from game.training.library import SavedRun
-from game.training.training_run import rename_beside, take_away
+from game.scenes.menus.dialogs import ListDialog, NameDialog, QuestionDialog
+from game.training.beside import rename_beside, take_away
+from game.training.library import Library, SavedRun
+from game.training.run import TrainingRun
 
 
 class TrainDialogs:
@@ -21,15 +21,16 @@ class TrainDialogs:
     def __init__(
         self,
         scene: Scene,
-        lander_run: LanderRun,
+        lander_run: TrainingRun,
+        library: Library,
         ask: Callable[[Transition], None],
         go_on: Callable[[Path], None],
     ) -> None:
-        self._scene, self._run, self._ask, self._go_on = scene, lander_run, ask, go_on
+        self._scene, self._run, self._library, self._ask, self._go_on = scene, lander_run, library, ask, go_on
 
     def add(self) -> Transition:
         """Ask for a saved run whose curves shall be seen beside these."""
-        runs = self._run.library.runs()
+        runs = self._library.runs()
 
         def put(number: int) -> None:
             if note := self._run.compare(runs[number].name, runs[number].folder):
@@ -66,7 +67,7 @@ class TrainDialogs:
 
     def _discard(self, name: str) -> None:
         try:
-            self._run.library.discard_rescued()
+            self._run.collection.discard_rescued()
         except LibraryError as error:
             self._scene.context.note(str(error))
         else:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Any, Final, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Final
 
 from game.core import texts
+from game.core.names import LibraryError
 from game.core.scene import Pop, Push, Transition
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas, Point
@@ -13,34 +14,26 @@ from game.drawing.tokens import PANEL, VIEW_SIZE
 from game.input.controls import Command
 from game.panels.knobs import KnobsPanel
 from game.panels.run_status import draw_problem, start_label
-from game.scenes.dialog import NameDialog
+from game.scenes.menus.dialogs import NameDialog
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.form_scene import FormScene
 
 if TYPE_CHECKING:
-    from game.training.digit_models import DigitModels
-    from game.training.digit_run import DigitRun
-    from game.training.lander_run import LanderRun
-    from game.training.library import Library
+    from game.training.run import TrainingRun
     from game.ui.widgets import TextButton
-
-    Run = TypeVar("Run", bound=LanderRun | DigitRun)
-else:
-    Run = TypeVar("Run")
 
 DISPLAY_WIDTH: Final = 836.0  # of what is seen of the run; the panel has the rest
 PANEL_LEFT: Final = 868.0
 LEFT: Final = 40.0
 
 
-class TrainingScene(FormScene, ABC, Generic[Run]):
+class TrainingScene(FormScene, ABC):
     """Scene of a training run: its display on the left, its knobs and the buttons that start and save it on the right.
 
     Args:
         context: the shared services.
-        run: the run, and those that follow it.
-        collection: where its networks are kept; the scene locks the place of one without a name until it is left.
+        run: the run, and those that follow it; the scene locks the place of one without a name until it is left.
         problem_at: first baseline of why a run has failed, with the number of lines there is room for.
 
     Attributes:
@@ -52,11 +45,9 @@ class TrainingScene(FormScene, ABC, Generic[Run]):
     knobs: KnobsPanel
     start_button: TextButton
 
-    def __init__(
-        self, context: Context, run: Run, collection: Library | DigitModels, problem_at: tuple[Point, int]
-    ) -> None:
+    def __init__(self, context: Context, run: TrainingRun, problem_at: tuple[Point, int]) -> None:
         super().__init__(context, self._back)
-        self._run, self._collection, self._problem_at = run, collection, problem_at
+        self._run, self._problem_at = run, problem_at
         self._settings = context.settings
         self._was_running = self._alive = False
         self._question: Transition | None = None  # asked after the next update
@@ -102,9 +93,14 @@ class TrainingScene(FormScene, ABC, Generic[Run]):
     def _save(self) -> Transition | None:
         """Ask for a name to save the run under."""
 
-    @abstractmethod
     def _save_as(self, name: str) -> str:
         """Save the run under a name; return why that failed, or ""."""
+        try:
+            if note := self._run.save(name):
+                self.context.note(note)
+        except LibraryError as error:
+            return str(error)
+        return ""
 
     # The run
 
@@ -121,7 +117,7 @@ class TrainingScene(FormScene, ABC, Generic[Run]):
     def close(self) -> None:
         """End the run's process; its latest network is kept."""
         self._run.close()
-        self._collection.release()
+        self._run.collection.release()
 
     def actions(self) -> Table:
         """Go back; step, start or pause, as the buttons say."""
@@ -171,7 +167,7 @@ class TrainingScene(FormScene, ABC, Generic[Run]):
             self.knobs.set_config(config, seed)
 
     def _ask_name(self, suggestion: str) -> Transition:
-        return Push(NameDialog(self, texts.NAMING, self._collection.free_name(suggestion), self._save_as))
+        return Push(NameDialog(self, texts.NAMING, self._run.collection.free_name(suggestion), self._save_as))
 
     def _back(self) -> Transition | None:
         """Leave; if the run has learnt anything, say that it is kept."""

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 
 LOG_NAME: Final = "tranquility.log"
 _SETTLE: Final = 0.1  # seconds of constant size before a redraw: a landscape takes too long to paint while resizing
+_PLACED: Final = 0.4  # share of the enlargement for which screens have room whose words do not flow
 _MOUSE: Final = (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP)
 _log = logging.getLogger("tranquility")
 
@@ -84,6 +85,7 @@ class App:
         context.note = self.notes.show
         context.apply_settings = self.apply_settings
         context.in_window, context.view = self.canvas.in_window, self.canvas.view
+        context.reading = lambda: self.canvas.reading
         self._look()
         context.sound.follow(context.settings)
         context.controls.follow(context.settings)
@@ -157,7 +159,8 @@ class App:
     def _look(self) -> None:
         """Apply the player's palette and size of text."""
         self.canvas.palette = COLOUR_SAFE if self.context.settings.colour_safe else PALETTE
-        typeface.grow(TEXT_SIZES.get(self.context.settings.text_size, 1.0))
+        self.canvas.zoom = TEXT_SIZES.get(self.context.settings.text_size, 1.0)
+        typeface.grow(1 + _PLACED * (self.canvas.zoom - 1))
         letters.begin(self.canvas.scale)
 
     def apply_settings(self) -> None:
@@ -192,9 +195,9 @@ class App:
                     self._settled = self._last + _SETTLE
         if not self.scenes.running:
             return
-        event = self._in_points(event)
         if event.type in _MOUSE:
-            self.canvas.pointer = event.pos
+            self.canvas.pointer = self.canvas.to_points(event.pos)
+            event = self._in_points(event)
         elif not self.context.controls.mouse_in_use:
             self.canvas.pointer = None
         match translate(event):
@@ -233,18 +236,18 @@ class App:
             self.scenes.apply(page)
             return
         if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
-            for row in self.scenes.top.hint_rows(self.canvas):
-                if (hint := row.at(self.canvas, event.pos)) and hint.run:
+            canvas = self.scenes.top.laid_on(self.canvas)
+            for row in self.scenes.top.hint_rows(canvas):
+                if (hint := row.at(canvas, event.pos)) and hint.run:
                     self.scenes.apply(hint.run())
                     return
         self.scenes.handle_event(event)
 
     def _in_points(self, event: pygame.event.Event) -> pygame.event.Event:
-        if event.type not in _MOUSE:
-            return event
-        values = {**event.dict, "pos": self.canvas.to_points(event.pos)}
+        canvas = self.scenes.top.laid_on(self.canvas)
+        values = {**event.dict, "pos": canvas.to_points(event.pos)}
         if event.type == pygame.MOUSEMOTION:
-            values["rel"] = (event.rel[0] / self.canvas.scale, event.rel[1] / self.canvas.scale)
+            values["rel"] = (event.rel[0] / canvas.scale, event.rel[1] / canvas.scale)
         return pygame.event.Event(event.type, values)
 
     # Drawing

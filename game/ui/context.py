@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,6 +15,7 @@ from game.audio.mixer import Sound
 from game.core import texts
 from game.core.assets import ASSETS_DIR, MODELS_DIR
 from game.core.settings import Settings, SettingsFile
+from game.drawing.canvas import Canvas
 from game.drawing.tokens import VIEW_SIZE
 from game.input.controls import Controls
 
@@ -23,6 +25,12 @@ if TYPE_CHECKING:
 
 def _ignore(text: str) -> None:
     """Replace `note` until there is a window to show it."""
+
+
+@cache
+def _page() -> Canvas:
+    """Return the canvas of a page, until there is a window."""
+    return Canvas(pygame.Surface(VIEW_SIZE)).reading
 
 
 @dataclass
@@ -39,6 +47,7 @@ class Context:
         apply_settings: applies the settings to the window and the sound, and saves them.
         in_window: converts a rectangle from points to the window's pixels.
         view: all that the window shows, in points; the same rectangle as the canvas's, which changes with the window.
+        reading: returns the window's canvas for text that flows, whose size and scale layouts go by.
 
     """
 
@@ -54,6 +63,7 @@ class Context:
     apply_settings: Callable[[], None] = lambda: None
     in_window: Callable[[pygame.typing.RectLike], pygame.Rect] = pygame.Rect
     view: pygame.FRect = field(default_factory=lambda: pygame.FRect((0, 0), VIEW_SIZE))
+    reading: Callable[[], Canvas] = _page
 
     def toggle_full_screen(self) -> None:
         """Switch between the full screen and a window."""

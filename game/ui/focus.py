@@ -13,8 +13,11 @@ LEFT: Direction = (-1, 0)
 RIGHT: Direction = (1, 0)
 
 
-def neighbour(boxes: Sequence[pygame.Rect], current: int, direction: Direction) -> int:
+def neighbour(boxes: Sequence[pygame.Rect], current: int, direction: Direction, *, in_order: bool = False) -> int:
     """Return the index of the nearest box in a direction; up and down wrap around.
+
+    With `in_order`, distances up and down are between edges, so that of two columns side by side the first one comes
+    first, and the lower end of a column leads to the next box in order, which is the first one of the next column.
 
     A sideways distance counts double, so that a column is followed to its end before another is entered; left and right
     leave a row only at its end.
@@ -22,6 +25,8 @@ def neighbour(boxes: Sequence[pygame.Rect], current: int, direction: Direction) 
     here = boxes[current]
 
     def ahead(box: pygame.Rect) -> float:
+        if direction[1] and in_order:
+            return box.top - here.bottom + 1 if direction[1] > 0 else here.top - box.bottom + 1
         return direction[0] * (box.centerx - here.centerx) + direction[1] * (box.centery - here.centery)
 
     def aside(box: pygame.Rect) -> float:
@@ -42,6 +47,8 @@ def neighbour(boxes: Sequence[pygame.Rect], current: int, direction: Direction) 
         forward = row or [index for index in forward if beyond(boxes[index])]
     if forward:
         return min(forward, key=lambda index: ahead(boxes[index]) + 2 * aside(boxes[index]))
+    if direction[1] and in_order:
+        return (current + direction[1]) % len(boxes)
     if direction[1] and others:
         return min([current, *others], key=lambda index: ahead(boxes[index]) + 2 * aside(boxes[index]))
     return current

@@ -39,11 +39,12 @@ class Form:
 
     Attributes:
         used: whether a widget used the last event, or it moved the focus.
+        in_order: whether the end of a column leads on to the next one, and not back to its beginning.
         anchor: edges of the view beside which the form stands, as in `Canvas.at`; (0, 0) for the page in the middle.
 
     """
 
-    anchor = (0, 0)
+    anchor, in_order = (0, 0), False
 
     def __init__(self, context: Context, on_back: OnPress = lambda: None) -> None:
         self.manager = PointsManager()
@@ -204,7 +205,7 @@ class Form:
             return
         direction = _ARROWS[command]
         if not (direction[0] and self.widgets[self._index].shift(direction[0])):
-            self._index = focus.neighbour([w.box for w in self.widgets], self._index, direction)
+            self._index = focus.neighbour([w.box for w in self.widgets], self._index, direction, in_order=self.in_order)
 
     def _repeat(self) -> None:
         steer = 0 if self.typing else self._context.controls.steer

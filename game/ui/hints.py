@@ -45,6 +45,11 @@ class HintRow:
     size: float = SMALL
     room: float = math.inf
 
+    @property
+    def top(self) -> float:
+        """The y of its upper edge, in points."""
+        return self.position[1] - _LINE
+
     def width(self, canvas: Canvas) -> float:
         """Return the width of the row, in points."""
         _, widths = self._fitted(canvas)
@@ -96,6 +101,18 @@ class HintRow:
             canvas.text_width(key, size=size, weight="medium") + _GAPS[0] + canvas.text_width(meaning, size=size)
             for key, meaning, _ in self.hints
         ]
+
+
+def hint_lines(hints: Sequence[Hint], canvas: Canvas, corner: Point, room: float) -> list[HintRow]:
+    """Return rows of hints no wider than `room`, the last of which begins at the corner at the lower left."""
+    lines: list[list[Hint]] = []
+    for hint in hints:
+        if lines and HintRow([*lines[-1], hint], corner).width(canvas) <= room:
+            lines[-1].append(hint)
+        else:
+            lines.append([hint])
+    x, y = corner
+    return [HintRow(line, (x, y - 1.6 * _LINE * (len(lines) - number))) for number, line in enumerate(lines, 1)]
 
 
 def _length(widths: Sequence[float]) -> float:

@@ -54,6 +54,7 @@ class SwitchScan:
         widgets = form.widgets if isinstance(form, Form) else []
         confirm = form.confirm if isinstance(form, Form) else None
         found = [stop for widget in widgets for stop in _stops_of(widget)]
+        canvas = scene.laid_on(canvas)
         rows: Sequence[HintRow] = scene.hint_rows(canvas)
         for row in reversed(rows):  # the hints of a card come before those of the flight behind it
             for hint, box in zip(row.hints, row.boxes(canvas), strict=True):
@@ -99,7 +100,7 @@ class SwitchScan:
         stops = self.stops(scene, canvas)
         if not stops:
             return
-        box = stops[self.index % len(stops)].box.inflate(16, 6)
+        canvas, box = scene.laid_on(canvas), stops[self.index % len(stops)].box.inflate(16, 6)
         canvas.outline(box, 8, HUMAN, 1.5)
         if not self._context.settings.reduced_motion:
             left = 1 - self._since / DWELL

@@ -170,18 +170,17 @@ def draw_contacts(canvas: Canvas, view: View, world: World, weight: float) -> No
     contacts = world.contacts
     if contacts is None:
         return
-    manifold = contacts.manifold
     units = contacts.impulse / (weight * DT)
-    row, which = manifold.valid.nonzero()
-    points = view.points(manifold.points[row, which])
-    normal = manifold.normal[row] * (1, -1)
-    reach = np.minimum(_PER_WEIGHT * units[which, row], _LONGEST)[:, None] / 2 * normal
-    rubbing = np.flatnonzero(np.abs(units[2]) > 0.05)
-    middle = manifold.points[rubbing, 0]
-    both = manifold.valid[rubbing].all(axis=1)
-    middle[both] = manifold.points[rubbing[both]].mean(axis=1)
-    along = right_of(manifold.normal[rubbing]) * (1, -1)
-    rub = np.clip(_PER_WEIGHT * units[2, rubbing], -_LONGEST, _LONGEST)[:, None] / 2 * along
+    row, which = contacts.valid.nonzero()
+    points = view.points(contacts.points[row, which])
+    normal = contacts.normal[row] * (1, -1)
+    reach = np.minimum(_PER_WEIGHT * units[row, which], _LONGEST)[:, None] / 2 * normal
+    rubbing = np.flatnonzero(np.abs(units[:, 2]) > 0.05)
+    middle = contacts.points[rubbing, 0]
+    both = contacts.valid[rubbing].all(axis=1)
+    middle[both] = contacts.points[rubbing[both]].mean(axis=1)
+    along = right_of(contacts.normal[rubbing]) * (1, -1)
+    rub = np.clip(_PER_WEIGHT * units[rubbing, 2], -_LONGEST, _LONGEST)[:, None] / 2 * along
     middle = view.points(middle)
     _draw_lines(canvas, middle - rub, middle + rub, _RUB)
     _draw_lines(canvas, points - reach, points + reach, NET)

@@ -10,8 +10,8 @@ import pygame
 
 from ai.common.environment import Bools, Doubles
 from ai.lander.environment import PARAMS, Outcome
+from ai.training.lander_session import CAREFUL
 from ai.training.messages import SwarmState
-from ai.training.session import CAREFUL
 from game.core import texts
 from game.drawing.canvas import Canvas, Point
 from game.drawing.tokens import HUMAN, INK, LABEL, NET, NIGHT0, VIEW_SIZE, Colour

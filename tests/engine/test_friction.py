@@ -107,9 +107,9 @@ def test_friction_never_leaves_its_cone():
     for _ in range(200):
         world.step()
         if world.contacts:
-            push, rub = world.contacts.impulse[:2], np.abs(world.contacts.impulse[2])
+            push, rub = world.contacts.impulse[:, :2], np.abs(world.contacts.impulse[:, 2])
             assert (push >= 0).all()
-            assert (rub <= world.contacts.friction * push.sum(axis=0) + 1e-12).all()
+            assert (rub <= world.contacts.friction * push.sum(axis=1) + 1e-12).all()
             touched += len(world.contacts)
     assert touched > 5000
 

@@ -25,7 +25,7 @@ def run(world, seconds):
 
 
 def overlap(world):
-    return float(np.where(world.contacts.manifold.valid, world.contacts.manifold.depth, 0.0).max())
+    return float(np.where(world.contacts.valid, world.contacts.depth, 0.0).max())
 
 
 def assert_stands(world, start, drift, speed=1e-3):
@@ -122,5 +122,5 @@ def test_more_manifolds_than_a_word_has_bits():
     for i in range(80):
         world.add(Circle(0.18), (0.4 * (i - 39.5), 0.58), mass=0.2)
     run(world, 0.5)
-    assert len(world.contacts.colour_ends) > 64
+    assert world.contacts.colour.max() > 64
     assert world.state.pose[0, 2:, 1].min() > 0.56

@@ -2,8 +2,6 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from engine import Polygon, World
 from engine.solver import Solver
@@ -76,19 +74,6 @@ def test_the_solver_stops_when_nothing_changes_any_more(monkeypatch):
     monkeypatch.setattr("engine.solver.Rows.relax", lambda *given: calls.append(1) or inner(*given))
     world.step()
     assert 0 < len(calls) <= 2
-
-
-@settings(max_examples=6, deadline=None)
-@given(seed=st.integers(0, 10_000), make=st.sampled_from([toys, landers]))
-def test_a_step_that_looks_for_no_pairs_misses_none(seed, make):
-    world, looks = make(2), make(2)
-    throw(world, seed)
-    throw(looks, seed)
-    for _ in range(120):
-        world.step()
-        looks.detector.broad.forget_boxes()  # and with them, how far everything may go
-        looks.step()
-        assert world.state.pose.tobytes() == looks.state.pose.tobytes()
 
 
 def test_a_body_set_down_elsewhere_is_looked_for_there():

@@ -119,7 +119,7 @@ def ending_well(file, stubborn=False):
 
 def looking_around():
     """Tells what this process is like."""
-    import ai.training.session  # noqa: F401 - brings NumPy
+    import ai.training.lander_session  # noqa: F401 - brings NumPy
 
     yield [
         {
@@ -132,10 +132,10 @@ def looking_around():
 
 def eager(config, seed, keep):
     """A live run that saves itself all the time."""
-    from ai.training import autosave
-    from ai.training.session import live
+    from ai.training import keeping
+    from ai.training.lander_session import live
 
-    vars(autosave)["KEEP_SECONDS"] = 0.0
+    vars(keeping).update(FIRST_SECONDS=0.0, KEEP_SECONDS=0.0, SHARE=float("inf"))
     yield from live(config, seed, keep=keep)
 
 

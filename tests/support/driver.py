@@ -102,7 +102,7 @@ class Driver:
         self.post(pygame.CONTROLLERAXISMOTION, instance_id=pad, axis=axis, value=value)
 
     def to_window(self, points: tuple[float, float]) -> tuple[int, int]:
-        canvas = self.app.canvas
+        canvas = self.top.laid_on(self.app.canvas)
         x, y = (round(p * canvas.scale + o) for p, o in zip(points, canvas.offset, strict=True))
         return x, y
 
@@ -140,7 +140,7 @@ class Driver:
 
     def hints(self) -> dict[str, tuple[float, float]]:
         """What the hints on the screen say, and where each can be clicked."""
-        canvas = self.app.canvas
+        canvas = self.top.laid_on(self.app.canvas)
         return {
             hint.meaning: box.center
             for row in self.top.hint_rows(canvas)

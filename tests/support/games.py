@@ -14,7 +14,7 @@ import pygame
 from game.core.scene import Scene
 from game.core.settings import TOP_RUNG, SettingsFile
 from game.scenes import scene_of
-from game.scenes.menu import MenuScene
+from game.scenes.menus.menu import MenuScene
 from game.shell.app import App
 from game.ui.context import Context
 from tests.support.driver import Driver

@@ -10,8 +10,8 @@ from ai.digits.training import DigitTraining
 from ai.explain.agent_lesson import Lesson
 from ai.explain.digit_lesson import DigitLesson, explain_digit
 from ai.training.config import PRESETS, Config
+from ai.training.lander_session import live
 from ai.training.messages import Explain
-from ai.training.session import live
 from game.lesson.frame import PICTURE
 from tests.support.driver import Driver
 from tests.support.written import words_written

@@ -41,7 +41,7 @@ from game.core.scene import Pop, Push, Scene
 from game.core.settings import SettingsFile
 from game.core.trash import TRASH
 from game.scenes import scene_of
-from game.scenes.menu import MenuScene
+from game.scenes.menus.menu import MenuScene
 from game.shell.app import App
 from game.ui.context import Context
 from tests.support.monkey_deeds import DEEDS, Hands

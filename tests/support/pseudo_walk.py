@@ -38,13 +38,14 @@ from game.learn.memory import MemoryChapter
 from game.learn.target import TargetChapter
 from game.scenes import scene_of
 from game.scenes.chapter import ChapterScene
-from game.scenes.dialog import QuestionDialog
 from game.scenes.digit_inside import DigitInsideScene
 from game.scenes.error_screen import ErrorScene
 from game.scenes.lesson import LessonScene
+from game.scenes.menus.dialogs import QuestionDialog
 from game.scenes.play import PlayScene
 from game.shell.app import App
-from game.training.training_run import TrainingRun, put_beside, rename_beside
+from game.training.beside import put_beside, rename_beside
+from game.training.run import TrainingRun
 from game.ui.context import Context
 from game.ui.widgets import Choice
 from tests.support import inline_worker
@@ -106,7 +107,7 @@ def edited_and_back(driver: Driver) -> None:
 def taught_to_read(driver: Driver) -> None:
     """Train a network to read for a moment."""
     run = driver.top.digit_run
-    learn(driver, run, DIGITS, lambda: run.confusion and run.curves.points)
+    learn(driver, run, DIGITS, lambda: run.confusion and len(run.history))
 
 
 def listed(driver: Driver) -> None:

@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from ai.digits.checkpoints import resume_digit_run, save_digit_run
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS
 from ai.digits.training import DigitTraining
@@ -21,6 +20,7 @@ from ai.training import demonstrations
 from ai.training.checkpoints import resume_run, snapshot
 from ai.training.config import PRESETS
 from ai.training.demonstrations import Demonstration
+from ai.training.digit_run import resume_digit_run, save_digit_run
 from ai.training.history import Checkpoint, History, Point, SettingChange, Validation
 from ai.training.loop import Training
 from game.core.settings import Settings, SettingsFile

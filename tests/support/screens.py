@@ -22,12 +22,9 @@ from game.play.challenge import FlownMission
 from game.play.daily import DailyStart
 from game.play.days import Days
 from game.play.descent import Descent
-from game.scenes.assists import AssistsScene
-from game.scenes.bindings import BindingsScene
 from game.scenes.chapter import ChapterScene
 from game.scenes.choices import ChoicesScene
 from game.scenes.days import DaysScene
-from game.scenes.dialog import ListDialog, NameDialog, QuestionDialog
 from game.scenes.digit_inside import DigitInsideScene
 from game.scenes.digit_training import DigitTrainingScene
 from game.scenes.digits import DigitsScene
@@ -35,7 +32,11 @@ from game.scenes.dream import DreamScene
 from game.scenes.learn import LearnScene
 from game.scenes.lesson import LessonScene
 from game.scenes.logbook import LogbookScene
-from game.scenes.menu import MenuScene
+from game.scenes.menus.dialogs import ListDialog, NameDialog, QuestionDialog
+from game.scenes.menus.flights import FlightsScene
+from game.scenes.menus.keys import BindingsScene
+from game.scenes.menus.menu import MenuScene
+from game.scenes.menus.settings import AssistsScene, SettingsScene
 from game.scenes.missions import MissionsScene
 from game.scenes.pause import PauseScene
 from game.scenes.physics import PhysicsScene
@@ -44,7 +45,6 @@ from game.scenes.play import PlayScene
 from game.scenes.quiz import QuizScene
 from game.scenes.replay import ReplayScene
 from game.scenes.runs import NetworksScene
-from game.scenes.settings import SettingsScene
 from game.scenes.study import StudyScene
 from game.scenes.train import TrainScene
 from game.scenes.watch import WatchScene
@@ -76,6 +76,7 @@ def study(context: Context) -> StudyScene:
 
 SCREENS: dict[str, Make] = {
     "MenuScene": MenuScene,
+    "FlightsScene": FlightsScene,
     "MissionsScene": MissionsScene,
     "WatchScene": lambda context: WatchScene(context, seed=1),
     "TrainScene": TrainScene,

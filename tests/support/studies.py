@@ -43,7 +43,6 @@ def finished_study(folder, trials=2, **changes):
     study = Study.create(folder, plan)
     for number in range(trials):
         params = {"learning_rate": 1e-3 * (number + 1), "tau": 0.01 * (number + 1)}
-        study.begin(number, params)
         study.record(*run_alone(plan, Asked(number, params)))
     return study
 
@@ -91,5 +90,6 @@ def shown_study(folder, trials=9):
         }
         trial = FinishedTrial(number, params, 40.0 * (number + 1), 160, stopped, 2.0, seeds)
         study.record(trial, b"" if stopped else runs)
-    study.write_summary({"learning_rate": 0.71, "optimizer": 0.12, "tau": 0.03})
+    study.importance = {"learning_rate": 0.71, "optimizer": 0.12, "tau": 0.03}
+    study.write_summary()
     return study

@@ -28,10 +28,10 @@ from game.play.days import Attempt, Days
 from game.play.descent import Descent
 from game.play.race import race
 from game.scenes.chapter import ChapterScene
-from game.scenes.dialog import ListDialog, NameDialog, QuestionDialog
 from game.scenes.digit_inside import DigitInsideScene
 from game.scenes.dream import DreamScene
 from game.scenes.lesson import LessonScene
+from game.scenes.menus.dialogs import ListDialog, NameDialog, QuestionDialog
 from game.scenes.physics import PhysicsScene
 from game.scenes.physics_step import PhysicsStepScene
 from game.scenes.play import PlayScene
@@ -48,9 +48,9 @@ FLIGHTS = 2
 def scene_types() -> list[type[Scene]]:
     """Return the classes of all scenes there are, in the modules of `game.scenes`."""
     found = []
-    for module in pkgutil.iter_modules(game.scenes.__path__):
-        for each in vars(importlib.import_module(f"game.scenes.{module.name}")).values():
-            here = isclass(each) and each.__module__ == f"game.scenes.{module.name}"
+    for module in pkgutil.walk_packages(game.scenes.__path__, "game.scenes."):
+        for each in vars(importlib.import_module(module.name)).values():
+            here = isclass(each) and each.__module__ == module.name
             if here and not each.__name__.startswith("_") and issubclass(each, Scene) and not isabstract(each):
                 found.append(each)
     return found

@@ -68,14 +68,17 @@ class Written:
                 code = more.get("weight") == "code"
                 size = box.height * TEXT / sum(typeface.extent(TEXT, "regular"))
                 top, height = position[1] - ABOVE * size, ABOVE * size + BELOW * min(size, TITLE)
-                ink = pygame.FRect(box.x, top, box.width, height).move(canvas.moved)
-                note = Note(string, ink, more.get("room", math.inf), canvas.whole.view.copy(), code)
-                self.page(canvas).notes.append(note)
+                ink = seen(canvas, pygame.FRect(box.x, top, box.width, height))
+                if ink.height > 1:
+                    room = more.get("room", math.inf) * canvas.scale / canvas.whole.scale
+                    self.page(canvas).notes.append(
+                        Note(string, on_whole(canvas, ink), room, canvas.whole.view.copy(), code)
+                    )
             return box
 
         def noted_panel(canvas: Canvas, rect: pygame.typing.RectLike, *more: Any) -> None:
             panel(canvas, rect, *more)
-            self.page(canvas).panels.append(pygame.FRect(rect).move(canvas.moved))
+            self.page(canvas).panels.append(on_whole(canvas, pygame.FRect(rect)))
 
         def noted_sheet(canvas: Canvas, *given: Any) -> Canvas:
             made = sheet(canvas, *given)
@@ -103,6 +106,23 @@ class Written:
         """Forget what stands on a canvas, and return the empty page."""
         self._pages[id(canvas)] = canvas, Page()
         return self.page(canvas)
+
+
+def seen(canvas: Canvas, box: pygame.FRect) -> pygame.FRect:
+    """Return as much of a box as is not scrolled away; what flows is drawn within the room of its panel."""
+    if canvas.grows:
+        return box
+    clip = canvas.surface.get_clip()
+    left, top = canvas.points(clip.topleft)
+    return box.clip(pygame.FRect(left, top, clip.width / canvas.scale, clip.height / canvas.scale))
+
+
+def on_whole(canvas: Canvas, box: pygame.FRect) -> pygame.FRect:
+    """Return a box in the points of the whole window's canvas; where text flows, a point has another size."""
+    if canvas.grows:
+        return box.move(canvas.moved)
+    (left, top), share = canvas.whole.points(canvas.pixels(box.topleft)), canvas.scale / canvas.whole.scale
+    return pygame.FRect(left, top, box.width * share, box.height * share)
 
 
 def misplaced(page: Page, view: pygame.FRect = PAGE) -> Iterator[tuple[str, str]]:

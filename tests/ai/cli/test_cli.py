@@ -7,18 +7,18 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import ai.training.checkpoints
+import ai.training.keeping
 from ai.agent.agent import DeepQAgent
 from ai.cli.command_line import configured
-from ai.training.checkpoints import save_run
 from ai.training.config import PRESETS
 from ai.training.lander_task import Evaluation, LanderTask
 from ai.training.loop import Training
+from ai.training.state import StateWriter
 from ai.training.task import VALIDATION_SEED
 from main import main
 
@@ -118,6 +118,7 @@ def test_whoever_ends_a_run_by_a_signal_keeps_the_work(tmp_path, name, code, cap
 
 TELLING = """
 import sys
+from ai.training.state import StateWriter
 from ai.training.loop import Training
 from main import main
 
@@ -154,17 +155,21 @@ def test_a_pause_past_a_checkpoint_changes_nothing_that_is_kept(tmp_path, monkey
     changes = ["num_envs=8", "hidden=[8]", "batch_size=16", "learning_starts=32", "gradient_steps=1"]
     monkeypatch.setattr(LanderTask, "evaluate_every", 320)
     saves = []
+    written = StateWriter.write
 
-    def keep(training, folder, final=False):
-        saves.append((training.agent.decisions, final))
-        save_run(training, folder, final)
+    def write(states, prepared):
+        saves.append(prepared.name)
+        written(states, prepared)
 
-    monkeypatch.setattr(ai.training.checkpoints, "save_run", keep)
+    monkeypatch.setattr(StateWriter, "write", write)
 
     def kept(name, decisions, pauses):
         now, folder = [0.0], tmp_path / name
-        monkeypatch.setattr(ai.training.checkpoints, "time", SimpleNamespace(monotonic=lambda: now[0]))
-        advance = Training.advance
+        advance, begin = Training.advance, Training.__post_init__
+
+        def clocked(training):
+            begin(training)
+            training.clock = lambda: now[0]
 
         def slow(training):
             now[0] += 25.0 if training.agent.decisions in pauses else 0.001
@@ -172,6 +177,7 @@ def test_a_pause_past_a_checkpoint_changes_nothing_that_is_kept(tmp_path, monkey
 
         with monkeypatch.context() as patch:
             patch.setattr(Training, "advance", slow)
+            patch.setattr(Training, "__post_init__", clocked)
             arguments = ["train", "--preset", preset, "--decisions", str(decisions), "--validation", "6", "--seed", "4"]
             assert main([*arguments, "--output", str(folder), *(f"--set={change}" for change in changes)]) == 0
         files = {str(file.relative_to(folder)): file.read_bytes() for file in folder.rglob("*.npy")}
@@ -249,7 +255,8 @@ def full(*_, **__):
 
 
 def test_a_disk_that_is_full_for_a_while_ends_no_training(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(ai.training.checkpoints, "CHECKPOINT_SECONDS", -1.0)
+    monkeypatch.setattr(ai.training.keeping, "FIRST_SECONDS", 0.0)
+    monkeypatch.setattr(ai.training.keeping, "KEEP_SECONDS", 0.0)
     advance = Training.advance
 
     def filling(training):

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import ai.digits.training
-from ai.digits.checkpoints import resume_digit_run
 from ai.digits.classifier import DigitClassifier
 from ai.digits.mnist import load_part
 from ai.digits.training import SPLIT_SEED, DigitTraining
@@ -19,6 +18,7 @@ from ai.nn import (
     FullyConnectedLayer,
     NeuralNetwork,
 )
+from ai.training.digit_run import resume_digit_run
 from main import main
 
 ROOT = Path(__file__).parents[3]

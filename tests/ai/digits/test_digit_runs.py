@@ -5,12 +5,13 @@ import json
 import numpy as np
 import pytest
 
-from ai.digits.checkpoints import resume_digit_run, save_digit_run
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS, DigitConfig, build_digit_network
 from ai.digits.mnist import load_part
 from ai.digits.training import LIVE, DigitTraining, run_digits
+from ai.files import state_folder
 from ai.nn import ModelFormatError
+from ai.training.digit_run import resume_digit_run, save_digit_run
 
 SMALL = DIGIT_PRESETS["classic"].changed(hidden=(16,), epochs=3, held_out=100, batch_size=50, ema_decay=0.9)
 
@@ -80,7 +81,14 @@ def test_a_run_that_cannot_go_on_says_so(data, tmp_path):
     training = DigitTraining(SMALL, data=data)
     training.advance()
     save_digit_run(training, tmp_path / "run")
-    (tmp_path / "run" / "last.npz").write_bytes(b"nothing")
+    (state,) = state_folder(tmp_path / "run").iterdir()
+    state.write_bytes(b"nothing")
+    with pytest.raises(ModelFormatError, match="without this folder"):
+        resume_digit_run(tmp_path / "run", data=data)
+    state.unlink()
+    with pytest.raises(ModelFormatError, match="nothing to go on with"):
+        resume_digit_run(tmp_path / "run", data=data)
+    (tmp_path / "run" / "last.npz").write_bytes(b"nothing")  # as runs were kept before
     with pytest.raises(ModelFormatError, match=r"last\.npz"):
         resume_digit_run(tmp_path / "run", data=data)
     (tmp_path / "run" / "training.json").write_text("{}")

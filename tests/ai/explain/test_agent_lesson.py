@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.replay import Transition, ReplayBuffer
+from ai.agent.replay import ReplayBuffer, Transition
 from ai.explain import learning_step
 from ai.explain.agent_lesson import Before, explain
 from ai.nn import Optimizer

@@ -29,8 +29,8 @@ def test_a_share_never_reached_counts_for_more_than_the_whole_run_and_the_nearer
     assert farther
     assert lost
     assert 400 < nearer < farther < lost
-    assert metric.better(1.0, 2.0)
-    assert not Metric.named("return").better(1.0, 2.0)
+    assert metric.mode == "min"
+    assert Metric.named("return").mode == "max"
 
 
 @pytest.mark.parametrize("name", ["", "time_to_0", "time_to_101", "time_to_", "loss", "TIME_TO_99"])

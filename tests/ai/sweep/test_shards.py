@@ -10,11 +10,9 @@ import pytest
 from ai.agent.agent import DeepQAgent
 from ai.copilot import measurement
 from ai.lander.environment import LanderEnv
-from ai.sweep import copilot_table
 from ai.sweep import shards as module
 from ai.sweep.cluster import each
-from ai.sweep.copilot_table import parts, tables_of
-from ai.sweep.shards import flown_shards, fly, pack_agent, packed_agent, shards
+from ai.sweep.shards import flown_shards, fly, fly_part, pack_agent, packed_agent, parts, shards, tables_of
 from ai.training.lander_task import FlightSums, evaluate
 from game.core.assets import MODELS_DIR
 from main import main
@@ -78,10 +76,10 @@ def test_the_copilots_table_is_the_same_in_parts(monkeypatch):
     names, helps = ("laggy", "noisy"), (("alone", 0.0),)
     table = (lambda slots, rng: LanderEnv(slots, rng, "rung_1"), names)
     monkeypatch.setattr(measurement, "TABLES", {"one_pad": table})
-    monkeypatch.setattr(copilot_table, "_PILOTS", 1)
+    monkeypatch.setattr(module, "PILOTS", 1)
     asked = parts({"one_pad": AGENT}, False, helps, 3, 2)
     assert len(asked) == 2
-    done = {index: copilot_table.fly(part) for index, part in reversed([*enumerate(asked)])}
+    done = {index: fly_part(part) for index, part in reversed([*enumerate(asked)])}
     assert tables_of(asked, done)["one_pad"] == list(measurement.rows(AGENT, AGENT, "one_pad", names, helps, 3, 2))
 
 

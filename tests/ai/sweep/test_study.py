@@ -4,15 +4,15 @@ import errno
 import json
 import os
 import shutil
+from dataclasses import asdict
 
 import numpy as np
 import pytest
 
 from ai.agent.storage import LAST
-from ai.digits.checkpoints import save_digit_run
 from ai.digits.config import DIGIT_PRESETS
 from ai.digits.training import DigitTraining
-from ai.files import read_arrays
+from ai.files import read_arrays, read_as
 from ai.sweep import study as study_module
 from ai.sweep.plan import Plan
 from ai.sweep.report import report, told
@@ -21,6 +21,7 @@ from ai.sweep.runs import AgentRun
 from ai.sweep.space import knob_space
 from ai.sweep.study import Study, StudyError, find
 from ai.sweep.trial import Asked, Trial, archive, unpack
+from ai.training.digit_run import save_digit_run
 from main import main
 from tests.support.studies import TINY, finished_study, networks_in, run_alone, tiny_plan
 
@@ -69,7 +70,7 @@ def test_a_trials_run_is_that_of_train_bit_for_bit(made, tmp_path):
 def test_a_study_reads_what_it_wrote(study, made):
     assert study.trials == made.trials
     assert study.plan == made.plan
-    assert (study.begun, study.damaged) == ({}, [])
+    assert study.damaged == []
     summary = json.loads((study.folder / "summary.json").read_text())
     best = study.best()
     assert summary["run"] == f"trials/{best.number:04}/seed-{best.best_seed.seed}"
@@ -79,7 +80,6 @@ def test_a_study_reads_what_it_wrote(study, made):
 def test_a_full_disk_keeps_no_half_of_a_trial(study, monkeypatch):
     plan, asked = study.plan, Asked(2, {"learning_rate": 0.01, "tau": 0.1})
     result, runs = run_alone(plan, asked)
-    study.begin(2, asked.params)
 
     def full(packed, folder):
         unpack(packed, folder)
@@ -91,11 +91,9 @@ def test_a_full_disk_keeps_no_half_of_a_trial(study, monkeypatch):
             study.record(result, runs)
     left = Study.load(study.folder)
     assert sorted(left.trials) == [0, 1]
-    assert left.begun[2].params == asked.params, "it is asked for again, with the same settings"
     assert not list((study.folder / "trials").glob(".*"))
     study.record(result, runs)
     assert Study.load(study.folder).trials[2] == result
-    assert not Study.load(study.folder).begun
 
 
 def test_what_a_kill_leaves_half_written_is_no_trial_and_is_cleared_away(study):
@@ -116,7 +114,6 @@ def test_a_damaged_trial_is_named_and_the_others_are_read(study, content):
     left = Study.load(study.folder)
     assert left.damaged == [0]
     assert sorted(left.trials) == [1]
-    assert left.next_number == 2, "its number is not given again"
     assert "cannot be read: 0" in told(left)
 
 
@@ -177,7 +174,7 @@ def test_a_trial_that_goes_on_from_a_checkpoint_ends_as_long_and_says_so():
     assert [[point.at for point in seed.curve] for seed in result.seeds] == [[100, 200, 300, 400]] * 2
     assert (result.restarts, result.parent, result.seeds[0].curve[:2]) == (1, None, so_far.seeds[0].curve)
     assert result.seconds >= so_far.seconds
-    assert FinishedTrial.from_json(json.loads(json.dumps(result.to_json()))) == result
+    assert read_as(FinishedTrial, json.loads(json.dumps(asdict(result)))) == result
 
 
 def test_a_trial_of_digits_goes_on_from_a_checkpoint_as_if_nothing_had_been(tmp_path, monkeypatch):
@@ -218,15 +215,11 @@ def test_a_study_of_an_environment_that_is_code_is_not_searched_over_environment
         tiny_plan(space={"env": {"choices": ["CartPole-v1", "evilcwd:X-v0"]}}).check()
 
 
-def test_a_trial_under_way_has_values_of_its_space_or_is_not_there(study):
-    plan = study.plan
-    sound = {"learning_rate": 0.01, "tau": 0.1}
-    for params in (sound | {"tau": "evilcwd:X-v0"}, sound | {"tau": None}, sound | {"env": "x:Y"}, {}):
-        study.begin(2, params)
-        assert not Study.load(study.folder).begun, params
-    study.begin(2, sound)
-    assert Study.load(study.folder).begun[2].params == sound
-    assert plan == study.plan
+def test_a_study_of_before_is_refused_by_name(study):
+    told_ = json.loads((study.folder / "study.json").read_text()) | {"version": 1}
+    (study.folder / "study.json").write_text(json.dumps(told_))
+    with pytest.raises(StudyError, match="earlier version"):
+        Study.load(study.folder)
 
 
 def test_a_trial_of_other_seeds_or_with_a_value_out_of_nowhere_is_damaged(study):

@@ -11,8 +11,8 @@ from ai.lander.pilots import ScriptedPilot
 from ai.training.config import PRESETS
 from ai.training.demonstrations import MOST, Demonstration, demonstrate, read, relive, takeover, taught, teach, write
 from ai.training.history import SettingChange
+from ai.training.lander_session import TAUGHT, live
 from ai.training.messages import AddDemonstrations, NetworkState, Refused, SwarmState
-from ai.training.session import TAUGHT, live
 
 MODERN = PRESETS["modern"]
 

@@ -4,25 +4,18 @@ from itertools import count
 import numpy as np
 import pytest
 
-from ai.digits.checkpoints import resume_digit_run
+from ai.digits.checkpoints import DigitSnapshot
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS
 from ai.digits.filters import FilterMoment, first_filters, next_moment
 from ai.digits.mnist import load_part
 from ai.digits.training import DigitTraining, confusion
-from ai.digits.validation import EXAMPLES, Confusion, HeldOutScore
-from ai.training import digit_session as digit_live
-from ai.training.digit_session import (
-    DigitPoint,
-    DigitRunSaved,
-    DigitRunStarted,
-    DigitSettingChanged,
-    Finish,
-    RestoreBest,
-    live_digits,
-)
-from ai.training.history import REVERTED
-from ai.training.messages import ChangeSetting, Refused, Save
+from ai.digits.validation import EXAMPLES, Confusion
+from ai.training import digit_session, keeping
+from ai.training.digit_run import resume_digit_run
+from ai.training.digit_session import live_digits
+from ai.training.history import REVERTED, DigitPoint, SettingChange, Validation
+from ai.training.messages import ChangeSetting, Finish, Refused, RestoreBest, RunStarted, Save, Saved
 
 SMALL = DIGIT_PRESETS["classic"].changed(hidden=(16,), epochs=3, held_out=200, batch_size=50, ema_decay=0.9)
 
@@ -36,7 +29,7 @@ def data():
 @pytest.fixture(autouse=True)
 def every_step(monkeypatch):
     """Tell of every step, however fast they are."""
-    monkeypatch.setattr(digit_live, "POINT_SECONDS", 0.0)
+    monkeypatch.setattr(digit_session, "POINT_SECONDS", 0.0)
 
 
 def kinds(told, kind):
@@ -45,14 +38,14 @@ def kinds(told, kind):
 
 def test_a_run_tells_how_it_begins_how_it_stands_and_what_it_misreads(data):
     told = [each for turn in live_digits(SMALL, 4, data=data) for each in turn]
-    assert told[0] == DigitRunStarted(SMALL, 4, 0, 30)
-    points, scores = kinds(told, DigitPoint), kinds(told, HeldOutScore)
+    assert told[0] == RunStarted(SMALL, 4, 0, "", 30)
+    points, scores = kinds(told, DigitPoint), kinds(told, Validation)
     assert points[0].step == 1
     assert [one.seconds for one in points] == sorted(one.seconds for one in points)
-    assert scores[-1].accuracy > scores[0].accuracy
+    assert scores[-1].success > scores[0].success
     confusion = kinds(told, Confusion)[-1]
     assert confusion.table.sum() == 200
-    assert confusion.table.trace() / 200 == scores[-1].accuracy
+    assert confusion.table.trace() / 200 == scores[-1].success
     assert len(confusion.images) == len(confusion.cells) > 0
     for row, column in {tuple(cell) for cell in confusion.cells.tolist()}:
         shown = (confusion.cells == (row, column)).all(axis=1).sum()
@@ -72,7 +65,7 @@ def test_the_network_is_that_of_a_run_without_a_window(data, tmp_path):
 
 def test_a_finished_run_is_kept_with_its_accuracy_on_the_test_images(data, tmp_path):
     told = [each for turn in live_digits(SMALL, 4, keep=tmp_path / "run", data=data) for each in turn]
-    (kept,) = kinds(told, DigitRunSaved)
+    (kept,) = kinds(told, Saved)
     assert kept.folder == tmp_path / "run"
     assert kept.test > 0.2
 
@@ -84,7 +77,7 @@ def test_a_run_that_is_closed_can_be_gone_on_with(data, tmp_path):
     run.close()
     assert resume_digit_run(tmp_path / "run", data=data).step == 7
     again = live_digits(DIGIT_PRESETS["modern"], 0, resume=tmp_path / "run", data=data)
-    assert [next(again), next(again)[0]] == [[], DigitRunStarted(SMALL, 4, 7, 30)]
+    assert [next(again), next(again)[0]] == [(), RunStarted(SMALL, 4, 7, "", 30)]
 
 
 def test_a_run_that_is_asked_to_finish_is_kept_measured_and_can_be_gone_on_with(data, tmp_path):
@@ -95,7 +88,7 @@ def test_a_run_that_is_asked_to_finish_is_kept_measured_and_can_be_gone_on_with(
     told += run.send(Save(tmp_path / "asked meanwhile"))
     for turn in run:
         told += turn
-    saved, kept = kinds(told, DigitRunSaved)
+    saved, kept = kinds(told, Saved)
     assert (saved.folder, saved.problem) == (tmp_path / "asked meanwhile", "")
     assert kept.folder == tmp_path / "run"
     assert kept.test > 0.1
@@ -107,7 +100,7 @@ def test_a_run_is_saved_to_another_folder_when_asked(data, tmp_path):
     run = live_digits(SMALL, 4, keep=tmp_path / "run", data=data)
     for _ in range(9):
         next(run)
-    assert run.send(Save(tmp_path / "named")) == [DigitRunSaved(tmp_path / "named")]
+    assert run.send(Save(tmp_path / "named")) == (Saved(tmp_path / "named"),)
     assert resume_digit_run(tmp_path / "named", data=data).step == 7
     (tmp_path / "file").write_text("in the way")
     (refused,) = run.send(Save(tmp_path / "file" / "named"))
@@ -117,7 +110,7 @@ def test_a_run_is_saved_to_another_folder_when_asked(data, tmp_path):
 def test_live_knobs_turn_and_others_are_refused(data):
     run = live_digits(SMALL, data=data)
     next(run), next(run)
-    assert run.send(ChangeSetting("learning_rate", 1e-4)) == [DigitSettingChanged(0.0, "learning_rate", 1e-4)]
+    assert run.send(ChangeSetting("learning_rate", 1e-4)) == (SettingChange(0, "learning_rate", 3e-3, 1e-4),)
     (refused,) = run.send(ChangeSetting("hidden", (3,)))
     assert isinstance(refused, Refused)
     assert isinstance(run.send(ChangeSetting("augmentation", 7.0))[0], Refused)
@@ -126,16 +119,15 @@ def test_live_knobs_turn_and_others_are_refused(data):
 
 
 def test_a_full_disk_is_told_of_once_and_the_run_goes_on(data, tmp_path, monkeypatch):
-    monkeypatch.setattr(digit_live, "KEEP_SECONDS", 0.0)
+    monkeypatch.setattr(keeping, "FIRST_SECONDS", 0.0)
+    monkeypatch.setattr(keeping, "KEEP_SECONDS", 0.0)
 
     def full(*_, **__):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(digit_live, "save_digit_run", full)
+    monkeypatch.setattr(DigitSnapshot, "save", full)
     told = [each for turn in live_digits(SMALL, keep=tmp_path / "run", data=data) for each in turn]
-    assert [each.problem for each in kinds(told, DigitRunSaved)] == [
-        "No space left on device"
-    ] * 2  # at first, and at the end
+    assert [each.problem for each in kinds(told, Saved)] == ["No space left on device"] * 2  # at first, and at the end
     assert kinds(told, DigitPoint)[-1].step > 1
 
 
@@ -168,22 +160,22 @@ def ruin(run):
 
 def test_a_ruined_network_can_go_back_to_its_best(data):
     run = live_digits(RUINED, 4, data=data)
-    while "run" not in getgeneratorlocals(run):
+    while "session" not in getgeneratorlocals(run):
         next(run)
-    training = getgeneratorlocals(run)["run"].training
+    training = getgeneratorlocals(run)["session"].training
     ticks = count()
     training.clock = lambda: float(next(ticks))  # it is measured for a share of the time, whatever else runs here
     told = ruin(run)
-    assert [each.after for each in kinds(told, DigitSettingChanged)] == [1.0, 1.0, 0.02, 1e-6]
-    scores = [each.accuracy for each in kinds(told, HeldOutScore)]
+    assert [each.after for each in kinds(told, SettingChange)] == [1.0, 1.0, 0.02, 1e-6]
+    scores = [each.success for each in kinds(told, Validation)]
     best = max(scores)
     assert scores[-1] < best - 0.2, "rate to 1 and back leaves a ruin"
     (went,) = run.send(RestoreBest())
     assert (went.name, went.after) == (REVERTED, best)
     table = confusion(training.current(), training.held_images, training.held_labels)
     assert table.trace() / table.sum() == best
-    told = next(turn for _ in range(400) if kinds(turn := next(run), HeldOutScore))
-    assert kinds(told, HeldOutScore)[-1].accuracy > best - 0.1, "and it learns on from there"
+    told = next(turn for _ in range(400) if kinds(turn := next(run), Validation))
+    assert kinds(told, Validation)[-1].success > best - 0.1, "and it learns on from there"
 
 
 def test_what_is_shown_in_the_end_is_the_network_that_is_kept(data, tmp_path):
@@ -192,14 +184,14 @@ def test_what_is_shown_in_the_end_is_the_network_that_is_kept(data, tmp_path):
     told = run.send(Finish())
     for turn in run:
         told += turn
-    (kept,) = kinds(told, DigitRunSaved)
+    (kept,) = kinds(told, Saved)
     training = resume_digit_run(tmp_path / "run", data=data)
     shown = kinds(told, Confusion)[-1].table
     best = DigitClassifier.load(tmp_path / "run")
     assert np.array_equal(shown, confusion(best, training.held_images, training.held_labels))
     assert shown.trace() / shown.sum() == training.best
     assert training.best is not None
-    assert kinds(told, HeldOutScore)[-1].accuracy < training.best - 0.2, "the curve ends with the last one"
+    assert kinds(told, Validation)[-1].success < training.best - 0.2, "the curve ends with the last one"
     assert training.history[kept.epoch - 1]["held_out"] == training.best, "and which it is, is said"
 
 

@@ -24,8 +24,8 @@ from ai.training.edits import (
     UndoEdit,
 )
 from ai.training.history import History, Point, SettingChange
+from ai.training.lander_session import live
 from ai.training.messages import NetworkState, Refused, RestoreCheckpoint
-from ai.training.session import live
 from tests.support.small import LANDERS
 
 SENSED = np.linspace(-1, 1, 18, dtype=np.float32).reshape(2, 9)

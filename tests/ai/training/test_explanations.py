@@ -8,8 +8,8 @@ import pytest
 from ai.explain.agent_lesson import Lesson
 from ai.training.config import PRESETS
 from ai.training.history import Point
+from ai.training.lander_session import live
 from ai.training.messages import Explain, NetworkState, Refused
-from ai.training.session import live
 
 CONFIG = replace(PRESETS["modern"], num_envs=6, batch_size=16, gradient_steps=1, learning_starts=48, n_step=4,
                  hidden=(16,), replay_size=5000, spawn="near")  # fmt: skip
@@ -29,7 +29,7 @@ def test_the_memory_lies_in_the_replay_buffer():
     session = run()
     for _ in range(120):
         next(session)
-    replay = session.gi_frame.f_locals["run"].training.agent.replay
+    replay = session.gi_frame.f_locals["session"].training.agent.replay
     for slot in range(6):
         lesson = ask(session, slot)
         assert isinstance(lesson, Lesson)
@@ -98,7 +98,7 @@ def test_a_network_that_has_diverged_is_refused_and_not_lost():
     session = run()
     for _ in range(60):
         next(session)
-    agent = session.gi_frame.f_locals["run"].training.agent
+    agent = session.gi_frame.f_locals["session"].training.agent
     before = agent.online.values.copy()
     agent.online.values[0] = np.inf
     answer = ask(session, 0)

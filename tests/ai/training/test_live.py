@@ -8,13 +8,15 @@ import pytest
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.schedule import exploration_of_each
+from ai.files import remove_state
 from ai.lander.environment import Outcome
 from ai.lander.rewards import RewardWeights
 from ai.nn import ModelFormatError
-from ai.training import autosave
-from ai.training.checkpoints import agent_of, resume_run
+from ai.training import keeping
+from ai.training.checkpoints import AGENTS, agent_of, resume_run
 from ai.training.config import Config
 from ai.training.history import PARTS, REVERTED, Checkpoint, History, Point, SettingChange, Validation
+from ai.training.lander_session import CAREFUL, live
 from ai.training.lander_task import LanderTask
 from ai.training.loop import Training
 from ai.training.messages import (
@@ -27,7 +29,6 @@ from ai.training.messages import (
     Saved,
     SwarmState,
 )
-from ai.training.session import CAREFUL, live
 
 TINY = Config(
     hidden=(8,), num_envs=32, learning_starts=64, batch_size=16, gradient_steps=1, replay_size=2000, spawn="near"
@@ -48,6 +49,12 @@ def begin():
         each.close()
 
 
+def all_the_time(monkeypatch):
+    """Let runs keep themselves as often as they can."""
+    for name, value in {"FIRST_SECONDS": 0.0, "KEEP_SECONDS": 0.0, "SHARE": np.inf}.items():
+        monkeypatch.setattr(keeping, name, value)
+
+
 def told_in(run, turns):
     return [message for _ in range(turns) for message in next(run)]
 
@@ -62,7 +69,7 @@ def of(kind, told):
 def test_without_commands_it_is_the_training_it_would_be_headless(begin, tmp_path, changes, monkeypatch):
     monkeypatch.setattr(LanderTask, "evaluate_every", 640)
     monkeypatch.setattr(LanderTask, "validation_episodes", 5)
-    monkeypatch.setattr(autosave, "KEEP_SECONDS", 0.0)
+    all_the_time(monkeypatch)
     config = TINY.changed(**changes)
     run, headless = begin(config, 3, keep=tmp_path / "keep"), Training(config, 3)
     told = told_in(run, 1)
@@ -216,7 +223,7 @@ def test_every_live_knob_makes_a_difference(begin, name):
     if name.startswith("success"):
         told_in(run, 5), told_in(quiet, 5)
         for each in (run, quiet):  # there are no landings yet to learn from: give it some
-            training = each.gi_frame.f_locals["run"].training
+            training = each.gi_frame.f_locals["session"].training
             rng = np.random.default_rng(0)
             cells = training.agent.replay.cells
             picked = [part[:64].copy() for part in cells]
@@ -225,7 +232,7 @@ def test_every_live_knob_makes_a_difference(begin, name):
     told_in(run, 10), told_in(quiet, 10)
     assert isinstance(run.send(ChangeSetting(name, value))[0], SettingChange)
     told_in(run, 25), told_in(quiet, 25)
-    ours, theirs = (each.gi_frame.f_locals["run"].training for each in (run, quiet))
+    ours, theirs = (each.gi_frame.f_locals["session"].training for each in (run, quiet))
     assert getattr(ours.agent.config, name) == value
     same = np.array_equal(ours.observation, theirs.observation)
     assert not (same and np.array_equal(ours.agent.network.values, theirs.agent.network.values))
@@ -294,8 +301,8 @@ def test_a_run_that_is_closed_has_kept_itself(begin, tmp_path):
 
 def test_it_keeps_itself_by_the_clock(tmp_path):
     training = Training(TINY, clock=(clock := Clock()))
-    saving = autosave.Autosave(training, History(), tmp_path / "keep")
-    for seconds, kept in ((9.9, 0), (0.2, 2), (9.9, 2), (0.2, 4)):
+    saving = keeping.Keeper(training, AGENTS, tmp_path / "keep", History())
+    for seconds, kept in ((1.4, 0), (0.2, 2), (9.9, 2), (0.2, 4)):
         clock.now += seconds
         training.advance()
         assert saving.go_on(clock.now) == []
@@ -310,7 +317,7 @@ def full(*_):
 
 
 def test_a_full_disk_is_told_once_and_training_goes_on(begin, tmp_path, monkeypatch):
-    monkeypatch.setattr(autosave, "KEEP_SECONDS", 0.0)
+    all_the_time(monkeypatch)
     run = begin(TINY, keep=tmp_path / "keep")
     told_in(run, 10)
     assert of(Saved, run.send(Save(tmp_path / "run"))) == [Saved(tmp_path / "run")]
@@ -342,7 +349,7 @@ def until_it_fails(run, told):
 def test_numbers_that_run_away_stop_the_run_and_the_last_good_network_is_kept(begin, tmp_path):
     run = begin(TINY, keep=tmp_path / "keep")
     told = told_in(run, 120)
-    run.gi_frame.f_locals["run"].training.agent.replay.cells.reward[:] = np.nan
+    run.gi_frame.f_locals["session"].training.agent.replay.cells.reward[:] = np.nan
     with pytest.raises(FloatingPointError, match=r"learning step \d+; most likely the learning rate of 0.0"):
         until_it_fails(run, told)
     good = of(Checkpoint, told)[-1]
@@ -357,7 +364,7 @@ def test_numbers_that_run_away_stop_the_run_and_the_last_good_network_is_kept(be
 def test_no_checkpoint_and_no_save_holds_what_is_not_finite(begin, tmp_path):
     run = begin(TINY, keep=tmp_path / "keep")
     told = told_in(run, 78)
-    inside = run.gi_frame.f_locals["run"]
+    inside = run.gi_frame.f_locals["session"]
     assert of(Saved, run.send(Save(tmp_path / "keep"))) == [Saved(tmp_path / "keep")]
     inside.training.agent.target.values[3] = np.nan  # behind the back of every check
     inside.training.agent.learn = lambda: None
@@ -390,17 +397,44 @@ def test_a_save_that_was_cut_between_its_two_renames_is_put_back(begin, tmp_path
     assert resume_run(tmp_path / "run").agent.decisions == 4 * 32
 
 
-def test_a_run_that_goes_on_draws_no_spike(begin, tmp_path):
+def told_of(entries):
+    """Entries of a history by kind, without what the clock says."""
+    alike = [replace(each, seconds=0.0, steps_per_second=0.0) if isinstance(each, Point) else each for each in entries]
+    return [[repr(each) for each in alike if isinstance(each, kind)] for kind in (Point, Validation, SettingChange)]
+
+
+def test_a_run_that_goes_on_is_the_run_that_never_stopped(begin, tmp_path, monkeypatch):
+    monkeypatch.setattr(LanderTask, "evaluate_every", 1600)
+    monkeypatch.setattr(LanderTask, "validation_episodes", 5)
+    straight, run = begin(seed=3), begin(seed=3)
+    whole, pieces = told_in(straight, 260), told_in(run, 103)  # in the midst of validation flights
+    for turns in (1, 80, 76):
+        pieces += run.send(Save(tmp_path / "run"))  # which flies what is left of them
+        run = begin(resume=tmp_path / "run")
+        assert of(RunStarted, next(run))[0].lost == ""
+        pieces += told_in(run, turns)
+    assert told_of(pieces) == told_of(whole)
+    assert len(of(Validation, whole)) == 4
+    for each, folder in ((straight, "straight"), (run, "pieces")):
+        each.send(Save(tmp_path / folder))
+    alike = [resume_run(tmp_path / folder) for folder in ("straight", "pieces")]
+    assert np.array_equal(alike[0].agent.online.values, alike[1].agent.online.values)
+    assert np.array_equal(alike[0].best_values, alike[1].best_values)
+    assert alike[0].statistics.mean_return == alike[1].statistics.mean_return
+
+
+def test_without_its_state_a_run_goes_on_and_draws_no_spike(begin, tmp_path):
     run = begin()
     before = of(Point, told_in(run, 250))
     assert np.isnan(before[0].mean_return), "no flight had ended"
     assert np.isnan(before[0].loss)
     assert before[-1].mean_return < -50
     run.send(Save(tmp_path / "run"))
-    after = of(Point, told_in(begin(resume=tmp_path / "run"), 60))
-    assert after[0].mean_return == before[-1].mean_return, "of the hundred flights before"
-    assert after[0].landed == before[-1].landed
-    assert after[0].parts == before[-1].parts
+    remove_state(tmp_path / "run")
+    told = told_in(begin(resume=tmp_path / "run"), 60)
+    assert "empty memory" in of(RunStarted, told)[0].lost
+    after = of(Point, told)
+    assert after[0].mean_return != 0.0, "of the hundred flights before"
     assert np.isnan([after[0].loss, after[0].mean_q]).all(), "it has not learnt since"
     assert np.isfinite([after[-1].loss, after[-1].mean_q]).all()
 
@@ -409,6 +443,7 @@ def test_a_run_saved_before_flights_were_kept_goes_on(begin, tmp_path):
     run = begin()
     told_in(run, 250)
     run.send(Save(tmp_path / "run"))
+    remove_state(tmp_path / "run")
     file = tmp_path / "run" / "training.json"
     described = json.loads(file.read_text())
     flights = described.pop("flights")
@@ -452,9 +487,9 @@ def test_a_knob_that_is_dragged_leaves_one_mark_with_its_last_value(begin):
     turn("discount", 0.9)
     turn("discount", 0.9)
     turn("discount", 0.9)  # nothing is turned
-    kept = run.gi_frame.f_locals["run"].history
+    kept = run.gi_frame.f_locals["session"].history
     assert kept.setting_changes == history.setting_changes
-    assert run.gi_frame.f_locals["run"].training.config.discount == 0.9
+    assert run.gi_frame.f_locals["session"].training.config.discount == 0.9
 
 
 class Clock:

@@ -8,10 +8,11 @@ from ai.agent.schedule import geometric, linear
 from ai.lander.environment import LIMITS, LanderEnv, Outcome
 from ai.lander.pilots import NoPilot, ScriptedPilot
 from ai.nn import ModelFormatError
-from ai.training.checkpoints import TrainingClock, resume_run, save_run
+from ai.training.checkpoints import resume_run, save_run
 from ai.training.config import PRESETS, Config
 from ai.training.lander_task import LanderTask
 from ai.training.loop import Evaluation, Training, evaluate, run
+from ai.training.run import Limit
 
 SMALL = PRESETS["modern"].changed(
     hidden=(16,), batch_size=16, gradient_steps=1, learning_starts=32, replay_size=2000, num_envs=8, spawn="near"
@@ -183,10 +184,9 @@ def test_a_failed_save_leaves_the_old_run(tmp_path, monkeypatch):
 
 def test_the_clock_stops_at_the_decisions_asked_for():
     training, _ = advanced(decisions=1)
-    clock = TrainingClock(decisions=80)
+    clock = Limit(moment=80)
     assert [progress.decisions for progress in clock.run(training)][-1] == 80
     assert clock.share(training) == 1.0
-    assert not clock.checkpoint_due()
 
 
 def test_a_curriculum_run_climbs_its_stages():

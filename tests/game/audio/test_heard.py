@@ -7,9 +7,9 @@ import pytest
 
 from game.core import texts
 from game.flight.flight import StickHolder
-from game.scenes.menu import MenuScene
+from game.scenes.menus.menu import MenuScene
+from game.scenes.menus.settings import SettingsScene
 from game.scenes.play import PlayScene
-from game.scenes.settings import SettingsScene
 from game.scenes.watch import WatchScene
 from game.ui.context import Context
 from tests.support.driver import Driver
@@ -44,40 +44,45 @@ def test_a_menu_is_heard_as_it_is_walked_through(sound: Listener, open_game):
 
 def test_the_mouse_is_heard_when_it_presses_not_when_it_passes(sound: Listener, open_game):
     game: Driver = open_game(SettingsScene)
-    game.move((100, 180))
-    game.move((100, 244))
+    first, second = (game.widget(texts.SETTINGS[name][0]).box.center for name in ("full_screen", "show_hints"))
+    game.move(first)
+    game.move(second)
     sound.heard()
-    game.move((100, 180))
-    game.move((100, 244))
+    game.move(first)
+    game.move(second)
     assert sound.heard() == []
-    game.click((100, 244))
+    game.click(second)
     assert sound.heard() == ["adjust"]
-    game.click((1100, 620))  # nothing is there
+    game.click((1100, 600))  # nothing is there
     assert sound.heard() == []
 
 
 def test_toggles_are_heard_and_the_end_of_a_slider_is_not(sound: Listener, open_game):
     game: Driver = open_game(SettingsScene)
+    focus(game, texts.SETTINGS["reduced_motion"][0])
     sound.heard()
     game.key(ENTER)
     assert sound.heard() == ["adjust"]
     game.key(RIGHT)  # it is on already, so the arrow leads on
     assert sound.heard() == ["move"]
+    game = open_game(SettingsScene, "sound")
     focus(game, texts.SOUND_GROUPS["interface"])
+    sound.heard()
     for heard in [["adjust"]] * 3 + [[]]:  # clicks, from 70 % up to all there is
         game.key(RIGHT)
         assert sound.heard() == heard
 
 
 def test_a_volume_is_heard_as_it_changes_is_kept_and_reaches_nothing_at_all(sound: Listener, context, open_game):
-    game: Driver = open_game(SettingsScene)
+    game: Driver = open_game(SettingsScene, "sound")
     focus(game, texts.SOUND_GROUPS["altitude"])
     game.key(RIGHT)
     game.app.settings_writer.wait()
     settings = context.settings_file.load()
     assert settings.altitude_volume == pytest.approx(0.1)
     assert [key for key in sound.heard() if key.startswith("altitude")]
-    game.keys(UP, UP, UP, *[LEFT] * 12)
+    focus(game, texts.SOUND_GROUPS["effects"])
+    game.keys(*[LEFT] * 12)
     assert "touchdown" in sound.heard()
     game.app.settings_writer.wait()
     assert context.settings_file.load().effects_volume == 0

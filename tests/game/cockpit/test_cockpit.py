@@ -8,6 +8,7 @@ import pytest
 
 from ai.common.decision import Decision, decide
 from ai.lander.environment import PARAMS, Outcome
+from game.cockpit.guardian_words import dial_words
 from game.cockpit.overrides import difference
 from game.core import texts
 from game.core.settings import SettingsFile
@@ -68,7 +69,7 @@ def start_at(driver: Driver, *start: float) -> None:
 def test_the_dial_is_turned_by_keys_wheel_drag_and_stick_and_kept(open_game: Open, context: Context):
     driver = fly(open_game, context)
     settings = driver.app.context.settings
-    driver.keys(pygame.K_PLUS, pygame.K_PLUS, pygame.K_MINUS)
+    driver.keys(pygame.K_PLUS, pygame.K_PLUS, pygame.K_PLUS, pygame.K_MINUS)  # 0.04, 0.1, 0.2, 0.1
     assert settings.assist == pytest.approx(0.1)
     driver.post(pygame.MOUSEWHEEL, x=0, y=3)
     assert settings.assist == pytest.approx(0.25)
@@ -209,6 +210,20 @@ def test_pads_and_hands_do_not_change_under_a_flight_that_has_begun(open_game: O
     assert play(driver).flight is flight
     driver.key(pygame.K_n)
     assert len(play(driver).flight.env.ground.pads) == 3
+
+
+def test_the_dial_has_a_place_for_one_decision_ahead_between_none_and_its_first_step(open_game: Open, context: Context):
+    driver = fly(open_game, context, copilot="guardian")
+    settings = driver.app.context.settings
+    for key, place in ((pygame.K_PLUS, 0.04), (pygame.K_PLUS, 0.1), (pygame.K_MINUS, 0.04), (pygame.K_MINUS, 0.0)):
+        driver.key(key)
+        assert settings.assist == pytest.approx(place)
+    for turn, place in ((1, 0.04), (1, 0.05), (-1, 0.04), (-1, 0.0)):
+        driver.post(pygame.MOUSEWHEEL, x=0, y=turn)
+        assert settings.assist == pytest.approx(place)
+    copilot = play(driver).flight.copilot
+    assert dial_words(0.04, copilot).startswith("Guard. It steps in where")
+    assert dial_words(0.6, copilot).startswith("Guide. It steps in where")
 
 
 def test_a_check_flight_has_no_dial_no_network_and_no_other_hands(open_game: Open, context: Context):

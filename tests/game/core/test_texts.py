@@ -283,7 +283,7 @@ def test_a_damaged_language_is_told_on_the_command_line_and_in_the_game(capsys, 
 
 
 def test_a_text_is_found_by_name_key_and_place():
-    assert texts.MENU["play"] == ("Play", "Fly it yourself, and hand over whenever you like.")
+    assert texts.MENU["play"] == ("Play", "Land by hand, and hand the stick to a network whenever you like.")
     assert texts.OUTCOMES["CRASHED"] == ("Crashed", "")  # as long as the others of its group
     assert texts.PAD_NAMES[3].startswith("narrow")
     assert [texts.RUN_SETTINGS.format(preset="Modern", count=count) for count in (1, 2)] == [

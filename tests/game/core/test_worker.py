@@ -16,9 +16,9 @@ import pytest
 from ai.training.checkpoints import resume_run
 from ai.training.config import Config
 from ai.training.history import Checkpoint, History
+from ai.training.lander_session import live
 from ai.training.loop import Training
 from ai.training.messages import ChangeSetting, Refused, Save, Saved
-from ai.training.session import live
 from game.core import texts, worker
 from game.core.assets import MODELS_DIR
 from game.core.worker import Worker, WorkerState

@@ -15,7 +15,7 @@ from game.core import texts
 from game.core.scene import Scene
 from game.drawing.canvas import PAGE, Canvas
 from game.drawing.tokens import MARGIN
-from game.scenes.menu import MenuScene
+from game.scenes.menus.menu import MenuScene
 from game.scenes.play import PlayScene
 from game.scenes.watch import WatchScene
 from game.ui.context import Context
@@ -203,8 +203,10 @@ def test_scenes_with_a_world_fill_the_window_and_pages_do_not():
     def fills(scene: type[Scene]) -> bool:
         return scene.fills
 
-    assert all(map(fills, (PlayScene, WatchScene, MenuScene)))
+    assert all(map(fills, (PlayScene, WatchScene)))
+    assert MenuScene.flows
     assert not Scene.fills
+    assert not Scene.flows
     assert hud.COLUMNS[0] == MARGIN
 
 

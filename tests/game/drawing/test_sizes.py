@@ -8,9 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from game.core import texts
 from game.drawing.canvas import PAGE, Canvas
 from game.drawing.tokens import VIEW_SIZE
-from game.scenes.settings import SettingsScene
+from game.scenes.menus.settings import SettingsScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 
@@ -81,7 +82,10 @@ def test_a_click_meets_the_switch_it_sees_and_none_beside_it(open_game, context:
     game: Driver = open_game(SettingsScene)
     game.resize(size)
     assert game.app.canvas.offset == tuple((w - s) // 2 for w, s in zip(size, game.app.canvas.size, strict=True))
-    toggle = game.top.form.widgets[1]
+    toggle = game.widget(texts.SETTINGS["reduced_motion"][0])
+    for _ in range(9):
+        if toggle.box.bottom > toggle.seen.bottom + 1:  # scrolled away in a low window
+            game.post(pygame.MOUSEWHEEL, x=0, y=-1)
     box = pygame.FRect(toggle.box)
     for place in ((box.left + 2, box.top + 2), (box.right - 3, box.bottom - 3), box.center):
         before = context.settings.reduced_motion
@@ -100,10 +104,10 @@ def test_full_screen_and_back_keeps_size_and_mouse(open_game, context: Any):
         game.key(pygame.K_F11)
         game.frames(10)
         assert context.settings.full_screen
-        game.click(game.top.form.widgets[1].box.center)
+        game.click(game.widget(texts.SETTINGS["reduced_motion"][0]).box.center)
         game.key(pygame.K_RETURN, pygame.KMOD_ALT)
         game.frames(10)
         assert not context.settings.full_screen
         assert game.app.window.size == (1000, 700)
-        game.click(game.top.form.widgets[1].box.center)
+        game.click(game.widget(texts.SETTINGS["reduced_motion"][0]).box.center)
     assert not context.settings.reduced_motion

@@ -7,7 +7,7 @@ from game.core import texts
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import LABEL, SMALL, TEXT_SIZES, VIEW_SIZE
-from game.scenes.settings import SettingsScene
+from game.scenes.menus.settings import SettingsScene
 from game.ui.context import Context
 from tests.support.screens import opened, settle
 

@@ -19,7 +19,7 @@ from game.export.film import film, frames
 from game.export.kinds import KINDS, VideoKind
 from game.flight.flight_file import Record
 from game.scenes import replay as module
-from game.scenes.menu import MenuScene
+from game.scenes.menus.menu import MenuScene
 from game.scenes.replay import ReplayScene
 from game.ui.context import Context
 from tests.support.driver import Driver

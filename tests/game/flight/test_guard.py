@@ -9,6 +9,7 @@ from ai.agent.agent import DeepQAgent
 from ai.copilot.futures import KEYS, Lookahead, Push
 from ai.flights.recording import thrust
 from ai.flights.verification import begun
+from ai.lander.descent import LegStart
 from ai.lander.environment import Outcome
 from ai.lander.moment import Moment
 from game.core import texts
@@ -44,8 +45,10 @@ def fly(flight, ask, most):
 
 
 def land(flight):
+    """Let the plan fly on to its end: nothing else is flown ahead any more."""
+    flight.guard.ahead.late = None
     flight.hand_over()
-    return fly(flight, lambda _: (0, None), most=900)
+    return fly(flight, lambda _: (0, None), most=1800)
 
 
 @pytest.mark.slow
@@ -68,16 +71,17 @@ def test_what_is_decided_lasts_for_four_steps_and_a_tap_counts_at_the_next(agent
     taps = Taps()
     for main, side in ((0, 0), (1, 0), (0, 0), (0, -1)):
         taps.follow(Push.of(main, side))
-    assert taps.take() == KEYS[4]  # main was tapped, left is held
+    assert taps.asked == KEYS[4]  # main was tapped, left is held
+    taps.forget()
     taps.follow(KEYS[1])
-    assert taps.take() == KEYS[1]
+    assert taps.asked == KEYS[1]
 
 
-def test_what_was_not_flown_ahead_in_time_is_late_and_the_plan_flies_on(agent):
+def test_what_was_not_flown_ahead_in_time_waits_once_and_then_the_plan_flies_on(agent):
     flight = guarded(agent)
     flight.guard.ahead.late = {KEYS[1]}
     fly(flight, lambda step: (1 if step > 3 else 0, None), most=24)
-    assert flight.guard.late == 5
+    assert (flight.guard.waited, flight.guard.late) == (1, 4)  # first what was asked for before counts once more
     assert not flight.guard.saves
     assert flight.guard.safe
     assert flight.overridden
@@ -155,3 +159,13 @@ def test_help_that_changed_nothing_takes_no_record_away_and_help_that_did_is_nam
         assert (flight.share < 1) is changed
         assert credit.bar == ("helped" if changed else "")
         assert credit.notice == (texts.NOT_COUNTED["helped"] if changed else texts.HELP_IS_ON)
+
+
+@pytest.mark.slow
+def test_a_leg_of_a_descent_is_guarded_along_its_route(agent):
+    flight = Flight(0, agent, leg=LegStart())
+    flight.guard = Guard(flight, AtOnce())
+    flight.help(GUARD, "guardian")
+    flight.guard.hang(0)
+    assert fly(flight, lambda _: (2, None), most=24).guard.safe
+    assert land(flight).outcome is Outcome.LANDED

@@ -5,7 +5,7 @@ import pytest
 
 from game.core import texts
 from game.input.bindings import Command, Held
-from game.scenes.bindings import BindingsScene
+from game.scenes.menus.keys import BindingsScene
 from tests.support.driver import Driver
 
 A, B, X, START = (
@@ -46,7 +46,7 @@ def test_a_key_is_changed_kept_and_named_at_once(table: Driver):
 
 def test_a_clash_is_named_and_the_keys_change_places(table: Driver):
     table.keys(*[pygame.K_DOWN] * 5, pygame.K_RETURN, pygame.K_c)
-    assert texts.BINDINGS["CHOICES"] in said(table)
+    assert said(table) == "Retry: C, and no longer R.  Choices: R, and no longer C."
     assert saved(table, "keys") == {"retry": ["c"], "choices": ["r"]}
 
 
@@ -82,7 +82,7 @@ def test_one_row_and_all_of_them_go_back(table: Driver):
     assert saved(table, "keys").keys() == {"main", "left", "mode"}
     table.keys(pygame.K_DELETE)
     assert saved(table, "keys").keys() == {"main"}  # what had changed places with it goes back as well
-    table.click((410, 644))
+    table.press_on(texts.BINDINGS_ALL)
     assert saved(table, "keys") == {}
 
 
@@ -122,7 +122,27 @@ def test_a_pad_pulled_out_is_not_waited_for(table: Driver):
 
 
 def test_a_click_elsewhere_or_a_leave_ends_the_waiting(table: Driver):
-    table.click((410, 160))
+    table.click(table.form.widgets[1].box.center)
     assert controls(table).listening
-    table.click((90, 644))  # Back
+    table.click(table.widget(texts.BINDINGS_ALL).box.midleft)
     assert not controls(table).listening
+
+
+def test_all_that_a_new_key_drops_is_said(table: Driver):
+    """Whoever binds the arrow up to a jet loses four keys, and is told of every one."""
+    table.keys(pygame.K_DOWN, pygame.K_RETURN, pygame.K_UP)
+    left, main = texts.BINDINGS["LEFT"], texts.BINDINGS["MAIN"]
+    assert said(table) == f"{left}: ↑, and no longer ← or A.  {main}: Space and W, and no longer ↑."
+    table.keys(pygame.K_DELETE)
+    assert said(table) == f"{left}: ← and A, and no longer ↑."
+
+
+def test_the_other_half_of_the_table_has_what_does_not_fly(table: Driver):
+    def named(driver: Driver) -> set[str]:
+        return {widget.label for widget in driver.form.widgets}
+
+    flying = named(table)
+    table.form.focus(table.form.widgets[0])
+    table.key(pygame.K_RIGHT)
+    assert named(table) & flying == {"", texts.BINDINGS_ALL}
+    assert named(table) | flying == {"", texts.BINDINGS_ALL, *texts.BINDINGS.values()}

@@ -79,7 +79,7 @@ def test_a_pad_leads_from_the_menu_to_settings_and_back(game: Driver, pads: Virt
             pads.press(button, down)
             game.frames(2)
 
-    for _ in range(9):
+    for _ in range(5):
         tap(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
     tap(pygame.CONTROLLER_BUTTON_A)
     assert game.top_name == "SettingsScene"

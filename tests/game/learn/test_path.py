@@ -1,7 +1,6 @@
 """The path: its list, the four pages of a chapter, progress, and every way to move through it."""
 
 from collections.abc import Callable
-from itertools import pairwise
 
 import pygame
 import pytest
@@ -13,7 +12,7 @@ from game.learn.progress import PAGES, Progress
 from game.scenes import chapter as chapter_scene
 from game.scenes.chapter import ChapterScene
 from game.scenes.learn import LearnScene
-from game.scenes.menu import ROWS, MenuScene
+from game.scenes.menus.menu import MenuScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.screens import settle
@@ -23,15 +22,13 @@ Open = Callable[..., Driver]
 KEYS = list(PATH)
 
 
-def test_learn_is_first_in_the_lower_half_of_the_menu(open_game: Open):
-    assert ROWS.index("learn") >= len(ROWS) // 2
+def test_learn_is_a_word_of_the_menu_and_leads_to_physics(open_game: Open):
     driver = open_game(MenuScene)
-    tops = [widget.box.top for widget in driver.form.widgets]
-    gaps = {later - earlier for earlier, later in pairwise(tops)}
-    assert len(gaps) == 2  # the two halves stand apart
-    driver.press_on("Learn")
+    driver.press_on(texts.MENU["learn"][0])
     driver.frames(40)
     assert driver.top_name == "LearnScene"
+    driver.press_on(texts.LEARN_PHYSICS)
+    assert driver.top_name == "PhysicsScene"
 
 
 def test_the_list_leads_into_a_chapter_and_remembers_where_one_was(open_game: Open, context: Context):

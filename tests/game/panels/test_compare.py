@@ -10,7 +10,7 @@ from ai.training.history import History
 from game.charts.series import run_style
 from game.core import texts
 from game.panels.training_charts import TrainingCharts
-from game.training.training_run import EarlierRun, put_beside, rename_beside, take_away
+from game.training.beside import EarlierRun, put_beside, rename_beside, take_away
 from tests.ai.training.test_hints import HEALTHY
 
 
@@ -23,9 +23,9 @@ def run_of(seconds: float, decisions: float) -> History:
 
 
 def test_a_run_keeps_its_style_as_others_come_and_go():
-    runs: list[EarlierRun[str]] = []
+    runs: list[EarlierRun] = []
     for number in range(12):
-        put_beside(runs, f"run {number}", "curves")
+        put_beside(runs, f"run {number}", History())
     styles = {each.name: each.style for each in runs}
     assert len(set(styles.values())) == 12
     assert 0 not in styles.values(), "that is the run that goes on"
@@ -33,23 +33,25 @@ def test_a_run_keeps_its_style_as_others_come_and_go():
     assert {each.name: each.style for each in runs} == {
         name: style for name, style in styles.items() if name != "run 3"
     }
-    put_beside(runs, "new", "curves")
-    assert runs[0] == EarlierRun("new", "curves", styles["run 3"])
-    put_beside(runs, "run 7", "again")
-    assert runs[0] == EarlierRun("run 7", "again", styles["run 7"])
+    new, again = History(), History()
+    put_beside(runs, "new", new)
+    assert runs[0] == EarlierRun("new", new, styles["run 3"])
+    put_beside(runs, "run 7", again)
+    assert runs[0] == EarlierRun("run 7", again, styles["run 7"])
     assert len(runs) == 12
 
 
 def test_a_run_beside_is_renamed_but_not_to_the_name_of_another():
-    runs: list[EarlierRun[str]] = []
-    for name in ("a", "b"):
-        put_beside(runs, name, name)
+    runs: list[EarlierRun] = []
+    first, second = History(), History()
+    put_beside(runs, "a", first)
+    put_beside(runs, "b", second)
     style = runs[0].style
     assert rename_beside(runs, style, "a") == texts.COMPARE_NAME_TAKEN
     assert rename_beside(runs, style, "") == texts.COMPARE_NAME_EMPTY
     assert rename_beside(runs, style, "b") == ""
     assert rename_beside(runs, style, "bold") == ""
-    assert [(each.name, each.run) for each in runs] == [("bold", "b"), ("a", "a")]
+    assert [(each.name, each.run) for each in runs] == [("bold", second), ("a", first)]
 
 
 def test_lines_of_many_runs_differ_in_colour_or_dashes_and_neighbours_in_both():
@@ -62,7 +64,7 @@ def test_lines_of_many_runs_differ_in_colour_or_dashes_and_neighbours_in_both():
     assert run_style(25) == run_style(1)
 
 
-def look(training_charts: TrainingCharts, history: History, beside: list[EarlierRun[History]]) -> None:
+def look(training_charts: TrainingCharts, history: History, beside: list[EarlierRun]) -> None:
     for _ in range(12):
         training_charts.look(history, beside)
 

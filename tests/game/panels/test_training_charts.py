@@ -5,14 +5,17 @@ import pytest
 
 from ai.training.config import PRESETS, Config
 from ai.training.history import COLUMNS, History, Point
+from ai.training.lander_session import live
 from ai.training.messages import RunStarted
-from ai.training.session import live
 from game.charts.chart import Chart, Series
 from game.core import texts
+from game.core.worker import WorkerState
 from game.panels.training_charts import TrainingCharts
-from game.training.lander_run import LanderRun
+from game.training.beside import EarlierRun
 from game.training.library import Library
-from game.training.training_run import EarlierRun
+from game.training.run import LANDERS, TrainingRun
+
+NUMBERS = [column.name for column in COLUMNS[:10]]
 
 
 def run(config: Config, points: float) -> History:
@@ -20,7 +23,10 @@ def run(config: Config, points: float) -> History:
     history = History()
     history.reward_scale = config.reward_scale
     for second in range(20):
-        values = dict.fromkeys(COLUMNS, 1.0) | {"seconds": float(second), "mean_q": points * config.reward_scale}
+        values = dict.fromkeys(NUMBERS, 1.0) | {
+            "seconds": float(second),
+            "mean_q": points * config.reward_scale,
+        }
         history.append(Point(**values))
     return history
 
@@ -49,13 +55,15 @@ def test_a_run_says_in_which_unit_it_counts(preset: str, tmp_path, monkeypatch: 
     assert History.read(tmp_path / "run").reward_scale == config.reward_scale
 
     class Tells:
+        state = WorkerState.RUNNING
+
         def __init__(self, *_: object, **__: object) -> None: ...
         def set_pace(self, _: object) -> None: ...
         def poll(self) -> tuple[object, ...]:
             return tuple(message for message in told if isinstance(message, RunStarted))
 
-    monkeypatch.setattr("game.training.lander_run.Worker", Tells)
-    lander_run = LanderRun(Library(tmp_path))
+    monkeypatch.setattr("game.training.run.Worker", Tells)
+    lander_run = TrainingRun(LANDERS, Library(tmp_path))
     lander_run.begin(config, 0)
     lander_run.poll()
     assert lander_run.history.reward_scale == config.reward_scale

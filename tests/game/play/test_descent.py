@@ -161,9 +161,10 @@ def test_escape_pauses_a_run_under_way_and_leaves_one_that_has_not_begun(game: D
 
 def test_the_menu_leads_to_it_and_escape_back(open_game: Open):
     driver = open_game()
-    driver.keys(pygame.K_DOWN, pygame.K_RETURN)
+    driver.key(pygame.K_RETURN)
+    driver.press_on(texts.FLIGHTS["descent"][0])
     assert descent(driver).start.number == 1
-    driver.key(pygame.K_ESCAPE)
+    driver.keys(pygame.K_ESCAPE, pygame.K_ESCAPE)
     assert driver.top_name == "MenuScene"
 
 

@@ -339,7 +339,7 @@ def test_the_dial_is_turned_by_the_player_and_theirs_stays_as_it_was(open_game: 
     driver.frames(20)
     player.hold("left", down=False)
     assert play(driver).waiting  # until the dial is turned
-    for _ in range(4):
+    for _ in range(5):
         if device == "keys":
             driver.key(pygame.K_PLUS)
         else:

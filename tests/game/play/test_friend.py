@@ -14,7 +14,7 @@ from game.flight.flight_file import Record
 from game.play.challenge import ContinuedFlight, FlownMission, Race
 from game.scenes.digit_training import DigitTrainingScene
 from game.scenes.logbook import LogbookScene
-from game.scenes.menu import MenuScene
+from game.scenes.menus.menu import MenuScene
 from game.scenes.play import PlayScene
 from game.scenes.replay import ReplayScene
 from game.scenes.runs import NetworksScene

@@ -15,10 +15,10 @@ from game.flight.outcomes import crash_reason
 from game.input.bindings import Held
 from game.play.tutorial import Tutorial
 from game.play.tutorial_lessons import LESSONS, NEED_COPILOT
-from game.scenes.menu import MenuScene
+from game.scenes.menus.menu import MenuScene
+from game.scenes.menus.settings import SettingsScene
 from game.scenes.missions import MissionsScene
 from game.scenes.play import PlayScene
-from game.scenes.settings import SettingsScene
 from game.ui.context import Context
 from game.ui.listing import Listing
 from tests.support.drawn import Drawn
@@ -108,7 +108,7 @@ def test_the_very_first_flight_teaches_all_of_it_and_free_flights_follow(
 
 def test_only_the_very_first_flight_teaches(open_game: Open):
     driver = open_game()
-    driver.key(pygame.K_RETURN)
+    driver.keys(pygame.K_RETURN, pygame.K_RETURN)
     assert play(driver).challenge is None
 
 
@@ -285,11 +285,8 @@ def test_a_device_with_one_sign_for_both_turns_names_it_once(open_game: Open):
 
 @pytest.mark.parametrize("device", DEVICES)
 def test_it_is_flown_again_from_the_settings(open_game: Open, device: str):
-    player = Player(open_game(SettingsScene), device)
-    index = [widget.label for widget in player.form.widgets].index(texts.TUTORIAL_OPEN)
-    assert index in player.ways()
-    player.form.focus(player.form.widgets[index])
-    player.press("confirm")
+    player = Player(open_game(SettingsScene, "flights"), device)
+    player.choose(texts.TUTORIAL_OPEN)
     assert tutorial(player).lesson.name == "fire"
     player.press("pause")
     assert player.top_name == "SettingsScene"

@@ -16,7 +16,7 @@ from game.scenes.digit_training import DigitTrainingScene
 from game.scenes.digits import DigitsScene
 from game.scenes.train import TrainScene
 from game.scenes.watch import COUNTS, WatchScene
-from game.training.training_run import TrainingRun
+from game.training.run import TrainingRun
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.pen import draw, strokes

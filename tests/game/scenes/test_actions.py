@@ -37,6 +37,7 @@ def test_a_press_and_a_click_on_its_hint_sound_the_same_and_once(
 ):
     driver = open_game(SCREENS["SettingsScene"])
     driver.frames(2)
+    driver.key(pygame.K_DOWN)
     played: list[str] = []
     monkeypatch.setattr(context.sound, "play", played.append)
     driver.key(pygame.K_RETURN)

@@ -12,10 +12,9 @@ from ai.lander.missions import MISSIONS
 from game.core import texts
 from game.flight.logbook import Records, best
 from game.play.challenge import FlownMission
-from game.scenes.assists import HANDS, ROOM, AssistsScene
-from game.scenes.menu import MenuScene
+from game.scenes.menus.menu import MenuScene
+from game.scenes.menus.settings import AssistsScene, SettingsScene
 from game.scenes.play import PlayScene
-from game.scenes.settings import SettingsScene
 from game.ui.context import Context
 from game.ui.switch_scan import DWELL, HELD, SwitchScan
 from tests.support.driver import Driver
@@ -26,13 +25,18 @@ from tests.support.screens import settle
 Open = Callable[..., Driver]
 
 
+HANDS = ("analogue", "toggle_thrust", "one_switch")
+ROOM = ("wider_pads", "untimed")
+
+
 @pytest.mark.parametrize("device", DEVICES)
 def test_every_assist_is_switched_and_saved_by_each_device(open_game: Open, context: Context, device: str):
     settle(context)
-    player = Player(open_game(AssistsScene), device)
     before = {name: getattr(context.settings, name) for name in (*HANDS, *ROOM)}
-    for name in (*ROOM, "analogue", "toggle_thrust", "one_switch"):  # the last one makes the keys a switch
-        player.choose(texts.ASSISTS[name][0])
+    for group, names in (("flights", ROOM), ("controls", HANDS)):  # the last one makes the keys a switch
+        player = Player(open_game(SettingsScene, group), device)
+        for name in names:
+            player.choose(texts.SETTINGS[name][0])
     saved = player.saved()
     assert {name: saved[name] for name in before} == {name: not value for name, value in before.items()}
 
@@ -40,24 +44,21 @@ def test_every_assist_is_switched_and_saved_by_each_device(open_game: Open, cont
 def test_the_mouse_switches_them_too(open_game: Open, context: Context):
     settle(context)
     game = open_game(AssistsScene)
-    game.click(game.widget(texts.ASSISTS["wider_pads"][0]).box.center)
+    game.click(game.widget(texts.SETTINGS["wider_pads"][0]).box.center)
     game.frames(2)
     assert context.settings.wider_pads
     assert game.saved()["wider_pads"]
 
 
-def test_it_is_reached_from_settings_and_from_the_pause(open_game: Open, context: Context):
+def test_it_is_reached_from_the_pause(open_game: Open, context: Context):
     settle(context)
-    player = Player(open_game(SettingsScene), "keys")
-    player.choose_beside(texts.ASSISTS_OPEN)
-    assert player.top_name == "AssistsScene"
     player = Player(open_game(PlayScene, 3), "pad")
     player.frames(2)
     player.press("main")
     player.frames(5)
     player.press("pause")
     player.choose(texts.ASSISTS_OPEN)
-    assert player.top_name == "AssistsScene"
+    assert (player.top_name, player.top.group) == ("AssistsScene", "flights")
     player.press("back")
     assert player.top_name == "PauseScene"
 
@@ -175,6 +176,8 @@ def test_the_whole_way_with_one_switch(open_game: Open, context: Context):
         game.skip(100)
         switch = Switch(game, device)
         switch.choose(texts.MENU["play"][0])
+        game.skip(30)
+        switch.choose(texts.FLIGHTS["free"][0])
         play = game.top
         assert isinstance(play, PlayScene), device
         game.skip(5)
@@ -196,6 +199,9 @@ def test_the_whole_way_with_one_switch(open_game: Open, context: Context):
         switch.hold(False)
         game.skip(30)
         switch.choose(texts.PAUSE_LEAVE)
+        assert game.top_name == "FlightsScene", device
+        game.skip(30)
+        switch.choose(texts.HINT_BACK)
         assert game.top_name == "MenuScene", device
 
 
@@ -207,7 +213,9 @@ def test_one_switch_turns_a_slider_round_and_every_assist_off_again(open_game: O
     for pace in (1.0, 0.2):
         switch.choose(texts.PACE)
         assert context.settings.pace == pytest.approx(pace)
-    switch.choose(texts.ASSISTS["one_switch"][0])
+    game = open_game(SettingsScene, "controls")
+    game.skip(20)
+    Switch(game, "keys").choose(texts.SETTINGS["one_switch"][0])
     assert not context.settings.one_switch
     game.key(pygame.K_SPACE)  # an ordinary press again
     assert context.settings.one_switch
@@ -217,7 +225,7 @@ def test_a_mouse_that_moves_still_clicks_beside_it(open_game: Open, context: Con
     settle(context, one_switch=True)
     game = open_game(AssistsScene)
     game.skip(20)
-    game.click(game.widget(texts.ASSISTS["untimed"][0]).box.center)
+    game.click(game.widget(texts.SETTINGS["untimed"][0]).box.center)
     game.frames(2)
     assert context.settings.untimed
 

@@ -9,10 +9,10 @@ import pytest
 from ai.training.history import History
 from game.core import texts
 from game.panels.run_legend import RunLegend
-from game.scenes.dialog import NameDialog, QuestionDialog
+from game.scenes.menus.dialogs import NameDialog, QuestionDialog
 from game.scenes.train import TrainScene
-from game.training.training_run import put_beside
-from game.ui.entry import Entry
+from game.training.beside import put_beside
+from game.ui.rows import EntryRow
 from tests.ai.training.test_hints import HEALTHY
 from tests.support.driver import Driver
 
@@ -54,10 +54,10 @@ def test_a_run_is_renamed_and_taken_away_without_a_mouse(train: Driver, device: 
     confirm()
     train.frames(2)
     assert isinstance(train.top, NameDialog)
-    train.the(Entry).text = "five"
+    train.the(EntryRow).text = "five"
     train.key(pygame.K_RETURN)
     assert isinstance(train.top, NameDialog), "another has that name"
-    train.the(Entry).text = "renamed"
+    train.the(EntryRow).text = "renamed"
     train.key(pygame.K_RETURN)
     assert train.top is scene
     assert "renamed" in names(train)

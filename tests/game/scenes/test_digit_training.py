@@ -1,6 +1,7 @@
 """Train it here: the screen, through real pygame events; with a real worker beside it where its process matters."""
 
 import json
+import re
 from collections.abc import Callable
 from dataclasses import fields
 from multiprocessing import active_children
@@ -11,19 +12,21 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.digits.checkpoints import save_digit_run
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS, DigitConfig, build_digit_network
 from ai.digits.filters import FilterMoment
 from ai.digits.training import DigitTraining
-from ai.digits.validation import Confusion, HeldOutScore
-from ai.training.digit_session import DigitPoint
+from ai.digits.validation import Confusion
+from ai.training.digit_run import save_digit_run
+from ai.training.history import DigitPoint, Validation
 from game.charts.scrubber import Scrubber
 from game.core import texts
+from game.core.names import LibraryError
 from game.core.worker import WorkerState
-from game.scenes.digit_training import DIGITS, DigitTrainingScene
-from game.training.digit_run import DigitCurves, DigitRun
+from game.scenes.digit_training import KNOBS, DigitTrainingScene
+from game.training.digit_models import DigitModels
 from game.training.knob_descriptions import knob_descriptions
+from game.training.run import DIGITS, TrainingRun
 from game.training.run_settings import RunSettings
 from tests.support.driver import Driver
 from tests.support.player import Player
@@ -67,9 +70,9 @@ def test_every_setting_has_a_knob_and_a_word():
 
 
 def test_presets_are_named_and_no_sabotage_is_offered():
-    run_settings = RunSettings(DIGIT_PRESETS["classic"], 0, lambda *_: None, lambda *_: None, DIGITS)
+    run_settings = RunSettings(DIGIT_PRESETS["classic"], 0, lambda *_: None, lambda *_: None, KNOBS)
     assert run_settings.named == ("classic", "")
-    assert DIGITS.word(DIGITS.nearest(DIGIT_PRESETS["modern"].changed(dropout=0.5))) == "Modern"
+    assert KNOBS.word(KNOBS.nearest(DIGIT_PRESETS["modern"].changed(dropout=0.5))) == "Modern"
 
 
 # A run
@@ -78,7 +81,7 @@ def test_presets_are_named_and_no_sabotage_is_offered():
 def test_start_pause_stop_and_go_on(beside: Driver, tmp_path: Path):
     scene = beside.top
     beside.key(pygame.K_RETURN)
-    wait(beside, lambda: scene.digit_run.confusion and scene.digit_run.curves.points)
+    wait(beside, lambda: scene.digit_run.confusion and len(scene.digit_run.history))
     assert scene.digit_run.config == SMALL
     assert scene.digit_run.confusion.table.sum() == 2_000
     assert scene.matrix.confusion is scene.digit_run.confusion
@@ -92,11 +95,10 @@ def test_start_pause_stop_and_go_on(beside: Driver, tmp_path: Path):
     assert 0 < scene.digit_run.test < 1, "what was stopped is measured"
     assert DigitClassifier.load(tmp_path / "user" / "digits" / "runs" / ".training").predict(np.zeros((1, 28, 28))).size
     wait(beside, lambda: scene.stop_button and scene.stop_button.label == texts.DIGIT_RUN_GO_ON)
-    stood = scene.digit_run.curves.points[-1].step
+    stood = scene.digit_run.history["step"][-1]
     scene.knobs.set_config(DIGIT_PRESETS["modern"], 0)
     beside.click(scene.stop_button.box.center)
-    wait(beside, lambda: scene.digit_run.curves.points)
-    assert scene.digit_run.curves.points[0].step > stood - 1
+    wait(beside, lambda: len(scene.digit_run.history) and scene.digit_run.history["step"][-1] > stood)
     assert scene.knobs.config == SMALL, "it goes on with its own settings"
     assert len(scene.digit_run.earlier) == 1
     scene.digit_run.close()
@@ -112,7 +114,7 @@ def test_a_run_is_named_dreams_and_is_quizzed(train: Driver, tmp_path: Path, mon
     train.key(pygame.K_TAB)
     scene.form.focus(scene.start_button)
     train.key(pygame.K_RETURN)
-    wait(train, lambda: scene.digit_run.curves.points)
+    wait(train, lambda: len(scene.digit_run.history))
     train.click(scene.save_button.box.center)
     assert train.top_name == "NameDialog"
     train.key(pygame.K_RETURN)
@@ -152,7 +154,7 @@ def test_a_nameless_run_is_asked_about_before_a_new_one(train: Driver, tmp_path:
 def test_leaving_ends_the_process_and_keeps_the_run(train: Driver):
     scene = train.top
     train.key(pygame.K_RETURN)
-    wait(train, lambda: scene.digit_run.curves.points)
+    wait(train, lambda: len(scene.digit_run.history))
     notes: list[str] = []
     train.app.context.note = notes.append
     assert not train.key(pygame.K_ESCAPE)
@@ -179,9 +181,9 @@ def test_a_process_that_dies_is_told_of_and_another_can_be_started(beside: Drive
 
 
 def test_a_new_run_puts_the_last_one_aside(tmp_path: Path):
-    digit_run = DigitRun(tmp_path)
-    digit_run.unsaved.mkdir()
-    (digit_run.unsaved / "config.json").write_text("old")
+    digit_run = TrainingRun(DIGITS, DigitModels(tmp_path))
+    digit_run.collection.unsaved.mkdir()
+    (digit_run.collection.unsaved / "config.json").write_text("old")
     digit_run.begin(SMALL, 0)
     digit_run.close()
     (aside,) = tmp_path.glob(".trash/*/config.json")
@@ -189,9 +191,9 @@ def test_a_new_run_puts_the_last_one_aside(tmp_path: Path):
 
 
 def test_looking_for_an_unfinished_run_leaves_alone_what_is_being_written(tmp_path: Path):
-    digit_run: Any = DigitRun(tmp_path)
+    digit_run: Any = TrainingRun(DIGITS, DigitModels(tmp_path))
     digit_run.begin(SMALL, 0)
-    half = tmp_path / f".{digit_run.unsaved.name}.old"  # between the two renames of a save
+    half = tmp_path / f".{digit_run.collection.unsaved.name}.old"  # between the two renames of a save
     half.mkdir()
     for name in ("last.npz", "training.json"):
         (half / name).write_bytes(b"")
@@ -203,23 +205,24 @@ def test_looking_for_an_unfinished_run_leaves_alone_what_is_being_written(tmp_pa
 
 
 def test_two_games_teach_two_runs(tmp_path: Path):
-    one, other = DigitRun(tmp_path), DigitRun(tmp_path)
-    one.collection.hold()
-    other.collection.hold()
+    one, other = DigitModels(tmp_path), DigitModels(tmp_path)
+    one.hold()
+    other.hold()
     assert one.unsaved != other.unsaved
-    one.collection.release()
-    other.collection.release()
+    one.release()
+    other.release()
 
 
 def test_a_run_is_named_although_the_next_one_was_asked_for_at_once(beside: Driver, tmp_path: Path):
     digit_run, runs = beside.top.digit_run, tmp_path / "user" / "digits" / "runs"
     beside.key(pygame.K_RETURN)
-    wait(beside, lambda: digit_run.curves.points)
+    wait(beside, lambda: len(digit_run.history))
     assert digit_run.save("first") == ""
     digit_run.begin(SMALL, 4)
     assert digit_run.waiting
-    assert digit_run.save("second") == texts.DIGIT_RUN_NOTHING
-    wait(beside, lambda: digit_run.curves.points)
+    with pytest.raises(LibraryError, match=re.escape(texts.DIGIT_RUN_NOTHING)):
+        digit_run.save("second")
+    wait(beside, lambda: len(digit_run.history))
     assert json.loads((runs / "first" / "training.json").read_text())["seed"] == 3
     assert digit_run.seed == 4
 
@@ -227,10 +230,11 @@ def test_a_run_is_named_although_the_next_one_was_asked_for_at_once(beside: Driv
 @pytest.mark.parametrize("name", ["..", "a/b", "", "con", "taken"])
 def test_a_name_that_cannot_be_had_is_refused(tmp_path: Path, name: str):
     (tmp_path / "taken").mkdir()
-    digit_run = DigitRun(tmp_path)
-    digit_run.unsaved.mkdir()
-    assert digit_run.save(name)
-    assert digit_run.unsaved.exists()
+    digit_run = TrainingRun(DIGITS, DigitModels(tmp_path))
+    digit_run.collection.unsaved.mkdir()
+    with pytest.raises(LibraryError):
+        digit_run.save(name)
+    assert digit_run.collection.unsaved.exists()
 
 
 # The matrix
@@ -263,12 +267,12 @@ def test_the_worst_cell_is_shown_until_another_is_chosen(train: Driver):
 
 def run_with_moments(driver: Driver) -> None:
     """Give the run a few seconds with filters that can be told apart."""
-    curves = driver.top.digit_run.curves
+    run = driver.top.digit_run
     for second in range(1, 10):
         images = np.full((5, 4, 4), 0.01 * second, np.float16)
-        curves.append(FilterMoment(float(second), 10 * second, images))
-        curves.append(HeldOutScore(float(second), second / 10))
-        curves.append(DigitPoint(float(second), 10 * second, 0.1, 1.0, 0.5, 0.001, 100.0))
+        run.filters.append(FilterMoment(float(second), 10 * second, images))
+        run.history.append(Validation(10 * second, second / 10, second / 10, best=True, seconds=float(second)))
+        run.history.append(DigitPoint(float(second), 10 * second, 0.1, 1.0, 0.5, 0.001, 100.0))
     driver.frames(30)
 
 
@@ -303,7 +307,7 @@ def test_filters_go_back_to_any_moment_of_the_run(beside: Driver, device: str, m
     beside.form.focus(scrubber)
     beside.keys(*[pygame.K_RIGHT] * 8)
     assert film.at is None, "at the end it follows the run again"
-    scene.digit_run.curves.append(FilterMoment(10.0, 100, np.ones((5, 4, 4), np.float16)))
+    scene.digit_run.filters.append(FilterMoment(10.0, 100, np.ones((5, 4, 4), np.float16)))
     assert film.moment.step == 100
     scene.views.choose(0)
     assert scene.matrix in beside.form.widgets
@@ -312,13 +316,13 @@ def test_filters_go_back_to_any_moment_of_the_run(beside: Driver, device: str, m
 
 def test_a_live_run_shows_its_filters_and_the_next_run_its_own(train: Driver):
     train.key(pygame.K_RETURN)
-    wait(train, lambda: len(train.top.digit_run.curves.filters) > 1)
+    wait(train, lambda: len(train.top.digit_run.filters) > 1)
     train.top.views.choose(1)
     train.frames(3)
     first = train.top.film.moment
     assert first.images.shape == (8, 28, 28)
     train.top.film.choose(-1)
     train.top.film.choose(0.0)
-    assert train.top.film.moment is train.top.digit_run.curves.filters[0]
-    train.top.film.follow(DigitCurves())
+    assert train.top.film.moment is train.top.digit_run.filters[0]
+    train.top.film.follow(TrainingRun(DIGITS, train.top.digit_run.collection))
     assert train.top.film.moment is None

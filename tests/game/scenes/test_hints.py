@@ -21,7 +21,7 @@ def test_sentences_name_the_players_own_keys_too(open_game, context: Context):
     context.settings.keys = bindings.to_dict()
     context.settings_file.save(context.settings)
     settings = open_game(SCREENS["SettingsScene"]).top
-    assert settings.form.widgets[0]._hint.startswith("F9 ")
+    assert settings.form.widgets[1]._hint.startswith("F9 ")
     driver = opened(open_game, "ChoicesScene")
     help_ = driver.top._rows[driver.top.form.widgets[0]]()
     assert " X" in help_

@@ -24,7 +24,7 @@ def start(driver: Driver) -> None:
     """Start a run, and wait until it has learnt for a moment."""
     driver.form.focus(driver.top.start_button)
     driver.key(pygame.K_RETURN)
-    driver.wait(lambda: driver.top.digit_run.curves.points)
+    driver.wait(lambda: len(driver.top.digit_run.history))
 
 
 def open_lesson(driver: Driver) -> None:
@@ -45,7 +45,7 @@ def test_a_word_opens_the_lesson_of_the_first_image_and_the_run_goes_on_afterwar
     train.frames(10)
     train.key(pygame.K_ESCAPE)
     assert train.top is scene
-    train.wait(lambda: scene.digit_run.curves.points[-1].step > lesson.taken)
+    train.wait(lambda: scene.digit_run.history["step"][-1] > lesson.taken)
     assert train.top is scene, "one lesson is opened once"
 
 

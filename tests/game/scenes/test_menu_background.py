@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ai.lander.environment import Outcome
-from game.scenes.menu_background import MenuBackground
+from game.scenes.menus.background import MenuBackground
 from game.ui.context import Context
 
 

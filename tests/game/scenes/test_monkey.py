@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 
 from game.core.settings import Settings
-from game.scenes.menu import MenuScene
+from game.scenes.menus.menu import MenuScene
 from game.ui.context import Context
 from tests.support.monkey import Monkey, playground
 from tests.support.tour import dialogs, makers, scene_types

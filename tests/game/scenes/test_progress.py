@@ -15,9 +15,9 @@ from game.flight.logbook import Records
 from game.play.days import Attempt, Days
 from game.play.ladder import Ladder
 from game.play.progress import Progress
-from game.scenes.menu import MenuScene
+from game.scenes.menus.menu import MenuScene
+from game.scenes.menus.settings import SettingsScene
 from game.scenes.play import PlayScene
-from game.scenes.settings import SettingsScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import kept, landed
@@ -46,20 +46,20 @@ def test_progress_is_put_away_after_a_question_and_brought_back(open_game: Open,
     settle(context, learnt={"neuron": 3}, chapter="plane", wider_pads=True)
     fly(context)
     before = files(context)
-    player = Player(open_game(SettingsScene), device)
-    player.choose_beside(texts.PROGRESS_RESET)
+    player = Player(open_game(SettingsScene, "flights"), device)
+    player.choose(texts.PROGRESS_RESET)
     assert player.top_name == "QuestionDialog"
     assert texts.PROGRESS_FLIGHTS.format(count=2) in player.top.more
     player.choose(texts.PROGRESS_NO)
     assert files(context) == before
-    player.choose_beside(texts.PROGRESS_RESET)
+    player.choose(texts.PROGRESS_RESET)
     player.choose(texts.PROGRESS_YES)
     player.frames(3)
     assert files(context) == {}
     assert Records(context.user_dir).entries() == []
     saved = player.saved()
     assert (saved["learnt"], saved["chapter"], saved["tutored"], saved["wider_pads"]) == ({}, "", False, True)
-    player.choose_beside(texts.PROGRESS_RESTORE)
+    player.choose(texts.PROGRESS_RESTORE)
     player.frames(3)
     assert files(context) == before
     assert player.saved()["learnt"] == {"neuron": 3}
@@ -147,8 +147,8 @@ def test_a_key_mutes_everywhere_and_says_so(open_game: Open, context: Context, s
 
 def test_mute_on_the_page_follows_the_key(open_game: Open, context: Context):
     settle(context)
-    game = open_game(SettingsScene)
-    toggle = game.widget(texts.SOUND_MUTE.format(key="F10"))
+    game = open_game(SettingsScene, "sound")
+    toggle = game.widget(texts.SETTINGS["muted"][0])
     game.key(pygame.K_F10)
     game.frames(2)
     assert toggle.value

@@ -13,7 +13,7 @@ from ai.agent.agent import DeepQAgent
 from ai.training.config import Config
 from game.core import texts
 from game.core.scene import Pop, Push
-from game.scenes.menu import MenuScene
+from game.scenes.menus.menu import MenuScene
 from game.scenes.runs import NetworksScene
 from game.training.library import Library
 from game.ui.context import Context

@@ -17,8 +17,8 @@ from ai.training.checkpoints import resume_run
 from ai.training.config import PRESETS
 from ai.training.demonstrations import demonstrate, write
 from ai.training.history import History
+from ai.training.lander_session import TAUGHT
 from ai.training.loop import Training
-from ai.training.session import TAUGHT
 from game.charts.scrubber import Scrubber
 from game.core import texts
 from game.core.scene import Push
@@ -26,11 +26,11 @@ from game.core.worker import WorkerState
 from game.flight.demonstrations import FILE_NAME
 from game.panels.network_panel import SHOWN
 from game.panels.network_view import NetworkView
-from game.scenes.dialog import QuestionDialog
+from game.scenes.menus.dialogs import QuestionDialog
 from game.scenes.train import TrainScene
 from game.training.knob_descriptions import knob_descriptions
-from game.training.lander_run import LanderRun
 from game.training.library import Library
+from game.training.run import TrainingRun
 from game.ui import focus
 from game.ui.entry import Entry
 from game.ui.widget import Widget
@@ -140,7 +140,7 @@ def test_what_was_left_without_a_name_can_be_discarded(train: Driver, open_game:
     assert driver.top_name == "TrainScene"
     driver.frames(2)
     assert driver.top_name == "TrainScene"
-    library = driver.top.lander_run.library
+    library = driver.top.library
     assert library.rescued() is None
     assert library.last_deleted
 
@@ -149,7 +149,7 @@ def test_a_saved_run_goes_on_in_the_scene_that_is_there(train: Driver) -> None:
     start(train)
     scene = train.top
     save_as(train, "mine")
-    train.wait(scene.lander_run.library.runs)
+    train.wait(scene.library.runs)
     train.press_on(texts.TRAIN_RUNS)
     train.frames(2)
     train.press_on(texts.RUN_TRAIN)
@@ -161,7 +161,7 @@ def test_a_saved_run_goes_on_in_the_scene_that_is_there(train: Driver) -> None:
 def test_a_name_that_is_taken_is_told_and_can_be_changed(train: Driver) -> None:
     start(train)
     scene = train.top
-    (scene.lander_run.library.folder / "mine").mkdir()
+    (scene.library.folder / "mine").mkdir()
     train.press_on(texts.TRAIN_SAVE)
     train.the(Entry).text = "mine"
     train.key(pygame.K_RETURN)
@@ -169,7 +169,7 @@ def test_a_name_that_is_taken_is_told_and_can_be_changed(train: Driver) -> None:
     train.post(pygame.TEXTINPUT, text="M2")
     train.key(pygame.K_RETURN)
     assert train.top is scene
-    train.wait(scene.lander_run.library.runs)
+    train.wait(scene.library.runs)
 
 
 @pytest.mark.slow
@@ -188,8 +188,8 @@ def test_a_run_is_begun_that_learns_from_the_players_landings(train: Driver, tmp
     assert texts.TRAIN_TAUGHT.format(count=2) in notes
     train.press_on(texts.TRAIN_SAVE)
     train.key(pygame.K_RETURN)
-    train.wait(scene.lander_run.library.runs)
-    (run,) = scene.lander_run.library.runs()
+    train.wait(scene.library.runs)
+    (run,) = scene.library.runs()
     assert "trained on you" in run.name
     assert sum(each.name == TAUGHT for each in History.read(run.folder).setting_changes) == 1
 
@@ -304,7 +304,7 @@ def test_a_run_is_started_named_and_left_without_a_mouse(train: Driver, device: 
     assert train.top_name == "NameDialog"
     press("confirm")
     assert train.top is scene
-    train.wait(scene.lander_run.library.runs)
+    train.wait(scene.library.runs)
     press("back")
     assert not train.app.scenes.running, "the scene was left, and nothing was below it"
 
@@ -314,7 +314,7 @@ def test_a_dead_worker_is_told_and_its_run_can_still_be_saved(beside: Driver, tm
     beside.unseen = True
     start(beside)
     scene = beside.top
-    beside.wait(lambda: scene.lander_run.library.unsaved.is_dir() or scene.lander_run.state is WorkerState.FAILED, 60)
+    beside.wait(lambda: scene.library.unsaved.is_dir() or scene.lander_run.state is WorkerState.FAILED, 60)
     for child in active_children():
         child.kill()
     beside.wait(lambda: scene.lander_run.state is WorkerState.FAILED)
@@ -346,13 +346,13 @@ def test_killed_again_and_again_it_goes_on_and_what_was_saved_loads(beside: Driv
             child.kill()
         beside.wait(lambda: scene.lander_run.state is WorkerState.FAILED)
         assert beside.top is scene
-    for run in scene.lander_run.library.runs():
+    for run in scene.library.runs():
         assert not run.problem
         assert resume_run(run.folder).agent.decisions > 0
 
 
 def _kept() -> list[object]:
-    return [each for each in gc.get_objects() if isinstance(each, TrainScene | LanderRun | NetworkView)]
+    return [each for each in gc.get_objects() if isinstance(each, TrainScene | TrainingRun | NetworkView)]
 
 
 @pytest.mark.slow

@@ -20,7 +20,7 @@ from game.panels.knob_page import MORE, TryButton
 from game.scenes.train import TrainScene
 from game.training.knob_descriptions import knob_descriptions
 from game.training.library import Library
-from game.training.split_run import AHEAD
+from game.training.run import AHEAD
 from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.small import LANDERS as SMALL

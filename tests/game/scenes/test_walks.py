@@ -9,7 +9,8 @@ from ai.lander.environment import Outcome
 from game.core import texts
 from game.core.scene import Scene
 from game.flight.flight import StickHolder
-from game.scenes.menu import MenuScene
+from game.scenes.menus.menu import MenuScene
+from game.scenes.menus.settings import GROUPS_OF_SETTINGS
 from game.scenes.play import PlayScene
 from game.ui.context import Context
 from game.ui.listing import Listing
@@ -19,7 +20,7 @@ from tests.support.screens import OVER_OTHERS, SCREENS, flown, settle
 from tests.support.tour import scene_types
 
 # Flown rather than walked, shown once something has failed, or a part of others.
-NO_SCREENS = {"PlayScene", "ErrorScene", "Dialog", "MenuBackground"}
+NO_SCREENS = {"PlayScene", "ErrorScene"}
 
 
 @pytest.fixture(params=DEVICES)
@@ -41,7 +42,8 @@ def test_every_screen_there_is_will_be_walked():
 
 def test_a_mission_is_found_flown_and_left(open_screen):
     player = open_screen(SCREENS["MenuScene"])
-    player.choose(texts.MENU["missions"][0])
+    player.choose(texts.MENU["play"][0])
+    player.choose(texts.FLIGHTS["missions"][0])
     assert player.top_name == "MissionsScene"
     player.press("confirm")  # the list is where it begins
     player.frames(2)
@@ -54,24 +56,26 @@ def test_a_mission_is_found_flown_and_left(open_screen):
     player.press("pause")  # Enter leads on to the next one
     assert player.top_name == "MissionsScene"
     assert player.the(Listing).rows[1][1] in texts.MEDALS[1:]
-    player.press("back")
+    player.press("back", "back")
     assert player.top_name == "MenuScene"
 
 
 def test_a_flight_is_flown_paused_handed_over_and_left(open_screen):
     player = open_screen(SCREENS["MenuScene"])
     player.choose(texts.MENU["play"][0])
+    player.choose(texts.FLIGHTS["free"][0])
     player.press("main", "hand over")
     assert player.top.flight.hand is StickHolder.NETWORK
     player.press("hand over", "pause")
     assert player.top_name == "PauseScene"
     player.choose(texts.PAUSE_LEAVE)
-    assert player.top_name == "MenuScene"
+    assert player.top_name == "FlightsScene"
 
 
 def test_a_replay_is_watched_wound_and_flown_on(open_screen):
     player = open_screen(lambda context: [flown(context), MenuScene(context)][1])
-    player.choose(texts.MENU["logbook"][0])
+    player.choose(texts.MENU["play"][0])
+    player.choose(texts.FLIGHTS["logbook"][0])
     player.press("confirm")
     replay = player.top
     assert player.top_name == "ReplayScene"
@@ -87,28 +91,26 @@ def test_a_replay_is_watched_wound_and_flown_on(open_screen):
     player.press("pause")
     player.choose(texts.PAUSE_LEAVE)
     assert player.top is replay
-    player.press("back", "back")
+    player.press("back", "back", "back")
     assert player.top_name == "MenuScene"
 
 
 def test_settings_are_changed_and_kept(open_screen):
     player = open_screen(SCREENS["MenuScene"])
     player.choose(texts.MENU["settings"][0])
-    player.press("down", "down", "confirm")
+    player.choose(texts.SETTINGS["colour_safe"][0])
     assert player.saved()["colour_safe"] is True
     player.press("left")
     assert player.saved()["colour_safe"] is False
+    group(player, "sound")
     while player.form.focused.label != texts.SOUND_GROUPS["effects"]:
         player.press("down")
     player.press("left", "left")
     assert player.saved()["effects_volume"] == pytest.approx(0.7)
-    while player.form.focused.label != texts.BACK:
-        player.press("down")
-    player.press("right")
-    while player.form.focused.label != texts.BINDINGS_OPEN:
-        player.press("up")
-    player.press("confirm")
+    group(player, "controls")
+    player.choose(texts.BINDINGS_OPEN)
     assert player.top_name == "BindingsScene"
+    player.press("up", "right", "down")  # everything else
     kind = "keys" if player.device == "keys" else "buttons"
     while player.form.focused.label != texts.BINDINGS["PREVIOUS"]:
         player.press("down")
@@ -122,6 +124,16 @@ def test_settings_are_changed_and_kept(open_screen):
     assert player.saved()[kind] == {}
     player.press("back", "back")
     assert player.top_name == "MenuScene"
+
+
+def group(player: Player, name: str) -> None:
+    """Show a group of the settings."""
+    player.form.focus(player.form.widgets[0])
+    for _ in GROUPS_OF_SETTINGS:
+        player.press("left")
+    for _ in range(GROUPS_OF_SETTINGS.index(name)):
+        player.press("right")
+    assert player.top.group == name
 
 
 def test_a_flight_is_flown_with_the_mouse_alone(open_game, context: Context):

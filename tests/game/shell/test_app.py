@@ -8,12 +8,13 @@ from pathlib import Path
 import pygame
 import pytest
 
+from game.core import texts
 from game.core.scene import Pop, Push, Quit, Replace, Scene, Transition
 from game.core.settings import Settings, SettingsFile
 from game.scenes import scene_of
-from game.scenes.menu import MenuScene
+from game.scenes.menus.menu import MenuScene
+from game.scenes.menus.settings import SettingsScene
 from game.scenes.pause import PauseScene
-from game.scenes.settings import SettingsScene
 from game.shell.app import LOG_NAME, App, log_to
 from game.shell.window import NoDisplayError
 from game.start import play
@@ -61,18 +62,18 @@ class Probe(Scene):
 
 
 def test_menu_leads_to_settings_and_back_by_keyboard(game: Driver):
-    game.keys(*[pygame.K_DOWN] * 9, pygame.K_RETURN)
+    game.keys(*[pygame.K_DOWN] * 5, pygame.K_RETURN)
     assert game.top_name == "SettingsScene"
     game.key(pygame.K_ESCAPE)
     assert game.top_name == "MenuScene"
 
 
 def test_menu_leads_to_settings_by_mouse_and_by_pad(game: Driver):
-    game.click((90, 595))
+    game.click(game.widget(texts.MENU["settings"][0]).box.center)
     assert game.top_name == "SettingsScene"
     game.button(pygame.CONTROLLER_BUTTON_B)
     assert game.top_name == "MenuScene"
-    game.axis(pygame.CONTROLLER_AXIS_LEFTY, -30000)  # from Settings up to the logbook
+    game.axis(pygame.CONTROLLER_AXIS_LEFTY, -30000)  # from Settings up to Learn
     game.axis(pygame.CONTROLLER_AXIS_LEFTY, 0)
     game.button(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
     game.button(pygame.CONTROLLER_BUTTON_A)
@@ -86,10 +87,9 @@ def test_escape_in_the_menu_asks_twice(game: Driver):
 
 @pytest.mark.parametrize("name", ["full_screen", "reduced_motion", "colour_safe", "show_hints"])
 def test_a_setting_acts_at_once_is_saved_at_once_and_survives(open_game, context: Context, name: str):
-    rows = ["full_screen", "reduced_motion", "colour_safe", "show_hints"]
     before = getattr(Settings(), name)
     game = open_game(SettingsScene)
-    game.keys(*[pygame.K_DOWN] * rows.index(name), pygame.K_RETURN)
+    game.press_on(texts.SETTINGS[name][0])
     game.app.settings_writer.wait()
     assert getattr(SettingsFile(context.user_dir).load(), name) is not before
     game.app.close()
@@ -101,9 +101,10 @@ def test_a_setting_acts_at_once_is_saved_at_once_and_survives(open_game, context
 def test_colours_change_with_the_setting(open_game):
     game = open_game(SettingsScene)
     usual = game.app.canvas.palette
-    game.click((460, 124 + 2 * 60 + 28))
+    switch = game.widget(texts.SETTINGS["colour_safe"][0]).box.center
+    game.click(switch)
     assert game.app.canvas.palette != usual
-    game.click((460, 124 + 2 * 60 + 28))
+    game.click(switch)
     assert game.app.canvas.palette == usual
 
 
@@ -125,10 +126,10 @@ def test_the_view_is_16_to_9_in_any_window_and_the_mouse_is_in_points(open_game,
 @pytest.mark.parametrize("size", SIZES)
 def test_every_screen_works_at_every_size(game: Driver, size: tuple[int, int]):
     game.resize(size)
-    game.click((90, 595))
+    game.press_on(texts.MENU["settings"][0])
     assert game.top_name == "SettingsScene"
     game.frames(3)
-    game.click((80, 640))
+    game.click(game.hints()[texts.HINT_BACK])
     assert game.top_name == "MenuScene"
 
 
@@ -307,7 +308,7 @@ def test_pause_offers_retry_settings_and_the_way_out(open_game):
 
 
 def test_a_scene_that_is_left_for_good_is_in_memory_no_more(game: Driver):
-    game.keys(*[pygame.K_DOWN] * 9, pygame.K_RETURN)
+    game.keys(*[pygame.K_DOWN] * 5, pygame.K_RETURN)
     settings = weakref.ref(game.top)
     game.frames(20)
     gc.disable()
@@ -382,7 +383,7 @@ def test_user_folder_that_cannot_be_written_does_not_stop_the_game(open_game, co
     context.user_dir = tmp_path / "file" / "inside"
     (tmp_path / "file").write_text("in the way")
     game = open_game(SettingsScene)
-    game.keys(pygame.K_DOWN, pygame.K_RETURN)
+    game.press_on(texts.SETTINGS["reduced_motion"][0])
     assert game.app.context.settings.reduced_motion
     assert game.frames(3)
 

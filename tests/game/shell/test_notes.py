@@ -5,7 +5,7 @@ from collections.abc import Callable
 import pytest
 
 from game.drawing.tokens import VIEW_SIZE
-from game.scenes.menu import MenuScene
+from game.scenes.menus.menu import MenuScene
 from tests.support.driver import Driver
 
 Open = Callable[..., Driver]

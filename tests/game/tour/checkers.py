@@ -14,7 +14,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK, VIEW_SIZE
 from game.input.bindings import KEYBOARD, Bindings, Command, Held
 from game.input.controls import Controls, key_name
-from game.scenes.menu_background import LOADER
+from game.scenes.menus.background import LOADER
 from game.scenes.play import PlayScene
 from game.scenes.replay import ReplayScene
 from game.ui.actions import Action, Table

@@ -42,13 +42,15 @@ def walk(player: Player) -> None:
 
 def is_seen(player: Player, widget: Widget) -> bool:
     """Whether the picture around a widget changes when the focus comes to it."""
-    form, canvas = player.form, player.app.canvas
+    form, canvas = player.form, player.top.laid_on(player.app.canvas)
     pictures = []
     for focused in (next((each for each in form.widgets if each is not widget), widget), widget):
         form.focus(focused)
         player.frames(2)
         around = canvas.rect(*widget.box.inflate(28, 16)).clip(canvas.surface.get_rect())
         pictures.append(pygame.surfarray.array3d(canvas.surface.subsurface(around)).astype(int))
+    height = min(picture.shape[1] for picture in pictures)  # a panel may have scrolled by part of a pixel
+    pictures = [picture[:, :height] for picture in pictures]
     return len(form.widgets) == 1 or int((np.abs(pictures[0] - pictures[1]).max(axis=2) > 40).sum()) >= 12
 
 

@@ -12,8 +12,8 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK, SMALL, VIEW_SIZE
 from game.input.controls import Command
 from game.scenes.choices import ChoicesScene
+from game.scenes.menus.settings import SettingsScene
 from game.scenes.play import PlayScene
-from game.scenes.settings import SettingsScene
 from game.ui import focus
 from game.ui.actions import hints_of
 from game.ui.context import Context
@@ -257,7 +257,7 @@ def test_a_choice_of_many_goes_on_pages_that_keys_and_mouse_turn():
 
 @pytest.mark.parametrize("scene", [SettingsScene, ChoicesScene])
 def test_the_hint_names_the_keys_that_change_what_is_in_focus(open_game: Callable[..., Driver], scene: type):
-    driver = open_game(SettingsScene) if scene is SettingsScene else open_game(PlayScene, seed=1)
+    driver = open_game(SettingsScene, "sound") if scene is SettingsScene else open_game(PlayScene, seed=1)
     driver.frames(2)
     if scene is ChoicesScene:
         driver.key(pygame.K_c)

@@ -1,46 +1,49 @@
-"""Key bindings screen: press a row, then the new key or button for it."""
+"""Keys: press a row, then the new key or button for it."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import pygame
 
 from game.core import texts
-from game.core.scene import Pop, Transition
-from game.drawing.canvas import Canvas
-from game.drawing.sky import NightSky
-from game.drawing.tokens import HUMAN, INK, LABEL, LINE, MARGIN, MUTE, SMALL, TEXT, VIEW_SIZE
+from game.core.scene import Transition
+from game.drawing.tokens import HUMAN, INK, MUTE, TEXT
 from game.input.bindings import Bindings, Meaning
-from game.input.controls import Command, Controls, key_name, names
+from game.input.controls import Command, Controls, Held, key_name
 from game.ui.actions import Action, Table
-from game.ui.context import Context
-from game.ui.form_scene import FormScene
-from game.ui.widget import PointsManager, Widget, mix
-from game.ui.widgets import TextButton
+from game.ui.panel_scene import PanelScene
+from game.ui.rows import RowWidget
+from game.ui.widget import PointsManager, mix
 
-_FIRST: Final = 144
-_ROW: Final = 28
-_KEYS: Final = 400
-_BUTTONS: Final = 800
-_CELL: Final = 352
-_WORDS: Final = 628
+if TYPE_CHECKING:
+    from game.drawing.cursor import Cursor
+    from game.ui.context import Context
+    from game.ui.panel import Panel
+
+# What flies; everything else is in the other half of the table.
+FLYING: Final[tuple[Meaning, ...]] = (
+    Held.MAIN, Held.LEFT, Held.RIGHT, Held.FINE, Command.HANDOVER, Command.RETRY, Command.PAUSE,
+)  # fmt: skip
+_LEAST: Final = 108.0  # points of a column
+_BETWEEN: Final = "  ·  "
 
 
-class BindingCell(Widget):
+class BindingCell(RowWidget):
     """Cell with the keys or buttons of one command. A press waits for a new one; Escape or Start cancels."""
+
+    pad = 4.0
 
     def __init__(
         self,
         manager: PointsManager,
-        box: pygame.typing.RectLike,
         controls: Controls,
         bindings: Bindings,
         meaning: Meaning,
         on_change: Callable[[str], None],
     ) -> None:
-        super().__init__(manager, box, texts.BINDINGS[meaning.name])
+        super().__init__(manager, (0, 0, 1, 1), texts.BINDINGS[meaning.name])
         self._controls, self._bindings, self._meaning, self._on_change = controls, bindings, meaning, on_change
 
     def press(self) -> None:
@@ -63,8 +66,7 @@ class BindingCell(Widget):
 
     def reset(self) -> None:
         """Restore the default binding."""
-        self._bindings.reset(self._meaning)
-        self._on_change(texts.BINDINGS_RESET.format(what=self.label))
+        self._change(lambda: self._bindings.reset(self._meaning))
 
     def take(self, event: pygame.event.Event) -> bool:
         """Bind the next key or button; events of the other device are ignored."""
@@ -82,7 +84,7 @@ class BindingCell(Widget):
 
     def _bind(self, code: int) -> None:
         """Bind a key, or say why it can't be bound, and wait for another."""
-        what = self._controls.gamepad_sign(code) if self._for_pads else key_name(code)
+        what = self._word(code)
         if not self._bindings.may(self._meaning, code):
             self._on_change(texts.BINDINGS_FIXED.format(key=what))
             return
@@ -90,16 +92,31 @@ class BindingCell(Widget):
             self._on_change(texts.BINDINGS_ONLY.format(key=what, other=texts.BINDINGS[poor.name]))
             return
         self.stop()
-        loser = self._bindings.bind(self._meaning, code)
-        left = names(self._words(loser)) if loser else ""
-        self._on_change(texts.BINDINGS_TAKEN.format(other=texts.BINDINGS[loser.name], key=left) if loser else "")
+        self._change(lambda: self._bindings.bind(self._meaning, code))
+
+    def _change(self, change: Callable[[], object]) -> None:
+        """Change bindings, and say what each command has now, and all that it has lost."""
+        before = dict(self._bindings.table)
+        change()
+        after = self._bindings.table
+        changed = [
+            self._meaning,
+            *(each for each in after if each is not self._meaning and after[each] != before[each]),
+        ]
+        self._on_change("  ".join(self._told(each, before[each], after[each]) for each in changed))
+
+    def _told(self, meaning: Meaning, before: tuple[int, ...], after: tuple[int, ...]) -> str:
+        lost = [self._word(code) for code in before if code not in after]
+        words = texts.BINDINGS_LOST if lost else texts.BINDINGS_HAS
+        keys = texts.BINDINGS_AND.join(map(self._word, after)) or texts.BINDINGS_NONE
+        return words.format(what=texts.BINDINGS[meaning.name], keys=keys, lost=texts.BINDINGS_OR.join(lost))
 
     @property
     def _for_pads(self) -> bool:
         return self._bindings is self._controls.buttons
 
-    def _words(self, meaning: Meaning) -> list[str]:
-        return self._controls.gamepad_signs(meaning) if self._for_pads else self._controls.key_names(meaning)
+    def _word(self, code: int) -> str:
+        return self._controls.gamepad_sign(code) if self._for_pads else key_name(code)
 
     def ease(self, at_once: bool) -> None:
         """Stop waiting once the focus is elsewhere."""
@@ -107,42 +124,61 @@ class BindingCell(Widget):
         if not self.focused:
             self.stop()
 
-    def paint(self, canvas: Canvas) -> None:
-        """Draw the keys, or the prompt for a new one."""
-        if self.warmth > 0.02:
-            colour = HUMAN if self.typing else INK
-            canvas.outline(self.box.inflate(24, 0), 6, colour, 1, (0.9 if self.typing else 0.4) * self.warmth)
-        left, baseline = self.box.left, self.box.centery + 5
+    def write(self, cursor: Cursor) -> None:
+        """Write the keys, or the prompt for a new one."""
+        if cursor.canvas and self.warmth > 0.02:
+            colour, strength = (HUMAN, 0.9) if self.typing else (INK, 0.4)
+            cursor.canvas.outline(self.box.inflate(16, -2), 6, colour, 1, strength * self.warmth)
         if self.typing:
-            text = texts.BINDINGS_PRESS_BUTTON if self._for_pads else texts.BINDINGS_PRESS_KEY
-            canvas.text(text, (left, baseline), size=TEXT, colour=HUMAN)
-            return
-        words = self._words(self._meaning)
-        canvas.text(
-            names(words) or texts.BINDINGS_NONE, (left, baseline), size=TEXT, colour=mix(MUTE, INK, self.warmth)
-        )
+            words, colour = texts.BINDINGS_PRESS_BUTTON if self._for_pads else texts.BINDINGS_PRESS_KEY, HUMAN
+        else:
+            told = self._controls.gamepad_signs if self._for_pads else self._controls.key_names
+            words, colour = _BETWEEN.join(told(self._meaning)) or texts.BINDINGS_NONE, mix(MUTE, INK, self.warmth)
+        styled = cursor.in_style(colour=colour)
+        styled.text(words)
+        cursor.y = styled.y
 
 
-class BindingsScene(FormScene):
-    """Table of all commands with their keys and gamepad buttons. Each change is saved at once.
+class BindingsScene(PanelScene):
+    """Table of commands with their keys and gamepad buttons. Each change is saved at once.
 
     Attributes:
         said: what came of the last change, in words.
 
     """
 
+    most = 880.0
+
     def __init__(self, context: Context) -> None:
         super().__init__(context)
         self._controls = context.controls
-        self._sky = NightSky(context.rng, ember=0.4, stars=60)
-        form = self.form
         self.said = ""
-        for row, meaning in enumerate(self._controls.keys.table):
-            for left, bindings in ((_KEYS, self._controls.keys), (_BUTTONS, self._controls.buttons)):
-                box = (left, _FIRST + row * _ROW + 2, _CELL, _ROW - 3)
-                form.add(BindingCell(form.manager, box, self._controls, bindings, meaning, self._changed))
-        form.add(TextButton(form.manager, (MARGIN, _WORDS, 96, 32), texts.BACK, Pop, size=18))
-        form.add(TextButton(form.manager, (_KEYS, _WORDS, 240, 32), texts.BINDINGS_ALL, self._reset_all, size=18))
+        self._half = 0
+        self.build()
+        self.form.focus(self.form.widgets[1])  # the first key
+
+    def describe(self, panel: Panel) -> None:
+        """Add the two halves' names, what came of the last change, and the table of one half."""
+        panel.title(texts.BINDINGS_TITLE)
+        panel.gap(4)
+        panel.choice("", texts.BINDINGS_HALVES, self._half, self._show, size=18.0)
+        panel.add(self._write_said)
+        panel.gap(4)
+        name, keys, buttons = panel.beside((1.1, 1, 1), _LEAST, 24.0)
+        name.caption(" ")
+        keys.caption(texts.KEYS_KEYBOARD)
+        buttons.caption(texts.KEYS_PAD)
+        everything = self._controls.keys.table
+        for meaning in FLYING if self._half == 0 else [each for each in everything if each not in FLYING]:
+            panel.line()
+            name, *cells = panel.beside((1.1, 1, 1), _LEAST, 24.0)
+            name.gap(BindingCell.pad)
+            name.text(texts.BINDINGS[meaning.name])
+            for cell, bindings in zip(cells, (self._controls.keys, self._controls.buttons), strict=True):
+                cell.widget(BindingCell(self.form.manager, self._controls, bindings, meaning, self._changed))
+        panel.line()
+        panel.gap(8)
+        panel.button(texts.BINDINGS_ALL, self._reset_all)
 
     def exit(self) -> None:
         """Stop waiting for a key; every change is saved already."""
@@ -156,21 +192,6 @@ class BindingsScene(FormScene):
                     widget.stop()
         return super().handle_event(event)
 
-    def draw(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the table, and the result of the last change."""
-        self._sky.draw(canvas)
-        canvas.text(texts.BINDINGS_TITLE, (MARGIN, 88), size=34, weight="light")
-        for text, left in ((texts.KEYS_KEYBOARD, _KEYS), (texts.KEYS_PAD, _BUTTONS)):
-            canvas.text(text, (left, _FIRST - 14), size=LABEL, weight="medium", colour=MUTE)
-        for row, meaning in enumerate(self._controls.keys.table):
-            y = _FIRST + row * _ROW
-            canvas.line((MARGIN, y), (VIEW_SIZE[0] - MARGIN, y), LINE, 1)
-            canvas.text(texts.BINDINGS[meaning.name], (MARGIN, y + _ROW / 2 + 5), size=TEXT, colour=INK)
-        self.form.draw(canvas)
-        if self.said:
-            canvas.text(self.said, (_BUTTONS - 120, _WORDS + 21), size=SMALL, colour=HUMAN)
-        self.draw_hints(canvas)
-
     def actions(self) -> Table:
         """Change a binding, or restore it; while a key is awaited, cancel."""
         cell = self.form.focused
@@ -183,6 +204,16 @@ class BindingsScene(FormScene):
             Action(Command.RETRY, cell.reset, texts.HINT_AS_IT_WAS),
             self.form.goes_back(texts.HINT_BACK),
         ]
+
+    def _write_said(self, cursor: Cursor) -> None:
+        """Write what came of the last change, in room for a line that is left free for it."""
+        words = cursor.in_style(TEXT, HUMAN)
+        words.text(self.said)
+        cursor.y = words.y
+
+    def _show(self, half: int) -> None:
+        self._half = half
+        self.build()
 
     def _changed(self, said: str) -> None:
         self.said = said

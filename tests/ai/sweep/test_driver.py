@@ -17,9 +17,9 @@ from typing import Any
 
 import pytest
 
+from ai.sweep.journal import Search
 from ai.sweep.study import Study
 from ai.sweep.trial import Asked, unpack
-from ai.training.checkpoints import CHECKPOINT_SECONDS
 from tests.support.studies import TINY, networks_in, run_alone
 
 pytestmark = [
@@ -73,6 +73,12 @@ def finished(folder):
     return sorted(path.parent.name for path in folder.glob("trials/[0-9]*/trial.json"))
 
 
+def under_way(folder):
+    """The settings of trials that have begun and are not finished, by number."""
+    search = Search(Study.load(folder))
+    return {number: search.params(number) for number in search.left}
+
+
 def wait_for(condition, driver):
     end = time.monotonic() + LONG
     while not (found := condition()):
@@ -100,7 +106,7 @@ def descendants(of):
 
 
 def training_workers(of):
-    return [pid for pid, name in descendants(of).items() if name.startswith("ray::SweepTrial")]
+    return [pid for pid, name in descendants(of).items() if name.startswith("ray::Worker")]
 
 
 def listening(pids):
@@ -125,7 +131,7 @@ def assert_as_alone(folder):
     """Every trial of a study is there once and is what the same settings give without Ray, bit for bit."""
     study = Study.load(folder)
     assert sorted(study.trials) == list(range(study.plan.trials))
-    assert (study.begun, study.damaged) == ({}, [])
+    assert study.damaged == []
     for number, trial in study.trials.items():
         parent = None if trial.parent is None else study.trials[trial.parent]
         runs = study.runs_of(parent.number) if parent else b""
@@ -149,7 +155,7 @@ def test_a_population_on_two_nodes_is_what_it_is_alone(nodes, tmp_path):
 def test_any_function_is_called_for_many_items_and_each_answer_finds_its_place(nodes):
     program = f"""
 from ai.sweep.cluster import each
-from ai.sweep.table import duration
+from ai.sweep.report import duration
 print(sorted(each(duration, [1.0, 300.0, 8000.0], {nodes.address!r})))
 """
     done = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False)
@@ -196,6 +202,8 @@ def test_a_trial_goes_on_from_its_last_checkpoint_when_its_worker_is_killed(tmp_
     options = ["--trials", "1", "--decisions", "240000", "--every", "4000", "--workers", "1"]
     with sweep(folder, *NEW, *options) as driver:
         (worker,) = wait_for(lambda: training_workers(driver.pid), driver)
+        from ai.sweep.driver import CHECKPOINT_SECONDS
+
         time.sleep(CHECKPOINT_SECONDS + 8)
         os.kill(worker, signal.SIGKILL)
         out = ended(driver)
@@ -241,7 +249,7 @@ def test_a_killed_worker_driver_and_node_lose_and_repeat_no_finished_trial_and_c
         driver.send_signal(signal.SIGKILL)
     kept = {name: (folder / "trials" / name / "trial.json").stat() for name in finished(folder)}
     assert 2 <= len(kept) < 5
-    asked = {path.stem: json.loads(path.read_text()) for path in folder.glob("started/*.json")}
+    asked = under_way(folder)
     assert asked
     with sweep(folder, "--resume", "--address", nodes.address) as driver:
         wait_for(lambda: len(finished(folder)) > len(kept), driver)
@@ -254,7 +262,7 @@ def test_a_killed_worker_driver_and_node_lose_and_repeat_no_finished_trial_and_c
         now = (folder / "trials" / name / "trial.json").stat()
         assert (now.st_ino, now.st_mtime_ns) == (stat.st_ino, stat.st_mtime_ns), "a finished trial was written again"
     study = Study.load(folder)
-    for name, told in asked.items():
-        assert study.trials[int(name)].params == told["params"], "an interrupted trial has kept its settings"
+    for number, params in asked.items():
+        assert study.trials[number].params == params, "an interrupted trial has kept its settings"
     assert len({json.dumps(trial.params) for trial in study.trials.values()}) == 5
     assert_as_alone(folder)

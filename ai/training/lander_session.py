@@ -1,0 +1,265 @@
+"""Session of landers: what is seen of them, checkpoints to go back to, lessons, demonstrations, edits by hand."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Generator
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from ai.common.environment import Ints, StepResult
+from ai.files import count_of
+from ai.lander.environment import LanderEnv
+from ai.training.checkpoints import AGENTS, restore_checkpoint, resume_run
+from ai.training.config import Config
+from ai.training.demonstrations import read, taught, teach
+from ai.training.edits import EDITED, EditNetwork, LearnOn, NetworkEditor, UndoEdit
+from ai.training.explanations import Explanations
+from ai.training.history import PARTS, REVERTED, Checkpoint, History, Point
+from ai.training.loop import Progress, Training
+from ai.training.messages import (
+    AddDemonstrations,
+    ChangeSetting,
+    Explain,
+    NetworkState,
+    RestoreCheckpoint,
+    SwarmState,
+    problem_of,
+)
+from ai.training.schedule import InForce, in_force
+from ai.training.session import Session, conduct
+from ai.training.state import State, broken
+from ai.training.validation_flights import ValidationFlights
+
+POINT_DECISIONS: Final = 256  # at least so many between two points
+NETWORK_SECONDS: Final = 0.25
+TAUGHT: Final = "demonstrations"  # the name of the change that gives it some to learn from
+NOTHING_PAID: Final = (0.0,) * len(PARTS)
+CAREFUL: Final = 0  # the lander with the fewest random actions; the last one has the most (Config.epsilon_spread)
+
+
+def live(
+    config: Config,
+    seed: int = 0,
+    *,
+    keep: Path | None = None,
+    resume: Path | None = None,
+    clock: Callable[[], float] = time.monotonic,
+) -> Generator[tuple[Any, ...], Any, None]:
+    """Train landers without end, as `conduct` does; every turn is one decision of all landers.
+
+    The run is kept in `keep`. With `resume`, it goes on from a saved run, with the settings, seed and history of that.
+    `clock` counts seconds. Raises ModelFormatError if there is nothing to resume from, and ValueError for settings
+    that are not a lander's.
+    """
+    training = Training(config, seed) if resume is None else resume_run(resume)
+    if not isinstance(training.env, LanderEnv):
+        raise ValueError(f"only landers can be looked into, not {training.config.env}")
+    training.clock = clock
+    history = History() if resume is None else History.read(resume)
+    session = LanderSession(training, history, keep)
+    try:
+        session.go_on(training.around)
+    except (KeyError, TypeError, ValueError) as error:
+        raise broken(resume or "", error) from error
+    yield from conduct(session)
+
+
+class LanderSession(Session[Training]):
+    """Session of landers. They never stand still for a validation: that is flown bit by bit."""
+
+    kind = AGENTS
+
+    def __init__(self, training: Training, history: History, keep: Path | None) -> None:
+        super().__init__(training, history, keep)
+        assert isinstance(training.env, LanderEnv)
+        self.env = training.env
+        history.reward_scale = training.config.reward_scale
+        training.on_step = self._on_step
+        training.evaluate_every = 0  # that is done here
+        self._validation = ValidationFlights(training)
+        self._explanations = Explanations(training)
+        self._editor = NetworkEditor(training.agent)
+        self._swarm_state = self._swarm_state_of(self.env.outcome)
+        self._network_state_at = 0.0
+        self._point_at = 0
+        self._checkpoint_at = training.agent.decisions + self._checkpoint_every
+        self._began_learning = training.agent.gradient_steps
+        self._learned_from: set[str] = set()  # digests of demonstrations
+
+    @property
+    def _checkpoint_every(self) -> int:
+        """Decisions between checkpoints: sparser as the run gets longer, so that the first hours keep them all."""
+        return max(40 * self.env.num_envs, 2_500, self.training.agent.decisions // 50)
+
+    @property
+    def keeps_still(self) -> bool:
+        """Whether a network is edited: that is only looked at, until it learns on from there."""
+        return self.training.agent.paused
+
+    def state(self) -> State:
+        """Return what this goes on from, besides the run."""
+        return {
+            "point_at": self._point_at, "checkpoint_at": self._checkpoint_at, "began_learning": self._began_learning,
+            "learned_from": sorted(self._learned_from), "validation": self._validation.state(),
+        }  # fmt: skip
+
+    def go_on(self, state: State) -> None:
+        """Go on from what `state` gave, if anything; raises KeyError, TypeError or ValueError for anything else."""
+        if state:
+            self._point_at, self._checkpoint_at = count_of(state["point_at"]), count_of(state["checkpoint_at"])
+            self._began_learning = count_of(state["began_learning"])
+            self._learned_from = set(state["learned_from"])
+            self._validation.load_state(state["validation"])
+
+    def show(self) -> None:
+        """Tell how the landers and the network stand."""
+        self.messages += (self._swarm_state, *self._state_messages())
+        if not self.history.checkpoints:
+            self.record(self._checkpoint(0.0))
+
+    def turned(self) -> None:
+        """Tell the settings in force."""
+        self.messages.append(self._state_messages()[1])
+
+    def step(self) -> None:
+        """Let every lander take one decision."""
+        training = self.training
+        began, before = training.clock(), training.agent.decisions
+        progress = training.advance()
+        if validation := self._validation.go_on(before, 1 + self.env.num_envs // 256):
+            self.record(validation)
+        now = training.clock()
+        training.seconds += now - began
+        self.messages.append(self._swarm_state)
+        if now >= self._network_state_at:
+            self._network_state_at = now + NETWORK_SECONDS
+            self.messages += self._state_messages()
+        if progress.decisions >= self._point_at:
+            self._point_at = progress.decisions + POINT_DECISIONS
+            self.record(self._point(progress))
+        if progress.decisions >= self._checkpoint_at and not training.agent.paused:
+            self.record(self._checkpoint(progress.success_rate))
+            self._checkpoint_at = progress.decisions + self._checkpoint_every
+        self._explanations.keep()
+
+    def finish_measuring(self) -> None:
+        """Fly what is left of a validation."""
+        if validation := self._validation.finish():
+            self.record(validation)
+
+    def go_back(self) -> None:
+        """Restore the networks from the last checkpoint, when training has diverged since."""
+        self._editor.forget()
+        self.training.diverged = True
+        restore_checkpoint(self.training.agent, self.history.checkpoints[-1])
+
+    def end(self) -> None:
+        """Keep what has not been kept, without an edit that was only looked at."""
+        if self.training.agent.paused:
+            self._editor.restore()
+        super().end()
+
+    def _on_step(self, result: StepResult) -> None:
+        self._swarm_state = self._swarm_state_of(result.outcome)
+        self._explanations.follow(self.env.actions, result)
+
+    def _swarm_state_of(self, outcome: Ints) -> SwarmState:
+        env, training = self.env, self.training
+        return SwarmState(
+            env.position.astype(np.float32),
+            env.angle.astype(np.float32),
+            env.actions.astype(np.int8),
+            outcome.astype(np.int8),
+            training.statistics.earned.astype(np.float32),
+            training.agent.decisions,
+        )
+
+    def _network_state(self) -> NetworkState:
+        agent = self.training.agent
+        return NetworkState(
+            agent.online.values.copy(),
+            agent.online.gradients.copy(),
+            self.training.observation[CAREFUL].copy(),
+            agent.decisions,
+        )
+
+    def _state_messages(self) -> tuple[NetworkState, InForce]:
+        """Return what is sent a few times a second, and whenever a command has changed it."""
+        training = self.training
+        return self._network_state(), in_force(training.config, training.agent.decisions, training.episodes)
+
+    def _point(self, progress: Progress) -> Point:
+        flown = 1.0 if self.training.statistics.known else np.nan
+        agent = self.training.agent
+        learnt = 1.0 if agent.gradient_steps > self._began_learning and not agent.paused else np.nan
+        landed, crashed, out_of_bounds, timed_out = (flown * share for share in progress.shares)
+        return Point(
+            self.training.seconds, progress.decisions, progress.episodes, flown * progress.success_rate,
+            flown * progress.mean_return, learnt * progress.loss, learnt * progress.mean_q, progress.epsilon,
+            progress.stage, progress.steps_per_second, landed, crashed, out_of_bounds,
+            timed_out, progress.parts or NOTHING_PAID,
+        )  # fmt: skip
+
+    def _checkpoint(self, success: float) -> Checkpoint:
+        agent = self.training.agent
+        values = agent.network.values.copy()
+        if not np.isfinite(values).all():
+            raise FloatingPointError(
+                f"the network was not finite after learning step {agent.gradient_steps}; "
+                f"most likely the learning rate of {agent.optimizer.learning_rate:g} is too high"
+            )
+        normalizer = agent.normalizer.to_json() if agent.normalizer else None
+        return Checkpoint(self.training.seconds, agent.decisions, success, values, normalizer)
+
+    # Commands
+
+    def _teach(self, command: AddDemonstrations) -> None:
+        agent = self.training.agent
+        try:
+            new = [each for each in read(command.path) if each.digest not in self._learned_from]
+            used = teach(agent, new)
+        except (OSError, ValueError) as error:
+            self.refuse(command, problem_of(error))
+            return
+        self._learned_from.update(each.digest for each in new)
+        if not used:
+            self.refuse(command, "there are no landings that this run has not learnt from already")
+            return
+        if not self.training.config.success_pass:
+            self.change(ChangeSetting("success_pass", taught(self.training.config).success_pass))
+        self.record_change(TAUGHT, None, used)
+
+    def _explain(self, command: Explain) -> None:
+        try:
+            self.messages.append(self._explanations.explain(command.slot, command.decisions))
+        except (ValueError, FloatingPointError) as error:
+            self.refuse(command, error)
+
+    def _edit(self, command: EditNetwork | UndoEdit | LearnOn) -> None:
+        editor, before = self._editor, self._editor.count
+        try:
+            editor.carry_out(command)
+        except ValueError as error:
+            self.refuse(command, error)
+            return
+        if editor.count != before:
+            self.record_change(EDITED, before, editor.count, self.amends(EDITED, editor.count))
+        self.messages += (editor.edits, *self._state_messages())
+
+    def _restore_checkpoint(self, command: RestoreCheckpoint) -> None:
+        checkpoint = self.history.checkpoint_at(command.decisions)
+        if checkpoint is None:
+            self.refuse(command, "this run has no checkpoints yet")
+            return
+        self._editor.forget()
+        restore_checkpoint(self.training.agent, checkpoint)
+        self.record_change(REVERTED, None, checkpoint.decisions)
+        self.messages += (self._editor.edits, *self._state_messages())
+
+    commands = Session.commands | {
+        RestoreCheckpoint: _restore_checkpoint, AddDemonstrations: _teach, Explain: _explain,
+        **dict.fromkeys((EditNetwork, UndoEdit, LearnOn), _edit),
+    }  # fmt: skip

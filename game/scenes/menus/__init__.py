@@ -1,0 +1,1 @@
+"""The menu, the page of Play, settings, keys, and the dialogs that all screens ask with."""

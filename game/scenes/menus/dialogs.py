@@ -1,0 +1,145 @@
+"""Dialogs: a question over the scene that asks it, which is paused and dimmed meanwhile."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Final
+
+import pygame
+
+from game.core import texts
+from game.core.names import LONGEST_NAME, fitting
+from game.core.scene import Pop, Scene, Transition
+from game.drawing.tokens import FAINT
+from game.ui.hints import HintRow, hint_lines
+from game.ui.panel_scene import PanelScene
+from game.ui.still_picture import StillPicture
+
+if TYPE_CHECKING:
+    from game.drawing.canvas import Canvas
+    from game.ui.listing import Row
+    from game.ui.panel import Panel
+    from game.ui.widget import OnPress
+
+_MARGIN: Final = 32.0
+_FOOT: Final = 30.0  # from the box to the hints
+
+
+class Dialog(PanelScene):
+    """Base of all dialogs: a question, and what a subclass adds below. Escape closes without effect.
+
+    Attributes:
+        more: what is said below the question.
+
+    """
+
+    most = 480.0
+
+    def __init__(self, below: Scene, question: str, more: str = "") -> None:
+        super().__init__(below.context)
+        self._behind, self._question, self.more = StillPicture(below, dimmed=0.8, sharp=True), question, more
+        self.build()
+
+    def describe(self, panel: Panel) -> None:
+        """Add the question, and what there is to choose from."""
+        panel.text(self._question)
+        if self.more:
+            panel.gap(4)
+            panel.aside(self.more)
+        panel.gap(10)
+        self.add_answers(panel)
+
+    @abstractmethod
+    def add_answers(self, panel: Panel) -> None:
+        """Add what there is to choose from."""
+
+    def room(self, canvas: Canvas) -> pygame.FRect:
+        """Return the room of the rows: as high as they are, in the middle of the window."""
+        view = canvas.view
+        width = min(self.most, view.width - 16) - 2 * _MARGIN
+        height = min(self.panel.height, view.height - 2 * _MARGIN - 2 * _FOOT)
+        return pygame.FRect(view.centerx - width / 2, view.centery - height / 2 - 16, width, height)
+
+    @property
+    def box(self) -> pygame.FRect:
+        """The dialog's box, in points."""
+        return self.panel.box.inflate(2 * _MARGIN, 1.5 * _MARGIN)
+
+    def hint_rows(self, canvas: Canvas) -> Sequence[HintRow]:
+        """Return the hints below the box."""
+        box = self.box
+        return hint_lines(self.hints, canvas, (box.left + _MARGIN, box.bottom + _FOOT), canvas.view.right - box.left)
+
+    def draw_behind(self, canvas: Canvas, alpha: float) -> None:
+        """Draw the scene below, dimmed, and the box."""
+        self._behind.draw(canvas)
+        canvas.panel(self.box, 1.0)
+        canvas.outline(self.box, 8, FAINT)
+
+
+class QuestionDialog(Dialog):
+    """Dialog with a few answers: any of them closes it and runs its action."""
+
+    def __init__(
+        self, below: Scene, question: str, more: str, answers: Sequence[tuple[str, Callable[[], None]]]
+    ) -> None:
+        self._answers = answers
+        super().__init__(below, question, more)
+
+    def add_answers(self, panel: Panel) -> None:
+        """Add a word for each answer."""
+        panel.words([(label, _closing(answer)) for label, answer in self._answers])
+
+
+class NameDialog(Dialog):
+    """Dialog that asks for a name, with a suggestion to accept or edit.
+
+    `on_name` is called with the name and returns why it is invalid; if it returns "", the dialog closes.
+    """
+
+    def __init__(self, below: Scene, question: str, suggestion: str, on_name: Callable[[str], str]) -> None:
+        self._on_name, self._suggestion = on_name, suggestion
+        super().__init__(below, question)
+        self._entry.begin()
+
+    def add_answers(self, panel: Panel) -> None:
+        """Add the line to type in, and the words that end it."""
+        self._entry = panel.entry(self._suggestion, self._done, Pop, LONGEST_NAME, fitting)
+        panel.words([(texts.NAMING_KEEP, self._keep), (texts.NAMING_LEAVE, Pop)])
+
+    def _keep(self) -> Transition | None:
+        return self._done(self._entry.text.strip())
+
+    def _done(self, name: str) -> Transition | None:
+        problem = self._on_name(name)
+        if not problem:
+            return Pop()
+        self.context.note(problem)
+        self.form.focus(self._entry)
+        self._entry.begin()
+        return None
+
+
+class ListDialog(Dialog):
+    """Dialog with a list: a press on a row closes it and calls `on_pick` with the row's index."""
+
+    def __init__(self, below: Scene, question: str, rows: Sequence[Row], on_pick: Callable[[int], None]) -> None:
+        self._on_pick, self._rows = on_pick, rows
+        super().__init__(below, question)
+
+    def add_answers(self, panel: Panel) -> None:
+        """Add the list."""
+        panel.listing(self._rows, self._pick, texts.PICKING_EMPTY)
+
+    def _pick(self, number: int) -> Transition:
+        self._on_pick(number)
+        return Pop()
+
+
+def _closing(answer: OnPress) -> Callable[[], Transition]:
+    def press() -> Transition:
+        answer()
+        return Pop()
+
+    return press

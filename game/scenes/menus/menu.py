@@ -1,0 +1,114 @@
+"""Main menu: a title and six words, with the moon behind them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING, Final
+
+from game.core import texts
+from game.core.scene import Quit, Transition, push
+from game.drawing.cursor import LEADING
+from game.drawing.prose import lines
+from game.drawing.tokens import MUTE, STEP, TEXT, VIEW_SIZE
+from game.input.controls import Command
+from game.scenes.menus.background import MenuBackground
+from game.ui.actions import Action, Table
+from game.ui.panel_scene import PanelScene
+
+if TYPE_CHECKING:
+    from game.drawing.canvas import Canvas
+    from game.drawing.cursor import Cursor
+    from game.ui.context import Context
+    from game.ui.panel import Panel
+
+_WORD: Final = 22.0
+# Size of the title: at most this, and these shares of the window's width and height.
+_TITLE, _ACROSS, _DOWN = 88.0, 0.11, 0.12
+_LINE_ROOM, _LINE_SHARE = 520.0, 0.52  # points of the line, and share of the window, which ends before the Earth
+_LOW: Final = 430.0  # points of a window in which nothing is left free
+_PAD, _ABOVE, _BETWEEN = 5.0, 40.0, 26.0  # points around a word, above the title and below the line, in a high one
+
+# Entries: the route of a screen and its key in `texts.MENU`; the last one closes the game.
+ROWS: Final = ("play", "watch", "train", "digits", "learn", "settings", "quit")
+
+
+class MenuScene(PanelScene):
+    """Main menu, the first screen."""
+
+    def __init__(self, context: Context) -> None:
+        super().__init__(context, self._back)
+        self._background = MenuBackground(context)
+        self.build()
+
+    def describe(self, panel: Panel) -> None:
+        """Add the title, what the word in focus leads to, and the words."""
+        panel.add(self._write_title)
+        panel.add(self._write_line)
+        for name in ROWS:
+            panel.button(texts.MENU[name][0], partial(self._open, name), size=_WORD, weight="light")
+
+    def lay_out(self) -> None:
+        """Lay the words out closer in a low window."""
+        for word in self.form.widgets:
+            word.pad = _PAD * self._roominess  # type: ignore[attr-defined]
+        super().lay_out()
+
+    @property
+    def _roominess(self) -> float:
+        """How high the window is, from 0, very low, to 1."""
+        return min(max((self.context.reading().view.height - _LOW) / (VIEW_SIZE[1] - _LOW), 0.0), 1.0)
+
+    def enter(self) -> None:
+        """Follow a change of the settings; the focus stays where it was."""
+        self._background.enter()
+
+    def update(self) -> Transition | None:
+        """Animate the words and the background."""
+        self._background.update()
+        return super().update()
+
+    def draw_behind(self, canvas: Canvas, alpha: float) -> None:
+        """Draw the moon."""
+        self._background.draw(canvas.whole, alpha)
+
+    def actions(self) -> Table:
+        """Move, choose, switch to the full screen; Escape leads to Quit."""
+        return [
+            self.form.moves,
+            self.form.confirms(texts.HINT_CHOOSE),
+            Action(Command.FULLSCREEN, self.context.toggle_full_screen, texts.HINT_FULL_SCREEN),
+        ]
+
+    def _write_title(self, cursor: Cursor) -> None:
+        view = self.context.reading().view
+        size = min(_TITLE, _ACROSS * view.width, _DOWN * view.height)
+        cursor.gap(_ABOVE * self._roominess)
+        title = cursor.in_style(size, weight="extralight")
+        title.text(texts.GAME)
+        cursor.y = title.y
+
+    def _write_line(self, cursor: Cursor) -> None:
+        """Write where the word in focus leads to, and leave room for the longest of these lines."""
+        width = min(cursor.width, _LINE_ROOM, _LINE_SHARE * self.context.reading().view.width)
+        told = [texts.MENU[name][1] for name in ROWS]
+        if self.form.focused:
+            replace(cursor, width=width, colour=MUTE).text(told[self.form.widgets.index(self.form.focused)])
+        longest = max(len(lines(each, TEXT, cursor.weight, width, cursor.scale)) for each in told)
+        cursor.gap(longest * LEADING * TEXT)
+        cursor.gap(STEP + _BETWEEN * self._roominess)
+
+    def _open(self, name: str) -> Transition:
+        if name == "quit":
+            return Quit()
+        if name == "play" and self.context.settings.tutored:
+            return push("flights", self._background)
+        return push(name)  # a newcomer's first flight teaches
+
+    def _back(self) -> Transition | None:
+        """Move the focus to Quit; if it is there already, leave the game."""
+        last = self.form.widgets[-1]
+        if self.form.focused is last:
+            return Quit()
+        self.form.focus(last)
+        return None

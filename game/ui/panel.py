@@ -1,0 +1,300 @@
+"""Panel: rows, one below the other, that lay themselves out and know where they stand.
+
+A row is whatever writes with a cursor: words, a figure, a bar, a widget, columns side by side. A panel lays its rows
+out in every step, for whatever they say, the window's size and the size of text; it scrolls where they are higher than
+the room that there is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import TYPE_CHECKING, Final, TypeVar
+
+import pygame
+
+from game.drawing.cursor import Cursor
+from game.drawing.tokens import FAINT, INK, MUTE, NET, SMALL, STEP, TEXT, Colour
+from game.drawing.typeface import Weight
+from game.ui.rows import ButtonRow, ChoiceRow, EntryRow, ListRow, RowWidget, SliderRow, ToggleRow
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from game.core.scene import Transition
+    from game.drawing.canvas import Canvas, Now
+    from game.ui.form import Form
+    from game.ui.listing import Row as Cells
+    from game.ui.widget import OnPress, Widget
+
+W = TypeVar("W", bound=RowWidget)
+Write = Callable[[Cursor], None]
+Words = str | Callable[[], str]  # a function for words that change
+_ABOVE: Final = 24.0  # points kept above and below the widget in focus while the panel scrolls
+_WORDS: Final = 28.0  # points between two words side by side
+_WHEEL: Final = 48.0  # points for one notch of the mouse's wheel
+
+
+@dataclass
+class Row:
+    """One row: what writes it, its name and present meaning for whoever asks, and where it stands, in points."""
+
+    write: Write
+    what: str = ""
+    now: Now = str
+    box: pygame.FRect = field(default_factory=lambda: pygame.FRect(0, 0, 0, 0))
+
+
+class Column:
+    """Rows that are described one after another; each call adds one, and returns its widget if it has one."""
+
+    def __init__(self, form: Form) -> None:
+        self.rows: list[Row] = []
+        self._form = form
+
+    def add(self, write: Write, what: str = "", now: Now = str) -> Row:
+        """Add a row of one's own."""
+        self.rows.append(Row(write, what, now))
+        return self.rows[-1]
+
+    # Words and figures
+
+    def title(self, words: Words, size: float = 34.0, weight: Weight = "light") -> None:
+        """Add a title."""
+        self.text(words, size=size, weight=weight)
+
+    def text(self, words: Words, *, size: float = TEXT, colour: Colour = INK, weight: Weight = "regular") -> None:
+        """Add a paragraph."""
+        self.add(lambda cursor: _write(cursor, cursor.in_style(size, colour, weight), words))
+
+    def aside(self, words: Words) -> None:
+        """Add small muted words that explain what stands above."""
+        self.text(words, size=SMALL, colour=MUTE)
+
+    def caption(self, words: str) -> None:
+        """Add the words over a group of rows."""
+        self.add(lambda cursor: cursor.caption(words))
+
+    def pair(self, words: str, figure: Words, colour: Colour | None = None) -> None:
+        """Add words, and a figure at the right end."""
+        self.add(lambda cursor: cursor.pair(words, _said(figure), colour))
+
+    def bar(self, share: Callable[[], float], colour: Colour = NET) -> None:
+        """Add a bar."""
+        self.add(lambda cursor: cursor.bar(share(), colour))
+
+    def picture(self, height: float, draw: Callable[[Canvas, pygame.FRect], None]) -> None:
+        """Add a drawing of its own, over the whole column."""
+
+        def write(cursor: Cursor) -> None:
+            box = cursor.take(height)
+            if cursor.canvas:
+                draw(cursor.canvas, box)
+
+        self.add(write)
+
+    def gap(self, points: float = 2 * STEP) -> None:
+        """Leave some room."""
+        self.add(lambda cursor: cursor.gap(points))
+
+    def line(self) -> None:
+        """Add a hairline."""
+        self.add(Cursor.line)
+
+    # Widgets
+
+    def widget(self, widget: W) -> W:
+        """Add a widget, as the next one of the form."""
+        self.add(widget.lay, widget.label)
+        return self._form.add(widget)
+
+    def button(
+        self,
+        label: str,
+        press: OnPress,
+        aside: Words = "",
+        *,
+        figure: Words = "",
+        size: float = TEXT,
+        weight: Weight = "regular",
+        colour: Colour = MUTE,
+    ) -> ButtonRow:
+        """Add a word to press, with words that explain it below, and a figure at its right."""
+        return self.widget(
+            ButtonRow(
+                self._form.manager, label, press, partial(_said, aside), partial(_said, figure), size, weight, colour
+            )
+        )
+
+    def words(self, words: Sequence[tuple[str, OnPress]]) -> list[ButtonRow]:
+        """Add words to press, side by side on as many lines as they need."""
+        buttons = [self._form.add(ButtonRow(self._form.manager, label, press)) for label, press in words]
+        self.add(partial(_write_words, buttons))
+        return buttons
+
+    def toggle(self, label: str, value: bool, change: Callable[[bool], None], aside: str = "") -> ToggleRow:
+        """Add a switch."""
+        return self.widget(ToggleRow(self._form.manager, label, value, change, aside))
+
+    def choice(
+        self, label: str, options: Sequence[str], index: int, change: Callable[[int], None], size: float = TEXT
+    ) -> ChoiceRow:
+        """Add a choice of one word."""
+        return self.widget(ChoiceRow(self._form.manager, label, options, index, change, size))
+
+    def slider(
+        self,
+        label: str,
+        value: float,
+        limits: tuple[float, float],
+        change: Callable[[float], None],
+        *,
+        step: float,
+        figure: Callable[[float], str],
+        aside: str = "",
+    ) -> SliderRow:
+        """Add a slider."""
+        return self.widget(SliderRow(self._form.manager, label, value, limits, change, step, figure, aside))
+
+    def entry(
+        self, text: str, accept: Callable[[str], Transition | None], cancel: OnPress, limit: int, fits: object
+    ) -> EntryRow:
+        """Add a line to type in."""
+        return self.widget(EntryRow(self._form.manager, text, accept, cancel, limit, fits))
+
+    def listing(self, rows: Sequence[Cells], press: Callable[[int], Transition | None], empty: str = "") -> ListRow:
+        """Add a list to choose from."""
+        return self.widget(ListRow(self._form.manager, rows, press, empty))
+
+    # Columns
+
+    def beside(self, shares: Sequence[float], least: float, apart: float = 64.0) -> list[Column]:
+        """Add columns side by side, each as wide as its share; below each other where one would lack `least`."""
+        columns = [Column(self._form) for _ in shares]
+        self.add(lambda cursor: cursor.beside([column.write for column in columns], shares, least, apart))
+        return columns
+
+    def write(self, cursor: Cursor) -> None:
+        """Write the rows, or lay them out."""
+        for row in self.rows:
+            top, seen = cursor.y, cursor.seen
+            if cursor.canvas and seen and (row.box.bottom < seen.top or row.box.top > seen.bottom):
+                cursor.y += row.box.height
+                continue
+            row.write(cursor)
+            if cursor.canvas is None:
+                row.box = pygame.FRect(cursor.left, top, cursor.width, cursor.y - top)
+            elif row.what:
+                cursor.canvas.explain(row.box, row.what, row.now)
+
+
+class Panel(Column):
+    """Column that knows its room on the screen, and scrolls.
+
+    Attributes:
+        box: its room, in points.
+        height: of all rows, in points.
+        scrolled: how far it is scrolled down, in points.
+
+    """
+
+    def __init__(self, form: Form) -> None:
+        super().__init__(form)
+        form.in_order = True
+        self.box = pygame.FRect(0, 0, 0, 0)
+        self.height = self.scrolled = 0.0
+        self._shown: Widget | None = None  # the widget that was in focus when it was last laid out
+
+    @property
+    def overflows(self) -> bool:
+        """Whether not all rows are seen at once."""
+        return self.height > self.box.height + 1
+
+    def lay_out(self, box: pygame.FRect, scale: float) -> None:
+        """Lay the rows out in their room, at so many pixels a point, and scroll to the widget that got the focus."""
+        same, self.box = box == self.box, box
+        self._measure(scale)
+        focused = self._form.focused
+        if focused is not self._shown or not same:
+            self._shown = focused
+            if focused and self.overflows and not self._form.controls.mouse_in_use:  # nothing moves below the mouse
+                self._reveal(pygame.FRect(focused.box), focused)
+                self._measure(scale)
+        self.scroll(0.0)
+
+    def _measure(self, scale: float) -> None:
+        cursor = self._cursor(scale)
+        self.write(cursor)
+        self.height = cursor.y + self.scrolled - self.box.top
+
+    def _cursor(self, scale: float, canvas: Canvas | None = None) -> Cursor:
+        box = self.box
+        return Cursor(box.left, box.top - self.scrolled, box.width, scale, canvas, pygame.FRect(box))
+
+    def _reveal(self, widget: pygame.FRect, which: Widget) -> None:
+        if which is self._form.widgets[0]:
+            self.scrolled = 0.0  # with what stands above it
+        elif which is self._form.widgets[-1]:
+            self.scrolled = self.height
+        elif widget.top < self.box.top + _ABOVE:
+            self.scrolled += widget.top - self.box.top - _ABOVE
+        elif widget.bottom > self.box.bottom - _ABOVE:
+            self.scrolled += min(widget.bottom - self.box.bottom + _ABOVE, widget.top - self.box.top)
+        self.scroll(0.0)
+
+    def scroll(self, points: float) -> bool:
+        """Scroll down by so many points, as far as there is more; return whether it moved."""
+        before = self.scrolled
+        self.scrolled = min(max(before + points, 0.0), max(0.0, self.height - self.box.height))
+        return self.scrolled != before
+
+    def turn_wheel(self, notches: float) -> bool:
+        """Scroll by the mouse's wheel; up is positive."""
+        return self.scroll(-_WHEEL * notches)
+
+    def draw(self, canvas: Canvas) -> None:
+        """Draw the rows that are seen, and how far the panel is scrolled."""
+        if not self.overflows:
+            self.write(replace(self._cursor(canvas.scale, canvas), seen=None))
+            return
+        with _clipped(canvas, self.box):
+            self.write(self._cursor(canvas.scale, canvas))
+        share = self.box.height / self.height
+        top = self.box.top + self.box.height * self.scrolled / self.height
+        right = self.box.right + 12
+        canvas.pill((right, self.box.top, 3, self.box.height), FAINT, 0.4)
+        canvas.pill((right, top, 3, self.box.height * share), MUTE)
+
+
+@contextmanager
+def _clipped(canvas: Canvas, box: pygame.FRect) -> Iterator[None]:
+    """Draw within a box alone; rings around widgets at its sides are seen."""
+    before = canvas.surface.get_clip()
+    canvas.surface.set_clip(canvas.rect(0, box.top, canvas.view.width, box.height).clip(before))
+    try:
+        yield
+    finally:
+        canvas.surface.set_clip(before)
+
+
+def _write_words(buttons: Sequence[ButtonRow], cursor: Cursor) -> None:
+    left, below = cursor.left, cursor.y
+    for button in buttons:
+        width = min(button.measured(cursor), cursor.width)
+        if left > cursor.left and left + width > cursor.right:
+            left, cursor.y = cursor.left, below
+        place = replace(cursor, left=left, width=width)
+        button.lay(place)
+        left, below = left + width + _WORDS, max(below, place.y)
+    cursor.y = below
+
+
+def _said(words: Words) -> str:
+    return words if isinstance(words, str) else words()
+
+
+def _write(cursor: Cursor, styled: Cursor, words: Words) -> None:
+    styled.text(_said(words))
+    cursor.y = styled.y

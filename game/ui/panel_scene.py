@@ -1,0 +1,116 @@
+"""Base of the scenes that are one panel: laid out for any window and any size of text, over a night sky."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING, Final
+
+import pygame
+
+from game.core.scene import Pop, Transition
+from game.drawing.sky import NightSky
+from game.drawing.tokens import MARGIN, VIEW_SIZE
+from game.input.controls import Command, translate
+from game.ui.form import Form
+from game.ui.form_scene import FormScene
+from game.ui.hints import HintRow, hint_lines
+from game.ui.panel import Panel
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from game.drawing.canvas import Canvas
+    from game.ui.context import Context
+    from game.ui.widget import OnPress
+
+_SIDES: Final = 0.05  # of a window's width, at most `MARGIN`, left free at either side
+_ENDS: Final = 0.07  # of its height, above and below
+_WIDEST: Final = VIEW_SIZE[0] - 2.0 * MARGIN  # points between the margins; a wider window has wider margins
+
+
+class PanelScene(FormScene, ABC):
+    """Scene with a panel and a row of hints below it.
+
+    A subclass describes its rows in `describe`, and calls `build` at the end of its constructor, and whenever there are
+    other rows than before.
+
+    Attributes:
+        panel: the rows.
+        most: the greatest width of the panel, in points.
+
+    """
+
+    flows = True
+    most = _WIDEST
+
+    def __init__(self, context: Context, on_back: OnPress = Pop) -> None:
+        super().__init__(context, on_back)
+        self._on_back = on_back
+        self.panel = Panel(self.form)
+        self._sky = NightSky(context.rng, ember=0.5, stars=70)
+
+    @abstractmethod
+    def describe(self, panel: Panel) -> None:
+        """Add the rows."""
+
+    def build(self) -> None:
+        """Describe the rows anew; the focus stays where it was, or near it, and so does what is seen."""
+        before, scrolled = self.form, self.panel.scrolled
+        self.form = Form(self.context, self._on_back)
+        self.panel = Panel(self.form)
+        self.describe(self.panel)
+        if before.focused and self.form.widgets:
+            place = before.widgets.index(before.focused)
+            self.form.focus(self.form.widgets[min(place, len(self.form.widgets) - 1)])
+        self.lay_out()
+        self.panel.scroll(scrolled)
+        self.lay_out()
+
+    def room(self, canvas: Canvas) -> pygame.FRect:
+        """Return the room of the panel, above the hints, in points."""
+        view, (left, width) = canvas.view, self._between(canvas)
+        end = min(MARGIN, _ENDS * view.height)
+        foot = min((row.top for row in self.hint_rows(canvas)), default=view.bottom)
+        return pygame.FRect(left, view.top + end, min(width, self.most), foot - view.top - 1.5 * end)
+
+    def hint_rows(self, canvas: Canvas) -> Sequence[HintRow]:
+        """Return the hints at the foot, on as many lines as they need."""
+        view, (left, width) = canvas.view, self._between(canvas)
+        return hint_lines(self.hints, canvas, (left, view.bottom - min(40.0, _ENDS * view.height)), width)
+
+    def _between(self, canvas: Canvas) -> tuple[float, float]:
+        """Return the left margin, and the width between both."""
+        view = canvas.view
+        side = max(min(MARGIN, _SIDES * view.width), (view.width - _WIDEST) / 2)
+        return view.left + side, view.width - 2 * side
+
+    def lay_out(self) -> None:
+        """Lay the rows out for the window as it is."""
+        canvas = self.context.reading()
+        self.panel.lay_out(self.room(canvas), canvas.scale)
+
+    def handle_event(self, event: pygame.event.Event) -> Transition | None:
+        """Scroll by the wheel and by pages; everything else is the form's."""
+        outcome = super().handle_event(event)
+        if event.type == pygame.MOUSEWHEEL and not self.form.used:
+            self.form.used = self.panel.turn_wheel(event.y)
+        elif not self.form.used and (command := translate(event)) in (Command.NEXT, Command.PREVIOUS):
+            page = self.panel.box.height * 0.8
+            self.form.used = self.panel.scroll(page if command is Command.NEXT else -page)
+        return outcome
+
+    def update(self) -> Transition | None:
+        """Animate the widgets, and lay the rows out."""
+        outcome = self.form.update()
+        self.lay_out()
+        return outcome
+
+    def draw_behind(self, canvas: Canvas, alpha: float) -> None:  # noqa: ARG002
+        """Draw what is behind the panel."""
+        self._sky.draw(canvas)
+
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        """Draw the panel and the hints."""
+        self.draw_behind(canvas, alpha)
+        self.panel.draw(canvas)
+        self.draw_hints(canvas)

@@ -1,0 +1,277 @@
+"""Widgets as rows of a panel: each lays itself out with a cursor, and is painted by the same lines."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Final
+
+import pygame
+
+from game.core.scene import Transition
+from game.drawing.cursor import BASELINE, LEADING, Cursor
+from game.drawing.tokens import HUMAN, INK, MUTE, NET, STEP, TEXT, Colour
+from game.drawing.typeface import Weight
+from game.ui.entry import Entry
+from game.ui.listing import Listing, Row
+from game.ui.widget import OnPress, PointsManager, Widget, mix
+from game.ui.widgets import Choice, Slider, TextButton, Toggle, draw_switch
+
+if TYPE_CHECKING:
+    from game.drawing.canvas import Canvas
+
+_NOWHERE: Final = (0, 0, 1, 1)  # until it is laid out
+_PAD: Final = 8.0  # points above and below what a row says
+_SWITCH: Final = (32.0, 16.0)
+_LABELS: Final = 150.0  # points for the label before a slider or a choice
+_FIGURES: Final = 56.0
+_TRACK: Final = 120.0  # the shortest track beside its label
+_WORDS: Final = 24.0  # between two options
+
+
+class RowWidget(Widget):
+    """Widget that is a row of a panel, and has no place of its own.
+
+    Attributes:
+        pad: points above and below what it says.
+        reach: how far from the left its ring reaches, in points; 0 for the whole column.
+        seen: the part of its panel that is not scrolled away.
+
+    """
+
+    pad, reach = _PAD, 0.0
+    seen: pygame.FRect | None = None
+
+    def lay(self, cursor: Cursor) -> None:
+        """Lay it out, or paint it: the first time without a canvas."""
+        top = cursor.y
+        if cursor.canvas and self.ringed and self.warmth > 0.02:
+            ring = pygame.Rect(self.box.topleft, (round(self.reach) or self.box.width, self.box.height))
+            cursor.canvas.outline(ring.inflate(24, 2), 8, INK, 1, 0.4 * self.warmth)
+        cursor.gap(self.pad)
+        self.write(cursor)
+        cursor.gap(self.pad)
+        if cursor.canvas is None:
+            self.seen = cursor.seen
+            box = pygame.Rect(round(cursor.left), round(top), round(cursor.width), round(cursor.y - top))
+            self.rect = self.relative_rect = box
+
+    def write(self, cursor: Cursor) -> None:
+        """Write what it says, and go on below."""
+        raise NotImplementedError
+
+    def hover_point(self, hover_x: float, hover_y: float) -> bool:
+        """Whether a point is on it and not scrolled away."""
+        return bool(self.rect.collidepoint(hover_x, hover_y)) and (
+            self.seen is None or self.seen.collidepoint(hover_x, hover_y)
+        )
+
+    def paint(self, canvas: Canvas) -> None:
+        """Do nothing: the panel paints it."""
+
+
+class ButtonRow(RowWidget, TextButton):
+    """Words to press, with the player's figure beside them and an explanation below; a short line shows the focus."""
+
+    def __init__(
+        self,
+        manager: PointsManager,
+        label: str,
+        press: OnPress,
+        aside: Callable[[], str] = str,
+        figure: Callable[[], str] = str,
+        size: float = TEXT,
+        weight: Weight = "regular",
+        colour: Colour = MUTE,
+    ) -> None:
+        super().__init__(manager, _NOWHERE, label, press, size=size, weight=weight, colour=colour)
+        self._aside, self._figure = aside, figure
+
+    def measured(self, cursor: Cursor) -> float:
+        """Return the width of its words on one line, with something to spare."""
+        return cursor.in_style(self._size, weight=self._weight).measured(self.label) + 1
+
+    def write(self, cursor: Cursor) -> None:
+        """Write the words, the line under them, the figure and the explanation."""
+        label, top = cursor.in_style(self._size, self.tint(), self._weight), cursor.y
+        wide, figure = min(label.measured(self.label), cursor.width), self._figure()
+        label.text(self.label)
+        if cursor.canvas and self.warmth * wide > 1:
+            y = label.y - 0.05 * self._size + 2
+            cursor.canvas.line((cursor.left, y), (cursor.left + wide * self.warmth, y), NET, 2, self.warmth)
+        if figure:
+            beside = cursor.in_style(TEXT, HUMAN)
+            if wide + _WORDS + beside.measured(figure) <= cursor.width:
+                beside.left, beside.y = cursor.left + wide + _WORDS, top + BASELINE * (self._size - TEXT)
+                beside.text(figure)
+            else:
+                beside.y = label.y
+                beside.text(figure)
+                label.y = beside.y
+        cursor.y = label.y
+        if aside := self._aside():
+            cursor.gap(3)
+            cursor.aside(aside)
+
+    def lay(self, cursor: Cursor) -> None:
+        """Lay it out without a ring: its line shows the focus."""
+        ringed, self.ringed = self.ringed, False
+        super().lay(cursor)
+        self.ringed = ringed
+
+
+class ToggleRow(RowWidget, Toggle):
+    """Switch at the right end, its label and an explanation on the left."""
+
+    def __init__(
+        self, manager: PointsManager, label: str, value: bool, change: Callable[[bool], None], aside: str = ""
+    ) -> None:
+        super().__init__(manager, _NOWHERE, label, value, change, hint=aside)
+
+    def write(self, cursor: Cursor) -> None:
+        """Write the label, the explanation, and draw the switch."""
+        words = replace(cursor, width=cursor.width - _SWITCH[0] - 2 * STEP)
+        words.colour = mix(mix(MUTE, INK, 0.6), INK, self.warmth)
+        if cursor.canvas:
+            top = cursor.y + LEADING * cursor.size / 2 - _SWITCH[1] / 2
+            box = (cursor.right - _SWITCH[0], top, *_SWITCH)
+            draw_switch(cursor.canvas, box, self._slid)
+            cursor.canvas.cover(cursor.canvas.rect(*box))
+        words.text(self.label)
+        if self._hint:
+            words.gap(2)
+            words.aside(self._hint)
+        cursor.y = words.y
+
+
+class SliderRow(RowWidget, Slider):
+    """Slider: its label on the left or above, the figure at the right end, an explanation below."""
+
+    def __init__(
+        self,
+        manager: PointsManager,
+        label: str,
+        value: float,
+        limits: tuple[float, float],
+        change: Callable[[float], None],
+        step: float,
+        figure: Callable[[float], str],
+        aside: str = "",
+    ) -> None:
+        super().__init__(manager, _NOWHERE, label, value, limits, change, step=step, figure=figure)
+        self._aside = aside
+
+    def write(self, cursor: Cursor) -> None:
+        """Write the label and the figure, and draw the track and its handle."""
+        words = replace(cursor, colour=mix(mix(MUTE, INK, 0.6), INK, self.warmth))
+        left = cursor.left
+        if cursor.width - _LABELS - _FIGURES >= _TRACK and cursor.measured(self.label) <= _LABELS - STEP:
+            left += _LABELS
+            replace(words).text(self.label)
+        else:
+            words.text(self.label)
+        middle, right = words.y + LEADING * cursor.size / 2, cursor.right - _FIGURES
+        if canvas := cursor.canvas:
+            canvas.bar((left, middle - 1, right - left, 2), self.fraction, self._colour)
+            canvas.cover(canvas.rect(left, middle - 8, right - left, 16))
+            canvas.dot((left + self.fraction * (right - left), middle), 5 + self.warmth, INK)
+            place = (cursor.right, words.baseline)
+            canvas.text(self._figure(self.value), place, colour=self._colour, align="right", tabular=True)
+        else:
+            self._track = (left, right)
+        cursor.y = words.y + LEADING * cursor.size
+        if self._aside:
+            cursor.aside(self._aside)
+
+
+class ChoiceRow(RowWidget, Choice):
+    """Choice of one word: the label on the left or above, the words on as many lines as they need."""
+
+    def __init__(
+        self,
+        manager: PointsManager,
+        label: str,
+        options: Sequence[str],
+        index: int,
+        change: Callable[[int], None],
+        size: float = TEXT,
+    ) -> None:
+        super().__init__(manager, _NOWHERE, label, options, index, change, size=size)
+        self._places: list[pygame.FRect] = []
+
+    def press(self) -> Transition | None:
+        """Choose the word under the mouse; without a mouse, the next one."""
+        if self.ringed:
+            self.choose((self.index + 1) % len(self.options))
+            return None
+        mouse = self.ui_manager.get_mouse_position()
+        for number, place in enumerate(self._places):
+            if place.collidepoint(mouse):
+                self.choose(number)
+        return None
+
+    def write(self, cursor: Cursor) -> None:
+        """Write the label and the words, with a line under the chosen one."""
+        words = cursor.in_style(self._size, mix(mix(MUTE, INK, 0.6), INK, self.warmth))
+        widths = [words.measured(option) for option in self.options]
+        left = cursor.left
+        if self.label:
+            beside = cursor.left + max(_LABELS, words.measured(self.label) + _WORDS)
+            if beside + sum(widths) + _WORDS * (len(widths) - 1) <= cursor.right:
+                left = beside
+                replace(words).text(self.label)
+            else:
+                words.text(self.label)
+        x, places = left, []
+        for number, (option, width) in enumerate(zip(self.options, widths, strict=True)):
+            if x > left and x + width > cursor.right:
+                x, words.y = left, words.y + LEADING * self._size + STEP
+            chosen = number == self.index
+            if canvas := cursor.canvas:
+                colour = INK if chosen else MUTE
+                canvas.text(option, (x, words.baseline), size=self._size, colour=colour)
+                if chosen:
+                    y = words.baseline + 0.5 * self._size
+                    canvas.line((x, y), (x + width, y), NET, 2)
+            places.append(pygame.FRect(x - _WORDS / 2, words.y - 4, width + _WORDS, LEADING * self._size + 8))
+            x += width + _WORDS
+        if cursor.canvas is None:
+            self._places = places
+            self.reach = 0.0 if self.label else max(place.right for place in places) - _WORDS / 2 - cursor.left
+        cursor.y = words.y + LEADING * self._size
+
+
+class EntryRow(RowWidget, Entry):
+    """Line to type in."""
+
+    def __init__(
+        self,
+        manager: PointsManager,
+        text: str,
+        accept: Callable[[str], Transition | None],
+        cancel: OnPress,
+        limit: int,
+        fits: Any,
+    ) -> None:
+        super().__init__(manager, _NOWHERE, "", text, accept, on_cancel=cancel, limit=limit, fits=fits)
+
+    def write(self, cursor: Cursor) -> None:
+        """Draw the line."""
+        cursor.take(28.0)
+        if cursor.canvas:
+            Entry.paint(self, cursor.canvas)
+
+
+class ListRow(RowWidget, Listing):
+    """List to choose from, as high as its rows, ten at most."""
+
+    def __init__(
+        self, manager: PointsManager, rows: Sequence[Row], press: Callable[[int], Transition | None], empty: str = ""
+    ) -> None:
+        super().__init__(manager, _NOWHERE, rows, on_press=press, empty=empty)
+
+    def write(self, cursor: Cursor) -> None:
+        """Draw the rows."""
+        cursor.take(self._pitch * min(max(len(self.rows), 1), 8))
+        if cursor.canvas:
+            Listing.paint(self, cursor.canvas)

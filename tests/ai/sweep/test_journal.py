@@ -1,0 +1,165 @@
+"""Optuna's journal of a study: what it proposes, what it goes on with, and what a stranger's may say."""
+
+import json
+from dataclasses import replace
+
+import pytest
+
+pytest.importorskip("optuna")
+
+from ai.sweep.journal import JOURNAL, LEAST, Search, importance_of
+from ai.sweep.results import FinishedTrial, SeedResult
+from ai.sweep.study import Study, StudyError
+from tests.support.studies import shown_study, tiny_plan
+
+
+def finished(number, params, value, at=400):
+    seeds = tuple(SeedResult(seed, (), value, "", 1.0, {}) for seed in (0, 1))
+    return FinishedTrial(number, params, value, at, False, 1.0, seeds)
+
+
+@pytest.fixture
+def study(tmp_path):
+    """A study with a finished trial and two that are under way."""
+    study = Study.create(tmp_path / "study", tiny_plan(trials=9))
+    search = Search(study)
+    for _ in range(3):
+        search.ask()
+    search.tell(finished(0, search.params(0), 5.0))
+    study.record(finished(0, search.params(0), 5.0))
+    return study
+
+
+def again(study):
+    return Search(Study.load(study.folder))
+
+
+def test_what_was_under_way_goes_on_with_its_settings(study):
+    first, second = again(study), again(study)
+    assert first.left == second.left == [1, 2]
+    assert {number: first.params(number) for number in (1, 2)} == {number: second.params(number) for number in (1, 2)}
+    assert second.ask() == 3
+    space = study.plan.dimensions()
+    assert all(space[name].low <= value <= space[name].high for name, value in second.params(3).items())
+
+
+def test_a_trial_that_was_kept_and_not_told_is_not_run_again(study):
+    search = again(study)
+    study.record(finished(1, search.params(1), 7.0))
+    assert again(study).left == [2]
+    assert [row.value for row in again(study)._optuna.trials[:2]] == [5.0, 7.0]
+
+
+def test_a_study_that_goes_on_proposes_nothing_twice(study):
+    search = again(study)
+    asked = [search.params(number) for number in (0, 1, 2)] + [search.params(search.ask()) for _ in range(4)]
+    assert len({json.dumps(params) for params in asked}) == 7
+
+
+def test_a_line_cut_off_by_a_kill_is_left_out(study):
+    file = study.folder / JOURNAL
+    whole = file.read_text()
+    for cut in (1, 40):
+        file.write_text(whole + whole.splitlines()[-1][:-cut])
+        assert again(study).left == [1, 2]
+        assert file.read_text().startswith(whole)
+
+
+def test_a_full_disk_leaves_no_half_of_a_line(study, monkeypatch):
+    search, before = again(study), (study.folder / JOURNAL).read_text()
+    journal = search._optuna._storage._backend
+    monkeypatch.setattr(type(journal), "_path", property(lambda self: Full(study.folder / JOURNAL)), raising=False)
+    with pytest.raises(OSError, match="No space"):
+        search.ask()
+    monkeypatch.undo()
+    assert (study.folder / JOURNAL).read_text() == before
+    assert search.ask() == 3
+
+
+class Full:
+    """A file on a disk that takes half of what is written."""
+
+    def __init__(self, path):
+        self._path = path
+
+    def open(self, mode):
+        file = self._path.open(mode)
+
+        class Half:
+            def __enter__(self):
+                return self
+
+            def __exit__(self, *_):
+                file.close()
+
+            tell, truncate, flush = file.tell, file.truncate, file.flush
+
+            def write(self, content):
+                file.write(content[: len(content) // 2])
+                file.flush()
+                raise OSError(28, "No space left on device")
+
+        return Half()
+
+
+def test_a_strangers_journal_is_refused_in_a_sentence(study, subtests):
+    file = study.folder / JOURNAL
+    lines = [json.loads(line) for line in file.read_text().splitlines()]
+    setting = next(line for line in lines if line["op_code"] == 5)
+    for name, content in {
+        "no JSON": "{\n",
+        "a list": "[]\n",
+        "nested": "[" * 5000 + "\n",
+        "another operation": json.dumps(lines[0] | {"op_code": 99}) + "\n",
+        "an unknown word": json.dumps(lines[0] | {"py/object": "os.system"}) + "\n",
+        "a trial of nothing": json.dumps(lines[1] | {"study_id": 3}) + "\n",
+        "settings of no trial": json.dumps(lines[0]) + "\n" + json.dumps(setting | {"trial_id": 77}) + "\n",
+        "a distribution": json.dumps(lines[0]) + "\n" + json.dumps(lines[1]) + "\n"
+                          + json.dumps(setting | {"distribution": '{"name": "x", "attributes": {}}'}) + "\n",
+        "nothing": "",
+    }.items():  # fmt: skip
+        with subtests.test(name=name):
+            file.write_text(content)
+            with pytest.raises(StudyError, match="cannot be read"):
+                again(study)
+    with file.open("wb") as large:
+        large.truncate(30 << 30)
+    with pytest.raises(OSError, match=r"large"):
+        again(study)
+
+
+def test_settings_out_of_the_space_are_not_run(study):
+    file = study.folder / JOURNAL
+    lines = [json.loads(line) for line in file.read_text().splitlines()]
+    for line in lines:
+        if line["op_code"] == 5 and line["trial_id"] == 2 and line["param_name"] == "tau":
+            line["param_name"] = "env"
+    file.write_text("".join(json.dumps(line) + "\n" for line in lines))
+    assert again(study).left == [1]
+
+
+def test_a_trial_that_falls_behind_is_ended(tmp_path):
+    study = Study.create(tmp_path / "study", tiny_plan(trials=9, stop_early=True, budget=1800, every=200))
+    search = Search(study)
+    ended = []
+    for value in (1.0, 9.0, 8.0, 0.5, 0.4, 10.0):
+        number = search.ask()
+        ended.append(search.falls_behind(finished(number, search.params(number), value, at=200)))
+    assert ended == [False, False, True, True, True, False]
+    plain = replace(study.plan, stop_early=False)
+    study.plan = plain
+    assert not search.falls_behind(finished(0, search.params(0), -9.0, at=400))
+
+
+def test_the_knob_that_decides_matters_most_and_too_few_trials_say_nothing(tmp_path):
+    study = shown_study(tmp_path / "mine", LEAST - 1)
+    assert importance_of(study) == {}
+    study = shown_study(tmp_path / "more", 40)
+    for number, trial in study.trials.items():
+        study.trials[number] = replace(trial, value=trial.params["tau"], params=trial.params | {"learning_rate": 1e-3})
+    shares = importance_of(study)
+    assert next(iter(shares)) == "tau"
+    assert sum(shares.values()) == pytest.approx(1.0)
+    for number, trial in study.trials.items():
+        study.trials[number] = replace(trial, value=1.0)
+    assert importance_of(study) == {}
