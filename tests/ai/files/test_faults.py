@@ -207,7 +207,7 @@ def fully(inputs, outputs):
 
 
 def convolution(shape, filters):
-    sizes = {"inputs": shape, "filters": filters, "kernel": 1, "stride": 1, "padding": 0}
+    sizes = {"inputs": shape, "filters": filters, "kernel": 3, "stride": 1, "padding": 1}
     return {"type": "ConvolutionLayer", **sizes, "arrays": {}}
 
 
@@ -215,10 +215,10 @@ def convolution(shape, filters):
     ("layers", "said"),
     [
         ([{"type": "ActivationLayer", "activation": {"name": "tanh"}}] * 60_000, "at most 500 layers"),
-        ([fully(1024, 1024)] * 400, "at most 12,000,000 parameters"),
+        ([fully(3400, 3400)] * 2, "at most 12,000,000 parameters"),
         ([fully(1_000_000, 64)], "at most 12,000,000 parameters"),
         ([convolution([28, 28, 1], 1 << 20)], "values of an example"),
-        ([convolution([32, 32, 256], 256)] * 100, "multiplications"),
+        ([convolution([32, 32, 256], 256)] * 2, "multiplications"),
         ([convolution([1024, 1024, 1], 1 << 20)], "values of an example"),
     ],
 )
@@ -482,7 +482,7 @@ def test_the_second_training_of_a_folder_is_told(tmp_path, capsys):
         assert main(command) == 1
         assert "another training" in capsys.readouterr().err
     assert main(command) == 0
-    assert [path.name for path in tmp_path.iterdir()] == ["run"]
+    assert not list(tmp_path.glob("*.lock"))
 
 
 def test_a_lock_that_was_let_go_is_free_at_once_and_leaves_nothing(tmp_path):
