@@ -9,7 +9,6 @@ import pygame
 
 from ai.digits.config import DIGIT_PRESETS, DigitConfig
 from ai.training.schedule import InForce
-from game.charts.scrubber import Scrubber
 from game.core import texts
 from game.core.scene import Push, Transition, push
 from game.digits.filter_film import FilterFilm
@@ -33,6 +32,7 @@ from game.training.run import TrainingRun
 from game.training.run_settings import RunKind
 from game.ui.context import Context
 from game.ui.hints import HintRow
+from game.ui.scrubber import Scrubber
 from game.ui.virtual_pointer import VirtualPointer
 from game.ui.widget import OnPress, Widget
 from game.ui.widgets import Choice, TextButton
