@@ -21,8 +21,8 @@ def save_digit_run(
 ) -> dict[str, Any]:
     """Save a run's best network and, with `state`, all that it goes on from, whole or not at all.
 
-    Returns its description. `final` measures it on MNIST's test images. Raises OSError if it cannot be written, MnistError if there
-    are no test images.
+    Returns its description. `final` measures it on MNIST's test images. Raises OSError if it cannot be written,
+    MnistError if there are no test images.
     """
     return save(training, DIGITS, folder, final=final, state=state)
 
