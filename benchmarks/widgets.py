@@ -31,7 +31,6 @@ from font_manrope import font_files
 from pygame_gui import UIManager
 from pygame_gui.elements import UIButton, UILabel, UITextEntryLine, UITooltip
 
-from game.charts.tooltip import draw_tooltip
 from game.core.settings import Settings
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
@@ -39,6 +38,7 @@ from game.drawing.tokens import INK, TEXT, VIEW_SIZE
 from game.ui.context import Context
 from game.ui.entry import Entry
 from game.ui.form import Form
+from game.ui.tooltip import draw_tooltip
 from game.ui.widgets import TextButton
 
 ROUNDS: Final = 9

@@ -31,7 +31,7 @@ AI_FLOORS = (
     "ai.copilot", "ai.gym", "ai.sweep", "ai.cli",
 )  # fmt: skip
 GAME_FLOORS = (
-    "game.core", "game.input", "game.audio", "game.drawing", "game.ui", "game.charts", "game.flight", "game.training",
+    "game.core", "game.input", "game.audio", "game.drawing", "game.ui", "game.flight", "game.training",
     "game.world", "game.panels", "game.lesson", "game.cockpit", "game.exhibits", "game.digits", "game.play",
     "game.learn",
     "game.export", "game.shell", "game.scenes", "game.start", "game.verify", "game.cli",

@@ -8,7 +8,6 @@ import numpy as np
 
 from ai.digits.filters import FilterMoment
 from ai.training.history import History
-from game.charts.charts import Charts
 from game.core import texts
 from game.digits.answer import percent
 from game.digits.pictures import mosaic
@@ -17,6 +16,7 @@ from game.drawing.paint_cache import PaintCache
 from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import LABEL, MUTE, SMALL
 from game.training.run import TrainingRun
+from game.ui.charts import Charts
 
 _LEFT, _TOP = 40.0, 358.0
 _ROOM: Final = (600.0, 320.0)

@@ -9,9 +9,6 @@ from typing import Final
 import numpy as np
 import pygame
 
-from game.charts import plotting
-from game.charts.chart import Chart
-from game.charts.series import Series
 from game.core import texts
 from game.drawing.canvas import Canvas, Point
 from game.drawing.paint_cache import PaintCache
@@ -19,6 +16,9 @@ from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import HUMAN, INK, LABEL, MUTE, SMALL, VIEW_SIZE, Colour
 from game.exhibits.exhibit import Exhibit
 from game.exhibits.measuring import Results
+from game.ui import plotting
+from game.ui.chart import Chart
+from game.ui.series import Series
 
 _SIZE: Final = (404, 372)
 _TOP, _EDGE = 168, 40  # points from the view's edges

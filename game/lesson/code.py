@@ -9,7 +9,6 @@ import numpy as np
 import pygame
 
 from ai.explain.learning_step import Line, Value
-from game.charts.tooltip import TooltipRow, draw_tooltip
 from game.core import texts
 from game.core.source import Source, source_of
 from game.drawing import typeface
@@ -20,6 +19,7 @@ from game.drawing.tokens import INK, LABEL, LINE, MUTE, NET
 from game.lesson.figures import number
 from game.lesson.frame import WITHIN
 from game.panels.code_listing import draw_listing
+from game.ui.tooltip import TooltipRow, draw_tooltip
 
 CODE: Final = pygame.Rect(824, 216, 416, 448)
 _HEAD: Final = 12.0  # baseline of the heading

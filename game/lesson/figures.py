@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from game.charts import plotting
+from game.ui import plotting
 
 _SMALL: Final = 1e-4
 _MOST_DIGITS: Final = 12

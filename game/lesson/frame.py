@@ -9,11 +9,11 @@ from typing import Final
 
 import pygame
 
-from game.charts.tooltip import TooltipRow, draw_tooltip
 from game.drawing import typeface
 from game.drawing.canvas import Align, Canvas, Point
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import FAINT, INK, LABEL, MUTE, SMALL, Colour
+from game.ui.tooltip import TooltipRow, draw_tooltip
 
 __all__ = ["PICTURE", "SMALL_PICTURE", "WITHIN", "Explanation", "Frame", "Label", "Spot", "rows_of"]
 

@@ -11,7 +11,6 @@ import numpy as np
 import pygame
 
 from ai.nn import Array
-from game.charts.tooltip import TooltipRow
 from game.core import texts
 from game.drawing.canvas import Canvas, Point
 from game.drawing.tokens import INK, LINE, MUTE, NET
@@ -20,6 +19,7 @@ from game.lesson.frame import PICTURE, SMALL_PICTURE, Explanation, Frame, Spot
 from game.lesson.step import LearningStep, WeightPlace
 from game.panels.network_plan import Show
 from game.panels.network_view import NetworkView
+from game.ui.tooltip import TooltipRow
 
 _TERMS: Final = 6  # products of a unit's sum that are written out one by one; the others are summed
 _MOST_NAMED: Final = 12  # inputs up to which their names stand beside them

@@ -9,11 +9,11 @@ from ai.training.captions import CHARTS, Caption, captions
 from ai.training.config import Config
 from ai.training.hints import RecentCurves
 from ai.training.history import History
-from game.charts.chart import Chart
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import LABEL, MUTE
+from game.ui.chart import Chart
 
 STAY: Final = 3.0  # seconds of training for which a caption stays at least, unless a hint speaks against it
 UNKNOWN: Final = "unknown"  # the caption of a curve that has not begun, which stays no longer than that

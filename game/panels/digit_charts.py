@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import Final
 
 from ai.training.history import REVERTED, History, SettingChange
-from game.charts.chart import Chart, Series, Tick, draw_legend
-from game.charts.charts import Charts
-from game.charts.series import run_style
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import MUTE
 from game.training.beside import EarlierRun
 from game.training.knob_descriptions import figure, label
+from game.ui.chart import Chart, Series, Tick, draw_legend
+from game.ui.charts import Charts
+from game.ui.series import run_style
 
 _CHARTS: Final = {"loss": (40, 146, 372, 152), "accuracy": (440, 146, 372, 152)}
 _LEGEND: Final = (440.0, 118.0)

@@ -10,13 +10,13 @@ from typing import Final
 
 import pygame
 
-from game.charts.tooltip import TooltipRow, draw_tooltip
 from game.core import texts
 from game.drawing.canvas import Canvas, Explanation, Point
 from game.drawing.prose import wrapped
 from game.drawing.tokens import INK, LABEL
 from game.input.controls import Command, translate
 from game.ui.actions import Action
+from game.ui.tooltip import TooltipRow, draw_tooltip
 
 _REST: Final = 24  # updates for which the mouse rests before a tooltip is shown
 _AGAIN: Final = 6  # and before the next one

@@ -9,11 +9,11 @@ from typing import Final
 
 import numpy as np
 
-from game.charts import plotting
 from game.core import texts
 from game.drawing.canvas import Align, Canvas, Point
 from game.drawing.tokens import EMBER, FAINT, INK, LABEL, MUTE, NET, NIGHT0, NIGHT1, SMALL, Colour
 from game.panels.network_plan import Column, Edge, NetworkPlan, Show
+from game.ui import plotting
 
 Sheets = tuple[Canvas, Canvas]  # additive light, and the signs above it
 

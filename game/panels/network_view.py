@@ -15,14 +15,14 @@ import numpy.typing as npt
 import pygame
 
 from ai.nn import NeuralNetwork
-from game.charts import plotting
-from game.charts.tooltip import TooltipRow, draw_tooltip
 from game.core import texts
 from game.drawing import typeface
 from game.drawing.canvas import Canvas, Point
 from game.drawing.tokens import LABEL, SMALL
 from game.panels.network_painting import ADDS, LARGE, MARGIN, TAKES, NetworkPainting, Sheets, all_of
 from game.panels.network_plan import Column, Edge, NetworkPlan, Show
+from game.ui import plotting
+from game.ui.tooltip import TooltipRow, draw_tooltip
 
 _PITCH: Final = 13.0  # points between units, at least
 _MOST_UNITS: Final = 24  # in a column

@@ -11,12 +11,12 @@ import numpy as np
 import numpy.typing as npt
 import pygame
 
-from game.charts import plotting
 from game.core import texts
 from game.drawing.canvas import Canvas, Point
 from game.drawing.paint import mix
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import INK, LABEL, LINE, MUTE, NIGHT0, SMALL, TEXT, Colour
+from game.ui import plotting
 
 # Neighbours in the strip differ in lightness as well as in hue, also for eyes without red, green or blue cones:
 # by 28 or more in CIELAB. Amber and the network's blue stay free.

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
-from game.charts.series import run_style
-from game.charts.tooltip import draw_swatch
 from game.core.scene import Transition
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK, MUTE, SMALL
 from game.ui.listing import shortened
+from game.ui.series import run_style
+from game.ui.tooltip import draw_swatch
 from game.ui.widget import PointsManager, Widget
 
 _SWATCH: Final = 27.0  # points from the piece of a line to the name

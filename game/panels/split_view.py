@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import Final
 
 from ai.training.verdict import Flown
-from game.charts.series import RUN_STYLES
 from game.core import texts
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
@@ -15,6 +14,7 @@ from game.drawing.tokens import LINE, MUTE, NET, NIGHT0, SMALL, TEXT, VIEW_SIZE,
 from game.panels.lab import Laboratory
 from game.training.beside import EarlierRun
 from game.training.run import TrainingRun
+from game.ui.series import RUN_STYLES
 from game.world.swarm import LearningSwarm
 
 _WIDTH: Final = 418.0  # of each half, in points

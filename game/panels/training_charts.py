@@ -15,10 +15,6 @@ from ai.common.environment import Doubles
 from ai.training.edits import EDITED
 from ai.training.history import REVERTED, History, SettingChange
 from ai.training.lander_session import TAUGHT
-from game.charts.chart import Chart, Series, Tick
-from game.charts.charts import Charts
-from game.charts.scrubber import Scrubber
-from game.charts.series import run_style
 from game.core import texts
 from game.core.scene import Transition
 from game.drawing import typeface
@@ -28,6 +24,10 @@ from game.drawing.tokens import NIGHT0, SMALL
 from game.panels.run_legend import RunLegend
 from game.training.beside import EarlierRun
 from game.training.knob_descriptions import told
+from game.ui.chart import Chart, Series, Tick
+from game.ui.charts import Charts
+from game.ui.scrubber import Scrubber
+from game.ui.series import run_style
 from game.ui.virtual_pointer import VirtualPointer
 from game.ui.widget import OnPress, PointsManager, Widget
 from game.ui.widgets import Choice, TextButton

@@ -9,8 +9,6 @@ import numpy as np
 import pygame
 
 from ai.lander.rules import tenths
-from game.charts.chart import Chart, Series
-from game.charts.charts import Charts
 from game.core import texts
 from game.core.scene import Transition, push
 from game.drawing.canvas import Canvas
@@ -26,6 +24,8 @@ from game.play.friend import paste
 from game.play.growth import said
 from game.play.race import race
 from game.ui.actions import Action, Table
+from game.ui.chart import Chart, Series
+from game.ui.charts import Charts
 from game.ui.clipboard import give
 from game.ui.context import Context
 from game.ui.list_scene import VERB_LINE, VERB_SIZE, ListLayout, ListScene

@@ -12,7 +12,6 @@ from ai.sweep.results import FinishedTrial
 from ai.sweep.runs import DIGITS
 from ai.sweep.study import Study, StudyError
 from ai.training.config import LANDER
-from game.charts.chart import Chart, Series
 from game.core import texts
 from game.core.scene import Transition, push
 from game.drawing.canvas import Canvas
@@ -22,6 +21,7 @@ from game.flight import networks
 from game.flight.study_runs import studies
 from game.panels.study_dots import StudyDots, knob_value
 from game.training.knob_descriptions import label
+from game.ui.chart import Chart, Series
 from game.ui.context import Context
 from game.ui.list_scene import ListLayout, ListScene
 from game.ui.listing import Row

@@ -53,7 +53,8 @@ class RowWidget(Widget):
         cursor.gap(self.pad)
         if cursor.canvas is None:
             self.seen = cursor.seen
-            box = pygame.Rect(round(cursor.left), round(top), round(cursor.width), round(cursor.y - top))
+            left, above = round(cursor.left), round(top)  # rows that touch, touch in whole points as well
+            box = pygame.Rect(left, above, round(cursor.width), round(cursor.y) - above)
             self.rect = self.relative_rect = box
 
     def write(self, cursor: Cursor) -> None:

@@ -108,6 +108,8 @@ def daily(context: Context) -> PlayScene:
 
 
 FLOWN: dict[str, Make] = {
+    "sound": lambda context: SettingsScene(context, "sound"),
+    "controls": lambda context: SettingsScene(context, "controls"),
     "friend": friend,
     "daily": daily,
     "Play": lambda context: PlayScene(context, 3),

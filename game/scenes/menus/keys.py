@@ -23,9 +23,7 @@ if TYPE_CHECKING:
     from game.ui.panel import Panel
 
 # What flies; everything else is in the other half of the table.
-FLYING: Final[tuple[Meaning, ...]] = (
-    Held.MAIN, Held.LEFT, Held.RIGHT, Held.FINE, Command.HANDOVER, Command.RETRY, Command.PAUSE,
-)  # fmt: skip
+FLYING: Final[tuple[Meaning, ...]] = (Held.MAIN, Held.LEFT, Held.RIGHT, Held.FINE, Command.HANDOVER)
 _LEAST: Final = 108.0  # points of a column
 _BETWEEN: Final = "  ·  "
 

@@ -27,7 +27,7 @@ _WORD: Final = 22.0
 _TITLE, _ACROSS, _DOWN = 88.0, 0.11, 0.12
 _LINE_ROOM, _LINE_SHARE = 520.0, 0.52  # points of the line, and share of the window, which ends before the Earth
 _LOW: Final = 430.0  # points of a window in which nothing is left free
-_PAD, _ABOVE, _BETWEEN = 5.0, 40.0, 26.0  # points around a word, above the title and below the line, in a high one
+_PAD, _ABOVE, _BETWEEN = 4.0, 28.0, 20.0  # points around a word, above the title and below the line, in a high one
 
 # Entries: the route of a screen and its key in `texts.MENU`; the last one closes the game.
 ROWS: Final = ("play", "watch", "train", "digits", "learn", "settings", "quit")

@@ -19,15 +19,16 @@ from ai.digits.training import DigitTraining
 from ai.digits.validation import Confusion
 from ai.training.digit_run import save_digit_run
 from ai.training.history import DigitPoint, Validation
-from game.charts.scrubber import Scrubber
 from game.core import texts
 from game.core.names import LibraryError
 from game.core.worker import WorkerState
 from game.scenes.digit_training import KNOBS, DigitTrainingScene
 from game.training.digit_models import DigitModels
+from game.training.kinds import DIGITS
 from game.training.knob_descriptions import knob_descriptions
-from game.training.run import DIGITS, TrainingRun
+from game.training.run import TrainingRun
 from game.training.run_settings import RunSettings
+from game.ui.scrubber import Scrubber
 from tests.support.driver import Driver
 from tests.support.player import Player
 from tests.support.small import DIGITS as SMALL

@@ -2,11 +2,11 @@
 
 import pygame
 
-from game.charts.scrubber import Scrubber
 from game.core import texts
 from game.core.worker import WorkerState
 from game.scenes.lesson import LessonScene
 from game.scenes.train import TrainScene
+from game.ui.scrubber import Scrubber
 from game.ui.virtual_pointer import VirtualPointer
 from tests.support.driver import Driver
 from tests.support.small import LANDERS

@@ -6,7 +6,6 @@ import pytest
 
 from ai.explain.agent_lesson import Lesson
 from ai.explain.digit_lesson import digit_functions
-from game.charts.tooltip import TooltipRow
 from game.core import texts
 from game.core.source import source_of
 from game.lesson.figures import number, points
@@ -15,6 +14,7 @@ from game.lesson.gradient_frame import GradientFrame
 from game.lesson.network_frame import NetworkFrame
 from game.lesson.step import WeightPlace
 from game.scenes.lesson import LessonScene
+from game.ui.tooltip import TooltipRow
 from tests.support.driver import Driver
 from tests.support.lessons import SMALL, digit_lesson_of, in_view, lesson_of, shown
 

@@ -8,12 +8,12 @@ import pygame
 import pytest
 
 from ai.training.history import COLUMNS, PARTS, Checkpoint, Point
-from game.charts.scrubber import Scrubber
 from game.core import texts
 from game.core.worker import WorkerState
 from game.panels.run_timeline import RunTimeline
 from game.panels.training_status import lander_status
 from game.scenes.train import TrainScene
+from game.ui.scrubber import Scrubber
 from tests.support.driver import Driver
 
 POINTS = 8

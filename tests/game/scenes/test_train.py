@@ -19,7 +19,6 @@ from ai.training.demonstrations import demonstrate, write
 from ai.training.history import History
 from ai.training.lander_session import TAUGHT
 from ai.training.loop import Training
-from game.charts.scrubber import Scrubber
 from game.core import texts
 from game.core.scene import Push
 from game.core.worker import WorkerState
@@ -33,6 +32,7 @@ from game.training.library import Library
 from game.training.run import TrainingRun
 from game.ui import focus
 from game.ui.entry import Entry
+from game.ui.scrubber import Scrubber
 from game.ui.widget import Widget
 from game.ui.widgets import Choice
 from tests.support.driver import Driver

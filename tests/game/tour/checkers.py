@@ -23,7 +23,7 @@ from tests.support.driver import Driver
 from tests.support.state import state_of
 from tests.support.written import Written, misplaced
 
-SHAPES = [(1290, 430), (640, 1280), (800, 800)]  # three to one, one to two, square
+SHAPES = [(1290, 430), (640, 1280), (800, 800), (800, 600)]  # three to one, one to two, square, small
 
 
 @dataclass
@@ -84,6 +84,24 @@ def a_note_hides_nothing_that_is_to_be_read_or_pressed(visit: Visit) -> None:
     assert not [area for area in canvas.words if area.colliderect(place)], "the note lies on words"
     driver.frames(30)
     assert place == canvas.rect(*notes.box(canvas)), "the note does not stay where it is"
+
+
+# Few things to choose from, and few words
+
+MOST_CHOICES, MOST_WORDS = 7, 60
+
+
+def at_first_sight_there_is_little_to_read_and_to_choose_from(visit: Visit) -> None:
+    driver = visit.driver
+    driver.write_in("normal")
+    driver.frames(3)
+    widgets = driver.form.widgets
+    rows = {widget.box.top for widget in widgets}  # the key and the button of one command are one choice
+    assert len(rows) <= MOST_CHOICES, [widget.label for widget in widgets]
+    page = visit.written.turn(driver.app.canvas)
+    driver.app.draw()
+    words = [word for note in page.notes for word in note.text.split() if any(map(str.isalnum, word))]
+    assert len(words) <= MOST_WORDS, f"{len(words)} words: {' '.join(words)}"
 
 
 # Drawing
@@ -240,6 +258,7 @@ def _press_all(stop: Stop, driver: Driver, recorder: Recorder) -> None:
 CHECKERS: tuple[Callable[[Visit], None], ...] = (
     texts_fit_at_the_largest_size,
     texts_fit_in_windows_of_any_shape,
+    at_first_sight_there_is_little_to_read_and_to_choose_from,
     drawing_changes_nothing_but_pixels,
     hints_name_the_players_own_keys,
     hints_name_the_keys_of_their_own_actions,
@@ -253,12 +272,17 @@ NOT_AT = {
     # Words stand in every row of these.
     a_note_hides_nothing_that_is_to_be_read_or_pressed: {"swarm", "swarm, after a while", "DigitInsideScene"},
 }
-# Whatever is laid out for a page is laid out alike in every window: the last two of these stand for all.
+# Screens in rows and columns, which are laid out anew for every window.
+FLOWING = {
+    "MenuScene", "FlightsScene", "SettingsScene", "AssistsScene", "BindingsScene", "QuestionDialog", "NameDialog",
+    "ListDialog", "sound", "controls",
+}  # fmt: skip
 ONLY_AT = {
-    texts_fit_in_windows_of_any_shape: {
-        "MenuScene", "WatchScene", "ReplayScene", "Play", "swarm", "mission", "TrainScene", "PhysicsScene",
-        "PauseScene", "SettingsScene", "QuestionDialog",
-    }
+    # Whatever is laid out for a page is laid out alike in every window: the last of these stands for all.
+    texts_fit_in_windows_of_any_shape: FLOWING | {
+        "WatchScene", "ReplayScene", "Play", "swarm", "mission", "TrainScene", "PhysicsScene", "PauseScene",
+    },
+    at_first_sight_there_is_little_to_read_and_to_choose_from: FLOWING,
 }  # fmt: skip
 
 

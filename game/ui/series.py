@@ -12,10 +12,10 @@ import numpy as np
 import numpy.typing as npt
 import pygame
 
-from game.charts.plotting import Limits, Numbers
-from game.charts.tooltip import draw_swatch
 from game.drawing.canvas import Canvas, Point
 from game.drawing.tokens import FAINT, HUMAN, MUTE, NET, SMALL, Colour
+from game.ui.plotting import Limits, Numbers
+from game.ui.tooltip import draw_swatch
 
 _TICK_SPACING: Final = 4.0  # points
 

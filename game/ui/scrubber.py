@@ -7,10 +7,10 @@ from typing import Final
 
 import pygame
 
-from game.charts.charts import Charts
 from game.core.scene import Transition
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK
+from game.ui.charts import Charts
 from game.ui.widget import OnPress, PointsManager, Widget
 
 _ZOOMS: Final = {

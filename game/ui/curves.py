@@ -8,12 +8,12 @@ from typing import Final, NamedTuple
 import numpy as np
 import pygame
 
-from game.charts import plotting
-from game.charts.plotting import Bools, Limits, Numbers
-from game.charts.series import SavedSeries
 from game.drawing.canvas import Canvas
 from game.drawing.shapes import Shape
 from game.drawing.tokens import Colour
+from game.ui import plotting
+from game.ui.plotting import Bools, Limits, Numbers
+from game.ui.series import SavedSeries
 
 _LINE_WIDTH: Final = 1.6
 _SPECK: Final = 0.55  # radius of a raw point, in points

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from game.charts.plotting import Limits
+from game.ui.plotting import Limits
 
 MOST: Final = 64.0  # times that the axis can be stretched
 STEP: Final = 1.25  # times for a notch of the wheel, or a press of + or -

@@ -8,14 +8,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ai.training.history import History, SettingChange
-from game.charts import plotting
-from game.charts.chart import RUN_STYLES, Chart, Series, Tick
-from game.charts.charts import Charts
 from game.core import texts
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.panels.reward_bar import PART_COLOURS, RewardBar, signed
 from game.panels.training_charts import ticks_of
+from game.ui import plotting
+from game.ui.chart import RUN_STYLES, Chart, Series, Tick
+from game.ui.charts import Charts
 from tests.ai.training.test_hints import HEALTHY
 from tests.support.written import words_written
 
@@ -235,8 +235,8 @@ def test_the_cursor_reads_the_nearest_point_of_each_run(canvas: Canvas, monkeypa
 
 
 def test_the_readout_stays_inside_the_box(canvas: Canvas, monkeypatch: pytest.MonkeyPatch) -> None:
-    from game.charts import chart as module
-    from game.charts.tooltip import draw_tooltip
+    from game.ui import chart as module
+    from game.ui.tooltip import draw_tooltip
 
     boxes = []
     original = draw_tooltip
@@ -403,7 +403,7 @@ def test_a_single_wild_value_is_marked_though_the_line_hardly_shows_it(drawn: Ca
 
 
 def test_a_turned_knob_is_told_before_a_checkpoint(canvas: Canvas, monkeypatch: pytest.MonkeyPatch) -> None:
-    from game.charts import chart as module
+    from game.ui import chart as module
 
     told: list[list[str]] = []
     monkeypatch.setattr(module, "draw_tooltip", lambda canvas, point, box, lines, rows: told.append(lines))

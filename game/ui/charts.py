@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import pygame
 
-from game.charts.chart import Chart
-from game.charts.zoom import STEP, Zoom
 from game.drawing.canvas import Canvas, Point
+from game.ui.chart import Chart
+from game.ui.zoom import STEP, Zoom
 
 
 class Charts:

@@ -13,15 +13,15 @@ from typing import Final
 import numpy as np
 import pygame
 
-from game.charts import plotting
-from game.charts.curves import Axes, PaintedRuns, paint_run, trace_run
-from game.charts.plotting import Limits, Numbers
-from game.charts.series import RUN_STYLES, SavedSeries, Series, Tick, draw_legend, paint_ticks
-from game.charts.tooltip import TooltipRow, draw_tooltip
 from game.core import texts
 from game.drawing.canvas import Align, Canvas, Point
 from game.drawing.paint import mix
 from game.drawing.tokens import FAINT, INK, LABEL, LINE, MUTE, NIGHT0, SMALL, TEXT
+from game.ui import plotting
+from game.ui.curves import Axes, PaintedRuns, paint_run, trace_run
+from game.ui.plotting import Limits, Numbers
+from game.ui.series import RUN_STYLES, SavedSeries, Series, Tick, draw_legend, paint_ticks
+from game.ui.tooltip import TooltipRow, draw_tooltip
 
 __all__ = ["RUN_STYLES", "Chart", "Series", "Tick", "draw_legend"]
 
