@@ -25,7 +25,7 @@ class BroadPhase:
     Of a polygon and a circle, the polygon comes first.
     """
 
-    def __init__(self, params: BodyParams, shapes: ShapeTable, margin: float) -> None:
+    def __init__(self, params: BodyParams, shapes: ShapeTable, batch: int, margin: float) -> None:
         self._shapes = shapes
         self._moving = span(params.dynamic)
         self._fixed = ~params.dynamic
@@ -33,10 +33,11 @@ class BroadPhase:
         self._reach = np.zeros(len(params.group))  # of bodies, from the centre of mass
         far = np.sqrt(shapes.centre[:, 0] ** 2 + shapes.centre[:, 1] ** 2) + self._shape_reach
         np.maximum.at(self._reach, shapes.body, far)
-        self._boxes: Array | None = None  # (4, bodies, batch)
-        self._shape_boxes = np.zeros((4, 0, 0))  # (4, shapes, batch); only those of fixed bodies are filled
+        self._boxes = np.zeros((4, len(params.group), batch))
+        self._shape_boxes = np.zeros((4, len(shapes), batch))  # only those of fixed bodies are filled
         self._stale = self._fixed.copy()  # fixed bodies (bodies,) whose boxes are to be computed anew
         self._movers_first, self._first, self._count = _meeting_pairs(params, shapes)
+        self._meet = self._count[..., None] > 0  # (moving, bodies, 1)
         a, b = self._movers_first.T
         turned = shapes.is_circle[a] & ~shapes.is_circle[b]
         self.pairs = np.where(turned[:, None], self._movers_first[:, ::-1], self._movers_first)
@@ -51,13 +52,13 @@ class BroadPhase:
         Given which bodies are `awake`, (batch, bodies), pairs without any are left out.
         """
         boxes = self._body_boxes(state)
-        overlap = _overlap(boxes[:, self._moving, None], boxes[:, None])  # (moving, bodies, batch)
-        overlap &= self._count[..., None] > 0
+        overlap = _overlap(boxes[:, self._moving, None], boxes[:, None], self._meet)  # (moving, bodies, batch)
         if not state.active.all():
             overlap &= (state.active[:, self._moving, None] & state.active[:, None]).transpose(1, 2, 0)
         if awake is not None:
             overlap &= (awake[:, self._moving, None] | awake[:, None]).transpose(1, 2, 0)
-        mover, other, world = overlap.nonzero()
+        # Many times as fast as `nonzero` of three axes.
+        mover, other, world = np.unravel_index(np.flatnonzero(overlap), overlap.shape)
         if not len(world):
             return world, world
         order = np.argsort(world, kind="stable")
@@ -71,26 +72,23 @@ class BroadPhase:
         return world[near], pair[near]
 
     def _body_boxes(self, state: BodyState) -> Array:
-        if self._boxes is None:
-            batch, bodies = state.active.shape
-            self._boxes, self._shape_boxes = np.empty((4, bodies, batch)), np.zeros((4, len(self._shapes), batch))
-        boxes = self._boxes
+        """Boxes (4, bodies, batch) of all bodies as they are now."""
         if self._stale.any():
-            self._box_fixed(state, boxes, np.flatnonzero(self._stale))
+            self._box_fixed(state, np.flatnonzero(self._stale))
             # A lift has other boxes in the next step.
             self._stale = self._fixed & state.velocity.any(axis=(0, 2))
         centre, reach = state.pose[:, self._moving, :2].transpose(2, 1, 0), self._reach[self._moving, None]
-        boxes[:2, self._moving], boxes[2:, self._moving] = centre - reach, centre + reach
-        return boxes
+        self._boxes[:2, self._moving], self._boxes[2:, self._moving] = centre - reach, centre + reach
+        return self._boxes
 
-    def _box_fixed(self, state: BodyState, boxes: Array, bodies: Ints) -> None:
+    def _box_fixed(self, state: BodyState, bodies: Ints) -> None:
         """Box some fixed bodies, in ascending order, and their shapes."""
         shapes = np.flatnonzero(np.isin(self._shapes.body, bodies))
         low, high = self._shapes.bounds(state, shapes)
         self._shape_boxes[:2, shapes], self._shape_boxes[2:, shapes] = low.T, high.T
         first = self._shapes.body[shapes].searchsorted(bodies)  # a body's shapes stand side by side
-        boxes[:2, bodies] = np.minimum.reduceat(low.T, first, axis=1)
-        boxes[2:, bodies] = np.maximum.reduceat(high.T, first, axis=1)
+        self._boxes[:2, bodies] = np.minimum.reduceat(low.T, first, axis=1)
+        self._boxes[2:, bodies] = np.maximum.reduceat(high.T, first, axis=1)
 
     def _shapes_near(self, state: BodyState, world: Ints, pair: Ints) -> Bools:
         """Whether the boxes of pairs of shapes overlap, (n,)."""
@@ -107,9 +105,9 @@ class BroadPhase:
         return np.concatenate([centre - reach, centre + reach])
 
 
-def _overlap(a: Array, b: Array) -> Bools:
-    """Whether boxes overlap; their arrays are broadcast against each other."""
-    overlap: Bools = a[1] <= b[3]
+def _overlap(a: Array, b: Array, meet: Bools | bool = True) -> Bools:
+    """Whether boxes overlap that may `meet`; all are broadcast against each other."""
+    overlap: Bools = (a[1] <= b[3]) & meet
     for low, high in ((b[1], a[3]), (a[0], b[2]), (b[0], a[2])):
         if overlap.any():
             overlap &= low <= high

@@ -93,7 +93,7 @@ def collide_polygons(ab: PlacedPolygons, margin: float) -> Manifold:
     corners = _clip(start, end, ab.start[incident, incident_face], ab.end[incident, incident_face])
     depth = -dot(corners - start[:, None], out[:, None])
     normal = np.where(flip[:, None], -out, out)
-    number = (flip * 64 + reference_face) * 64 + incident_face
+    number = (flip * 64 + reference_face) * 64 + incident_face  # up to 64 faces each
     return Manifold(
         normal=normal,
         points=corners + out[:, None] * (depth / 2)[..., None],
@@ -147,6 +147,7 @@ def _clip(start: Array, end: Array, incident_start: Array, incident_end: Array) 
     """Both ends of the incident edge, cut to lie above the reference edge, (n, 2, 2)."""
     edge = end - start
     tangent = edge / length(edge)[:, None]
+    # Along the reference edge: where the incident edge's ends lie, and where its own do.
     first, last = dot(incident_start - start, tangent), dot(incident_end - start, tangent)
     span = last - first
     span = np.where(np.abs(span) < 1e-12, 1e-12, span)

@@ -93,7 +93,7 @@ class NarrowPhase:
         """Return order and colours of contacts; those of the last step if the same pairs touch."""
         key = self._key(world, pair)
         if self._coloured is None or not np.array_equal(key, self._coloured[0]):
-            colours = colour(world[:, None] * bodies + self._body[pair], self._free[pair])
+            colours = _colours(world[:, None] * bodies + self._body[pair], self._free[pair])
             order = np.argsort(colours, kind="stable")
             self._coloured = (key, order, colours[order])
         return self._coloured[1:]
@@ -101,44 +101,45 @@ class NarrowPhase:
     def warm_start(self, contacts: Contacts, last: Contacts | None, share: Array | None, pass_on: bool) -> None:
         """Begin with the last step's impulses, or a `share` (batch,), at points that the same faces make as then.
 
-        A resting stack so starts solved. With `pass_on`, a point that other faces make now takes over the impulse of
-        the nearest one that is gone. Two boxes that lie face to face make the same points by one's face or the other's,
-        whichever happens to be a little less deep; if their impulses were lost with it, a heap would start afresh here
-        and there in every step, and never come to rest.
+        A resting stack so starts solved. With `pass_on`, other points may take over impulses, too.
         """
         if not last:
             return
-        last_key, key = self._key(last.world, last.pair), self._key(contacts.world, contacts.pair)
+        key, last_key = self._key(contacts.world, contacts.pair), self._key(last.world, last.pair)
         rising = np.argsort(last_key)
-        place = np.minimum(last_key.searchsorted(key, sorter=rising), len(rising) - 1)
-        row = rising[place]
-        known = last_key[row] == key
-        there, valid = last.valid[row], contacts.valid
-        same = known[:, None] & there & valid & (last.feature[row] == contacts.feature)
-        impulse = last.impulse[row]
-        if share is not None:
-            impulse = impulse * share[contacts.world, None]
-        contacts.age = (last.age[row] + 1) * known
+        row = rising[np.minimum(last_key.searchsorted(key, sorter=rising), len(rising) - 1)]
+        known = last_key[row] == key  # pairs that touched in the last step, in its `row`
+        same = known[:, None] & last.valid[row] & contacts.valid & (last.feature[row] == contacts.feature)
         # There is one friction for both points: it stays if all of the points have.
-        rubs = same.all(axis=1) | (same.any(axis=1) & (valid.sum(axis=1) == 1))
-        contacts.impulse = impulse * np.column_stack([same, rubs])
-        lost = np.flatnonzero(known & ~(rubs & (same == valid).all(axis=1)))
-        if pass_on and len(lost):
-            old, same = row[lost], same[lost]
-            alike = dot(last.normal[old], contacts.normal[lost]) > _ALIKE
-            new, gone = valid[lost] & ~same, there[lost] & ~same & alike[:, None]
-            away = length(contacts.points[lost][:, :, None] - last.points[old][:, None])  # (lost, new, gone)
-            away = np.where(new[:, :, None] & gone[:, None], np.minimum(away, _NEAR), _NEAR)
-            crossed = away[:, 0, 1] + away[:, 1, 0] < away[:, 0, 0] + away[:, 1, 1]
-            heir = np.where(crossed[:, None], (1, 0), (0, 1))  # (lost, 2): which of the old points each new one follows
-            passed = np.take_along_axis(away, heir[:, :, None], axis=2)[..., 0] < _NEAR
-            inherited = np.take_along_axis(impulse[lost, :2], heir, axis=1)
-            contacts.impulse[lost, :2] += np.where(passed, inherited, 0.0)
-            rubs = alike & (passed | same).any(axis=1)  # friction stays if any push does
-            contacts.impulse[lost, 2] = np.where(rubs, impulse[lost, 2], contacts.impulse[lost, 2])
+        all_same = same.all(axis=1) | (same.any(axis=1) & (contacts.valid.sum(axis=1) == 1))
+        impulse = last.impulse[row] if share is None else last.impulse[row] * share[contacts.world, None]
+        contacts.impulse = impulse * np.column_stack([same, all_same])
+        contacts.age = (last.age[row] + 1) * known
+        changed = np.flatnonzero(known & ~all_same)
+        if pass_on and len(changed):
+            _pass_on(contacts, changed, last.take(row[changed]), impulse[changed], same[changed])
 
 
-def colour(slots: Ints, free: Bools) -> Ints:
+def _pass_on(contacts: Contacts, rows: Ints, last: Contacts, impulse: Array, same: Bools) -> None:
+    """Let new points of contacts `rows` (n,) take over the impulse (n, 3) of the nearest of the `last` that is gone.
+
+    Two boxes that lie face to face make the same points by one's face or the other's, whichever happens to be a little
+    less deep. If their impulses were lost with it, a heap would start afresh here and there in every step, and never
+    come to rest. `same` (n, 2) are points that kept theirs.
+    """
+    alike = dot(last.normal, contacts.normal[rows]) > _ALIKE
+    new, gone = contacts.valid[rows] & ~same, last.valid & ~same & alike[:, None]
+    away = length(contacts.points[rows][:, :, None] - last.points[:, None])  # (n, new, gone)
+    away = np.where(new[:, :, None] & gone[:, None], np.minimum(away, _NEAR), _NEAR)
+    crossed = away[:, 0, 1] + away[:, 1, 0] < away[:, 0, 0] + away[:, 1, 1]
+    source = np.where(crossed[:, None], (1, 0), (0, 1))  # (n, 2): of the last points, the one that each follows
+    passed = np.take_along_axis(away, source[:, :, None], axis=2)[..., 0] < _NEAR
+    contacts.impulse[rows, :2] += np.where(passed, np.take_along_axis(impulse[:, :2], source, axis=1), 0.0)
+    pushed = alike & (passed | same).any(axis=1)  # friction stays if any push does
+    contacts.impulse[rows, 2] = np.where(pushed, impulse[:, 2], contacts.impulse[rows, 2])
+
+
+def _colours(slots: Ints, free: Bools) -> Ints:
     """Colour m contacts so that no two of a colour share a body that can move: numbers from 0 on, (m,).
 
     slots (m, 2) name the bodies and `free` (m, 2) says which can move. Each contact takes the first colour that neither

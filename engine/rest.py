@@ -48,11 +48,13 @@ class Rest:
         if self.awake is None:
             return
         pose, velocity, active, gravity_before = self._seen
+        now = state.pose, state.velocity, state.active, gravity
+        if not state.force.any() and all(map(np.array_equal, self._seen, now)):
+            return
         differs = (state.pose != pose) | (state.velocity != velocity) | (state.force != 0)
         disturbed = differs.any(axis=2) | (state.active != active)
         disturbed |= self.asleep & np.any(gravity != gravity_before, axis=-1, keepdims=True)
-        if disturbed.any():
-            self.wake(disturbed, state, contacts)
+        self.wake(disturbed, state, contacts)
 
     def wake_touched(self, found: Contacts | None, state: BodyState, contacts: Contacts | None) -> bool:
         """Wake sleeping bodies that this step has `found` to be touched; return whether there were any."""
@@ -78,7 +80,7 @@ class Rest:
         still = ((np.abs(velocity) < STILL) & (np.abs(pose - self._place) < DRIFT)).all(axis=2)
         self._place[~still] = pose[~still]
         self._still = (self._still + 1) * still
-        if (self._still >= STEPS).any():
+        if ((self._still >= STEPS) & ~self.asleep[:, self._moving]).any():
             self._find_sleepers(state, contacts, np.zeros_like(self.asleep))
             state.velocity[self.asleep] = 0.0
         if self.awake is not None:

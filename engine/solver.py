@@ -14,6 +14,7 @@ worlds and bodies they span.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -48,7 +49,7 @@ class Solver:
         self._approach[:2] *= -1
         contacts.approach, contacts.impulse = self._approach.T, self._impulse.T  # views: the solver fills them
         ends = np.bincount(contacts.colour).cumsum().tolist()
-        self._spans = [slice(start, end) for start, end in zip([0, *ends], ends, strict=False)]
+        self._spans = [slice(start, end) for start, end in pairwise([0, *ends])]  # of each colour
         self._colours = [self._rows.part(span) for span in self._spans]
 
     def solve_velocities(self, state: BodyState, iterations: int, restitution_threshold: float, dt: float) -> None:
@@ -84,7 +85,13 @@ class Solver:
         """Take back the angular momentum that free bodies gained as overlaps pushed them aside across their motion.
 
         Each pair turns a little about its common centre of mass as if it were one body, like a skater who spreads the
-        arms, so the two move neither apart nor along each other. Where that would add energy, they do so less.
+        arms, so the two move neither apart nor along each other. Where that would add energy, what they move besides
+        becomes so much less.
+
+                  along: how B moves as seen from A
+                  ^
+                  |          momentum about the common centre: reduced · (A→B × along) + both spins' own;
+            A ----B          turning as one body by one radian a second it would be `whole`
         """
         rows = np.flatnonzero((self._inverse_mass[:, :, 0] > 0).all(axis=1) & push[:2].any(axis=0))
         if not len(rows):
@@ -93,17 +100,19 @@ class Solver:
         places = contacts.world[rows, None], contacts.body[rows]
         pose, velocity = state.pose[places], state.velocity[places]
         along, spins = velocity[:, 1, :2] - velocity[:, 0, :2], velocity[..., 2].T
-        turned = -right_of(pose[:, 1, :2] - pose[:, 0, :2])  # how B moves about A when both turn by a radian
+        turned = -right_of(pose[:, 1, :2] - pose[:, 0, :2])  # `along` of a pair that turns as one by 1 rad/s
         share = mass[0] / (mass[0] + mass[1])
-        reduced = share * mass[1]
+        reduced = share * mass[1]  # mass with which the two move against each other
         whole = reduced * dot(turned, turned) + inertia[0] + inertia[1]
         now = reduced * dot(turned, along) + inertia[0] * spins[0] + inertia[1] * spins[1]
         before = now - (push[0, rows] + push[1, rows]) * cross(contacts.normal[rows], along)
-        turn = now / whole
+        turn = now / whole  # as one body; the rest of the motion is their own
         own, own_spins = along - turn[:, None] * turned, spins - turn
-        energy = reduced * dot(own, own) + inertia[0] * own_spins[0] ** 2 + inertia[1] * own_spins[1] ** 2  # twice
+        energy = (
+            reduced * dot(own, own) + inertia[0] * own_spins[0] ** 2 + inertia[1] * own_spins[1] ** 2
+        )  # of that, twice
         excess = np.divide(before**2 - now**2, whole * energy, out=np.zeros_like(whole), where=energy > 0)
-        less = np.sqrt(np.clip(1.0 - excess, 0.0, 1.0)) - 1.0
+        less = np.sqrt(np.clip(1.0 - excess, 0.0, 1.0)) - 1.0  # change of their own motion, so that energy stays
         turn = before / whole - turn
         change = np.empty_like(velocity)
         pull = turn[:, None] * turned + less[:, None] * own
@@ -203,11 +212,15 @@ class Rows:
         return bool(change.any())
 
     def push(self, lacking: Array, total: Array) -> Array:
-        """Impulses (2, m) >= 0 that give both points the speed they are `lacking`, or more with no impulse."""
+        """Return impulses p (2, m) ≥ 0 in place of `total`, so that each point gains the speed it is `lacking`.
+
+        With K the 2 × 2 matrix of speed per push, that is p = total + K⁻¹·lacking. Where a point would be pulled, it
+        gets nothing, and may gain more than it lacked.
+        """
         both = total + self.inverse * lacking + self.cross_inverse * lacking[::-1]
         if both.min() >= 0:
             return both
-        # Where that would pull at one point, there is no impulse at it, and the other point has to do alone.
+        # The other point has to do alone, and without what the first has pushed at it until now.
         alone = total + self.mass[:2] * (lacking + self.coupling * total[::-1])
         return np.maximum(np.where(both[::-1] >= 0, both, alone), 0.0)
 

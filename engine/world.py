@@ -159,9 +159,9 @@ class World:
             world, pair = self._broad_phase.near(state, rest.awake)
             contacts = self._narrow_phase.touching(state, world, pair)
             if not rest.wake_touched(contacts, state, self.contacts):
-                break  # else contacts of what has woken are to be found, too
+                break  # else what has woken is to be looked at, too
         if contacts:
-            self._narrow_phase.warm_start(contacts, self._impulses, self._weaker(), pass_on=self.sleeping)
+            self._narrow_phase.warm_start(contacts, self._impulses, self._impulse_share(), pass_on=self.sleeping)
             solver = Solver(state, params, contacts)
         integrate_velocity(state, params, movers, gravity, DT, rest.awake)
         if solver:
@@ -178,14 +178,14 @@ class World:
         """Remember a step's contacts, and those of bodies that slept in it."""
         slept, awake = None, self._rest.awake
         if self.contacts and awake is not None:
-            met = awake[self.contacts.world[:, None], self.contacts.body]
-            slept = self.contacts.take(np.flatnonzero(~met.any(axis=1)))
-            slept.approach[:] = 0.0
+            kept = ~awake[self.contacts.world[:, None], self.contacts.body].any(axis=1)
+            slept = self.contacts if kept.all() else self.contacts.take(np.flatnonzero(kept))
+            slept.approach = np.zeros_like(slept.approach)
         self.contacts = self._impulses = contacts.with_others(slept) if contacts else slept or None
         self._gravity_before = self.gravity
 
-    def _weaker(self) -> Array | None:
-        """How much of the last step's impulses a changed gravity asks of contacts now, (batch,) 0 to 1; None for all.
+    def _impulse_share(self) -> Array | None:
+        """Share of the last step's impulses that gravity, if it has changed, asks for now, (batch,) 0 to 1; None: all.
 
         Impulses that bore a stack under a stronger one would throw it up, and a few iterations do not take that back.
         """
@@ -202,7 +202,7 @@ class World:
             return
         self._version = self.params.version
         self._shape_table = ShapeTable(self.shapes, self._shape_bodies, self.params.dynamic)
-        self._broad_phase = BroadPhase(self.params, self._shape_table, MARGIN)
+        self._broad_phase = BroadPhase(self.params, self._shape_table, self.batch, MARGIN)
         self._narrow_phase = NarrowPhase(self.params, self._shape_table, self._broad_phase.pairs)
         self._rest = Rest(self.params, self.state, self.gravity, self.sleeping)
         self._movers = self._impulses = None
@@ -217,7 +217,7 @@ class World:
 
     @property
     def shape_table(self) -> ShapeTable:
-        """All shapes."""
+        """Every shape as rows of arrays."""
         self._prepare()
         return self._shape_table
 
@@ -262,7 +262,7 @@ class World:
         self._gravity_before = self.gravity
 
     def memory(self) -> dict[str, Any]:
-        """Return what the next step takes over from the last one, as copies of arrays, to be put back by `recall`.
+        """Return what the next step takes over from the last one, arrays that no step changes; `recall` puts it back.
 
         Together with `state`, `gravity` and `params`, it is all that a world's future depends on.
         """

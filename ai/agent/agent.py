@@ -16,7 +16,8 @@ Mnih et al. 2015, Human-level control through deep reinforcement learning
 - RMSProp at a fixed rate. Here Adam, at a rate that falls in a straight line, and gradients are clipped by length.
   The paper's clipped error is the Huber cost.
 - ε falls to 0.1 for the one player, and random actions are uniform. Here each lander has an ε of its own, as in
-  Horgan et al. 2018, and random actions fire the main engine less often (`random_main`): half the time is hovering.
+  Horgan et al. 2018, and the chances of random actions may differ (`action_chances`): a lander's main engine, fired
+  half the time, is hovering.
 - The action of the greatest value is taken. Here the one held goes on while it is nearly as good (`steadiness`), so
   that engines do not flicker. Targets use the greatest value all the same.
 - An episode's end has no value beyond. Here the end by the clock has, as time is not observed (Pardo et al. 2018).
@@ -30,7 +31,6 @@ Wang et al. 2016, dueling networks (off in both presets): each stream has a hidd
   into the shared layers are scaled by 1/√2. Here both streams are linear and nothing is scaled.
 Sutton and Barto 2018, n-step returns (sections 7.1 and 7.3): off-policy returns are weighted by importance sampling.
   Here they are not, as in Hessel et al. 2018: transitions are learned from as they were flown.
-Ng, Harada and Russell 1999, shaping: γΦ' - Φ. Here Φ' - Φ; `ai.lander.rewards` says what that changes.
 In no paper: half of each minibatch is mirrored (`mirror`); `classic` has a second pass over flights that ended well.
 """
 

@@ -36,30 +36,33 @@ class NStep:
         if self._states is None or self._states.shape[1:] != state.shape:
             self._start(state)
         assert self._states is not None
-        place = self._count % self.n
-        self._states[place], self._actions[place] = state, action
-        self._returns[place], self._ages[place] = 0.0, 0
-        self._open[place] = True
+        # The last n decisions are a ring of rows. The newest begins a transition in each slot, and every transition
+        # that is open gets this reward, discounted by its age.
+        newest = self._count % self.n
+        self._states[newest], self._actions[newest] = state, action
+        self._returns[newest], self._ages[newest] = 0.0, 0
+        self._open[newest] = True
         self._count += 1
         self._returns += np.float32(self.discount) ** self._ages.astype(np.float32) * reward * self._open
         self._ages += 1
+        # Complete are those of n rewards, all in the row that will be overwritten next, and those whose episode ended.
+        oldest = self._count % self.n
         full = np.zeros_like(self._open)
-        full[self._count % self.n] = self._ages[self._count % self.n] >= self.n
-        done = self._open & (full | ended)
-        self._open &= ~done
-        # Oldest first, so that a pruned memory loses the oldest.
-        row, slot = done.nonzero()
-        order = np.argsort(-self._ages[row, slot], kind="stable")
+        full[oldest] = self._ages[oldest] >= self.n
+        complete = self._open & (full | ended)
+        self._open &= ~complete
+        row, slot = complete.nonzero()
+        order = np.argsort(-self._ages[row, slot], kind="stable")  # oldest first: a pruned buffer loses the oldest
         row, slot = row[order], slot[order]
-        cells = Transition(
+        transitions = Transition(
             self._states[row, slot],
             next_state[slot],
             self._actions[row, slot],
             self._returns[row, slot],
             terminal[slot],
-            self._ages[row, slot].copy(),
+            self._ages[row, slot],
         )
-        return cells, slot
+        return transitions, slot
 
     def state(self) -> dict[str, Any]:
         """Return copies of all that the next `add` depends on, besides the settings."""

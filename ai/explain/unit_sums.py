@@ -83,7 +83,9 @@ class Stage:
             case ConvolutionLayer() as layer if self.kind == "convolution":
                 corner = row * layer.stride - layer.padding, column * layer.stride - layer.padding
                 weights = layer.kernels[:, :, :, channel].swapaxes(0, 1)
-                patch = layer.window(self.inputs, row, column)
+                border, top, left = (layer.padding, layer.padding), row * layer.stride, column * layer.stride
+                framed = np.pad(self.inputs, (border, border, (0, 0)))
+                patch = framed[top : top + layer.kernel, left : left + layer.kernel]
                 return UnitSum(corner, patch, weights, float(layer.bias[channel]), output)
             case FullyConnectedLayer() as layer if self.kind == "connected":
                 weights = layer.weights[self.order, channel]

@@ -8,6 +8,7 @@ are gathered almost at the speed of memory (docs/adr/0009-images-batch-last-in-m
 
 from collections.abc import Iterator
 from itertools import product
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -114,7 +115,8 @@ class ConvolutionLayer(FullyConnectedLayer):
 
     `inputs` is (height, width, channels). Windows lie `stride` pixels apart, and `padding` zeros are put around
     the image on each side; padding of kernel // 2 keeps the size. As in all such libraries the kernel is not
-    flipped: this is a correlation. Raises ValueError for sizes that make no sense.
+    flipped: this is a correlation. `options` are those of `FullyConnectedLayer`. Raises ValueError for sizes that make
+    no sense.
     """
 
     settings = ("inputs", "filters", "kernel", "stride", "padding")
@@ -130,10 +132,7 @@ class ConvolutionLayer(FullyConnectedLayer):
         *,
         stride: int = 1,
         padding: int = 0,
-        initialisation: str | None = None,
-        scale: float = 1.0,
-        rng: np.random.Generator | None = None,
-        dtype: npt.DTypeLike = np.float32,
+        **options: Any,
     ) -> None:
         height, width, channels = shape = _checked_shape(inputs)
         self.kernel, self.stride = checked_size("kernel", kernel), checked_size("stride", stride)
@@ -143,9 +142,7 @@ class ConvolutionLayer(FullyConnectedLayer):
         if self.kernel > min(height, width) + 2 * self.padding:
             raise ValueError(f"a kernel of {kernel} does not fit into {height} x {width} with padding {padding}")
         self.filters = checked_size("filters", filters)
-        super().__init__(
-            self.kernel**2 * channels, self.filters, initialisation=initialisation, scale=scale, rng=rng, dtype=dtype
-        )
+        super().__init__(self.kernel**2 * channels, self.filters, **options)
         rows, columns = ((size + 2 * self.padding - self.kernel) // self.stride + 1 for size in (height, width))
         self.inputs, self.outputs = shape, (rows, columns, self.filters)
         self.overhang = self.kernel - 1 - self.padding  # the padding of the way back
@@ -171,7 +168,10 @@ class ConvolutionLayer(FullyConnectedLayer):
         return self._correlate(input_data, frame, self.kept("output", (len(input_data), *self.outputs), self.dtype))
 
     def predict(self, input_data: Array) -> Array:
-        """Return the same as a new array."""
+        """Return the same as a new array, also for one image without the batch axis."""
+        if input_data.ndim == 3:
+            one: Array = self.predict(input_data[None])[0]
+            return one
         _check_images(self, input_data)
         frame = np.zeros(self._frame(len(input_data)), self.dtype, "F")
         return self._correlate(input_data, frame, np.empty((len(input_data), *self.outputs), self.dtype, "F"))
@@ -192,13 +192,6 @@ class ConvolutionLayer(FullyConnectedLayer):
         turned = self.kernels[::-1, ::-1].swapaxes(2, 3)
         self.backward.correlate(framed.T, turned, np.zeros(channels, self.dtype), error.T)
         return error
-
-    def window(self, image: Array, row: int, column: int) -> Array:
-        """Return what one output reads of an image (height, width, channels): (kernel, kernel, channels)."""
-        frame = np.zeros(self._frame(1), self.dtype)
-        _place(image[None], frame, self.padding)
-        top, left = row * self.stride, column * self.stride
-        return frame[0, top : top + self.kernel, left : left + self.kernel]
 
     def _correlate(self, images: Array, frame: Array, output: Array) -> Array:
         _place(images, frame, self.padding)
@@ -236,7 +229,10 @@ class MaxPoolingLayer(HalvedLayer):
         return self._maximum(input_data, self.output)
 
     def predict(self, input_data: Array) -> Array:
-        """Return the same as a new array."""
+        """Return the same as a new array, also for one image without the batch axis."""
+        if input_data.ndim == 3:
+            one: Array = self.predict(input_data[None])[0]
+            return one
         _check_images(self, input_data)
         return self._maximum(input_data, np.empty((len(input_data), *self.outputs), input_data.dtype, "F"))
 
@@ -288,7 +284,10 @@ class FlattenLayer(HalvedLayer):
         return input_data.reshape(-1, self.outputs, order="F")
 
     def predict(self, input_data: Array) -> Array:
-        """Return the same."""
+        """Return the same, also for one image without the batch axis."""
+        if input_data.ndim == 3:
+            one: Array = self.predict(input_data[None])[0]
+            return one
         return self.forward_propagate(input_data)
 
     def input_error(self, output_error: Array) -> Array:

@@ -34,7 +34,7 @@ class Layer(ABC):
 
     What `forward_propagate` and `backward_propagate` return lasts until their next call: they may write into
     arrays that are kept while the batch size stays the same. `predict` returns a new array, or its input where
-    there is nothing to compute; layers without images also take one example (values,).
+    there is nothing to compute, and also takes one example without the batch axis.
     """
 
     settings: tuple[str, ...] = ()  # arguments of the constructor that are stored with the layer

@@ -83,10 +83,11 @@ class NeuralNetwork:
         sizes = [size for layer in self.layers for size in (layer.inputs, layer.outputs) if isinstance(size, int)]
         if not sizes or any(isinstance(layer.inputs, tuple) for layer in self.layers):
             return np.empty((0, 0), self.dtype), [], np.empty((0, 0), self.dtype)
-        first = memory = np.ones(sizes[0] + 1, self.dtype)
+        first = memory = np.ones(sizes[0] + 1, self.dtype)  # an example, and a 1 that a bias is multiplied by
         values, steps = self.values, []
         for layer in self.layers:
-            following = np.ones(1 + layer.outputs if isinstance(layer.outputs, int) else len(memory), self.dtype)
+            outputs = layer.outputs if isinstance(layer.outputs, int) else len(memory) - 1
+            following = np.ones(outputs + 1, self.dtype)
             size = sum(parameter.value.size for parameter in layer.parameters)
             steps.append(layer.row_step(memory, values[:size], following[:-1]))
             memory, values = following, values[size:]
@@ -107,8 +108,6 @@ class NeuralNetwork:
                 step()
             found: Array = answer.copy()
             return found
-        if data.ndim % 2:
-            return self.predict(data[None])[0]
         if data.ndim == 4 and len(data) > IMAGES:
             return np.concatenate([self.predict(part) for part in np.split(data, range(IMAGES, len(data), IMAGES))])
         for layer in self.layers:
@@ -118,8 +117,6 @@ class NeuralNetwork:
     def activations(self, input_data: npt.ArrayLike) -> list[Array]:
         """Return what each layer gives for a batch or one example; the last is what `predict` returns."""
         data: Array = np.asarray(input_data, self.dtype)
-        if data.ndim % 2:
-            return [each[0] for each in self.activations(data[None])]
         return [data := layer.predict(data) for layer in self.layers]
 
     def input_gradient(self, input_data: npt.ArrayLike, output_error: npt.ArrayLike) -> Array:

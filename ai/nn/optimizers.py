@@ -38,7 +38,7 @@ class Optimizer(ABC):
     remembers: tuple[str, ...] = ()  # names of what is kept of each parameter from step to step
     never_negative: tuple[str, ...] = ()  # which of these no step can bring below 0
 
-    def __init__(self, learning_rate: float, *, clip: float | None = None) -> None:
+    def __init__(self, learning_rate: float = 0.01, *, clip: float | None = None) -> None:
         self.learning_rate = learning_rate
         self.clip = clip
         self.steps = 0
@@ -120,9 +120,6 @@ class Optimizer(ABC):
 class SGD(Optimizer):
     """Stochastic gradient descent: values -= learning_rate · gradient."""
 
-    def __init__(self, learning_rate: float = 0.01, *, clip: float | None = None) -> None:
-        super().__init__(learning_rate, clip=clip)
-
     def _fill_step(self, gradients: Array, number: int) -> None:  # noqa: ARG002 - all steps are alike
         np.multiply(gradients, self.learning_rate, out=self.scratch)
 
@@ -187,8 +184,4 @@ def _length(vector: Array) -> float:
     return math.sqrt(np.dot(vector, vector))
 
 
-OPTIMIZERS: dict[str, type[SGD] | type[Momentum] | type[Adam]] = {
-    "sgd": SGD,
-    "momentum": Momentum,
-    "adam": Adam,
-}
+OPTIMIZERS: dict[str, type[SGD] | type[Momentum] | type[Adam]] = {"sgd": SGD, "momentum": Momentum, "adam": Adam}

@@ -136,18 +136,18 @@ def read_network(folder: str | Path) -> tuple[Cost, list[Layer], str]:
     if not isinstance(descriptions, list):
         problems.append(f"{CONFIG}: layers is to be a list")
         descriptions = []
-    layers: list[Layer] = []
+    layers: dict[int, Layer] = {}
     for index, description in enumerate(descriptions[: MOST_LAYERS + 1]):
-        where = f"{CONFIG}: layer {index}"
-        with noted(problems, where):
+        with noted(problems, f"{CONFIG}: layer {index}"):
             layer = _make_layer(description)
-            check_next(layers, layer)
-            layers.append(layer)
-            if dtype in DTYPES:
-                layer.parameters = tuple(_read_parameters(problems, where, folder, layer, description, dtype))
+            check_next(list(layers.values()), layer)
+            layers[index] = layer
+    for index, layer in layers.items() if dtype in DTYPES else ():
+        where = f"{CONFIG}: layer {index}"
+        layer.parameters = tuple(_read_parameters(problems, where, folder, layer, descriptions[index], str(dtype)))
     if problems:
         raise ModelFormatError(folder, problems)
-    return cost, layers, str(dtype)
+    return cost, list(layers.values()), str(dtype)
 
 
 @contextmanager

@@ -43,12 +43,15 @@ class SeedRun(ABC):
         """Train up to so many decisions or epochs, and measure; raises FloatingPointError if it diverges."""
 
     @abstractmethod
-    def save(self, folder: Path) -> dict[str, Any]:
-        """Save the run as its command does at its end; return the figures of the network that is kept."""
+    def save(self, folder: Path, state: bool = False) -> dict[str, Any]:
+        """Save the run as its command does at its end; return the figures of the network that is kept.
+
+        With `state`, another trial can go on from there.
+        """
 
     def keep(self, folder: Path) -> None:
-        """Save the run as it is now, to go on with."""
-        self._save_run(self.training, folder)
+        """Save the run as it is now, with the state that it goes on from bit for bit."""
+        self._save_run(self.training, folder, state=True)
 
     def salvage(self, folder: Path) -> None:
         """Save what was best of a run that has diverged."""
@@ -68,8 +71,8 @@ class AgentRun(SeedRun):
             score = training.task.evaluate(training.agent, training.validation_episodes, VALIDATION_SEED)
         return Point(training.agent.decisions, score.success, score.mean_return)
 
-    def save(self, folder: Path) -> dict[str, Any]:  # noqa: D102
-        self._save_run(self.training, folder, final=True)
+    def save(self, folder: Path, state: bool = False) -> dict[str, Any]:  # noqa: D102
+        self._save_run(self.training, folder, final=True, state=state)
         best = self.training.best
         return {} if best is None else dict(best.to_json())
 
@@ -86,9 +89,14 @@ class DigitRun(SeedRun):
             raise ValueError("a study of digits needs images held out: held_out was 0")
         return Point(training.step // training.steps_per_epoch, share, share)
 
-    def save(self, folder: Path) -> dict[str, Any]:  # noqa: D102
-        described = self._save_run(self.training, folder, final=True)
+    def save(self, folder: Path, state: bool = False) -> dict[str, Any]:  # noqa: D102
+        described = self._save_run(self.training, folder, final=True, state=state)
         return {"held_out": described["held_out"], "test": described["test"]}
+
+
+def _save_digits(training: DigitTraining, folder: Path, final: bool = False, *, state: bool = False) -> dict[str, Any]:  # noqa: ARG001
+    """Save a run of digits, whose state is part of it until it is over."""
+    return save_digit_run(training, folder, final)
 
 
 def read_config(kind: str, settings: dict[str, Any]) -> Knobs:
@@ -117,7 +125,7 @@ def begin(
     if isinstance(config, DigitConfig):
         training = DigitTraining(config, seed) if parent is None else resume_digit_run(parent)
         training.apply_live(config)
-        return DigitRun(training, save_digit_run)
+        return DigitRun(training, _save_digits)
     assert isinstance(config, Config)
     if parent is None:
         return AgentRun(Training(config, seed, validation_episodes=validation), save_run)

@@ -23,7 +23,7 @@ from typing import Annotated, Any, Final, Self
 
 from ai.agent.storage import KIND
 from ai.digits.classifier import KIND as DIGITS_KIND
-from ai.files import NEW, OneOf, Sized, beside, brief, read_as, read_json, take_folder, write_text
+from ai.files import NEW, OneOf, Sized, beside, brief, read_as, read_json, remove_state, take_folder, write_text
 from ai.sweep.metric import Metric
 from ai.sweep.plan import FORMAT, VERSION, Plan
 from ai.sweep.results import STUDIES, STUDY_FILE, SUMMARY_FILE, FinishedTrial, Summary, summary_of
@@ -170,8 +170,16 @@ class Study:
             shutil.rmtree(new, ignore_errors=True)
             raise
         self.trials[trial.number] = trial
+        self._forget_states(self.plan.generation(trial.number))
         with suppress(OSError):
             self.write_summary()
+
+    def _forget_states(self, generation: int) -> None:
+        """Delete what the members before went on from, once all of a generation have."""
+        if generation and len(self.generation(generation)) == self.plan.population:
+            for trial in self.generation(generation - 1):
+                for seed in self.plan.seeds:
+                    remove_state(self.trial_folder(trial.number) / seed_folder(seed))
 
     def write_summary(self) -> None:
         """Write what a list of studies shows; raises OSError."""

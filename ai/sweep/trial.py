@@ -17,7 +17,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from ai.files import read_bytes
+from ai.files import read_bytes, remove_state
 from ai.sweep.metric import Metric, Point
 from ai.sweep.plan import Plan
 from ai.sweep.results import FinishedTrial, SeedResult
@@ -25,6 +25,7 @@ from ai.sweep.runs import SeedRun, begin
 
 _ROOT: Final = Path(__file__).parents[2]
 _MOST: Final = 1_000_000_000  # bytes of an archive
+_MOST_SENT: Final = 100_000_000  # of a checkpoint; a larger one goes without the memories, and so on with none
 
 
 @dataclass(frozen=True)
@@ -135,18 +136,23 @@ class Trial:
         if any(self._state.problems):
             return b""
         with tempfile.TemporaryDirectory() as temporary:
-            for seed, run in zip(self.plan.seeds, self._runs, strict=True):
-                run.keep(Path(temporary, seed_folder(seed)))
+            folders = [Path(temporary, seed_folder(seed)) for seed in self.plan.seeds]
+            for folder, run in zip(folders, self._runs, strict=True):
+                run.keep(folder)
+            if sum(path.stat().st_size for path in Path(temporary).rglob("*")) > _MOST_SENT:
+                for folder in folders:
+                    remove_state(folder)
             return archive(Path(temporary))
 
     def finish(self) -> tuple[FinishedTrial, bytes]:
         """Save and measure every seed's run as its command would; return the result and an archive of the folders."""
         figures: dict[int, dict[str, Any]] = {}
+        goes_on = self.plan.generation(self.asked.number) + 1 < self.plan.generations  # its state is needed then
         with tempfile.TemporaryDirectory() as temporary:
             for index, (seed, run) in enumerate(zip(self.plan.seeds, self._runs, strict=True)):
                 folder = Path(temporary, seed_folder(seed))
                 if not self._state.problems[index]:
-                    figures[seed] = run.save(folder)
+                    figures[seed] = run.save(folder, goes_on)
                 else:
                     with suppress(ValueError):  # its numbers were never finite after a step
                         run.salvage(folder)

@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 from ai.agent.replay import PrioritisedReplayBuffer, ReplayBuffer, Transition
 from ai.files import (
     array_like,
+    brief,
     count_of,
     inside,
     number_of,
@@ -188,7 +189,7 @@ def read_state(folder: str | Path, moment: int) -> State | None:
 def broken(folder: str | Path, error: Exception) -> ModelFormatError:
     """Return the error of a state that cannot be gone on from, and what can be done."""
     file = f"{Path(error.filename).name}: " if isinstance(error, OSError) and error.filename else ""
-    said = f"{file}{problem_in(error)}; without this folder, the run goes on with an empty memory"
+    said = f"{file}{brief(problem_in(error), 100)}; without this folder, the run goes on with an empty memory"
     return ModelFormatError(state_folder(folder), [said])
 
 

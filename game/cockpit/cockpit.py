@@ -12,7 +12,7 @@ from ai.common.environment import Doubles
 from ai.lander.environment import Outcome
 from game.cockpit.assist_dial import AssistDial
 from game.cockpit.copilot_panel import PADS_HIGH, PANEL, CopilotPanel
-from game.cockpit.guardian_words import by_values, dial_words
+from game.cockpit.guardian_words import by_values, dial_words, why_bare
 from game.cockpit.hud import CARD, draw_title
 from game.cockpit.overrides import Overrides
 from game.cockpit.recent_line import RecentLine
@@ -106,7 +106,9 @@ class Cockpit:
         if not credit.helped:
             return card
         left = self.track.beside((CARD.left, _CARD_LEFT, _CARD_RIGHT), CARD, view)
-        return replace(card, stepped_in=self.overrides.times, saved=self.rescues.saved(self._flight), left=left)
+        bare = "" if card.good else why_bare(self._flight.guard)
+        saved = self.rescues.saved(self._flight)
+        return replace(card, stepped_in=self.overrides.times, saved=saved, bare=bare, left=left)
 
     def ease(self) -> None:
         """Advance animations by 1/60 s, whether or not anything flies."""

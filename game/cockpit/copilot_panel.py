@@ -19,7 +19,7 @@ from game.drawing.paint import mix
 from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL, VIEW_SIZE
 from game.flight.flight import Flight, StickHolder
 from game.flight.networks import QPolicy
-from game.panels.landings import Landings, draw_landings
+from game.panels.landings import Landings, RecentLandings, draw_landings
 from game.panels.q_values import HEIGHT, QValues, decision_words, draw_q_values
 
 if TYPE_CHECKING:
@@ -52,6 +52,7 @@ class CopilotPanel:
         self.why: Why = ("", "", "")
         self._names = [texts.PAD_NAMES.get(pad.factor, "") for pad in ground.pads]
         self._likely: list[float] = []
+        self._recent = RecentLandings()
         self._override: Why | None = None  # explanation of the latest override, while it is still shown
         self._stays = 0
         self._seen: object = None
@@ -82,8 +83,8 @@ class CopilotPanel:
 
         self._likely = decision.likely[0].tolist()
         if decision.held is not None:
-            self.values = landings = Landings.of(decision)
-            self.why = why_saved(decision, landings)
+            landings = Landings.of(decision)
+            self.values, self.why = self._recent.fill(landings), why_saved(decision, landings)
         else:
             self.values = values = shared_values(decision, pad)
             self.why = why(decision, values)

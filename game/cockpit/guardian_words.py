@@ -10,6 +10,7 @@ from game.panels.landings import Landing, Landings
 
 if TYPE_CHECKING:
     from ai.copilot.copilot import CoPilot, SharedDecision
+    from game.flight.guard import Guard
 
 Why = tuple[str, str, str]  # a title, and two lines
 _PLACES: Final = {1: "guard", 8: "guide"}  # of the dial that have names, by the decisions it looks ahead there
@@ -50,6 +51,14 @@ def sentence(decision: SharedDecision) -> str:
     action, after = landings.asked
     name, seconds = texts.said(ACTION_NAMES[action]), f"{landings.seconds:.1f}"
     return texts.GUARDIAN_SAVED[after.value].format(asked=name, seconds=seconds)
+
+
+def why_bare(guard: Guard | None) -> str:
+    """Say of a lost flight from when on no plan was held, and why; empty where one was, or nothing was guarded."""
+    if guard is None or guard.bare is None:
+        return ""
+    since, why = guard.bare
+    return texts.GUARDIAN_BARE[why].format(since=f"{since:.1f}")
 
 
 def why_saved(decision: SharedDecision, landings: Landings) -> Why:

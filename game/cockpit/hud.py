@@ -367,8 +367,9 @@ def _below(card: OutcomeCard, *, rival: bool) -> int:
 
 
 def _below_reason(card: OutcomeCard, advise: bool) -> list[tuple[str, Colour]]:
-    """Return the lines below a card's reason: advice, if wanted, and the assists of the flight."""
-    return [(words, colour) for words, colour in ((card.advice * advise, MUTE), (card.assists, HUMAN)) if words]
+    """Return the lines below a card's reason: advice, if wanted, the guardian's, and the assists of the flight."""
+    lines = (card.advice * advise, MUTE), (card.bare, NET), (card.assists, HUMAN)
+    return [(words, colour) for words, colour in lines if words]
 
 
 def _lower(card: OutcomeCard, advise: bool) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from ai.common.environment import Doubles
 from ai.lander.pilots import COAST
@@ -15,6 +15,9 @@ from game.drawing.tokens import HUMAN, NET, SMALL, Colour
 from game.flight.flight import Flight, StickHolder
 from game.world import lander as art
 from game.world.camera import ClearArea, View
+
+if TYPE_CHECKING:
+    from ai.copilot.copilot import SharedDecision
 
 _LASTS: Final = 40  # steps that a message stays after the last override: long enough to be read
 _FADES: Final = 14
@@ -36,16 +39,22 @@ class Overrides:
         self._since = _LASTS + _FADES
         self._word = ""
         self._asked = self._flown = COAST
+        self._decision: SharedDecision | None = None  # the latest
+        self._said = ""  # what a guardian has to say about it
 
     def follow(self, flight: Flight) -> bool:
         """Update after a step; return whether the co-pilot has just stepped in."""
         begins = flight.overridden and self._since > _FADES
         self._since = 0 if flight.overridden else self._since + 1
+        if flight.decision is not self._decision:
+            self._decision = flight.decision
+            guarded = flight.decision if flight.shared and flight.guarded else None
+            self._said = sentence(guarded) if guarded else ""
         if flight.overridden:
             self._asked, self._flown = flight.asked, flight.recording.actions[-1]
-            self._word = difference(self._asked, self._flown)
-        if flight.shared and flight.guarded and flight.decision is not None and (said := sentence(flight.decision)):
-            self._word, self._since = said, min(self._since, _FADES + 1)
+            self._word = self._said or difference(self._asked, self._flown)
+        elif self._said:
+            self._word, self._since = self._said, min(self._since, _FADES + 1)
         self.times += begins
         return begins
 

@@ -137,20 +137,21 @@ class FuturesProcess:
 
 
 class _Order:
-    """Order in which the futures of one request are flown: as they are likely to be needed.
+    """Order in which the futures of one request are flown.
 
-    What the stick asks for comes first, then the keys, those next to it before others.
+    What the stick asks for comes first; then the keys, those first that were `found` longest ago, by the numbers of
+    their requests, so that a panel which shows them all is up to date; among equals, those next to the stick.
 
     Attributes:
         flown: what was found, in turn, and None after each decision that was flown.
 
     """
 
-    def __init__(self, request: Request, lookahead: Lookahead) -> None:
-        self._request, self._lookahead = request, lookahead
+    def __init__(self, request: Request, lookahead: Lookahead, found: dict[Push, int]) -> None:
+        self._request, self._lookahead, self._found = request, lookahead, found
         self._asked: Push | None = request.asked
         _, main, side = request.asked
-        self._left = sorted(KEYS, key=lambda key: hypot(key.main - main, key.side - side))
+        self._left = sorted(KEYS, key=lambda key: (found.get(key, 0), hypot(key.main - main, key.side - side)))
         self._guesses = False  # whether what is flown now was not asked for
         self.flown = self._fly()
 
@@ -169,12 +170,14 @@ class _Order:
                 if future and self._guesses:
                     break
             self._left = [key for key in self._left if key != push]
+            self._found[push] = number
 
 
 def fly_ahead() -> Turns:
     """Fly the futures of the latest request; for a `Worker`."""
     sys.setswitchinterval(_SWITCH)
     lookahead = Lookahead(DeepQAgent())
+    found: dict[Push, int] = {}
     order: _Order | None = None
     told: Iterable[Found] | None = None
     while True:
@@ -184,10 +187,10 @@ def fly_ahead() -> Turns:
             if command.flyer:
                 flyer, route = command.flyer
                 lookahead = Lookahead(flyer.agent(), route)
-            order = _Order(command, lookahead)
+            order = _Order(command, lookahead, found)
         elif isinstance(command, Push):
             if order:
                 order.hint(command)
         else:
             turn = list(islice(order.flown, _AT_A_TIME)) if order else []
-            told = [found for found in turn if found] if turn else None
+            told = [each for each in turn if each] if turn else None

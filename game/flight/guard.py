@@ -21,6 +21,7 @@ from game.flight.networks import Policy
 if TYPE_CHECKING:
     from game.flight.flight import Flight
 
+_SHORT: Final = 8.0  # seconds before time is out, in which no network may be able to land
 _NEAR: Final = 0.25  # shares of thrust between a position of the stick and one that is flown in its place
 
 
@@ -73,6 +74,8 @@ class Guard:
         late: those in which something else was flown only because what was asked for was not flown ahead in time.
         waits: whether what is asked for now was not flown ahead in time, so that what was asked for before counts.
         waited: decisions in which that was so.
+        bare: since when, in seconds of the flight, no plan is held, and the key of why; None while one is, and before
+            anything is guarded.
 
     """
 
@@ -83,6 +86,7 @@ class Guard:
         self.saves = False
         self.waits = False
         self.decisions = self.late = self.waited = 0
+        self.bare: tuple[float, str] | None = None
         self._wish = KEYS[COAST]  # what was asked for in the decision that is flown now
         self._decision: SharedDecision | None = None
         self._moment: tuple[object, ...] = ()  # that the futures asked for last belong to
@@ -93,6 +97,8 @@ class Guard:
         """Whether a guardian goes by futures now; it begins with a decision, every fourth step."""
         copilot = self._flight.copilot
         if copilot is None or copilot.assist == 0 or copilot.mode is not Mode.GUARDIAN or self.ahead.problem:
+            if self.push and not self._flight.over:
+                self.bare = self._seconds, "process" if self.ahead.problem else "off"
             self.push, self._moment = None, ()
             return False
         return self.push is not None or self._begins
@@ -148,9 +154,25 @@ class Guard:
         self.decisions += 1
         missing = held and bool(decision.overridden[0]) and wish not in known
         self.saves, self.late = bool(decision.overridden[0]) and not missing, self.late + missing
+        self._note(held, known)
         if by is StickHolder.HUMAN:
             flight.aim(decision.likely[0])
         self._ask((self.push,), stick)
+
+    def _note(self, held: bool, known: Mapping[Push, Future]) -> None:
+        """Note since when no plan is held, and why: one that was `held` is lost only with the rules it was made for."""
+        if self.safe:
+            self.bare = None
+            return
+        since, why = self.bare or (self._seconds, "changed" if held else "looking")
+        if why == "looking" and all(key in known for key in KEYS):
+            left = float(np.max(self._flight.env.limits.time)) - self._seconds
+            why = "none" if left > _SHORT else "time"
+        self.bare = since, why
+
+    @property
+    def _seconds(self) -> float:
+        return float(self._flight.env.time[0])
 
     def _wished(self, wish: Push, known: Mapping[Push, Future]) -> Push:
         """Return what is asked for in this decision.

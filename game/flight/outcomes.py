@@ -20,12 +20,13 @@ _TIPPED: Final = math.radians(45)  # tilt from which on no engine can brake the 
 class OutcomeCard:
     """Contents of an outcome card: good or not, the reason, figures as label, value, unit, and advice.
 
-    For a shared flight, `stepped_in` is how often the co-pilot intervened, and `saved` how often it saved the person;
-    None for a flight without a guardian that could tell, or without a landing. `medal` is 3 for gold, 2, 1, 0 for none.
-    `assists` says what made the flight easier. `left` is the card's left edge. `growth` are lines on what the flight
-    has shown of the person's own skill. `intact` is whether the craft came down whole beside the pad. `rung` is the
-    place on the ladder of starts, None off it, and `climb` what the flight has changed there. `ring` is
-    whether it was landed together with the network.
+    For a shared flight, `stepped_in` is how often the co-pilot intervened, and `saved` how often it saved the
+    person; None for a flight without a guardian that could tell, or without a landing. `medal` is 3 for gold, 2, 1,
+    0 for none. `assists` says what made the flight easier, and `bare` from when on a guardian held no plan, and
+    why. `left` is the card's left edge. `growth` are lines on what the flight has shown of the person's own skill.
+    `intact` is whether the craft came down whole beside the pad. `rung` is the place on the ladder of starts, None
+    off it, and `climb` what the flight has changed there. `ring` is whether it was landed together with the
+    network.
     """
 
     good: bool
@@ -35,6 +36,7 @@ class OutcomeCard:
     human: float
     advice: str = ""
     assists: str = ""
+    bare: str = ""
     score: str = ""
     medal: int = 0
     ring: bool = False

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
-from ai.lander.environment import ACTION_NAMES
+from ai.lander.environment import ACTION_NAMES, NUM_ACTIONS
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, INK, MUTE, NET, SMALL
@@ -15,6 +15,9 @@ from game.panels.action_rows import NAME, ROW
 
 if TYPE_CHECKING:
     from ai.copilot.copilot import SharedDecision
+
+
+_RECENT: Final = 8  # decisions, half a second, for which what was seen of an action is shown
 
 
 class Landing(Enum):
@@ -66,6 +69,21 @@ class Landings:
     def lost(self) -> bool:
         """Whether no action is known to lead to a landing."""
         return not any(after in (Landing.LANDS, Landing.BRIEFLY) for after in (*self.after, self.asked[1]))
+
+
+class RecentLandings:
+    """What comes of each action as it was last seen: not all six can be flown ahead anew for each decision."""
+
+    def __init__(self) -> None:
+        self._seen = dict.fromkeys(range(NUM_ACTIONS), (Landing.UNKNOWN, 0))  # and how many decisions ago
+
+    def fill(self, landings: Landings) -> Landings:
+        """Follow those of another decision; return them, and in place of what is unknown what was seen before."""
+        for action, after in enumerate(landings.after):
+            before, age = self._seen[action]
+            kept = (before, age + 1) if age < _RECENT else (Landing.UNKNOWN, 0)
+            self._seen[action] = kept if after is Landing.UNKNOWN else (after, 0)
+        return replace(landings, after=tuple(after for after, _ in self._seen.values()))
 
 
 def draw_landings(canvas: Canvas, landings: Landings, left: float, top: float, width: float) -> None:

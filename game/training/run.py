@@ -2,36 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from ai.common.knobs import Knobs
 from ai.digits.checkpoints import LAST_FILE
-from ai.digits.config import DigitConfig
 from ai.digits.filters import FilterMoment
 from ai.digits.validation import Confusion
 from ai.explain.agent_lesson import Lesson
 from ai.explain.digit_lesson import DigitLesson
 from ai.files import CONFIG, state_folder
 from ai.nn import ModelFormatError
-from ai.training.config import Config
-from ai.training.digit_session import live_digits
 from ai.training.edits import EditCommand, NetworkEdits
 from ai.training.history import (
-    COLUMNS,
-    DIGIT_COLUMNS,
     Checkpoint,
-    Column,
     DigitPoint,
     History,
     Point,
     SettingChange,
     Validation,
 )
-from ai.training.lander_session import TAUGHT, live
+from ai.training.lander_session import TAUGHT
 from ai.training.messages import (
     AddDemonstrations,
     AutosaveTo,
@@ -51,8 +43,10 @@ from ai.training.schedule import InForce
 from game.core import texts
 from game.core.collection import Collection
 from game.core.names import LibraryError
-from game.core.worker import PATIENCE, Worker, WorkerState
+from game.core.worker import Worker
 from game.training.beside import EarlierRun, put_beside
+from game.training.kinds import WorkedRun
+from game.training.one_after_another import OneAfterAnother
 from game.training.record import Record
 
 # Decisions of all landers per second; one takes 1/15 s of simulated time. None is as fast as possible.
@@ -67,37 +61,10 @@ _LATEST: Final = {
 }  # fmt: skip
 
 
-@dataclass(frozen=True)
-class WorkedRun:
-    """Kind of run, as the window starts it.
+class TrainingRun(OneAfterAnother):
+    """Training runs, one after another; call `poll` once a frame.
 
-    Attributes:
-        live: the generator that a worker pulls.
-        config: settings before the first run.
-        columns: what its history measures.
-        grace: seconds that a run has to end by itself when the window closes it.
-        patience: seconds for a turn of its worker.
-
-    """
-
-    live: Callable[..., Any]
-    config: Knobs
-    columns: Sequence[Column]
-    grace: float
-    patience: float = PATIENCE
-
-
-LANDERS: Final = WorkedRun(live, Config(), COLUMNS, grace=3.0)  # which save themselves at the end
-# Reading all test images takes long on a busy machine.
-DIGITS: Final = WorkedRun(live_digits, DigitConfig(), DIGIT_COLUMNS, grace=1.0, patience=120.0)
-
-
-class TrainingRun:
-    """Training runs, one after another, each in its own child process; call `poll` once a frame.
-
-    A run saves itself in the player's collection without a name, until `save` names it. Runs save to the same folder,
-    so the next one waits until the process before it has ended; the window does not wait, and requests to the next run
-    are queued until it starts.
+    A run saves itself in the player's collection without a name, until `save` names it.
 
     Beside a run there can be an experiment, its `twin`, from the same seed. The faster of the two waits, so that both
     have taken as many turns: on any machine, what differs is what was changed. If one of them ends or fails, the other
@@ -122,6 +89,7 @@ class TrainingRun:
     """
 
     def __init__(self, kind: WorkedRun, collection: Collection[Any], *, keeps: bool = True) -> None:
+        super().__init__()
         self.kind, self.collection, self._keeps = kind, collection, keeps
         self.name, self.runs = "", 0
         self.config: Any = kind.config
@@ -131,9 +99,6 @@ class TrainingRun:
         self.differing: tuple[str, ...] = ()
         self.begun = False
         self._named = False  # whether the run was saved under its name
-        self._worker: Worker | None = None
-        self._launch: Callable[[], str] | None = None  # starts the waiting run; returns a note for the player
-        self._asked: list[Callable[[Worker], None]] = []  # requests queued for the waiting run
         self._saving: list[Path] = []  # folders it was asked to save to, without an answer yet
         self._leaving: Worker | None = None  # of a healthy run whose place the experiment takes
         self._limit: int | None = None
@@ -155,28 +120,6 @@ class TrainingRun:
         self.kept_epoch: int | None = None
 
     # How it stands
-
-    @property
-    def waiting(self) -> bool:
-        """Whether a run waits for the previous one to end."""
-        return self._launch is not None
-
-    @property
-    def state(self) -> WorkerState | None:
-        """State of the run; None before the first."""
-        if self.waiting:
-            return WorkerState.STARTING
-        return self._worker.state if self._worker else None
-
-    @property
-    def alive(self) -> bool:
-        """Whether there is a run that can be paused, stepped, stopped and changed."""
-        return self.state in (WorkerState.STARTING, WorkerState.RUNNING, WorkerState.PAUSED)
-
-    @property
-    def problem(self) -> str:
-        """Reason why the run failed; empty if it did not."""
-        return self._worker.problem if self._worker and self.state is WorkerState.FAILED else ""
 
     @property
     def kept(self) -> bool:
@@ -227,11 +170,7 @@ class TrainingRun:
         self._named = resume is not None and resume != self.collection.unsaved
         self.name = resume.name if resume else ""
         self.call(name)
-        self._launch = lambda: self._begin(config, seed, resume)
-        self._asked.clear()
-        if self._worker:
-            self._worker.stop()
-        return self._start_waiting()
+        return self._start(lambda: self._begin(config, seed, resume))
 
     def _begin(self, config: Any, seed: int, resume: Path | None) -> str:
         keep, notes = self.collection.unsaved if self._keeps else None, self._name_ended()
@@ -246,17 +185,6 @@ class TrainingRun:
         self._worker.patience = self.kind.patience
         self._worker.set_pace(PACES[self.pace])
         return " ".join(notes)
-
-    def _start_waiting(self) -> str:
-        """Start the waiting run, if the previous process has ended; return a note for the player, or ""."""
-        if self._launch is None or (self._worker and not self._worker.gone):
-            return ""
-        launch, self._launch = self._launch, None
-        note = launch()
-        for order in self._asked:
-            self._ask(order)
-        self._asked.clear()
-        return note
 
     def call(self, settings: str) -> None:
         """Name the run after its settings, with a number, unless it was saved under a name."""
@@ -438,13 +366,6 @@ class TrainingRun:
         self._ask(order)
         if self.twin:
             self.twin._ask(order)
-
-    def _ask(self, order: Callable[[Worker], None]) -> None:
-        """Send a request to the current run, if any, or queue it for the waiting one."""
-        if self.waiting:
-            self._asked.append(order)
-        elif self._worker and self.alive:
-            order(self._worker)
 
     # The experiment
 

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from engine import Circle, Polygon, World
+from engine import Circle, Polygon, World, memory_of_worlds
 from tests.support.worlds import advance
 
 STATE = ("pose", "velocity", "cos", "sin")
@@ -69,6 +69,10 @@ def assert_same(world, alone, rows):
     for name in STATE:
         ours, theirs = getattr(world.state, name)[rows], getattr(alone.state, name)
         assert ours.tobytes() == theirs.tobytes(), name
+    if alone.contacts and len(rows) == 1:
+        mine = np.flatnonzero(world.contacts.world == rows[0])
+        for name in ("pair", "impulse", "approach"):
+            assert np.array_equal(getattr(world.contacts, name)[mine], getattr(alone.contacts, name)), name
 
 
 @pytest.mark.parametrize(("make", "steps"), [(landers, 300), (toys, 40)])
@@ -88,34 +92,6 @@ def test_step_in_a_batch_of_1000_equals_the_same_step_alone(make, steps):
     assert touched > steps / 4
 
 
-@pytest.mark.parametrize(("batch", "steps"), [(2, 200), (3, 60), (7, 40), (17, 20)])
-@pytest.mark.parametrize("make", [landers, toys])
-def test_every_world_of_a_small_batch_equals_itself_alone_at_each_step(make, batch, steps):
-    many = make(batch)
-    throw(many, seed=batch)
-    few = [like(many, make, [row]) for row in range(batch)]
-    for _ in range(steps):
-        many.step()
-        for row, alone in enumerate(few):
-            alone.step()
-            assert_same(many, alone, [row])
-
-
-def test_contacts_of_a_batch_are_those_of_its_worlds():
-    many = toys(5)
-    throw(many, seed=8)
-    few = [like(many, toys, [row]) for row in range(5)]
-    for _ in range(60):
-        many.step()
-        for alone in few:
-            alone.step()
-    for row, alone in enumerate(few):
-        rows = np.flatnonzero(many.contacts.world == row)
-        assert np.array_equal(many.contacts.pair[rows], alone.contacts.pair)
-        assert np.array_equal(many.contacts.impulse[rows], alone.contacts.impulse)
-        assert np.array_equal(many.contacts.approach[rows], alone.contacts.approach)
-
-
 def test_a_second_landing_owes_nothing_to_the_first():
     # A box that hops alone must not meet the impulses of its last landing again.
     def hopper(batch):
@@ -131,14 +107,6 @@ def test_a_second_landing_owes_nothing_to_the_first():
         alone.step()
         pair.step()
         assert_same(pair, alone, [0])
-
-
-def test_same_start_same_flight():
-    twins = [toys(3), toys(3)]
-    for world in twins:
-        throw(world, seed=5)
-        advance(world, 60)
-    assert twins[0].state.pose.tobytes() == twins[1].state.pose.tobytes()
 
 
 def test_a_reset_leaves_no_residue():
@@ -157,3 +125,22 @@ def test_a_reset_leaves_no_residue():
         used.step()
         fresh.step()
     assert used.state.pose.tobytes() == fresh.state.pose.tobytes()
+
+
+def test_worlds_go_on_from_their_memory_in_any_order_and_number():
+    world = toys(3)
+    throw(world, 4)
+    advance(world, 60)
+    rows = np.array([2, 0, 2, 1])
+    twin = toys(4)
+    for name, value in vars(world.state).items():
+        setattr(twin.state, name, value[rows].copy())
+    twin.wake()  # worlds that sleep are remembered as a whole
+    with pytest.raises(ValueError, match="as a whole"):
+        memory_of_worlds(world.memory(), rows)
+    memory = {name: part for name, part in world.memory().items() if name != "rest"}
+    twin.recall(memory_of_worlds(memory, rows))
+    for _ in range(30):
+        world.step()
+        twin.step()
+    assert twin.state.pose.tobytes() == world.state.pose[rows].tobytes()

@@ -15,31 +15,6 @@ def run(world, steps):
     advance(world, steps)
 
 
-def test_free_fall_is_semi_implicit_euler_exactly_and_the_parabola_nearly():
-    world = World(gravity=(0.0, -G))
-    body = world.add(Circle(0.5), (3.0, 100.0))
-    run(world, 300)
-    time = 300 * DT
-    assert body.velocity[0, 1] == pytest.approx(-G * time, rel=1e-12)
-    assert body.position[0, 1] == pytest.approx(100 - G * DT**2 * 300 * 301 / 2, rel=1e-12)
-    assert body.position[0, 1] == pytest.approx(100 - G * time**2 / 2, abs=G * time * DT / 2 + 1e-9)
-    assert body.position[0, 0] == 3.0
-
-
-def test_thrown_body_flies_the_parabola():
-    world = World(gravity=(0.0, -9.81))
-    body = world.add(Polygon.box(1, 1), (0.0, 0.0))
-    body.velocity = (7.0, 12.0)
-    time = np.arange(1, 121) * DT
-    places = []
-    for _ in time:
-        world.step()
-        places.append(body.position[0].copy())
-    path = np.array(places)
-    assert path[:, 0] == pytest.approx(7.0 * time)
-    assert path[:, 1] == pytest.approx(12.0 * time - 9.81 * time**2 / 2, abs=9.81 * time[-1] * DT / 2 + 1e-9)
-
-
 def test_gravity_may_differ_between_worlds_and_change():
     world = World(batch=3)
     body = world.add(Circle(1.0), (0, 0))
@@ -74,21 +49,19 @@ def test_terminal_spin_under_a_torque(linear, quadratic):
     assert linear * spin + quadratic * spin**2 == pytest.approx(1.5, rel=1e-9)
 
 
-def test_linear_drag_slows_by_the_exponential():
+@pytest.mark.parametrize(
+    ("drag", "speed", "tolerance"),
+    [
+        ({"linear_drag": 0.5}, 10 * np.exp(-0.25 * 4.0), 3e-3),
+        ({"quadratic_drag": 0.4}, 10 / (1 + 10 * 0.2 * 4.0), 2e-2),
+    ],
+)
+def test_drag_slows_a_motion_along_it(drag, speed, tolerance):
     world = World(gravity=(0.0, 0.0))
-    body = world.add(Circle(0.5), (0, 0), mass=2.0, linear_drag=0.5)
+    body = world.add(Circle(0.5), (0, 0), mass=2.0, **drag)
     body.velocity = (6.0, 8.0)
     run(world, 240)
-    assert np.hypot(*body.velocity[0]) == pytest.approx(10 * np.exp(-0.25 * 4.0), rel=3e-3)
-    assert body.velocity[0, 0] / body.velocity[0, 1] == pytest.approx(0.75)
-
-
-def test_quadratic_drag_slows_by_the_hyperbola_along_the_motion():
-    world = World(gravity=(0.0, 0.0))
-    body = world.add(Circle(0.5), (0, 0), mass=2.0, quadratic_drag=0.4)
-    body.velocity = (6.0, 8.0)
-    run(world, 240)
-    assert np.hypot(*body.velocity[0]) == pytest.approx(10 / (1 + 10 * 0.2 * 4.0), rel=2e-2)
+    assert np.hypot(*body.velocity[0]) == pytest.approx(speed, rel=tolerance)
     assert body.velocity[0, 0] / body.velocity[0, 1] == pytest.approx(0.75)
 
 

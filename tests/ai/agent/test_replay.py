@@ -80,6 +80,15 @@ def test_surprising_memories_are_drawn_more_often_and_weigh_less():
     assert weights[often].sum() / weights.sum() == pytest.approx(1 / 64, abs=0.003)
 
 
+def test_what_is_new_gets_the_largest_priority_seen():
+    buffer = PrioritisedReplayBuffer(8, 2, exponent=1.0)
+    rows = buffer.add(cells(0, 3))
+    assert buffer.tree.leaves[:8].tolist() == [1, 1, 1, 0, 0, 0, 0, 0]
+    buffer.update_priorities(rows, np.array([0.0, -5.0, 2.0], np.float32))
+    buffer.add(cells(3, 1))
+    assert buffer.tree.leaves[3] == buffer.tree.leaves[1] == pytest.approx(5.001)
+
+
 def test_n_step_returns_by_hand():
     n_step, discount = NStep(3, 0.5), 0.5
     rewards = [1.0, 2.0, 4.0, 8.0, 16.0]

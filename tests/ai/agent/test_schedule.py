@@ -1,106 +1,60 @@
-"""What schedules make of the settings, and which settings they leave without effect."""
-
-from dataclasses import fields
-from inspect import getgeneratorlocals
+"""What an agent reckons with as it goes: schedules, and the scale of what it observes."""
 
 import numpy as np
 import pytest
 
-from ai.agent.schedule import target_rate
-from ai.digits.config import DIGIT_PRESETS
-from ai.training.config import PRESETS, Config
-from ai.training.lander_session import live
-from ai.training.loop import Training
-from ai.training.messages import ChangeSetting, SwarmState
-from ai.training.schedule import InForce, idle, in_force
-
-TINY = Config(
-    hidden=(8,), num_envs=16, learning_starts=32, batch_size=16, gradient_steps=1, replay_size=2000, spawn="near",
-    schedule_decisions=1000,
-    epsilon_decisions=500, epsilon_start=0.5,
-)  # fmt: skip
-LIVE = [item.name for item in fields(Config) if item.metadata["live"]]
+from ai.agent.agent import DeepQAgent
+from ai.agent.config import AgentConfig
+from ai.agent.normalizer import REACH, Normalizer
+from ai.agent.schedule import exploration, exploration_of_each, importance, learning_rate
 
 
-def trained(config: Config, change: dict[str, float], at: int, until: int) -> Training:
-    training = Training(config, 3, evaluate_every=0)
-    while training.agent.decisions < until:
-        if training.agent.decisions == at:
-            training.apply_live(config.changed(**change))
-        training.advance()
-    return training
-
-
-@pytest.mark.parametrize(
-    ("config", "at"),
-    [
-        (TINY, 0),
-        (TINY, 640),  # ε has come down
-        (TINY, 1120),  # and the horizon is over
-        (TINY.changed(num_envs=1), 64),
-        (TINY.changed(epsilon_start=0.0, epsilon_end=0.0), 64),
-        (TINY.changed(success_pass=True, prioritised=True), 64),
-    ],
-)
-def test_what_is_called_idle_changes_nothing_bit_for_bit(config: Config, at: int):
-    until = at + 25 * config.num_envs
-    quiet = trained(config, {}, at, until)
-    found = [name for name in idle(config, at, quiet.episodes) if name in LIVE]
-    described = {item.name: item.metadata for item in fields(Config)}
-    for end in ("low", "high"):  # all at once: one that acts makes a difference among others too
-        turned = trained(config, {name: described[name][end] for name in found}, at, until)
-        assert np.array_equal(turned.agent.online.values, quiet.agent.online.values), found
-        assert np.array_equal(turned.observation, quiet.observation), found
-
-
-def test_schedules_leave_their_settings_behind_one_by_one(subtests):
-    for preset, decisions, episodes, expected in [
-        ("modern", 0, 0, {"success_batch_size", "double"}),
-        ("modern", 14_000, 250, {"success_batch_size", "double"}),
-        ("modern", 15_000, 250, {"success_batch_size", "double", "epsilon_decay"}),
-        ("modern", 100_000, 5_000, {"success_batch_size", "double", "epsilon_decay", "learning_rate"}),
-        ("classic", 0, 0, {"epsilon_spread"}),
-        ("classic", 299_999, 2_000, {"epsilon_spread"}),
-        ("classic", 300_000, 4_000, {"epsilon_spread", "learning_rate", "epsilon_decisions"}),
+def test_rates_move_in_a_straight_line_and_stay_at_their_end(subtests):
+    config = AgentConfig(learning_rate=0.01, final_learning_rate=0.001, importance_exponent=0.4, epsilon_end=0.1)
+    config = config.changed(schedule_decisions=1000, epsilon_decisions=500, epsilon_spread=1.0)
+    for decisions, rate, beta, epsilon in [
+        (0, 0.01, 0.4, 1.0),
+        (250, 0.00775, 0.55, 0.55),
+        (500, 0.0055, 0.7, 0.1),
+        (1000, 0.001, 1.0, 0.1),
+        (9000, 0.001, 1.0, 0.1),
     ]:
-        with subtests.test(preset=preset, decisions=decisions, episodes=episodes, expected=expected):
-            assert {name for name in idle(PRESETS[preset], decisions, episodes) if name in LIVE} == expected
+        with subtests.test(decisions=decisions):
+            found = learning_rate(config, decisions), importance(config, decisions), exploration(config, decisions, 0)
+            assert found == pytest.approx((rate, beta, epsilon))
+    by_episode = config.changed(epsilon_decisions=0, epsilon_decay=0.9)
+    assert exploration(by_episode, 0, 3) == pytest.approx(0.9**3)
+    assert exploration(by_episode, 0, 1000) == config.epsilon_end
+    np.testing.assert_allclose(exploration_of_each(config, 0.1, 3), [0.1, 0.1**0.5, 1.0])
 
 
-def test_what_is_not_turned_on_changes_nothing():
-    assert {"priority_exponent", "importance_exponent"} <= set(idle(PRESETS["modern"]))
-    assert "schedule_decisions" in idle(PRESETS["classic"])
-    assert "schedule_decisions" not in idle(PRESETS["classic"].changed(final_touchdown_limits=0.5))
-    assert DIGIT_PRESETS["classic"].unused() == {"filters": "convolutions", "kernel": "convolutions"}
-    assert DIGIT_PRESETS["modern"].changed(augmentation=0.0).unused() == {"unaugmented": "augmentation"}
+def test_prioritised_replay_is_corrected_as_the_schedule_says():
+    config = AgentConfig(hidden=(4,), prioritised=True, learning_starts=4, batch_size=8, gradient_steps=1)
+    config = config.changed(importance_exponent=0.5, schedule_decisions=1000)
+    agent = DeepQAgent(2, 2, config)
+    agent.replay.add(agent.replay.at(np.zeros(4, np.intp)))
+    for agent.decisions, expected in ((0, 0.5), (500, 0.75), (2000, 1.0)):
+        agent.learn()
+        assert agent.replay.importance == expected
 
 
-def test_what_a_run_says_is_in_force_is_what_it_learns_and_flies_with():
-    run = live(TINY)
-    told = [next(run)]
-    training = getgeneratorlocals(run)["run"].training
-    told += [next(run) for _ in range(80)]
-    assert isinstance(told[0][-2], InForce) or any(isinstance(each, InForce) for each in told[0])
-    (said,) = [each for each in run.send(ChangeSetting("discount", 0.9)) if isinstance(each, InForce)]
-    assert said.values["learning_rate"] == training.agent.optimizer.learning_rate == TINY.final_learning_rate
-    assert said.values["epsilon_start"] == training.epsilon
-    assert said.idle["learning_rate"] == "final_learning_rate"
-    (said,) = [each for each in run.send(ChangeSetting("final_learning_rate", 0.01)) if isinstance(each, InForce)]
-    assert said.values["learning_rate"] == 0.01, "at once, also while it rests"
-    assert any(isinstance(each, SwarmState) for each in next(run))
-    assert training.agent.optimizer.learning_rate == 0.01
-    run.close()
-
-
-def test_half_way_it_is_half_way():
-    said = in_force(PRESETS["modern"], 7_500, 0)
-    assert said.values["epsilon_start"] == pytest.approx(0.525)
-    said = in_force(PRESETS["modern"], 50_000, 0)
-    assert said.values["learning_rate"] == pytest.approx((3e-3 + 3e-4) / 2)
-    assert said.values["tau"] == pytest.approx((0.005 + 0.00025) / 2)
-
-
-@pytest.mark.parametrize("tau", [1.0, 0.1, 0.005, 0.0003])
-def test_without_a_last_share_the_target_s_rate_never_changes_by_a_bit(tau):
-    config = Config(tau=tau)
-    assert {target_rate(config, decisions) for decisions in range(0, 900_000, 12_347)} == {tau}
+def test_a_normalizer_knows_mean_and_deviation_of_all_it_has_seen():
+    rng = np.random.default_rng(0)
+    seen = (rng.normal(size=(60, 3)) * [1, 100, 0.01] + [5, -300, 0]).astype(np.float32)
+    seen[:, 0] += np.arange(60)  # parts with means of their own
+    normalizer = Normalizer(3)
+    for part in np.split(seen, [1, 7, 40]):
+        normalizer.update(part)
+    assert normalizer.count == 60
+    np.testing.assert_allclose(normalizer.mean, seen.mean(axis=0), rtol=1e-5, atol=1e-5)
+    np.testing.assert_allclose(normalizer.squares / 60, seen.var(axis=0, dtype=float), rtol=1e-5)
+    scaled = normalizer(seen)
+    np.testing.assert_allclose(scaled.std(axis=0), 1, rtol=1e-4)
+    assert scaled.dtype == np.float32
+    assert normalizer(seen + np.float32(1e6)).max() == REACH
+    again = Normalizer(3)
+    again.load(normalizer.to_json())
+    np.testing.assert_array_equal(again(seen), scaled)
+    constant = Normalizer(1)
+    constant.update(np.full((5, 1), 2.0, np.float32))
+    assert constant(np.full((1, 1), 2.5, np.float32)) == 0.5, "what never varies keeps its unit"

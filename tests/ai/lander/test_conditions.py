@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from ai.lander.conditions import CALM, Conditions
+from ai.lander.conditions import Conditions
 from ai.lander.environment import PARAMS, LanderEnv, Outcome
 from ai.lander.pilots import ScriptedPilot
 
@@ -21,19 +21,6 @@ def fly(conditions: Conditions, *, spawn: str = "random", seed: int = 4, count: 
 def place(env: LanderEnv, *start: float) -> None:
     env.reset()
     env.place(np.ones(env.num_envs, bool), np.array([start] * env.num_envs))
-
-
-def test_conditions_that_ask_for_nothing_change_nothing_bit_for_bit():
-    plain, calm = LanderEnv(4, 5, frame_skip=1), LanderEnv(4, 5, frame_skip=1, conditions=Conditions())
-    plain.reset()
-    calm.reset()
-    rng = np.random.default_rng(0)
-    for _ in range(200):
-        actions = rng.integers(0, 6, 4)
-        one, other = plain.step(actions), calm.step(actions)
-        assert np.array_equal(one.observation, other.observation)
-        assert np.array_equal(one.reward, other.reward)
-    assert calm.conditions == CALM
 
 
 @pytest.mark.parametrize(
@@ -82,12 +69,20 @@ def test_a_dead_engine_burns_nothing_until_it_is_back():
     assert fired[59] == 30
     assert fired[89] == 60
     assert env.side_steps[0] == 90
+    env.steps[:] = 45
+    assert env.fired.tolist() == [1]
+    assert env.thrust.tolist() == [[0.0, -1.0]]
 
 
 def test_a_pad_moves_and_what_stands_on_it_is_carried_along_and_has_landed():
     env = LanderEnv(3, 0, frame_skip=1, conditions=Conditions(swing=3.0, swing_period=16.0))
     speed = env.conditions.shift(np.zeros(1))[1][0]
     place(env, 0.4, REST + 0.002, speed, 0, 0, 0)
+    before = env.snapshot()
+    for _ in range(60):
+        env.step(np.zeros(3, int))
+    assert env.outcome.tolist() == [Outcome.LANDED] * 3  # moving all the time, but not on the pad
+    env.restore(before)
     env.limits = env.limits.__class__(rest_steps=10**6)  # so that it stays to be seen
     for _ in range(300):
         env.step(np.zeros(3, int))
@@ -113,21 +108,3 @@ def test_observations_are_relative_to_the_moving_pad():
     assert result.observation[0, 0] == pytest.approx(-0.3 * 3.0, abs=0.01)
     assert result.observation[0, 2] == pytest.approx(0.0, abs=0.01)
     assert env.observe(0)[0].tolist() == env.observe_pads()[0, 0].tolist()
-
-
-def test_a_flight_is_the_same_alone_and_from_a_snapshot():
-    hard = Conditions(wind=0.2, gust=0.2, tank=8.0, outage=(1.0, 1.5), swing=2.0)
-    many, env = LanderEnv(3, 7, frame_skip=1, conditions=hard), LanderEnv(3, 7, frame_skip=1, conditions=hard)
-    many.reset()
-    env.reset()
-    rng = np.random.default_rng(2)
-    actions = rng.integers(0, 6, (120, 3))
-    for row in actions[:60]:
-        many.step(row)
-    env.restore(many.snapshot())
-    for row in actions[60:]:
-        assert np.array_equal(many.step(row).observation, env.step(row).observation)
-
-
-def test_no_fuel_at_all_is_a_fall():
-    assert (fly(Conditions(tank=0.0)).outcome != Outcome.LANDED).all()

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from ai.lander.environment import NUM_ACTIONS, PARAMS, Cause, LanderEnv, Outcome
+from ai.lander.environment import PARAMS, Cause, LanderEnv, Outcome
 from ai.lander.ground import PADS, Ground, Pad, clearance, hilly
 
 THREE = Ground(
@@ -23,17 +23,6 @@ def standing(ground, *places, frame_skip=1):
 def rest(env, steps=90):
     for _ in range(steps):
         env.step(np.zeros(env.num_envs, dtype=int))
-
-
-def test_one_pad_on_a_plain_is_the_lander_as_it_was():
-    rng = np.random.default_rng(0)
-    usual, same = LanderEnv(8, 3, "near"), LanderEnv(8, 3, "near", ground=Ground((Pad(0.0, 1.6, 6.0),)))
-    assert np.array_equal(usual.reset(), same.reset())
-    for _ in range(100):
-        actions = rng.integers(0, NUM_ACTIONS, 8)
-        assert np.array_equal(usual.step(actions).observation, same.step(actions).observation)
-    assert np.array_equal(usual.pad, np.tile((0.0, 1.6), (8, 1)))
-    assert usual.pad_width.tolist() == [6.0] * 8
 
 
 def test_any_pad_will_do_and_the_result_tells_which():
@@ -77,29 +66,11 @@ def test_rewards_follow_the_target():
     assert result.components["distance"][0] < result.components["distance"][1]
 
 
-def test_a_snapshot_keeps_the_target():
-    env = standing(THREE, (4, 9.0))
-    env.target[:] = 1
-    snapshot = env.snapshot()
-    env.target[:] = 2
-    env.restore(snapshot)
-    assert env.target.tolist() == [1]
-
-
-def test_a_flight_among_hills_is_the_same_alone_and_in_a_batch():
-    ground = hilly(np.random.default_rng(1))
-    alone, many = LanderEnv(1, 7, ground=ground), LanderEnv(20, 7, ground=ground)
-    assert np.array_equal(alone.reset()[0], many.reset()[0])
-    for row in np.random.default_rng(3).integers(0, NUM_ACTIONS, (200, 20)):
-        one, all_ = alone.step(row[:1]), many.step(row)
-        assert np.array_equal(one.observation[0], all_.observation[0])
-        assert one.outcome[0] == all_.outcome[0]
-
-
 def test_hills_leave_room_for_every_approach(subtests):
     for seed in SEEDS:
         with subtests.test(seed=seed):
             ground = hilly(np.random.default_rng(seed))
+            assert ground == hilly(np.random.default_rng(seed)) != hilly(np.random.default_rng(seed + 1))
             assert sorted((pad.width, pad.factor) for pad in ground.pads) == sorted(PADS)
             x = np.linspace(-20, 20, 2001)
             for pad in ground.pads:
@@ -109,11 +80,6 @@ def test_hills_leave_room_for_every_approach(subtests):
                 assert ground.height(pad.x) == pad.top
             assert ground.height(x).max() < 6.0
             assert len(ground.hills) > len(PADS)
-
-
-def test_hills_follow_from_the_seed():
-    assert hilly(np.random.default_rng(4)) == hilly(np.random.default_rng(4))
-    assert hilly(np.random.default_rng(4)) != hilly(np.random.default_rng(5))
 
 
 @pytest.mark.parametrize("pads", [(), (Pad(0, 0.5, 6),), (Pad(0, 1.6, 0),), (Pad(0, 1.6, 6), Pad(4, 1.6, 6))])

@@ -53,3 +53,25 @@ def test_a_loop_that_first_gains_pays_a_little_when_discounted_and_nothing_in_po
     there, back = shaped(situation(2, 1, 2, 0.4), MIDDLE, weights), shaped(MIDDLE, situation(2, 1, 2, 0.4), weights)
     assert there + back == pytest.approx(0)
     assert there + discount * back > 0
+
+
+def test_each_part_pays_what_it_says(subtests):
+    still = {"outcome": 0, "actions": 0, "steps": 10, "tilted_steps": 0, "feet_steps": 0}
+    for name, before, after, paid in [
+        ("tilt", {}, {"tilted_steps": 3}, -0.15),
+        ("feet", {"feet_steps": 27}, {"feet_steps": 31}, 3.0),  # thirty steps are paid
+        ("engine", {"actions": 0}, {"steps": 14, "actions": 4}, -0.08),
+        ("engine", {"actions": 4}, {"steps": 14, "actions": 0}, 0.0),
+        ("switch", {"actions": 3}, {"actions": 4}, -0.5),
+        ("switch", {"actions": 3}, {"actions": 1}, -1.0),
+        ("switch", {"actions": 3, "outcome": 2}, {"actions": 1, "outcome": 2}, 0.0),
+        ("time", {}, {"steps": 14}, -0.8),
+        *[("terminal", {}, {"outcome": k}, paid) for k, paid in enumerate((0.0, 120.0, -120.0, -120.0, 0.0))],
+        ("terminal", {"outcome": 1}, {"outcome": 1}, 0.0),
+    ]:
+        with subtests.test(name=name, before=before, after=after):
+            one, other = (
+                Situation(*[np.zeros(1)] * 4, **{key: np.array([value]) for key, value in (still | changed).items()})
+                for changed in (before, after)
+            )
+            assert REWARDS[name](RewardWeights(switch=-0.5), one, other) == pytest.approx(paid)

@@ -21,6 +21,7 @@ from ai.sweep.runs import AgentRun
 from ai.sweep.space import knob_space
 from ai.sweep.study import Study, StudyError, find
 from ai.sweep.trial import Asked, Trial, archive, unpack
+from ai.training.config import PRESETS
 from ai.training.digit_run import save_digit_run
 from main import main
 from tests.support.studies import TINY, finished_study, networks_in, run_alone, tiny_plan
@@ -174,6 +175,19 @@ def test_a_trial_that_goes_on_from_a_checkpoint_ends_as_long_and_says_so():
     assert (result.restarts, result.parent, result.seeds[0].curve[:2]) == (1, None, so_far.seeds[0].curve)
     assert result.seconds >= so_far.seconds
     assert read_as(FinishedTrial, json.loads(json.dumps(asdict(result)))) == result
+
+
+def test_a_killed_trial_of_the_lander_goes_on_bit_for_bit(tmp_path):
+    settings = PRESETS["modern"].changed(**TINY, spawn="random")
+    plan = tiny_plan(settings=json.loads(json.dumps(settings.to_json())), seeds=(0,), metric="success")
+    asked = Asked(0, {"learning_rate": 0.01, "tau": 0.1})
+    trial = Trial(plan, asked)
+    trial.step()
+    again = Trial(plan, asked, trial.checkpoint(), trial.result())
+    again.step()
+    unpack(again.finish()[1], tmp_path / "again")
+    unpack(run_alone(plan, asked)[1], tmp_path / "straight")
+    assert networks_in(tmp_path / "again") == networks_in(tmp_path / "straight")
 
 
 def test_a_trial_of_digits_goes_on_from_a_checkpoint_as_if_nothing_had_been(tmp_path, monkeypatch):

@@ -159,7 +159,7 @@ def test_damage_is_named_with_the_way_out_wherever_it_is(tmp_path, monkeypatch):
                 resume_run(tmp_path / "run")
         path.write_bytes(whole)
     assert len(refused) > 30
-    assert all("without this folder" in problem for problem in refused)
+    assert [problem for problem in refused if "without this folder" not in problem] == []
     remove_state(tmp_path / "run")
     assert "empty memory" in resume_run(tmp_path / "run").lost
 

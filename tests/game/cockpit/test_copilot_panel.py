@@ -8,6 +8,7 @@ from game.cockpit.copilot_panel import CopilotPanel
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.flight.flight import Flight
+from game.panels.landings import Landing, Landings, RecentLandings
 from tests.support.drawn import Drawn, read_panel
 
 
@@ -97,3 +98,14 @@ class Prefers(Wavers):
 
     def q_values(self, observation: np.ndarray) -> np.ndarray:
         return np.tile(np.array([0, 0.06, 0, 0.1, 0, 0], np.float32), (len(observation), 1))
+
+
+def test_rows_that_are_not_known_anew_stay_for_half_a_second():
+    unknown, recent = (Landing.UNKNOWN,) * 6, RecentLandings()
+    first = Landings((Landing.LOST, *unknown[1:]), (0, Landing.LOST), 3, 0.1)
+    assert recent.fill(first) == first
+    later = Landings((Landing.UNKNOWN, Landing.LANDS, *unknown[2:]), (1, Landing.LANDS), 1, 0.1)
+    assert recent.fill(later).after == (Landing.LOST, Landing.LANDS, *unknown[2:])
+    shown = [recent.fill(Landings(unknown, (2, Landing.UNKNOWN), 1, 0.1)).after[:2] for _ in range(8)]
+    assert shown[:7] == [(Landing.LOST, Landing.LANDS)] * 7
+    assert shown[7] == (Landing.UNKNOWN, Landing.LANDS)

@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 from ai.agent.agent import DeepQAgent
-from ai.copilot.futures import KEYS, Lookahead, Push
+from ai.copilot.futures import KEYS, Future, Lookahead, Push
 from ai.flights.recording import thrust
 from ai.flights.verification import begun
 from ai.lander.descent import LegStart
 from ai.lander.environment import Outcome
 from ai.lander.moment import Moment
+from game.cockpit.guardian_words import why_bare
 from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.core.settings import Settings
@@ -105,8 +106,25 @@ def test_a_change_of_gravity_voids_the_plan_and_another_is_found(agent):
     flight.set_gravity(0.9)
     fly(flight, lambda _: (2, None), most=12)
     assert not flight.guard.safe
+    assert flight.guard.bare == (pytest.approx(8 / 60), "changed")
     assert fly(flight, lambda _: (2, None), most=60).guard.safe
+    assert flight.guard.bare is None
     assert land(flight).outcome is Outcome.LANDED
+
+
+def test_it_says_since_when_no_plan_is_held_and_why(agent):
+    for why in ("off", "process", "none"):
+        flight = guarded(agent)
+        if why == "none":
+            flight.guard.ahead.known = lambda: dict.fromkeys(KEYS, Future(None))
+        fly(flight, lambda _: (0, None), most=8)
+        if why == "off":
+            flight.help(0.0, "guardian")
+        elif why == "process":
+            flight.guard.ahead.problem = "no process"
+        fly(flight, lambda _: (0, None), most=9)
+        assert why_bare(flight.guard) == texts.GUARDIAN_BARE[why].format(since="0.0" if why == "none" else "0.1"), why
+    assert why_bare(None) == ""
 
 
 def test_without_its_process_or_at_nought_nothing_is_guarded(agent):

@@ -4,34 +4,37 @@ import time
 from collections.abc import Callable
 from multiprocessing.process import BaseProcess
 from pathlib import Path
-from typing import Any
 
 import pytest
 
-from ai.training.config import Config
-from ai.training.history import COLUMNS
 from game.core.worker import Worker, WorkerState
-from game.training.library import Library
-from game.training.run import TrainingRun, WorkedRun
+from game.training.one_after_another import OneAfterAnother
 from tests.support.chores import keep
 
-NOTEBOOK = WorkedRun(keep, Config(), COLUMNS, grace=5.0)
 
-
-class Notebook(TrainingRun):
-    """Runs that note when they begin and end; nothing is kept of them."""
+class Notebook(OneAfterAnother):
+    """Runs that note when they begin and end."""
 
     def __init__(self, path: Path) -> None:
-        super().__init__(NOTEBOOK, Library(path.parent), keeps=False)
-        self.path, self.closing, self.note = path, False, ""
+        super().__init__()
+        self.path, self.closing = path, False
 
     def close(self) -> None:
-        self.closing = True
-        super().close()
+        self.closing, self._launch = True, None
+        if self._worker:
+            self._worker.close(5.0)
 
-    def _begin(self, config: Any, seed: int, resume: Path | None) -> str:
-        self._worker = Worker(keep, self.path, config, seed / 10)
-        return self.note
+    def begin(self, name: str, seconds: float = 0.0, note: str = "") -> str:
+        def launch() -> str:
+            self._worker = Worker(keep, self.path, name, seconds)
+            return note
+
+        return self._start(launch)
+
+    def poll(self) -> str:
+        if self._worker:
+            self._worker.poll()
+        return self._start_waiting()
 
     @property
     def lines(self) -> list[str]:
@@ -56,17 +59,15 @@ def wait(learner: Notebook, until: Callable[[], object]) -> list[str]:
     notes, end = [], time.monotonic() + 60
     while not until():
         assert time.monotonic() < end
-        notes += learner.poll()
+        notes.append(learner.poll())
         time.sleep(0.01)
-    return notes
+    return [note for note in notes if note]
 
 
 def test_the_next_run_begins_when_the_one_before_has_ended_and_nobody_waits(notebook: Notebook):
-    notebook.note = "at once"
-    assert notebook.begin("one", 5) == "at once"
+    assert notebook.begin("one", 0.5, "at once") == "at once"
     wait(notebook, lambda: notebook.state is WorkerState.RUNNING)
-    notebook.note = "later"
-    assert notebook.begin("two", 0) == ""
+    assert notebook.begin("two", note="later") == ""
     assert notebook.waiting
     assert notebook.state is WorkerState.STARTING
     assert notebook.alive
@@ -76,36 +77,36 @@ def test_the_next_run_begins_when_the_one_before_has_ended_and_nobody_waits(note
 
 
 def test_what_is_asked_meanwhile_is_for_the_run_to_come(notebook: Notebook):
-    notebook.begin("one", 3)
+    notebook.begin("one", 0.3)
     wait(notebook, lambda: notebook.state is WorkerState.RUNNING)
-    notebook.begin("two", 0)
-    notebook.pause()
+    notebook.begin("two", 0.0)
+    notebook._ask(Worker.pause)
     wait(notebook, lambda: notebook.state is WorkerState.PAUSED)
     assert notebook.lines[-1] == "two begins"
 
 
 def test_of_two_that_wait_the_last_one_is_meant(notebook: Notebook):
-    notebook.begin("one", 3)
+    notebook.begin("one", 0.3)
     wait(notebook, lambda: notebook.state is WorkerState.RUNNING)
-    notebook.begin("two", 0)
-    notebook.begin("three", 0)
+    notebook.begin("two", 0.0)
+    notebook.begin("three", 0.0)
     wait(notebook, lambda: notebook.state is WorkerState.RUNNING)
     assert notebook.lines == ["one begins", "one ends", "three begins"]
 
 
 def test_one_that_does_not_end_is_ended(notebook: Notebook, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("game.core.worker.STOP_SECONDS", 0.3)
-    notebook.begin("one", 600)
+    notebook.begin("one", 60.0)
     wait(notebook, lambda: notebook.state is WorkerState.RUNNING)
-    notebook.begin("two", 0)
+    notebook.begin("two", 0.0)
     wait(notebook, lambda: notebook.state is WorkerState.RUNNING)
     assert notebook.lines == ["one begins", "two begins"]
 
 
 def test_after_a_close_nothing_begins(notebook: Notebook):
-    notebook.begin("one", 2)
+    notebook.begin("one", 0.2)
     wait(notebook, lambda: notebook.state is WorkerState.RUNNING)
-    notebook.begin("two", 0)
+    notebook.begin("two", 0.0)
     notebook.close()
     notebook.poll()
     assert not notebook.alive

@@ -1,0 +1,54 @@
+"""The solver stops early only where nothing would change, and treats points that nearly coincide as one."""
+
+import numpy as np
+import pytest
+
+from engine import Polygon, World
+from engine.solver import Rows
+from tests.engine.test_batch import landers, throw, toys
+from tests.support.worlds import advance
+
+
+def flight(make, seed, steps, batch=3):
+    """States and impulses of a few seconds."""
+    world = make(batch)
+    throw(world, seed)
+    for _ in range(steps):
+        world.step()
+        touched = world.contacts
+        yield world.state.pose.copy(), world.state.velocity.copy(), touched.impulse.copy() if touched else np.zeros(0)
+
+
+@pytest.mark.parametrize(("make", "steps"), [(toys, 100), (landers, 150)])
+def test_iterations_that_are_left_out_would_have_changed_no_bit(make, steps, monkeypatch):
+    early = list(flight(make, 11, steps))
+    relax = Rows.relax
+    monkeypatch.setattr(Rows, "relax", lambda *given: relax(*given) or True)
+    for mine, theirs in zip(early, flight(make, 11, steps), strict=True):
+        for a, b in zip(mine, theirs, strict=True):
+            assert np.array_equal(a, b)
+    assert any(len(impulse) for _, _, impulse in early)
+
+
+def test_the_solver_stops_when_nothing_changes_any_more(monkeypatch):
+    calls = []
+    world = World(gravity=(0.0, -9.81), sleeping=False)
+    world.add(Polygon.box(20.0, 1.0), (0.0, -0.5), static=True)
+    world.add(Polygon.box(1.0, 1.0), (0.0, 0.5))
+    advance(world, 120)
+    relax = Rows.relax
+    monkeypatch.setattr(Rows, "relax", lambda *given: calls.append(1) or relax(*given))
+    world.step()
+    assert 0 < len(calls) <= 2
+
+
+def test_of_points_that_nearly_coincide_the_deeper_does_alone():
+    world = World(gravity=(0.0, -9.81))
+    world.add(Polygon.box(8.0, 1.0), (0.0, -0.5), static=True)
+    world.add(Polygon.box(0.002, 1.0), (0.0, 0.499), 0.05, mass=3.0).velocity = (0.0, -1.0)
+    world.step()
+    contacts = world.contacts
+    assert contacts.valid.all()
+    deeper = int(contacts.depth[0].argmax())
+    assert contacts.impulse[0, deeper] > 1.0
+    assert contacts.impulse[0, 1 - deeper] == 0.0
