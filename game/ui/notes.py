@@ -51,9 +51,10 @@ class Note:
         if not self._left:
             return
         reading, taken = canvas.reading, [*canvas.words, *canvas.looked_at]
-        covered = {place: _covers(reading, self._box_at(reading, place), taken) for place in _PLACES}
-        if covered[self._place] > min(covered.values()):
-            self._place = min(_PLACES, key=covered.__getitem__)
+        if _covers(reading, self._box_at(reading, self._place), taken):
+            covered = {place: _covers(reading, self._box_at(reading, place), taken) for place in _PLACES}
+            if covered[self._place] > min(covered.values()):
+                self._place = min(_PLACES, key=covered.__getitem__)
 
     def box(self, canvas: Canvas) -> pygame.Rect:
         """Return the note's panel, in the window's pixels."""
