@@ -108,10 +108,8 @@ class Solver:
         before = now - (push[0, rows] + push[1, rows]) * cross(contacts.normal[rows], along)
         turn = now / whole  # as one body; the rest of the motion is their own
         own, own_spins = along - turn[:, None] * turned, spins - turn
-        energy = (
-            reduced * dot(own, own) + inertia[0] * own_spins[0] ** 2 + inertia[1] * own_spins[1] ** 2
-        )  # of that, twice
-        excess = np.divide(before**2 - now**2, whole * energy, out=np.zeros_like(whole), where=energy > 0)
+        twice_energy = reduced * dot(own, own) + inertia[0] * own_spins[0] ** 2 + inertia[1] * own_spins[1] ** 2
+        excess = np.divide(before**2 - now**2, whole * twice_energy, out=np.zeros_like(whole), where=twice_energy > 0)
         less = np.sqrt(np.clip(1.0 - excess, 0.0, 1.0)) - 1.0  # change of their own motion, so that energy stays
         turn = before / whole - turn
         change = np.empty_like(velocity)

@@ -6,6 +6,7 @@ It opens no window and loads no pygame.
 from __future__ import annotations
 
 import argparse
+import errno
 import json
 import sys
 from collections.abc import Callable, Iterator
@@ -15,7 +16,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from ai.cli.command_line import readable
-from ai.files import brief, read_standard_input, read_text
+from ai.files import brief, read_text
 from ai.flights.code import codes_in
 from ai.flights.recording import SharedFlight
 from ai.flights.verification import Earned, is_true, verified
@@ -79,7 +80,7 @@ def _flights(paths: list[Path]) -> Iterator[tuple[str, SharedFlight | str]]:
     """Yield every flight, or why it is refused, and its place: the file, and the number of its code there."""
     for path in paths:
         if path == _STDIN:
-            yield from _flights_in(_STDIN, partial(read_standard_input, _LARGEST))
+            yield from _flights_in(_STDIN, _piped_in)
             continue
         try:
             files = _files(path)
@@ -88,6 +89,13 @@ def _flights(paths: list[Path]) -> Iterator[tuple[str, SharedFlight | str]]:
             continue
         for file in files:
             yield from _flights_in(file, partial(read_text, file, _LARGEST))
+
+
+def _piped_in() -> str:
+    held = sys.stdin.buffer.read(_LARGEST + 1)
+    if len(held) > _LARGEST:
+        raise OSError(errno.EFBIG, f"is larger than the {_LARGEST:,} bytes that there can be")
+    return held.decode("utf-8")
 
 
 def _files(path: Path) -> list[Path]:

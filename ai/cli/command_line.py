@@ -161,13 +161,13 @@ def keep(save: Callable[[Path], Kept], output: Path) -> tuple[Path, Kept]:
     If something else was put there meanwhile, that stays, and the run is saved beside it. Raises OSError if it
     cannot be written.
     """
-    from ai.files import free_folder
+    from ai.files import free_path
 
     try:
         return output, save(output)
     except FileExistsError as error:
         fail(str(error))
-        beside = free_folder(output)
+        beside = free_path(output.parent, output.name)
         return beside, save(beside)
 
 

@@ -15,38 +15,26 @@ import numpy as np
 from ai.agent.agent import DeepQAgent
 from ai.agent.config import AgentConfig
 from ai.agent.n_step import NStep
-from ai.agent.network import build_network, make_optimizer
 from ai.agent.normalizer import Normalizer
 from ai.agent.replay import ReplayBuffer, Transition
 from ai.common.environment import Floats, Ints
-from ai.explain.learning_step import MOST_PARAMETERS, Line, Step, kept_by, network_functions, recorded_step
-from ai.explain.recorder import RETURN, Function, Recorder
+from ai.explain.learning_step import Step, recorded_step
+from ai.explain.recorder import RETURN, Function, Line
+from ai.nn import NeuralNetwork
 
 
 @dataclass(frozen=True, eq=False)
 class Flown:
-    """The k decisions that a memory sums up, as they were flown.
+    """The k decisions that a memory sums up, as they were flown."""
 
-    Attributes:
-        slot: which lander flew them.
-        decisions: of all landers, before the first of the k.
-        observations: (k + 1, features) before each, and after the last, in the environment's units.
-        actions: (k,).
-        rewards: (k,) in points.
-        parts: by name, what each part of the reward brought, (k,) in points.
-        outcome: how the episode ended with the last of them; 0 if it went on.
-        lines: the lines of `NStep.add` that summed the rewards up, for the last of the decisions.
-
-    """
-
-    slot: int
-    decisions: int
-    observations: Floats
-    actions: Ints
-    rewards: Floats
-    parts: dict[str, Floats]
-    outcome: int
-    lines: tuple[Line, ...] = ()
+    slot: int  # which lander flew them
+    decisions: int  # of all landers, before the first of the k
+    observations: Floats  # (k + 1, features) before each, and after the last, in the environment's units
+    actions: Ints  # (k,)
+    rewards: Floats  # (k,) in points
+    parts: dict[str, Floats]  # by name, what each part of the reward brought, (k,) in points
+    outcome: int  # how the episode ended with the last of them; 0 if it went on
+    lines: tuple[Line, ...] = ()  # of `NStep.add`, which summed the rewards up, for the last of the decisions
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,73 +42,42 @@ class Lesson:
     """One learning step of a deep Q-learning agent, around one memory.
 
     Values, rewards and errors are as the agent computes with them, in points times `config.reward_scale`.
-
-    Attributes:
-        config: settings of the run; the step shown is the first of its `gradient_steps`.
-        decisions: of the run, when the step was taken.
-        flown: the decisions that the memory sums up; None if that is not known.
-        cell: the memory, (features,) and numbers, as it lies in the replay buffer.
-        state, next_state: (features,) of it as the networks are given them.
-        weight: its weight in the cost, by importance sampling; 1 in uniform replay.
-        target_values: (parameters,) of the target network.
-        predicted: (actions,) values of the state by the online network, before the step.
-        next_online: (actions,) values of the next state by the online network; None if it picks for no other.
-        next_judged: (actions,) the same by the network that judges.
-        best: the action that is picked in the next state.
-        next_value: its value by the network that judges.
-        discount: γ to the power of the memory's decisions.
-        target: what the value should have been.
-        error: the value of the action taken, less its target.
-        batch_errors: (batch,) the same of all memories of the minibatch.
-        derivative: of the cost by that value, divided by the size of the minibatch already.
-        predicted_after: (actions,) values of the state after the step.
-        step: the step of the optimizer.
-
     """
 
-    config: AgentConfig
-    decisions: int
-    flown: Flown | None
-    cell: Transition
-    state: Floats
+    config: AgentConfig  # of the run; the step shown is the first of its `gradient_steps`
+    decisions: int  # of the run, when the step was taken
+    flown: Flown | None  # None if that is not known
+    cell: Transition  # the memory, (features,) and numbers, as it lies in the replay buffer
+    state: Floats  # (features,) of it as the networks are given them
     next_state: Floats
-    weight: float
-    target_values: Floats
-    predicted: Floats
-    next_online: Floats | None
-    next_judged: Floats
-    best: int
-    next_value: float
-    discount: float
-    target: float
-    error: float
-    batch_errors: Floats
-    derivative: float
-    predicted_after: Floats
-    step: Step
+    weight: float  # its weight in the cost, by importance sampling; 1 in uniform replay
+    target_values: Floats  # (parameters,) of the target network
+    predicted: Floats  # (actions,) values of the state by the online network, before the step
+    next_online: Floats | None  # (actions,) values of the next state by the online network, if it picks
+    next_judged: Floats  # (actions,) the same by the network that judges
+    best: int  # the action that is picked in the next state
+    next_value: float  # its value by the network that judges
+    discount: float  # gamma to the power of the memory's decisions
+    target: float  # what the value should have been
+    error: float  # the value of the action taken, less its target
+    batch_errors: Floats  # (batch,) the same of all memories of the minibatch
+    derivative: float  # of the cost by that value, divided by the size of the minibatch already
+    predicted_after: Floats  # (actions,) values of the state after the step
+    step: Step  # of the optimizer
 
 
 @dataclass(frozen=True, eq=False)
 class Before:
-    """All that a learning step depends on: the agent before it, and the minibatch that it is handed.
-
-    Attributes:
-        online, target: (parameters,) of the two networks.
-        optimizer: what `Optimizer.state` returned.
-        normalizer: of observations, or None.
-        cells: the minibatch, (batch, ...), as it was drawn; one of them gives way to the memory of the lesson.
-        weights: (batch,) of them in the cost.
-
-    """
+    """All that a learning step depends on: the agent before it, and the minibatch that it is handed."""
 
     config: AgentConfig
     decisions: int
-    online: Floats
+    online: Floats  # (parameters,) of the two networks
     target: Floats
-    optimizer: dict[str, Any]
-    normalizer: dict[str, Any] | None
-    cells: Transition
-    weights: Floats
+    optimizer: dict[str, Any]  # what `Optimizer.state` returned
+    normalizer: dict[str, Any] | None  # of observations
+    cells: Transition  # the minibatch, (batch, ...), as it was drawn; one of them gives way to the memory of the lesson
+    weights: Floats  # (batch,) of them in the cost
 
     @classmethod
     def of(cls, agent: DeepQAgent, rng: np.random.Generator) -> Before:
@@ -132,57 +89,45 @@ class Before:
         return cls(agent.config, agent.decisions, online, target, optimizer, normalizer, cells, weights)
 
 
-def functions(config: AgentConfig) -> dict[str, Function]:
-    """Return the functions that a learning step runs through and a lesson records, by their qualified names."""
-    network = build_network(2, 2, config, np.random.default_rng(0))
-    return Recorder([*_AGENT, *network_functions(network, make_optimizer(config))]).functions
-
-
 def explain(before: Before, cell: Transition, agent: DeepQAgent, flown: Flown | None = None) -> Lesson:
     """Take the learning step that follows from `before` with `cell` in its minibatch, and return all of it.
 
     `agent` is one of the same sizes and symmetry, which is not changed. Raises DivergenceError as the step does, and
-    ValueError for a network of more than MOST_PARAMETERS.
+    ValueError for a network that is too large.
     """
-    if len(before.online) > MOST_PARAMETERS:
-        raise ValueError(f"a network of more than {MOST_PARAMETERS:,} parameters is too large to be explained")
     row = len(before.weights) // 2  # the first half of a minibatch may be mirrored
     twin = _twin(before, cell, row, agent)
-    kept = kept_by(twin.optimizer, before.online)
-    with Recorder([*_AGENT, *network_functions(twin.online, twin.optimizer)], row) as recorder:
-        twin.learn()
-    step = recorded_step(recorder, twin.online, twin.optimizer, before.online, kept, row)
-    action, last = int(cell.action), recorder.last
-    # Recorded of `predict` is what both networks said of the next states.
-    said = {id(event.owner): event.values[RETURN] for event in recorder.of("NeuralNetwork.predict")
-            if RETURN in event.values}  # fmt: skip
-    picks = said.get(id(twin.online)) if twin.double else None
-    states, errors = last("DeepQAgent.gradient_step", "states"), last("DeepQAgent.gradient_step", "errors")
+    recorder, step = recorded_step(twin.learn, twin.online, twin.optimizer, _AGENT, row)
+    # What both networks said of the next states.
+    said = {id(call.owner): call.values[RETURN] for call in recorder.calls(NeuralNetwork.predict)}
+    taken, judged, target = (
+        recorder.call(each).values for each in (DeepQAgent.gradient_step, DeepQAgent._next_value, DeepQAgent.targets)
+    )
     return Lesson(
         config=before.config,
         decisions=before.decisions,
         flown=flown,
         cell=cell,
-        state=states[row],
-        next_state=last("DeepQAgent._next_value", "states")[row],
+        state=taken["states"][row],
+        next_state=judged["states"][row],
         weight=float(before.weights[row]),
         target_values=before.target,
-        predicted=last("DeepQAgent.gradient_step", "predicted")[row],
-        next_online=None if picks is None else picks[row],
-        next_judged=last("DeepQAgent._next_value", "values")[row],
-        best=int(last("DeepQAgent._next_value", "best")[row]),
-        next_value=float(last("DeepQAgent._next_value", "value")[row]),
-        discount=float(last("DeepQAgent.targets", "discount")[row]),
-        target=float(last("DeepQAgent.targets", "targets")[row]),
-        error=float(errors[row]),
-        batch_errors=errors,
-        derivative=float(last("DeepQAgent.gradient_step", "derivative")[row, action]),
-        predicted_after=twin.online.predict(states)[row],
+        predicted=taken["predicted"][row],
+        next_online=said[id(twin.online)][row] if twin.double else None,
+        next_judged=judged["values"][row],
+        best=int(judged["best"][row]),
+        next_value=float(judged["value"][row]),
+        discount=float(target["discount"][row]),
+        target=float(target["targets"][row]),
+        error=float(taken["errors"][row]),
+        batch_errors=taken["errors"],
+        derivative=float(taken["derivative"][row, int(cell.action)]),
+        predicted_after=twin.online.predict(taken["states"])[row],
         step=step,
     )
 
 
-_AGENT: Final = (
+_AGENT: Final[tuple[Function, ...]] = (
     DeepQAgent.learn, DeepQAgent._learn_from, DeepQAgent.targets, DeepQAgent._next_value,
     DeepQAgent.gradient_step, DeepQAgent._update_target, Normalizer.__call__, NStep.add,
 )  # fmt: skip

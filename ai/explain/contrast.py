@@ -27,39 +27,24 @@ _MOST: Final = 64  # images at a time
 
 @dataclass(frozen=True)
 class InkChange:
-    """Effect of emptying or filling one square of the image.
+    """Effect of emptying or filling one square of the image."""
 
-    Attributes:
-        row, column: the pixel in the square's middle.
-        ink: what the square holds afterwards, 0 or 1.
-        before, after: the asked digit's score.
-        answer_before, answer_after: the score of the digit that was answered.
-
-    """
-
-    row: int
+    row: int  # the pixel in the square's middle
     column: int
-    ink: int
-    before: float
+    ink: int  # what the square holds afterwards, 0 or 1
+    before: float  # the asked digit's score
     after: float
-    answer_before: float
+    answer_before: float  # the score of the digit that was answered
     answer_after: float
 
 
 @dataclass(frozen=True, eq=False)
 class UnitEvidence:
-    """Difference of two digits' scores, unit by unit of the last layer's inputs.
+    """Difference of two digits' scores, unit by unit of the last layer's inputs."""
 
-    Attributes:
-        values: (n,) what the units gave.
-        weights: (n,) each unit's weight for the asked digit, less that for the answer.
-        bias: likewise of the biases.
-
-    """
-
-    values: Array
-    weights: Array
-    bias: float
+    values: Array  # (n,) what the units gave
+    weights: Array  # (n,) each unit's weight for the asked digit, less that for the answer
+    bias: float  # likewise of the biases
 
     @property
     def shares(self) -> Array:

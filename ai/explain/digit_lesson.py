@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from copy import copy
 from dataclasses import dataclass
-from functools import partial
 from typing import Final
 
 import numpy as np
@@ -12,62 +11,31 @@ import numpy.typing as npt
 
 from ai.common.environment import Floats
 from ai.digits.classifier import DigitClassifier
-from ai.digits.config import DigitConfig, build_digit_network
+from ai.digits.config import DigitConfig
 from ai.digits.training import DigitTraining
-from ai.explain.learning_step import (
-    MOST_PARAMETERS,
-    Line,
-    Step,
-    kept_by,
-    line_of,
-    network_functions,
-    of_row,
-    recorded_step,
-)
-from ai.explain.recorder import Function, Recorder
-from ai.nn import OPTIMIZERS
+from ai.explain.learning_step import Step, of_row, recorded_step, shown_lines
+from ai.explain.recorder import Function, Line, Recorder
+from ai.nn import OPTIMIZERS, NeuralNetwork
 from ai.nn.costs import softmax
 
 
 @dataclass(frozen=True, eq=False)
 class DigitLesson:
-    """The learning step of a digit network that comes next, around one image of its batch.
+    """The learning step of a digit network that comes next, around one image of its batch."""
 
-    Attributes:
-        config: settings of the run.
-        taken: learning steps taken before this one.
-        labels: (batch,) which digits the images of the batch are.
-        image: (28, 28) as it is learned from, bent and turned, 0 to 1.
-        target: (10,) what the network should have answered.
-        outputs: (10,) its answer before the step, with dropout: logits, if `logits` is true.
-        logits: whether probabilities are the softmax of the outputs.
-        cost: of the whole batch, before the step.
-        derivative: (10,) of the cost by the outputs, divided by the size of the batch already.
-        probabilities_before, probabilities_after: (10,) of each digit before and after the step, without dropout.
-        step: the step of the optimizer; its row is the image's.
-        lines: the lines of our own code that made probabilities of the outputs, before the step.
-
-    """
-
-    config: DigitConfig
-    taken: int
-    labels: npt.NDArray[np.int64]
-    image: Floats
-    target: Floats
-    outputs: Floats
-    logits: bool
-    cost: float
-    derivative: Floats
-    probabilities_before: Floats
+    config: DigitConfig  # of the run
+    taken: int  # learning steps taken before this one
+    labels: npt.NDArray[np.int64]  # (batch,) which digits the images of the batch are
+    image: Floats  # (28, 28) as it is learned from, bent and turned, 0 to 1
+    target: Floats  # (10,) what the network should have answered
+    outputs: Floats  # (10,) its answer before the step, with dropout: logits, if `logits` is true
+    logits: bool  # whether probabilities are the softmax of the outputs
+    cost: float  # of the whole batch, before the step
+    derivative: Floats  # (10,) of the cost by the outputs, divided by the size of the batch already
+    probabilities_before: Floats  # (10,) of each digit before the step, without dropout
     probabilities_after: Floats
-    step: Step
-    lines: tuple[Line, ...] = ()
-
-
-def digit_functions(config: DigitConfig) -> dict[str, Function]:
-    """Return the functions that a lesson of a digit network records, by their qualified names."""
-    network, optimizer = build_digit_network(config, np.random.default_rng(0)), OPTIMIZERS[config.optimizer](0.1)
-    return Recorder([DigitTraining.advance, *network_functions(network, optimizer), *_READING]).functions
+    step: Step  # of the optimizer; its row is the image's
+    lines: tuple[Line, ...] = ()  # of our own code, which made probabilities of the outputs, before the step
 
 
 def explain_digit(training: DigitTraining, row: int = 0) -> DigitLesson:
@@ -80,41 +48,33 @@ def explain_digit(training: DigitTraining, row: int = 0) -> DigitLesson:
         raise ValueError(f"a batch has {training.config.batch_size} images, and none of number {row}")
     if training.done:
         raise ValueError("the run is over: it takes no more learning steps")
-    if training.classifier.network.values.size > MOST_PARAMETERS:
-        raise ValueError(f"a network of more than {MOST_PARAMETERS:,} parameters is too large to be explained")
     twin = _twin(training)
     classifier, network = twin.classifier, twin.classifier.network
-    before = network.values.copy()
-    kept = kept_by(twin.optimizer, before)
-    functions = [DigitTraining.advance, *network_functions(network, twin.optimizer)]
-    with Recorder(functions, row) as recorder:
-        twin.advance()
-    step = recorded_step(recorder, network, twin.optimizer, before, kept, row)
-    last = partial(recorder.last, DigitTraining.advance.__qualname__)
-    labels = last("labels")
-    image = of_row(last("images"), row)
+    recorder, step = recorded_step(twin.advance, network, twin.optimizer, (DigitTraining.advance,), row)
+    taken = recorder.call(DigitTraining.advance).values
+    image = of_row(taken["images"], row)
     after = classifier.predict(image)[0]
-    network.values = before
+    network.values = step.values_before
     with Recorder(_READING) as reading:
         probabilities = classifier.predict(image)[0]
     return DigitLesson(
         config=training.config,
         taken=training.step,
-        labels=labels,
+        labels=taken["labels"],
         image=image,
-        target=last("targets")[row],
-        outputs=last("outputs")[row],
+        target=taken["targets"][row],
+        outputs=taken["outputs"][row],
         logits=network.cost.logits,
-        cost=float(last("loss")),
-        derivative=recorder.last("NeuralNetwork.backward_propagate", "output_error")[row],
+        cost=float(taken["loss"]),
+        derivative=recorder.call(NeuralNetwork.backward_propagate).arguments["output_error"][row],
         probabilities_before=probabilities,
         probabilities_after=after,
         step=step,
-        lines=tuple(line_of(event, 1, 0, 0) for event in reading.events),
+        lines=shown_lines(reading),
     )
 
 
-_READING: Final = (DigitClassifier.probabilities, softmax)
+_READING: Final[tuple[Function, ...]] = (DigitClassifier.probabilities, softmax)
 
 
 def _twin(training: DigitTraining) -> DigitTraining:

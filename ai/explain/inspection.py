@@ -36,13 +36,11 @@ def traces(network: NeuralNetwork, observation: npt.ArrayLike) -> list[Array]:
     network, and numbers that are not finite pass through.
     """
     data: Array = np.asarray(observation, network.dtype)
-    stages = []
     with np.errstate(all="ignore"):
-        for layer in network.layers:
-            if _links(layer):
-                stages.append(data)
-            data = layer.predict(data)
-    return [*stages, data]
+        if data.ndim % 2:  # one example
+            return [values[0] for values in traces(network, data[None])]
+        given = [data, *network.activations(data)]
+    return [*(values for layer, values in zip(network.layers, given, strict=False) if _links(layer)), given[-1]]
 
 
 def links(network: NeuralNetwork) -> list[Link]:

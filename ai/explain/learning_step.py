@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
 
 from ai.common.environment import Floats
-from ai.explain.recorder import RETURN, Event, Function, Recorder, Row
+from ai.explain.recorder import RETURN, Function, Line, Recorder, Row
 from ai.nn import NeuralNetwork
+from ai.nn.layers import Layer
 from ai.nn.optimizers import Optimizer
 
 MOST_PARAMETERS: Final = 500_000  # of a network that is explained: a lesson holds some ten vectors of as many
@@ -20,12 +21,12 @@ _MOST_WHOLE: Final = 50_000  # parameters of a network whose vectors are kept wh
 
 @dataclass(frozen=True, eq=False)
 class Value:
-    """Value of a variable in a line of code.
+    """Value of a variable in a line of code that is shown.
 
     Attributes:
-        name: the variable; "return" for the function's result.
+        name: the variable; RETURN for the function's result.
         shape: of the array; () for a number.
-        case: what of it belongs to the memory of the lesson: its row of a minibatch; the whole of a vector of all
+        case: what of it belongs to the transition of the lesson: its row of a minibatch; the whole of a vector of all
             parameters, unless these are many, and of a small array; None where nothing does.
 
     """
@@ -36,92 +37,79 @@ class Value:
 
 
 @dataclass(frozen=True, eq=False)
-class Line:
-    """Line of our own code that ran: the function's qualified name, its number in the file, and what it set."""
-
-    function: str
-    number: int
-    values: tuple[Value, ...]
-
-
-@dataclass(frozen=True, eq=False)
 class Step:
-    """One step of an optimizer on a minibatch, and what it did to a network.
-
-    Attributes:
-        row: row of the minibatch that the lesson is about.
-        values_before, values_after: (parameters,) of the network.
-        activations: what each layer gave for that row on the forward pass, from the first layer up.
-        errors: derivative of the cost by what each layer gave, for that row, from the first layer up.
-        gradient: (parameters,) of the whole minibatch, as the optimizer used it.
-        gradient_length: its length before it was clipped.
-        share: (parameters,) of the gradient before it was clipped, the part that comes from that row.
-        learning_rate: of the step.
-        optimizer_before, optimizer_after: what the optimizer keeps of each parameter, by name, (parameters,) each.
-        taken: (parameters,) what the step took off the values.
-        lines: the lines of our own code, in the order in which they ran.
-
-    """
+    """One step of an optimizer on a minibatch, and what it did to a network; around one row of the minibatch."""
 
     row: int
-    values_before: Floats
+    values_before: Floats  # (parameters,) of the network
     values_after: Floats
-    activations: tuple[Floats, ...]
-    errors: tuple[Floats, ...]
-    gradient: Floats
-    gradient_length: float
-    share: Floats
+    activations: tuple[Floats, ...]  # what each layer gave for that row on the forward pass, from the first layer up
+    errors: tuple[Floats, ...]  # derivative of the cost by what each layer gave, for that row, from the first layer up
+    gradient: Floats  # (parameters,) of the whole minibatch, as the optimizer used it
+    gradient_length: float  # before it was clipped
+    share: Floats  # (parameters,) of the gradient before it was clipped, the part that comes from that row
     learning_rate: float
-    optimizer_before: dict[str, Floats]
+    optimizer_before: dict[str, Floats]  # what the optimizer keeps of each parameter, by name, (parameters,) each
     optimizer_after: dict[str, Floats]
-    taken: Floats
-    lines: tuple[Line, ...]
+    taken: Floats  # (parameters,) what the step took off the values
+    lines: tuple[Line, ...]  # of our own code, in the order in which they ran; each of their values is a Value
 
 
-def network_functions(network: NeuralNetwork, optimizer: Optimizer) -> Iterable[Function]:
-    """Return the functions that a learning step of a network runs through, from the forward pass to the optimizer."""
-    yield from (NeuralNetwork.predict, NeuralNetwork.forward_propagate, NeuralNetwork.backward_propagate)
-    for kind in {type(layer): None for layer in network.layers}:
-        yield from (kind.forward_propagate, kind.backward_propagate, kind.fill_gradients, kind.input_error)
-    yield from (network.cost.function, network.cost.derivative)
-    yield from (Optimizer.step, type(optimizer)._fill_step)
+def forward_functions(network: NeuralNetwork) -> list[Function]:
+    """Return the functions that a forward pass of a network runs through."""
+    return [NeuralNetwork.forward_propagate, *(kind.forward_propagate for kind in _kinds(network))]
+
+
+def backward_functions(network: NeuralNetwork, optimizer: Optimizer) -> list[Function]:
+    """Return the functions from the derivative of the cost to the step of the optimizer."""
+    ways = [(kind.backward_propagate, kind.fill_gradients, kind.input_error) for kind in _kinds(network)]
+    return [NeuralNetwork.backward_propagate, *(each for way in ways for each in way),
+            Optimizer.step, type(optimizer)._fill_step]  # fmt: skip
 
 
 def recorded_step(
-    recorder: Recorder,
-    network: NeuralNetwork,
-    optimizer: Optimizer,
-    values_before: Floats,
-    optimizer_before: dict[str, Floats],
-    row: int,
-) -> Step:
-    """Read one step of an optimizer from a recording; only that one may be in it.
+    take: Callable[[], object], network: NeuralNetwork, optimizer: Optimizer, others: Iterable[Function], row: int
+) -> tuple[Recorder, Step]:
+    """Take one step of an optimizer on a minibatch; return its recording and what it did, around one row.
 
-    `network` and `optimizer` are as the step left them, and stay so.
+    `others` are functions to record besides those of network, cost and optimizer. Raises ValueError for a network of
+    more than MOST_PARAMETERS, and what `take` does.
     """
-    given: dict[int, Any] = {}
+    values_before = network.values.copy()
+    if len(values_before) > MOST_PARAMETERS:
+        raise ValueError(f"a network of more than {MOST_PARAMETERS:,} parameters is too large to be explained")
+    forward, backward = forward_functions(network), backward_functions(network, optimizer)
+    kept, cost = _kept_by(optimizer, values_before), network.cost
+    with Recorder(
+        [*others, NeuralNetwork.predict, *forward, cost.function, cost.derivative, *backward], row
+    ) as recorder:
+        take()
+    derivative = recorder.call(NeuralNetwork.backward_propagate).arguments["output_error"]
+    given = {id(call.owner): call.values[RETURN] for call in recorder.calls(*forward)}
     errors: dict[int, Any] = {}
-    for event in recorder.events:
-        if RETURN in event.values and event.function.endswith(".forward_propagate"):
-            given[id(event.owner)] = event.values[RETURN]
-        elif "output_error" in event.values and event.function.endswith((".backward_propagate", ".fill_gradients")):
-            errors.setdefault(id(event.owner), event.values["output_error"])
+    for call in recorder.calls(*backward):
+        if "output_error" in call.arguments:
+            errors.setdefault(id(call.owner), call.arguments["output_error"])
     gradient, after = network.gradients.copy(), network.values.copy()
-    return Step(
+    return recorder, Step(
         row=row,
         values_before=values_before,
         values_after=after,
         activations=tuple(of_row(given[id(layer)], row) for layer in network.layers),
         errors=tuple(of_row(errors[id(layer)], row) for layer in network.layers),
         gradient=gradient,
-        gradient_length=float(recorder.last("Optimizer.step", "length")),
-        share=_share(network, values_before, errors[id(network)], row),
+        gradient_length=float(recorder.call(Optimizer.step).values["length"]),
+        share=_share(network, values_before, derivative, row),
         learning_rate=optimizer.learning_rate,
-        optimizer_before=optimizer_before,
-        optimizer_after=kept_by(optimizer, after),
+        optimizer_before=kept,
+        optimizer_after=_kept_by(optimizer, after),
         taken=optimizer.scratch.copy(),
-        lines=tuple(line_of(event, len(errors[id(network)]), len(after), row) for event in recorder.events),
+        lines=shown_lines(recorder, row, len(derivative), len(after)),
     )
+
+
+def _kinds(network: NeuralNetwork) -> Iterable[type[Layer]]:
+    return {type(layer): None for layer in network.layers}
 
 
 def _share(network: NeuralNetwork, values_before: Floats, derivative: Floats, row: int) -> Floats:
@@ -136,26 +124,25 @@ def _share(network: NeuralNetwork, values_before: Floats, derivative: Floats, ro
     return share
 
 
-def kept_by(optimizer: Optimizer, values: Floats) -> dict[str, Floats]:
+def _kept_by(optimizer: Optimizer, values: Floats) -> dict[str, Floats]:
     """Return copies of what an optimizer keeps of each parameter, zeros before its first step."""
     return {name: optimizer.memory.get(name, np.zeros_like(values)).copy() for name in optimizer.remembers}
 
 
-def line_of(event: Event, batch: int, parameters: int, row: int) -> Line:
-    """Return a recorded line with what of its values belongs to one row of a minibatch of a size."""
-    values = (_value(name, value, batch, parameters, row) for name, value in event.values.items())
-    return Line(event.function, event.number, tuple(values))
+def shown_lines(recorder: Recorder, row: int = 0, batch: int = 1, parameters: int = 0) -> tuple[Line, ...]:
+    """Return all recorded lines, each with a Value in place of a value: what belongs to one row of a minibatch."""
 
+    def shown(name: str, value: Any) -> Value:
+        shape = value.shape if isinstance(value, Row) else np.shape(value)
+        if shape and shape[0] == batch:
+            return Value(name, shape, of_row(value, row))
+        most = _MOST_WHOLE if shape == (parameters,) else _FEW
+        return Value(name, shape, None if isinstance(value, Row) or np.size(value) > most else value)
 
-def _value(name: str, value: Any, batch: int, parameters: int, row: int) -> Value:
-    """Return a variable with what of it belongs to one row of the minibatch."""
-    shape = value.shape if isinstance(value, Row) else np.shape(value)
-    if shape and shape[0] == batch:
-        return Value(name, shape, of_row(value, row))
-    if isinstance(value, Row):
-        return Value(name, shape, None)
-    whole = np.size(value) <= (_MOST_WHOLE if shape == (parameters,) else _FEW)
-    return Value(name, shape, value if whole else None)
+    return tuple(
+        replace(line, values={name: shown(name, value) for name, value in line.values.items()})
+        for line in recorder.lines
+    )
 
 
 def of_row(value: Any, row: int) -> Any:

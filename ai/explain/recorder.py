@@ -1,4 +1,4 @@
-"""Recorder of running code: the lines of chosen functions as they run, with the local variables that each one sets.
+"""Recorder of running code: the calls of chosen functions, line by line, with the local variables that each line sets.
 
 What a screen shows of a computation is then that computation, and the code beside it cannot disagree. Python calls a
 trace function for each line, so a recorded call is slow, and one that is not recorded costs nothing.
@@ -9,7 +9,8 @@ from __future__ import annotations
 import inspect
 import sys
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import chain
 from types import CodeType, FrameType, TracebackType
 from typing import Any, Final, Self
@@ -30,44 +31,70 @@ class Row:
 
 
 @dataclass(frozen=True, eq=False)
-class Event:
-    """Event of a recording: one line that ran.
+class Line:
+    """Line of code that ran.
 
     Attributes:
         function: qualified name of the function.
         number: number of the line in its file.
         values: variables that the line set or changed, by name: local numbers, and copies of arrays, or of a Row of
             a large one. The parts of a tuple are `name.part`, arrays that the function's object keeps `self.name`.
-            The first event of a call has its arguments, the last one its result.
-        owner: the `self` of the function, if it has one.
+            The first line of a call has its arguments, the last one its result.
 
     """
 
     function: str
     number: int
     values: dict[str, Any]
-    owner: Any = None
+
+
+@dataclass(eq=False)
+class Call:
+    """Call of a recorded function; to be read when it is over.
+
+    Attributes:
+        owner: the `self` of the function, if it has one.
+        caller: the recorded call within which it ran, if there is one.
+        lines: the lines that ran, in order.
+
+    """
+
+    owner: Any
+    caller: Call | None
+    lines: list[Line] = field(default_factory=list)
+
+    @property
+    def arguments(self) -> dict[str, Any]:
+        """What it was called with, by name."""
+        return self.lines[0].values
+
+    @cached_property
+    def values(self) -> dict[str, Any]:
+        """The last value of each variable, by name; of its result by RETURN."""
+        return {name: value for line in self.lines for name, value in line.values.items()}
+
+    @cached_property
+    def numbers(self) -> dict[str, int]:
+        """The number of the line that set each variable last, by name."""
+        return {name: line.number for line in self.lines for name in line.values}
 
 
 class Recorder:
     """Recorder of some functions; a context manager that records the thread that enters it.
 
-    Of arrays with more than LARGE numbers, only row `row` is recorded.
+    Of arrays with more than LARGE numbers, only row `row` is recorded. A method is recorded by the class that defines
+    it.
 
     Attributes:
-        functions: the functions by their qualified names.
-        events: what was recorded, in the order in which it ran.
+        lines: the lines that ran, in order.
 
     """
 
     def __init__(self, functions: Iterable[Function], row: int = 0) -> None:
         self._row = row
-        self.functions: dict[str, Function] = {}
-        self.events: list[Event] = []
-        self._codes: dict[CodeType, str] = {}
-        for function in map(inspect.unwrap, functions):
-            self.functions[function.__qualname__] = function
-            self._codes[function.__code__] = function.__qualname__
+        self.lines: list[Line] = []
+        self._open: list[Call] = []  # calls that are not over, the innermost last
+        self._calls: dict[CodeType, list[Call]] = {inspect.unwrap(each).__code__: [] for each in functions}
 
     def __enter__(self) -> Self:
         self._before = sys.gettrace()
@@ -79,30 +106,33 @@ class Recorder:
     ) -> None:
         sys.settrace(self._before)
 
-    def of(self, function: str) -> list[Event]:
-        """Return the events of one function."""
-        return [event for event in self.events if event.function == function]
+    def calls(self, *functions: Function) -> list[Call]:
+        """Return the calls of some functions, those of one after those of another; [] for what is not recorded."""
+        return [call for each in functions for call in self._calls.get(inspect.unwrap(each).__code__, ())]
 
-    def last(self, function: str, name: str) -> Any:
-        """Return the last value of a local variable; raises KeyError if the function has never set it."""
-        for event in reversed(self.events):
-            if event.function == function and name in event.values:
-                return event.values[name]
-        raise KeyError(f"{function} has not set {name}")
+    def call(self, function: Function) -> Call:
+        """Return the last call of a function; raises LookupError if there was none."""
+        calls = self.calls(function)
+        if not calls:
+            raise LookupError(f"{function.__qualname__} did not run")
+        return calls[-1]
 
     def _enter_function(self, frame: FrameType, event: str, _: Any) -> Any:
-        name = self._codes.get(frame.f_code)
-        return _Call(name, self.events, self._row, frame).follow if name is not None and event == "call" else None
+        calls = self._calls.get(frame.f_code)
+        if calls is None or event != "call":
+            return None
+        calls.append(Call(frame.f_locals.get("self"), self._open[-1] if self._open else None))
+        self._open.append(calls[-1])
+        return _Follower(frame, self._open, self.lines, self._row).follow
 
 
-class _Call:
-    """One call of a recorded function."""
+class _Follower:
+    """Follower of one call, which records each line of it."""
 
-    def __init__(self, function: str, events: list[Event], row: int, frame: FrameType) -> None:
-        self._function, self._events, self._row = function, events, row
-        self._seen: dict[str, Any] = {}  # the latest values; at first of the object's arrays, which are no news
-        self._seen = dict(self._attributes(frame))
-        self._number = 0  # of the line that runs; 0 before the first
+    def __init__(self, frame: FrameType, calls: list[Call], lines: list[Line], row: int) -> None:
+        self._calls, self._lines, self._row = calls, lines, row
+        self._seen: dict[str, Any] = dict(self._attributes(frame))  # the latest values; these arrays are no news
+        self._number = frame.f_code.co_firstlineno  # of the line that runs
 
     def follow(self, frame: FrameType, event: str, result: Any) -> Any:
         """Record the line before, once the next one begins or the function returns: what it set is known only then."""
@@ -110,9 +140,12 @@ class _Call:
             values = self._changed(frame)
             if event == "return":
                 values |= dict(_parts(RETURN, result, self._row))
-            number = self._number or frame.f_code.co_firstlineno
-            self._events.append(Event(self._function, number, values, frame.f_locals.get("self")))
+            line = Line(frame.f_code.co_qualname, self._number, values)
+            self._calls[-1].lines.append(line)
+            self._lines.append(line)
             self._number = frame.f_lineno
+        if event == "return":
+            self._calls.pop()
         return self.follow
 
     def _changed(self, frame: FrameType) -> dict[str, Any]:
@@ -141,8 +174,7 @@ def _parts(name: str, value: Any, row: int) -> Iterator[tuple[str, Any]]:
     elif isinstance(value, bool | int | float):
         yield name, value
     elif isinstance(value, tuple):
-        names = getattr(value, "_fields", range(len(value)))
-        for part, each in zip(names, value, strict=True):
+        for part, each in zip(getattr(value, "_fields", range(len(value))), value, strict=True):
             yield from _parts(f"{name}.{part}", each, row)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import product
 from typing import Final, Literal
 
 import numpy as np
@@ -26,21 +27,13 @@ _KINDS: Final[dict[type[Layer], Kind]] = {
 
 @dataclass(frozen=True, eq=False)
 class UnitSum:
-    """What one unit computes: of a patch (height, width, channels), the layer's own output.
+    """What one unit computes: of a patch (height, width, channels), the layer's own output."""
 
-    Attributes:
-        corner: row and column of the patch in the layer's input; negative within padding.
-        patch: the inputs that it reads.
-        weights: a weight for each of them, and a bias; None for pooling and activations, which have none.
-        output: what the layer gave.
-
-    """
-
-    corner: tuple[int, int]
-    patch: Array
-    weights: Array | None
+    corner: tuple[int, int]  # row and column of the patch in the layer's input; negative within padding
+    patch: Array  # the inputs that it reads
+    weights: Array | None  # a weight for each of them; pooling and activations have none
     bias: float
-    output: float
+    output: float  # what the layer gave
 
     @property
     def products(self) -> Array:
@@ -55,65 +48,54 @@ class UnitSum:
 
 @dataclass(frozen=True, eq=False)
 class Stage:
-    """One layer in a forward pass of one example; layers that change no number are left out.
-
-    Attributes:
-        layer: the layer.
-        inputs: what it read, (height, width, channels).
-        outputs: what it gave, likewise.
-        order: where each of `inputs` stands in a row of values: for a fully connected layer, the row of its weights.
-
-    """
+    """One layer in a forward pass of one example; layers that change no number are left out."""
 
     layer: Layer
-    inputs: Array
-    outputs: Array
-    order: npt.NDArray[np.intp]
+    inputs: Array  # what it read, (height, width, channels)
+    outputs: Array  # what it gave, likewise
+    order: npt.NDArray[np.intp]  # where each input stands in a row of values: in a fully connected layer, its weights
 
     @property
     def kind(self) -> Kind:
         """Kind of layer; "other" for those that cannot be written out as sums."""
         return _KINDS.get(type(self.layer), "other")
 
+    @property
+    def window(self) -> tuple[int, int, int, int]:
+        """What a unit reads: height and width of its patch, pixels from one to the next, and padding around all."""
+        match self.layer:
+            case ConvolutionLayer(kernel=kernel, stride=stride, padding=padding):
+                return kernel, kernel, stride, padding
+            case MaxPoolingLayer(size=size):
+                return size, size, size, 0
+            case ActivationLayer():
+                return 1, 1, 1, 0
+        return *self.inputs.shape[:2], 1, 0
+
     def unit(self, place: Place) -> UnitSum:
         """Return the sum of one unit; raises ValueError for a layer of another kind, IndexError for no such unit."""
+        if self.kind == "other":
+            raise ValueError(f"{type(self.layer).__name__} is no sum that can be written out")
         row, column, channel = place
-        output = float(self.outputs[place])
+        height, width, stride, padding = self.window
+        top, left = row * stride, column * stride
+        padded = np.pad(self.inputs, ((padding, padding), (padding, padding), (0, 0)))
+        patch, weights, bias = padded[top : top + height, left : left + width], None, 0.0
         match self.layer:
-            case ConvolutionLayer() as layer if self.kind == "convolution":
-                corner = row * layer.stride - layer.padding, column * layer.stride - layer.padding
-                weights = layer.kernels[:, :, :, channel].swapaxes(0, 1)
-                border, top, left = (layer.padding, layer.padding), row * layer.stride, column * layer.stride
-                framed = np.pad(self.inputs, (border, border, (0, 0)))
-                patch = framed[top : top + layer.kernel, left : left + layer.kernel]
-                return UnitSum(corner, patch, weights, float(layer.bias[channel]), output)
-            case FullyConnectedLayer() as layer if self.kind == "connected":
-                weights = layer.weights[self.order, channel]
-                return UnitSum((0, 0), self.inputs, weights, float(layer.bias[channel]), output)
-            case MaxPoolingLayer(size=size):
-                top, left = row * size, column * size
-                patch = self.inputs[top : top + size, left : left + size, channel, None]
-                return UnitSum((top, left), patch, None, 0.0, output)
-            case ActivationLayer():
-                patch = self.inputs[row, column, channel].reshape(1, 1, 1)
-                return UnitSum((row, column), patch, None, 0.0, output)
-        raise ValueError(f"{type(self.layer).__name__} is no sum that can be written out")
+            case ConvolutionLayer() as layer:
+                weights, bias = layer.kernels[:, :, :, channel].swapaxes(0, 1), float(layer.bias[channel])
+            case FullyConnectedLayer() as layer:
+                weights, bias = layer.weights[self.order, channel], float(layer.bias[channel])
+            case _:
+                patch = patch[..., channel, None]
+        return UnitSum((top - padding, left - padding), patch, weights, bias, float(self.outputs[place]))
 
     def read_by(self, box: Box) -> Box:
         """Return which pixels of the input the outputs in a box were made of, within the input."""
-        top, left, bottom, right = box
-        height, width = self.inputs.shape[:2]
-        match self.layer:
-            case ConvolutionLayer(stride=stride, padding=padding, kernel=kernel):
-                top, left = top * stride - padding, left * stride - padding
-                bottom, right = (bottom - 1) * stride - padding + kernel, (right - 1) * stride - padding + kernel
-            case MaxPoolingLayer(size=size):
-                top, left, bottom, right = top * size, left * size, bottom * size, right * size
-            case ActivationLayer():
-                pass
-            case _:
-                return 0, 0, height, width
-        return max(top, 0), max(left, 0), min(bottom, height), min(right, width)
+        height, width, stride, padding = self.window
+        top, left, bottom, right = (each * stride - padding for each in box)
+        below, beside = bottom - stride + height, right - stride + width
+        return max(top, 0), max(left, 0), min(below, self.inputs.shape[0]), min(beside, self.inputs.shape[1])
 
     def strongest_input(self, place: Place) -> Place:
         """Return the input that has the largest product in a unit's sum; of a pooling, the maximum."""
@@ -129,36 +111,31 @@ class Stage:
 
         None if no unit reads that input, or the layer cannot be written out.
         """
+        if self.kind == "other":
+            return None
         row, column, channel = place
-        match self.layer:
-            case ActivationLayer():
-                return place
-            case MaxPoolingLayer(size=size):
-                found = row // size, column // size, channel
-                return found if found[0] < self.outputs.shape[0] and found[1] < self.outputs.shape[1] else None
-            case FullyConnectedLayer(weights=weights) if self.kind == "connected":
-                weights = weights[self.order[place]]
-                return 0, 0, int((self.inputs[place] * weights).argmax())
-            case ConvolutionLayer() as layer if self.kind == "convolution":
-                return self._strongest_window(layer, place)
-        return None
-
-    def _strongest_window(self, layer: ConvolutionLayer, place: Place) -> Place | None:
-        """Return the output of a convolution whose window weighs one pixel most."""
-        row, column, channel = place
-        height, width = self.outputs.shape[:2]
+        height, width, stride, padding = self.window
+        tops = _windows(row + padding, height, stride, self.outputs.shape[0])
+        lefts = _windows(column + padding, width, stride, self.outputs.shape[1])
         best: tuple[float, Place] | None = None
-        for down in range(layer.kernel):
-            for across in range(layer.kernel):
-                top, below = divmod(row + layer.padding - down, layer.stride)
-                left, beside = divmod(column + layer.padding - across, layer.stride)
-                if below or beside or not (0 <= top < height and 0 <= left < width):
-                    continue
-                products = self.inputs[place] * layer.kernels[across, down, channel]
-                found = int(products.argmax())
-                if best is None or products[found] > best[0]:
-                    best = float(products[found]), (top, left, found)
+        for top, left in product(tops, lefts):
+            match self.layer:
+                case ConvolutionLayer() as layer:
+                    weights = layer.kernels[column + padding - left * stride, row + padding - top * stride, channel]
+                case FullyConnectedLayer() as layer:
+                    weights = layer.weights[self.order[place]]
+                case _:  # every window reads its own channel alone
+                    return top, left, channel
+            products = self.inputs[place] * weights
+            found = int(products.argmax())
+            if best is None or products[found] > best[0]:
+                best = float(products[found]), (top, left, found)
         return best[1] if best else None
+
+
+def _windows(pixel: int, length: int, stride: int, count: int) -> range:
+    """Return the numbers of the windows, `stride` apart and so long, in which a pixel lies."""
+    return range(max(0, -((length - 1 - pixel) // stride)), min(pixel // stride + 1, count))
 
 
 def stages(network: NeuralNetwork, example: npt.ArrayLike) -> list[Stage]:

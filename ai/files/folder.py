@@ -1,13 +1,14 @@
-"""Atomic folders, replaced whole or not at all, so that an interrupted save loses nothing.
+"""Folders that are made, and replaced, whole or not at all, so that an interrupted save loses nothing.
 
 Only what is ours is ever replaced: a folder whose `config.json` says of which kind it is, and that holds nothing but
 what belongs into one of that kind.
 """
 
 import os
+import re
 import shutil
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
@@ -15,12 +16,13 @@ from pathlib import Path
 from typing import Final
 
 from ai.files.lock import take_folder
-from ai.files.reading import beside, brief, read_json, synchronise
+from ai.files.reading import brief, read_json
+from ai.files.writing import beside, synchronise
 
 CONFIG = "config.json"  # what every model's folder holds
-OLD: Final = ".old"  # the end of the name of a folder that was moved aside for a new one
-NEW: Final = ".new"  # and of one that is not finished
-STALE: Final = 3600.0  # seconds after which it counts as abandoned
+_NEW, _OLD = ".new", ".old"  # ends of the names of folders that are not finished, or were moved aside for a new one
+_ASIDE: Final = re.compile(r"\.(.+?)(\.[0-9a-f]{8})?\.(?:new|old)")  # such a name
+_STALE: Final = 3600.0  # seconds after which one that is not finished counts as abandoned
 _DESKTOP: Final = (".DS_Store", "Thumbs.db", "desktop.ini")  # what systems leave wherever a folder was looked at
 _TRIES: Final = 5
 
@@ -62,6 +64,27 @@ NETWORK: Final = FolderKind("tranquility network", ("layer-*-*.npy",))
 
 
 @contextmanager
+def new_folder(target: Path, put: Callable[[Path], object] | None = None) -> Iterator[Path]:
+    """Yield a new empty folder that becomes `target`, where nothing is, if the block succeeds; else nothing is left.
+
+    `put` may move it there in another way than by renaming it.
+    """
+    _clear_away(target)
+    new = beside(target, _NEW)
+    new.mkdir(parents=True)
+    try:
+        yield new
+        for path in [*new.rglob("*"), new]:
+            synchronise(path)
+        put(new) if put else new.rename(target)
+        synchronise(target.parent)
+    except BaseException:
+        recover_folder(target)
+        shutil.rmtree(new, ignore_errors=True)
+        raise
+
+
+@contextmanager
 def atomic_folder(target: str | Path, kind: FolderKind = NETWORK) -> Iterator[Path]:
     """Yield a new empty folder that takes the place of `target` if the block succeeds.
 
@@ -70,26 +93,17 @@ def atomic_folder(target: str | Path, kind: FolderKind = NETWORK) -> Iterator[Pa
     of a path can delete what somebody keeps there. The old folder is moved aside before the new one stands, and
     deleted only then.
     """
-    target, new = _begin(target, kind)
-    try:
+    path = _checked(target, kind)
+
+    def swap(new: Path) -> None:
+        _checked(path, kind)  # something else may have been put there meanwhile
+        _swap(new, path)
+
+    with new_folder(path, swap) as new:
         yield new
-        for path in [*new.rglob("*"), new]:
-            synchronise(path)
-        _check(target, kind)  # something else may have been put there meanwhile
-        _swap(new, target)
-        synchronise(target.parent)
-    except BaseException:
-        recover_folder(target)
-        shutil.rmtree(new, ignore_errors=True)
-        raise
-    for old in moved_aside(target):
+    for old in _aside(path, _OLD):
         if not any(old.iterdir()) or not kind.stranger(old):
             shutil.rmtree(old, ignore_errors=True)
-
-
-def check_folder(target: str | Path, kind: FolderKind = NETWORK) -> None:
-    """Raise the OSError that `atomic_folder` would begin with, long before there is anything to write."""
-    _begin(target, kind)[1].rmdir()
 
 
 @contextmanager
@@ -100,25 +114,26 @@ def claimed_folder(target: str | Path, kind: FolderKind) -> Iterator[None]:
     would begin with.
     """
     with take_folder(target):
-        check_folder(target, kind)
+        new = beside(_checked(target, kind), _NEW)
+        new.mkdir(parents=True)
+        new.rmdir()
         yield
-
-
-def free_folder(target: Path) -> Path:
-    """Return a name near a target, with a number behind it, that nothing has yet."""
-    number, path = 2, target.with_name(f"{target.name} 2")
-    while os.path.lexists(path):
-        number += 1
-        path = target.with_name(f"{target.name} {number}")
-    return path
 
 
 def recover_folder(target: str | Path) -> None:
     """Put the old folder back if a save was stopped between its two renames. Call it before reading."""
     with suppress(OSError, ValueError):
         path = Path(os.path.realpath(target))
-        if not os.path.lexists(path) and (aside := moved_aside(path)):
+        if not os.path.lexists(path) and (aside := _aside(path, _OLD)):
             max(aside, key=lambda old: old.stat().st_mtime).rename(path)
+
+
+def recover_all(folder: Path) -> None:
+    """Put back or delete what saves that were stopped have left in a folder; raises OSError if it can't be seen."""
+    for name in {found[1] for path in folder.iterdir() if (found := _ASIDE.fullmatch(path.name))}:
+        if not name.startswith("."):  # a run without a name may be saved at this moment
+            recover_folder(folder / name)
+        _clear_away(folder / name)
 
 
 def state_folder(folder: str | Path) -> Path:
@@ -139,48 +154,48 @@ def move_state(source: Path, target: Path) -> None:
         state_folder(source).rename(state_folder(target))
 
 
-def aside_for(path: Path) -> str:
-    """Return the name of the folder for which this one was moved aside; empty if it was not."""
-    if not path.name.startswith(".") or not path.name.endswith(OLD):
-        return ""
-    name = path.name[1 : -len(OLD)]
-    stem, dot, token = name.rpartition(".")
-    return stem if dot and len(token) == 8 and set(token) <= set("0123456789abcdef") else name
+def _clear_away(path: Path) -> None:
+    """Delete the folders beside a path that were begun for it long ago and never finished."""
+    for left in _aside(path, _NEW):
+        with suppress(OSError):
+            if time.time() - left.stat().st_mtime > _STALE:
+                shutil.rmtree(left)
 
 
-def _begin(target: str | Path, kind: FolderKind) -> tuple[Path, Path]:
-    """Return the folder meant, with its links followed, and an empty one beside it, if it may be replaced."""
+def _aside(path: Path, suffix: str) -> list[Path]:
+    """Return the folders beside a path that were begun, or moved aside, for it."""
+    found = []
+    with suppress(OSError):
+        for each in path.parent.iterdir():
+            name = _ASIDE.fullmatch(each.name)
+            if name and name[1] == path.name and each.suffix == suffix and each.is_dir() and not each.is_symlink():
+                found.append(each)
+    return found
+
+
+def _checked(target: str | Path, kind: FolderKind) -> Path:
+    """Return the folder meant, with its links followed.
+
+    Raises FileExistsError unless nothing is lost if it is replaced, OSError if that can't be seen.
+    """
     recover_folder(target)
     path = Path(os.path.realpath(target))
-    _check(path, kind)
-    for left in path.parent.glob(f".{_literal(path.name)}*{NEW}") if path.parent.is_dir() else ():
-        with suppress(OSError):
-            if time.time() - left.stat().st_mtime > STALE:
-                shutil.rmtree(left)
-            elif left.name == f".{path.name}{NEW}":  # as all were called once; an empty one is abandoned
-                left.rmdir()
-    new = beside(path, NEW)
-    new.mkdir(parents=True)
-    return path, new
-
-
-def _check(target: Path, kind: FolderKind) -> None:
-    """Raise FileExistsError unless nothing is lost if a target is replaced, OSError if that can't be seen."""
-    if not target.name:
-        raise FileExistsError(f"{target} is no place for a model")
-    if not os.path.lexists(target):
-        return
-    if not target.is_dir():
-        raise FileExistsError(f"{target} is something else than a folder, and is left as it is")
-    if any(target.iterdir()) and (stranger := kind.stranger(target)):
-        raise FileExistsError(f"{target} holds something else than a {kind.format} ({stranger}), and is left as it is")
+    if not path.name:
+        raise FileExistsError(f"{path} is no place for a model")
+    if not os.path.lexists(path):
+        return path
+    if not path.is_dir():
+        raise FileExistsError(f"{path} is something else than a folder, and is left as it is")
+    if any(path.iterdir()) and (stranger := kind.stranger(path)):
+        raise FileExistsError(f"{path} holds something else than a {kind.format} ({stranger}), and is left as it is")
+    return path
 
 
 def _swap(new: Path, target: Path) -> None:
     """Move the target aside and the new folder into its place."""
     for attempt in range(_TRIES):
         if target.exists():
-            target.rename(beside(target, OLD))
+            target.rename(beside(target, _OLD))
         try:
             new.rename(target)
         except OSError:
@@ -188,16 +203,3 @@ def _swap(new: Path, target: Path) -> None:
                 raise
         else:  # else a reader has put the old one back meanwhile
             return
-
-
-def moved_aside(target: Path) -> list[Path]:
-    """Return the folders that were moved aside for a target and not deleted yet."""
-    return [
-        path
-        for path in target.parent.glob(f".{_literal(target.name)}*{OLD}")
-        if aside_for(path) == target.name and path.is_dir() and not path.is_symlink()
-    ]
-
-
-def _literal(name: str) -> str:
-    return "".join(f"[{letter}]" if letter in "*?[" else letter for letter in name)

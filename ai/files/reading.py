@@ -1,4 +1,4 @@
-"""Bounded reading of untrusted files, and writing of files whole or not at all.
+"""Bounded reading of untrusted files.
 
 Nothing that a file claims costs memory or time before it is checked: a reader opens ordinary files only, so that a
 pipe cannot let it wait; looks at the size first; and compares the header of every array with what is expected before
@@ -11,13 +11,12 @@ import json
 import math
 import os
 import re
-import secrets
 import stat
 import sys
 import zipfile
 import zlib
-from collections.abc import Callable, Iterable
-from contextlib import nullcontext, suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Any, BinaryIO, Final
 
@@ -28,10 +27,10 @@ SMALL: Final = 4_000_000  # bytes; what a person may read is smaller
 DEPTH: Final = 32  # lists in lists that a JSON file of ours may have
 MOST: Final = 2**53  # of anything that is counted: up to here, floats know every whole number
 _DIGITS: Final = 40  # of a whole number; a seed of 128 bits has 39
-_CHUNK: Final = 1 << 20  # bytes read at a time
 _DIRECTORY: Final = 1 << 16  # bytes that a zip archive's list of its members may take
 _END: Final = 22  # bytes at the end of a zip archive that say where that list is
-_FLAGS: Final = sum(getattr(os, name, 0) for name in ("O_RDONLY", "O_NONBLOCK", "O_CLOEXEC", "O_NOCTTY", "O_BINARY"))
+_HEADER: Final = 1 << 20  # bytes of a file of one array besides its numbers
+_FLAGS: Final = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOCTTY", 0)
 _BROKEN: Final = (EOFError, MemoryError, NotImplementedError, RuntimeError, zipfile.BadZipFile, zlib.error)
 
 # Characters that end a line, move the cursor or turn the order of writing around, and show nothing themselves.
@@ -49,9 +48,7 @@ def brief(text: object, most: int = 200) -> str:
 def shown(value: object, most: int = 40) -> str:
     """Return a value as a message quotes it: in JSON's words, not Python's, and shortened, whatever a file may hold."""
     try:
-        text = repr(value) if isinstance(value, str) else json.dumps(value, ensure_ascii=False, default=vars)
-    except TypeError:  # an object of the program's own
-        text = repr(value)
+        text = repr(value) if isinstance(value, str) else json.dumps(value, ensure_ascii=False, default=repr)
     except ValueError:  # an int of more than some 4,000 digits
         return "a number of very many digits"
     return brief(text, most)
@@ -69,52 +66,41 @@ def problem_in(error: Exception) -> str:
 # Bytes and text
 
 
-def open_file(path: str | Path, most: int | None = None) -> BinaryIO:
+@contextmanager
+def _opened(path: str | Path, most: int | None = None) -> Iterator[BinaryIO]:
     """Open an ordinary file of at most so many bytes for reading; raises OSError for anything else."""
     try:
-        descriptor = os.open(path, _FLAGS)
+        file = open(path, "rb", opener=lambda name, flags: os.open(name, flags | _FLAGS))  # noqa: SIM115
     except ValueError as error:
         raise OSError(errno.EINVAL, "no file can have such a name", str(path)) from error
-    try:
-        said = os.fstat(descriptor)
+    with file:
+        said = os.fstat(file.fileno())
         if not stat.S_ISREG(said.st_mode):
             raise OSError(errno.EINVAL, "is not an ordinary file", str(path))
         if most is not None and said.st_size > most:
             raise _too_large(path, most)
-        return os.fdopen(descriptor, "rb")
-    except BaseException:
-        os.close(descriptor)
-        raise
+        yield file
 
 
 def read_bytes(path: str | Path, most: int = SMALL) -> bytes:
     """Return what a file of at most so many bytes holds; raises OSError."""
-    with open_file(path, most) as file:
-        return _all_of(file, path, most)
-
-
-def read_standard_input(most: int = SMALL) -> str:
-    """Return the text that is piped in, of at most so many bytes; raises OSError, or ValueError if it is no UTF-8."""
-    return _all_of(sys.stdin.buffer, "standard input", most).decode("utf-8")
-
-
-def _all_of(file: BinaryIO, name: str | Path, most: int) -> bytes:
-    held = file.read(most + 1)
+    with _opened(path, most) as file:
+        held = file.read(most + 1)
     if len(held) > most:  # it has grown, or lies about its size as the system's own files do
-        raise _too_large(name, most)
+        raise _too_large(path, most)
     return held
-
-
-def read_end(path: str | Path, most: int) -> bytes:
-    """Return the last bytes of a file, at most so many; raises OSError."""
-    with open_file(path) as file:
-        file.seek(max(0, file.seek(0, os.SEEK_END) - most))
-        return file.read(most)
 
 
 def read_text(path: str | Path, most: int = SMALL) -> str:
     """Return the text in a file of at most so many bytes; raises OSError, or ValueError if it is no UTF-8."""
     return read_bytes(path, most).decode("utf-8")
+
+
+def read_end(path: str | Path, most: int) -> str:
+    """Return the text at the end of a file, at most so many bytes of it; raises OSError."""
+    with _opened(path) as file:
+        file.seek(max(0, file.seek(0, os.SEEK_END) - most))
+        return file.read(most).decode(errors="replace")
 
 
 def inside(folder: str | Path, name: str) -> Path:
@@ -144,20 +130,18 @@ def parse_json(text: str, *, depth: int = DEPTH) -> Any:
     """
     try:
         value = _DECODER.decode(text)
-    except RecursionError as error:
-        raise ValueError("is nested too deeply") from error
-    if text.count("[") + text.count("{") <= depth:  # as in most files: no need to look how they are nested
-        return value
-    level = _containers([value])
-    for _ in range(depth):
-        if not level:
-            return value
-        level = _containers(part for each in level for part in (each.values() if isinstance(each, dict) else each))
-    raise ValueError("is nested too deeply")
+        # In most files there are too few brackets for more than that, so nobody has to look how they are nested.
+        too_deep = text.count("[") + text.count("{") > depth and _depth(value) > depth
+    except RecursionError:
+        too_deep = True
+    if too_deep:
+        raise ValueError("is nested too deeply")
+    return value
 
 
-def _containers(values: Iterable[Any]) -> list[Any]:
-    return [value for value in values if isinstance(value, dict | list)]
+def _depth(value: Any) -> int:
+    parts = value.values() if isinstance(value, dict) else value if isinstance(value, list) else None
+    return 0 if parts is None else 1 + max(map(_depth, parts), default=0)
 
 
 def _whole(digits: str) -> int:
@@ -178,7 +162,7 @@ _DECODER: Final = json.JSONDecoder(parse_int=_whole, parse_float=_finite, parse_
 
 def count_of(value: Any, least: int = 0, most: int = MOST) -> int:
     """Return a whole number that a file has given; raises ValueError if it is none, or out of range."""
-    if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
+    if type(value) is not int or not least <= value <= most:
         raise ValueError(f"{shown(value)} is no whole number from {least:,} to {most:,}")
     return value
 
@@ -206,7 +190,7 @@ def read_array(path: str | Path, shape: tuple[int, ...], dtype: npt.DTypeLike) -
         if (held, kind.name) != (shape, wanted.name):
             raise ValueError(f"{name} holds {described(held, kind)}, and should hold {described(shape, wanted)}")
 
-    with open_file(path, math.prod(shape) * wanted.itemsize + _CHUNK) as file:
+    with _opened(path, math.prod(shape) * wanted.itemsize + _HEADER) as file:
         return _read_member(file, name, expect)
 
 
@@ -237,7 +221,7 @@ def read_arrays(path: str | Path, most: int, expect: Expect) -> dict[str, npt.ND
     NumPy does not use, there twice, or longer than they say.
     """
     try:
-        with open_file(path, most) as file:
+        with _opened(path, most) as file:
             _check_directory(file)
             with zipfile.ZipFile(file) as archive:
                 members = archive.infolist()
@@ -272,91 +256,20 @@ def _unpack(archive: zipfile.ZipFile, member: zipfile.ZipInfo, expect: Expect) -
 
 def _read_member(file: IO[bytes], name: str, expect: Expect) -> npt.NDArray[Any]:
     """Read one array in NumPy's format, all that a file holds; see `read_arrays`."""
-    shape, fortran, dtype = _read_header(file, name)
-    expect(name, shape, dtype)
-    if dtype.hasobject:
-        raise ValueError(f"{name} holds objects, not numbers")
-    flat = np.empty(math.prod(shape), dtype)
-    room = memoryview(flat.view(np.uint8).data) if flat.nbytes else memoryview(b"")
-    filled = 0
-    while part := file.read(min(_CHUNK, len(room) - filled + 1)):
-        if filled + len(part) > len(room):
-            raise ValueError(f"{name} is longer than it says")
-        room[filled : filled + len(part)] = part
-        filled += len(part)
-    if filled < len(room):
-        raise ValueError(f"{name} ends after {filled:,} of {len(room):,} bytes")
-    array = flat.reshape(shape, order="F" if fortran else "C")
-    return np.ascontiguousarray(array, dtype.newbyteorder("=")).reshape(shape)
-
-
-def _read_header(file: IO[bytes], name: str) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
     try:
         version = np.lib.format.read_magic(file)
         reader = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}[version]
-        return reader(file)
+        shape, fortran, dtype = reader(file)
     except OSError:
         raise
     except Exception as error:  # a header is Python's own notation, and damage to it can surface as anything
         raise ValueError(f"{name} begins as no array does: {brief(error, 100)}") from error
-
-
-# Writing
-
-
-def beside(path: Path, suffix: str) -> Path:
-    """Return a name beside a path that nothing else has: hidden, and with a suffix that says what it is."""
-    return path.with_name(f".{path.name}.{secrets.token_hex(4)}{suffix}")
-
-
-def write_text(path: Path, text: str, *, flush: bool = True, new: bool = False) -> None:
-    """Write a text as UTF-8; see `write_bytes`."""
-    write_bytes(path, text.encode(), flush=flush, new=new)
-
-
-def write_bytes(path: Path, content: bytes, *, flush: bool = True, new: bool = False) -> None:
-    """Write a file whole or not at all, by way of another beside it; with `flush`, wait until it is on the disk.
-
-    Folders are made if need be. With `new`, a file that is there is never replaced: FileExistsError. Raises OSError
-    if it cannot be written; an older file is then still whole.
-    """
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = beside(path, ".part")
-    try:
-        with temporary.open("xb") as file:
-            file.write(content)
-        if flush:
-            synchronise(temporary)
-        if new and _linked(temporary, path):
-            temporary.unlink()
-        else:
-            temporary.replace(path)
-        if flush:
-            synchronise(path.parent)  # which holds the name
-    except BaseException:
-        with suppress(OSError):
-            temporary.unlink(missing_ok=True)
-        raise
-
-
-def synchronise(path: Path) -> None:
-    """Wait until a file or folder has reached the disk; not every system can promise that of a folder."""
-    folder = path.is_dir()
-    with suppress(OSError) if folder else nullcontext():
-        descriptor = os.open(path, os.O_RDONLY if folder else os.O_RDWR)
-        try:
-            os.fsync(descriptor)
-        finally:
-            os.close(descriptor)
-
-
-def _linked(temporary: Path, path: Path) -> bool:
-    """Give a file one more name, which nothing else may have; false if it only has the right to take that name."""
-    try:
-        os.link(temporary, path)
-    except FileExistsError:
-        raise
-    except OSError:  # not every disk has hard links
-        path.open("x").close()
-        return False
-    return True
+    expect(name, shape, dtype)
+    if dtype.hasobject:
+        raise ValueError(f"{name} holds objects, not numbers")
+    size = math.prod(shape) * dtype.itemsize
+    held = file.read(size + 1)
+    if len(held) != size:
+        raise ValueError(f"{name} holds {'more' if len(held) > size else 'fewer'} bytes than the {size:,} it says")
+    flat = np.frombuffer(held, dtype) if size else np.empty(0, dtype)
+    return flat.reshape(shape, order="F" if fortran else "C").astype(dtype.newbyteorder("="), order="C")

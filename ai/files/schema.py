@@ -10,21 +10,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping
 from contextlib import suppress
-from dataclasses import MISSING, dataclass, fields, is_dataclass
-from functools import cache
+from dataclasses import MISSING, fields, is_dataclass
+from functools import cache, partial
 from itertools import islice
+from pathlib import Path
 from types import NoneType, UnionType
 from typing import Annotated, Any, Final, TypeVar, Union, get_args, get_origin, get_type_hints
 
-from ai.files.reading import MOST, brief, count_of, number_of, shown
+from ai.files.reading import MOST, brief, number_of, parse_json, read_end, shown
 
 T = TypeVar("T")
-Rule = Callable[[Any], object]  # raises ValueError for a value of the right type that is not allowed
 Check = Callable[[Any], Any]  # returns a value as its field holds it, or raises ValueError
 
-LARGEST_SEED: Final = 10**40  # far above a seed of 128 bits
 _NAMED: Final = 20  # problems that a message names
-_SHOWN: Final = 40  # letters of a wrong value in a message
 
 
 class SchemaError(ValueError):
@@ -36,58 +34,49 @@ class SchemaError(ValueError):
         super().__init__("; ".join(named))
 
 
-@dataclass(frozen=True)
-class Within:
+class Rule:
+    """Rule for values of the right type: what has to hold, and the words for one of which it does not."""
+
+    def __init__(self, holds: Callable[[Any], bool], words: str) -> None:
+        self._holds, self._words = holds, words
+
+    def __call__(self, value: Any) -> None:
+        """Raise ValueError for a value that is not allowed."""
+        if not self._holds(value):
+            raise ValueError(f"{shown(value)} {self._words}")
+
+
+class Within(Rule):
     """Allows numbers from `low` to `high`, both included."""
 
-    low: float
-    high: float
-
-    def __call__(self, value: float) -> None:
-        """Raise ValueError for a number out of bounds."""
-        if not self.low <= value <= self.high:
-            raise ValueError(f"{shown(value)} does not lie between {self.low:,} and {self.high:,}")
+    def __init__(self, low: float, high: float) -> None:
+        super().__init__(lambda value: low <= value <= high, f"does not lie between {low:,} and {high:,}")
 
 
-@dataclass(frozen=True)
-class Above:
+class Above(Rule):
     """Allows numbers above `low`."""
 
-    low: float
-
-    def __call__(self, value: float) -> None:
-        """Raise ValueError for a number that is not above the bound."""
-        if not value > self.low:
-            raise ValueError(f"{shown(value)} is not above {self.low:,}")
+    def __init__(self, low: float) -> None:
+        super().__init__(lambda value: value > low, f"is not above {low:,}")
 
 
-@dataclass(frozen=True)
-class Sized:
+class Sized(Rule):
     """Allows texts and lists of some lengths."""
 
-    most: int
-    least: int = 0
-
-    def __call__(self, value: Collection[Any]) -> None:
-        """Raise ValueError for a text or a list that is too long or too short."""
-        if not self.least <= len(value) <= self.most:
-            raise ValueError(f"{shown(value)} has a length of {len(value):,}, not of {self.least:,} to {self.most:,}")
+    def __init__(self, most: int, least: int = 0) -> None:
+        super().__init__(lambda value: least <= len(value) <= most, f"has not a length of {least:,} to {most:,}")
 
 
-class OneOf:
+class OneOf(Rule):
     """Allows a few values only."""
 
     def __init__(self, choices: Iterable[object]) -> None:
-        self.choices = tuple(choices)
-
-    def __call__(self, value: object) -> None:
-        """Raise ValueError for any other value."""
-        if value not in self.choices:
-            raise ValueError(f"{shown(value)} is not one of {', '.join(map(str, self.choices))}")
+        known = tuple(choices)
+        super().__init__(lambda value: value in known, f"is not one of {', '.join(map(str, known))}")
 
 
 Count = Annotated[int, Within(0, MOST)]  # the largest number up to which floats know every whole one
-Seed = Annotated[int, Within(0, LARGEST_SEED)]
+Seed = Annotated[int, Within(0, 10**40)]  # far above a seed of 128 bits
 Share = Annotated[float, Within(0, 1)]
 Duration = Annotated[float, Within(0, MOST)]  # in seconds
 
@@ -101,9 +90,23 @@ def read_as(kind: type[T], values: Any, *, strict: bool = False) -> T:
     return made
 
 
+def read_lines(kind: type[T], path: Path, most: int) -> tuple[list[T], int]:
+    """Return what the lines at the end of a file say, at most so many bytes, and how many lines make no sense.
+
+    Raises OSError if the file cannot be read.
+    """
+    found, damaged = [], 0
+    for line in filter(str.strip, read_end(path, most).splitlines()):
+        try:
+            found.append(read_as(kind, parse_json(line)))
+        except ValueError:
+            damaged += 1
+    return found, damaged
+
+
 def sound_fields(kind: type, values: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
     """Return those fields of a dataclass that a file has given and that are right, and what is wrong with the rest."""
-    return _sort_out(kind, False, values)
+    return _sorted_out(kind, False, values)
 
 
 def check_header(values: Any, form: str, versions: Collection[int]) -> dict[str, Any]:
@@ -117,7 +120,7 @@ def check_header(values: Any, form: str, versions: Collection[int]) -> dict[str,
     return values
 
 
-def _sort_out(kind: type, strict: bool, values: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
+def _sorted_out(kind: type, strict: bool, values: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
     right: dict[str, Any] = {}
     problems: list[str] = []
     known = _fields_of(kind, strict)
@@ -130,8 +133,7 @@ def _sort_out(kind: type, strict: bool, values: Mapping[str, Any]) -> tuple[dict
         elif needed:
             problems.append(f"{name} is missing")
     if strict:
-        strangers = (f"{brief(name, _SHOWN)} is unknown" for name in values if name not in known)
-        problems += islice(strangers, _NAMED)
+        problems += islice((f"{brief(name, 40)} is unknown" for name in values if name not in known), _NAMED)
     return right, problems
 
 
@@ -155,81 +157,53 @@ def _fields_of(kind: type, strict: bool) -> dict[str, tuple[Check, bool]]:
 def _check_of(hint: Any, strict: bool) -> Check:
     """Return the check for a type."""
     origin, inner = get_origin(hint), get_args(hint)
-    if hint is Any:
-        return lambda value: value
     if origin is Annotated:
-        if inner[0] is int and isinstance(inner[1], Within):
-            return _Whole(int(inner[1].low), int(inner[1].high))
-        return _ruled(_check_of(inner[0], strict), inner[1:])
+        return partial(_ruled, _check_of(inner[0], strict), inner[1:])
     if origin in (Union, UnionType):
-        return _any_of([_check_of(kind, strict) for kind in inner if kind is not NoneType], NoneType in inner)
-    if origin is tuple and inner[-1] is not Ellipsis:
-        return _each([_check_of(kind, strict) for kind in inner])
+        return partial(_any_of, [_check_of(kind, strict) for kind in inner])
     if origin is tuple:
-        return _all(_check_of(inner[0], strict))
+        return partial(_tuple, [_check_of(kind, strict) for kind in inner if kind is not Ellipsis], Ellipsis in inner)
     if origin is dict:
-        return _table(_check_of(inner[1], strict))
-    if is_dataclass(hint):
-        return lambda value: _made(hint, strict, value)
-    return _PLAIN[hint]
+        return partial(_table, _check_of(inner[1], strict))
+    return partial(_made, hint, strict) if is_dataclass(hint) else _PLAIN[hint]
 
 
-def _ruled(check: Check, rules: tuple[Rule, ...]) -> Check:
-    def both(value: Any) -> Any:
-        value = check(value)
-        for rule in rules:
-            rule(value)
-        return value
-
-    return both
+def _ruled(check: Check, rules: tuple[Check, ...], value: Any) -> Any:
+    value = check(value)
+    for rule in rules:
+        rule(value)
+    return value
 
 
-def _any_of(checks: list[Check], or_none: bool) -> Check:
-    """Return the check for a union: the value has to pass one of these, or be None where that is allowed."""
-
-    def check(value: Any) -> Any:
-        if value is None and or_none:
-            return None
-        for each in checks[:-1]:
-            with suppress(ValueError):
-                return each(value)
-        return checks[-1](value)
-
-    return check
+def _any_of(checks: list[Check], value: Any) -> Any:
+    """Check for a union: the value has to pass one of these."""
+    if value is None and _none in checks:
+        return None
+    *others, last = (check for check in checks if check is not _none)
+    for check in others:
+        with suppress(ValueError):
+            return check(value)
+    return last(value)
 
 
-def _each(checks: list[Check]) -> Check:
-    """Return the check for a tuple of one value for each of these checks."""
-
-    def check(value: Any) -> tuple[Any, ...]:
-        if not isinstance(value, list | tuple) or len(value) != len(checks):
-            raise ValueError(f"{shown(value)} is no list of {len(checks)}")
-        places = (f"[{place}]" for place in range(len(checks)))
-        return tuple(_gathered(zip(places, checks, value, strict=True)).values())
-
-    return check
-
-
-def _all(check: Check) -> Check:
-    """Return the check for a tuple of any length, of which every value has to pass one check."""
-
-    def checked(value: Any) -> tuple[Any, ...]:
-        if not isinstance(value, list | tuple):
-            raise ValueError(f"{shown(value)} is no list")
-        if isinstance(check, _Whole) and check.all(value):
-            return tuple(value)
-        try:
-            return tuple(map(check, value))
-        except ValueError:  # rare, so only then is each place noted
-            _gathered((f"[{place}]", check, each) for place, each in enumerate(value))
-            raise
-
-    return checked
+def _tuple(checks: list[Check], repeated: bool, value: Any) -> tuple[Any, ...]:
+    """Check for a tuple of one value for each of these checks, or of any length with one check for all."""
+    if not isinstance(value, list | tuple):
+        raise ValueError(f"{shown(value)} is no list")
+    if repeated:
+        checks = checks * len(value)
+    if len(value) != len(checks):
+        raise ValueError(f"{shown(value)} is no list of {len(checks)}")
+    try:
+        return tuple([check(each) for check, each in zip(checks, value, strict=True)])
+    except ValueError:  # rare, so only then is each place noted
+        _gathered((f"[{place}]", check, value[place]) for place, check in enumerate(checks))
+        raise
 
 
-def _table(check: Check) -> Check:
-    """Return the check for a table, of which every value has to pass one check."""
-    return lambda value: _gathered((brief(name, _SHOWN), check, each) for name, each in _named(value).items())
+def _table(check: Check, value: Any) -> dict[str, Any]:
+    """Check for a table, of which every value has to pass one check."""
+    return _gathered((brief(name, 40), check, each) for name, each in _named(value).items())
 
 
 def _gathered(parts: Iterable[tuple[str, Check, Any]]) -> dict[str, Any]:
@@ -249,47 +223,29 @@ def _gathered(parts: Iterable[tuple[str, Check, Any]]) -> dict[str, Any]:
 
 
 def _made(kind: Any, strict: bool, value: Any) -> Any:
-    right, problems = _sort_out(kind, strict, _named(value))
+    right, problems = _sorted_out(kind, strict, _named(value))
     if problems:
         raise SchemaError(problems)
     return kind(**right)
 
 
-def _bool(value: Any) -> bool:
-    if not isinstance(value, bool):
-        raise ValueError(f"{shown(value)} is neither true nor false")
-    return value
+def _of(kind: type, words: str) -> Check:
+    """Return the check for values of exactly one type."""
+
+    def check(value: Any) -> Any:
+        if type(value) is not kind:
+            raise ValueError(f"{shown(value)} is {words}")
+        return value
+
+    return check
 
 
-@dataclass(frozen=True)
-class _Whole:
-    low: int
-    high: int
-
-    def __call__(self, value: Any) -> int:
-        if type(value) is int and self.low <= value <= self.high:
-            return value
-        return count_of(value, self.low, self.high)
-
-    def all(self, values: Collection[Any]) -> bool:
-        """Whether all of many values are right, in a quarter of the time that each by itself takes."""
-        return set(map(type, values)) == {int} and self.low <= min(values) and max(values) <= self.high
-
-
-def _float(value: Any) -> float:
-    return float(number_of(value))
-
-
-def _str(value: Any) -> str:
-    if not isinstance(value, str):
-        raise ValueError(f"{shown(value)} is no text")
-    return value
-
-
-def _named(value: Any) -> dict[str, Any]:
-    if not isinstance(value, dict):
-        raise ValueError(f"{shown(value)} is no table of values by name")
-    return value
-
-
-_PLAIN: Final[dict[Any, Check]] = {bool: _bool, int: _Whole(-LARGEST_SEED, LARGEST_SEED), float: _float, str: _str}
+_none, _named = _of(NoneType, "something"), _of(dict, "no table of values by name")
+_PLAIN: Final[dict[Any, Check]] = {
+    Any: lambda value: value,
+    NoneType: _none,
+    bool: _of(bool, "neither true nor false"),
+    int: _of(int, "no whole number"),
+    float: lambda value: float(number_of(value)),
+    str: _of(str, "no text"),
+}

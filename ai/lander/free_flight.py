@@ -1,9 +1,11 @@
 """Free flight of one lander alone, in plain floats.
 
-FIGURES
+It stays beside the engine because a guardian needs it: of one future, 442 steps with 48 in contact, it makes 32 ms
+instead of 48 in arrays of length one, and a decision lasts 67. A step in the air takes 3 µs at four to a decision
+instead of 37, a scripted flight to its landing 45 µs a step instead of 90. A frame of Play would not feel that.
 
-The arithmetic is that of `engine.integrate` and of `ai.lander.craft`, operation for operation, so that a lander alone
-flies as it would in a batch, bit for bit. What comes near the ground, and all that touches, is left to the engine.
+The arithmetic is that of `engine.integrate` and `ai.lander.craft`, operation for operation: the bits are those of a
+batch. What comes near the ground, and all that touches, is left to the engine.
 """
 
 from __future__ import annotations
@@ -78,7 +80,7 @@ class FreeFlight:
             vy = (vy + (aside * sin + up * cos) * ease + fall_y) / slowing
             spin = (spin + -aside * params.side_arm * turn_ease) / turn_slowing
             x, y, angle = x + vx * DT, y + vy * DT, angle + spin * DT
-            # NumPy's own functions: `math` has others, which may differ in the last bit.
+            # NumPy's own: those of `math` may differ in the last bit.
             cos, sin = float(np.cos(angle)), float(np.sin(angle))
             now, main_steps, side_steps = now + 1, main_steps + main, side_steps + abs(side)
             if solid:
@@ -97,9 +99,8 @@ class FreeFlight:
     def _judged(self, x: float, y: float, time: float) -> int:
         """Return the outcome of a flight in the air."""
         limits = self._env.limits
-        if abs(x) > limits.half_width or y > limits.ceiling:
-            return _OUT
-        return _LATE if time >= limits.time - 1e-9 else _FLYING
+        gone = abs(x) > limits.half_width or y > limits.ceiling
+        return _OUT if gone else _LATE if time >= limits.time - 1e-9 else _FLYING
 
     def _leave(self, tilted: int, outcome: int) -> None:
         """Leave the judgements of the last steps in the environment: in so many of them it was tilted too far."""

@@ -14,7 +14,6 @@ import errno
 import json
 import re
 import secrets
-import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, replace
@@ -23,7 +22,18 @@ from typing import Annotated, Any, Final, Self
 
 from ai.agent.storage import KIND
 from ai.digits.classifier import KIND as DIGITS_KIND
-from ai.files import NEW, OneOf, Sized, beside, brief, read_as, read_json, remove_state, take_folder, write_text
+from ai.files import (
+    OneOf,
+    Sized,
+    brief,
+    new_folder,
+    read_as,
+    read_json,
+    recover_all,
+    remove_state,
+    take_folder,
+    write_text,
+)
 from ai.sweep.metric import Metric
 from ai.sweep.plan import FORMAT, VERSION, Plan
 from ai.sweep.results import STUDIES, STUDY_FILE, SUMMARY_FILE, FinishedTrial, Summary, summary_of
@@ -142,8 +152,8 @@ class Study:
     def claimed(self) -> Iterator[None]:
         """Keep other processes from running this study meanwhile; raises BlockingIOError if one does."""
         with take_folder(self.folder):
-            for left in (self.folder / "trials").glob(f".*{NEW}"):
-                shutil.rmtree(left, ignore_errors=True)
+            with suppress(OSError):
+                recover_all(self.folder / "trials")
             yield
 
     def extend(self, trials: int) -> None:
@@ -158,17 +168,10 @@ class Study:
     def record(self, trial: FinishedTrial, packed: bytes = b"") -> None:
         """Keep a finished trial and the archive of its runs, whole or not at all; raises OSError."""
         target = self.trial_folder(trial.number)
-        target.parent.mkdir(exist_ok=True)
-        new = beside(target, NEW)
-        try:
-            new.mkdir()
+        with new_folder(target) as new:
             if packed:
                 unpack(packed, new)
-            write_text(new / TRIAL_FILE, json.dumps(asdict(trial)) + "\n")
-            new.rename(target)
-        except BaseException:
-            shutil.rmtree(new, ignore_errors=True)
-            raise
+            write_text(new / TRIAL_FILE, json.dumps(asdict(trial)) + "\n", flush=False)
         self.trials[trial.number] = trial
         self._forget_states(self.plan.generation(trial.number))
         with suppress(OSError):

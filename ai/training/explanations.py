@@ -16,7 +16,7 @@ from ai.agent.n_step import NStep
 from ai.agent.replay import Transition
 from ai.common.environment import Floats, Ints, StepResult
 from ai.explain.agent_lesson import Before, Flown, Lesson, explain
-from ai.explain.learning_step import line_of
+from ai.explain.learning_step import shown_lines
 from ai.explain.recorder import Recorder
 from ai.training.loop import Training
 
@@ -123,7 +123,7 @@ def _memory(moment: _Moment, slot: int) -> tuple[Transition, Flown]:
         np.array([result.reward[slot] for result in results]),
         {name: np.array([result.components[name][slot] for result in results]) for name in results[0].components},
         int(results[-1].outcome[slot]) if results[-1].ended[slot] else 0,
-        tuple(line_of(event, 1, 0, 0) for event in recorder.events),
+        shown_lines(recorder),
     )
     return Transition(*(part[0] for part in cells)), flown
 

@@ -31,6 +31,11 @@ from ai.training.task import checked_score
 
 # What changes of landers as they fly; the rest of their snapshot follows from the settings, and from their sites.
 _CHANGED: Final = ("landers", "bodies", "contacts", "gravity", "strictness", "landings")
+# Shapes of what is known of each contact (`engine.contacts.Contacts`).
+_CONTACTS: Final = {
+    "normal": (2,), "points": (2, 2), "depth": (2,), "feature": (2,), "valid": (2,), "world": (), "pair": (),
+    "body": (2,), "friction": (), "restitution": (), "impulse": (3,), "approach": (3,), "age": (), "colour": (),
+}  # fmt: skip
 LANDER_SYMMETRY: Final = Symmetry(MIRROR_SIGNS, MIRROR_FEATURES, MIRROR_ACTIONS)
 
 
@@ -204,20 +209,13 @@ class LanderTask:
     def restore_env(self, env: Env, state: State) -> str:
         """Let new landers go on from what `env_state` gave; they can be restored whole."""
         assert isinstance(env, LanderEnv)
-        lengths: set[int] = set()
         new = env.snapshot()
-        flights = rebuilt({name: new[name] for name in _CHANGED}, state["flights"], lengths)
-        touching, pairs = flights["contacts"]["impulses"]["key"], flights["contacts"]["pairs"]
+        told, flying = state["flights"], {name: new[name] for name in _CHANGED if name != "contacts"}
+        flights = {name: rebuilt(template, told[name]) for name, template in flying.items()}
+        flights["contacts"] = _contacts(env, new["contacts"], told["contacts"])
         landers = flights["landers"]
-        if (
-            len(lengths) > 1
-            or (touching < 0).any()
-            or (touching >= env.num_envs * pairs).any()
-            or pairs != new["contacts"]["pairs"]
-            or not np.isin(landers["outcome"], tuple(Outcome)).all()
-            or not np.isin(landers["target"], range(len(env.ground.pads))).all()
-            or not 0 <= flights["landings"] <= MOST
-        ):
+        outside = not np.isin(landers["target"], range(len(env.ground.pads))).all()
+        if outside or not np.isin(landers["outcome"], tuple(Outcome)).all() or not 0 <= flights["landings"] <= MOST:
             raise ValueError("flights are of other landers, or of none")
         env.restore(new | flights)
         for stream, told in zip(env.streams, state["streams"], strict=True):
@@ -247,6 +245,23 @@ class LanderTask:
     def read_score(self, values: dict[str, Any]) -> Evaluation:
         """Read what `Evaluation.to_json` gave; raises ValueError for anything else."""
         return Evaluation(**checked_score(values, ("mean_time", "mean_fuel", "hard")))
+
+
+def _contacts(env: LanderEnv, new: State, told: Any) -> State:
+    """Return what a snapshot remembers of contacts, from a file; raises KeyError, TypeError or ValueError."""
+    gravity, kept = rebuilt(new["gravity"], told["gravity"]), told["contacts"]
+    if not kept:
+        return {"gravity": gravity, "contacts": {}}
+    count, worlds = len(kept["world"]), env.world
+    integers = ("world", "pair", "body", "feature", "age", "colour")
+    contacts = {}
+    for name, shape in _CONTACTS.items():
+        kind = bool if name == "valid" else np.intp if name in integers else float
+        contacts[name] = rebuilt(np.empty((count, *shape), kind), kept[name])
+    most = {"world": env.num_envs, "pair": len(worlds.pairs), "body": len(worlds.bodies)}
+    if any((contacts[name] < 0).any() or (contacts[name] >= limit).any() for name, limit in most.items()):
+        raise ValueError("contacts are of none of the landers")
+    return {"gravity": gravity, "contacts": contacts}
 
 
 def _action_chances(config: Config) -> Doubles:

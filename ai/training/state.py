@@ -45,18 +45,15 @@ _TEXT: Final = "described"
 State = dict[str, Any]
 
 
-def rebuilt(template: Any, value: Any, lengths: set[int]) -> Any:
-    """Return a value from a file, if it is such a nested dict of arrays and numbers as `template`, which began alike.
+def rebuilt(template: Any, value: Any) -> Any:
+    """Return a value from a file, if it is such a nested dict of arrays and numbers as `template`.
 
-    Arrays have the shapes of those in `template`, but where these have a length of 0: then the one that they have is
-    added to `lengths`. Raises KeyError, TypeError or ValueError for anything else.
+    Raises KeyError, TypeError or ValueError for anything else.
     """
     if isinstance(template, dict):
-        return {name: rebuilt(part, value[name], lengths) for name, part in template.items()}
+        return {name: rebuilt(part, value[name]) for name, part in template.items()}
     if isinstance(template, np.ndarray):
-        shape = tuple(real or length for real, length in zip(template.shape, value.shape, strict=True))
-        lengths.update(length for real, length in zip(template.shape, shape, strict=True) if not real)
-        return array_like(np.empty(shape, template.dtype), value, finite=False)
+        return array_like(template, value, finite=False)
     if type(template) is not type(value):
         raise TypeError(f"{type(value).__name__} in place of {type(template).__name__}")
     return number_of(value)

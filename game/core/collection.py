@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import shutil
-import time
+import stat
 import unicodedata
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterable
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Generic, TypeVar
@@ -14,26 +15,20 @@ from typing import Final, Generic, TypeVar
 import platformdirs
 
 from ai.files import (
-    NEW,
-    STALE,
-    Lock,
-    aside_for,
     brief,
-    lock_of,
+    free_path,
     move_state,
-    moved_aside,
+    new_folder,
+    recover_all,
     recover_folder,
     remove_state,
-    take,
+    take_folder,
 )
 from game.core import texts
-from game.core.copying import copy_folder
-from game.core.folders import looks_like_item, there
 from game.core.names import (
     LONGEST_NAME,
     LibraryError,
     fitting,
-    free_path,
     holder,
     is_valid_name,
     library_errors,
@@ -47,6 +42,9 @@ Item = TypeVar("Item")
 UNSAVED: Final = ".training"  # folder of a run that has no name yet
 _MOST_DELETED: Final = 8  # items that can be restored
 _GAMES: Final = 16  # games that may train at the same time
+_DEEPEST: Final = 8  # depth of folders within a network's folder, its fixes included
+MOST_FILES: Final = 5_000  # of a folder that is copied
+MOST_BYTES: Final = 500_000_000
 
 
 def exports_dir() -> Path:
@@ -87,15 +85,13 @@ class Collection(Generic[Item]):
         self.folder, self.kind = folder, kind
         self.unsaved, self.problem = folder / UNSAVED, ""
         self._trash = Trash(folder, _MOST_DELETED)
-        self._lock: Lock | None = None
+        self._lock = ExitStack()
 
     def items(self) -> list[Item]:
         """Return every item, damaged ones too, by name; after undoing interrupted replacements."""
         self.problem = ""
         try:
-            for path in list(self.folder.iterdir()):
-                with suppress(OSError):  # a problem with one item does not affect the others
-                    self._recover(path)
+            recover_all(self.folder)
             found = sorted(self.folder.iterdir(), key=lambda path: path.name.casefold())
             return [self.kind.read(path, path.name) for path in found if looks_like_item(path, self.kind.parts)]
         except FileNotFoundError:
@@ -149,9 +145,8 @@ class Collection(Generic[Item]):
         source = self.existing(name)
         folder = folder or exports_dir()
         with library_errors(texts.LIBRARY_NOT_EXPORTED, name):
-            folder.mkdir(parents=True, exist_ok=True)
             target = free_path(folder, name)
-            copy_folder(source, target)
+            _copy(source, target)
         return target
 
     def import_folder(self, path: Path) -> Path:
@@ -164,8 +159,7 @@ class Collection(Generic[Item]):
             if not any(there(source / part) for part in self.kind.parts):
                 raise LibraryError(texts.LIBRARY_NO_RUN.format(name=source.name))
             target = self.folder / self.free_name(source.name)
-            self.folder.mkdir(parents=True, exist_ok=True)
-            copy_folder(source, target)
+            _copy(source, target)
         return target
 
     # Deleted items
@@ -198,26 +192,24 @@ class Collection(Generic[Item]):
         """
         self.release()
         places = [self.folder / f"{UNSAVED} {number}".removesuffix(" 1") for number in range(1, _GAMES + 1)]
-        for place in [*filter(_was_used, places), *places]:
-            self._lock = take(lock_of(place))
-            if self._lock:
-                self.unsaved = place
-                if self.left_behind or not _was_used(place):
-                    return
-                self._lock.release()
+        for place in sorted(places, key=lambda place: not self._holds_item(place)):
+            with suppress(BlockingIOError):
+                self._lock, self.unsaved = take_folder(place), place
+                return
 
     def release(self) -> None:
         """Unlock `unsaved` for other games."""
-        if self._lock:
-            self._lock.release()
-            self._lock = None
+        self._lock.close()
 
     @property
     def left_behind(self) -> bool:
         """Whether an item lies in `unsaved`. Do not ask while it is being written, because this repairs it."""
-        recover_folder(self.unsaved)
+        return self._holds_item(self.unsaved)
+
+    def _holds_item(self, folder: Path) -> bool:
+        recover_folder(folder)
         with suppress(OSError):
-            return any(there(self.unsaved / part) for part in self.kind.parts)
+            return any(there(folder / part) for part in self.kind.parts)
         return False
 
     def claim(self) -> Item | None:
@@ -243,12 +235,48 @@ class Collection(Generic[Item]):
             self._trash.add(self.unsaved, self.free_name(self.kind.rescued))
             remove_state(self.unsaved)
 
-    def _recover(self, path: Path) -> None:
-        if (name := aside_for(path)) and name[0] != ".":
-            recover_folder(self.folder / name)
-        elif path.name.endswith(NEW) and path.name[0] == "." and time.time() - path.lstat().st_mtime > STALE:
-            shutil.rmtree(path, ignore_errors=True)
+
+def looks_like_item(folder: Path, parts: Iterable[str]) -> bool:
+    """Whether a folder looks like an item of the collection: it has one of the parts, or it cannot be read.
+
+    A folder that cannot be read, such as a broken link, counts too, so that it is listed with its problem.
+    """
+    if folder.name.startswith("."):
+        return False
+    try:
+        return any(there(folder / part) for part in parts) or leads_nowhere(folder)
+    except OSError:
+        return True
 
 
-def _was_used(place: Path) -> bool:
-    return place.exists() or bool(moved_aside(place))
+def there(path: Path) -> bool:
+    """Whether a path exists; raises OSError where that is unknown, for which `Path.exists` returns False."""
+    try:
+        path.stat()
+    except (FileNotFoundError, NotADirectoryError, ValueError):
+        return False
+    return True
+
+
+def leads_nowhere(path: Path) -> bool:
+    """Whether a path is a broken link; raises OSError for a link to itself."""
+    return path.is_symlink() and not there(path)
+
+
+def _copy(source: Path, target: Path) -> None:
+    """Copy a folder whole or not at all; raises LibraryError unless it holds only plain files, as many as a network's.
+
+    A link may lead outside or in a circle, and a pipe never ends; the window waits while files are copied.
+    """
+    files = size = 0
+    for parent, folders, names in os.walk(source):
+        deep = len(Path(parent).relative_to(source).parts) >= _DEEPEST
+        for name in (*folders, *names):
+            said = Path(parent, name).lstat()
+            if not (stat.S_ISREG(said.st_mode) or (stat.S_ISDIR(said.st_mode) and not deep)):
+                raise LibraryError(texts.LIBRARY_NOT_PLAIN.format(name=source.name, inside=brief(name, 40)))
+            files, size = files + 1, size + said.st_size
+            if files > MOST_FILES or size > MOST_BYTES:
+                raise LibraryError(texts.LIBRARY_TOO_LARGE.format(name=source.name))
+    with new_folder(target) as new:
+        shutil.copytree(source, new, symlinks=True, dirs_exist_ok=True)

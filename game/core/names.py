@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 import unicodedata
 from collections.abc import Iterator
@@ -50,15 +49,6 @@ def holder(folder: Path, name: str) -> str:
     with suppress(OSError):
         return next((path.name for path in folder.iterdir() if _same(path.name) == _same(name)), "")
     return ""
-
-
-def free_path(folder: Path, name: str, suffix: str = "") -> Path:
-    """Return a free path in `folder` for a name, with a number appended if the name is taken."""
-    path, number = folder / f"{name}{suffix}", 1
-    while os.path.lexists(path):  # unlike Path.exists, raises nothing without permission to look
-        number += 1
-        path = folder / f"{name} {number}{suffix}"
-    return path
 
 
 @contextmanager

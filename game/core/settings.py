@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import copy
 import json
+import logging
 import os
-from contextlib import suppress
 from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
+from queue import SimpleQueue
+from threading import Event, Thread
 from typing import Annotated, Any, Final
 
-from ai.files import Share, Within, parse_json, read_text, sound_fields, write_text
+from ai.files import Share, Within, parse_json, read_text, sound_fields, take, write_text
 from game.core import texts
-from game.core.lock import held
 
 FILE_NAME: Final = "settings.json"
 DAMAGED_NAME: Final = "settings.damaged.json"
@@ -20,6 +22,7 @@ _LARGEST: Final = 1_000_000  # bytes
 GRAVITY_SHARES: Final = (0.6, 1.4)
 PACES: Final = (0.2, 1.0)
 TOP_RUNG: Final = 10  # of the ladder of starts: there, flights begin anywhere
+_log = logging.getLogger("tranquility")
 
 
 @dataclass
@@ -79,11 +82,6 @@ class Settings:
         return cls(**sound, unknown={name: value for name, value in values.items() if name not in known})
 
 
-def changes(values: dict[str, Any], since: dict[str, Any]) -> dict[str, Any]:
-    """Return those values that differ from `since`."""
-    return {name: value for name, value in values.items() if name not in since or since[name] != value}
-
-
 class SettingsFile:
     """The settings file in the player's folder.
 
@@ -114,31 +112,17 @@ class SettingsFile:
             raise ValueError("not a table of settings")
         return values
 
-    def save(self, settings: Settings, since: dict[str, Any] | None = None) -> bool:
-        """Write the settings whole or not at all; a file that could not be read is put aside first.
-
-        Given earlier values `since`, from `Settings.to_dict`, only those changed after them are written over the file:
-        another game may have changed the others meanwhile.
-        """
-        values = settings.to_dict()
+    def save(self, settings: Settings) -> bool:
+        """Write the settings whole or not at all; a file that could not be read is put aside first."""
         try:
             if settings.unread and os.path.lexists(self.path):
                 self.path.replace(self.path.with_name(DAMAGED_NAME))
             settings.unread = False
-            with held(self.path.with_name(f".{FILE_NAME}.lock")):
-                if since is not None:
-                    values = {**values, **self._there(), **changes(values, since)}
-                write_text(self.path, json.dumps(values, indent=2) + "\n")
+            write_text(self.path, json.dumps(settings.to_dict(), indent=2) + "\n")
         except OSError as error:
             self.problem = texts.SETTINGS_NOT_SAVED.format(reason=error.strerror)
             return False
         return True
-
-    def _there(self) -> dict[str, Any]:
-        """Return the values in the file; an empty dict if it cannot be read."""
-        with suppress(OSError, ValueError):
-            return self._read()
-        return {}
 
     def _set_aside(self) -> None:
         aside = self.path.with_name(DAMAGED_NAME)
@@ -147,3 +131,85 @@ class SettingsFile:
             self.problem = texts.SETTINGS_DAMAGED.format(name=aside.name)
         except OSError:
             self.problem = texts.SETTINGS_DAMAGED_HERE
+
+
+class SettingsWriter:
+    """Thread that writes each change of the settings at once, as waiting for the disk would drop frames.
+
+    Of the windows on one folder only the first writes, until it is closed: what another had not read would be undone.
+
+    Args:
+        file: the file to write.
+        settings: the settings as read from that file.
+
+    """
+
+    def __init__(self, file: SettingsFile, settings: Settings) -> None:
+        self._file = file
+        self._written = settings.to_dict()
+        self._unread = settings.unread  # True until an unreadable file has been put aside
+        self._lock = take(file.path.with_name(f".{FILE_NAME}.lock"))
+        self._problems: SimpleQueue[str] = SimpleQueue()
+        self._wanted: SimpleQueue[Settings | Event | None] = SimpleQueue()
+        self._thread: Thread | None = None
+
+    def save(self, settings: Settings) -> None:
+        """Queue the present settings for writing. Never waits."""
+        self._put(copy.deepcopy(settings))
+
+    def problem(self) -> str:
+        """Return why the last write failed, once only; empty if it succeeded."""
+        found = ""
+        while not self._problems.empty():
+            found = self._problems.get_nowait()
+        return found
+
+    def wait(self) -> None:
+        """Wait until every queued change has been written or has failed."""
+        if self._thread:
+            done = Event()
+            self._put(done)
+            done.wait()
+
+    def close(self, settings: Settings) -> None:
+        """Write the settings one last time, wait for the thread to end, and let another window write."""
+        self.save(settings)
+        self._put(None)
+        if self._thread:
+            self._thread.join()
+            self._thread = None
+        if self._lock:
+            self._lock.close()
+
+    def _put(self, wanted: Settings | Event | None) -> None:
+        if self._thread is None:
+            self._thread = Thread(target=self._work, name="settings", daemon=True)
+            self._thread.start()
+        self._wanted.put(wanted)
+
+    def _work(self) -> None:
+        while (wanted := self._wanted.get()) is not None:
+            if isinstance(wanted, Event):
+                wanted.set()
+                continue
+            try:
+                self._write(wanted)
+            except Exception as error:  # the thread must live on, or `wait` never returns
+                _log.exception("writing the settings")
+                self._problems.put(texts.SETTINGS_NOT_SAVED.format(reason=error))
+
+    def _write(self, settings: Settings) -> None:
+        values = settings.to_dict()
+        if values == self._written and not self._unread and os.path.exists(self._file.path):  # noqa: PTH110
+            return
+        if self._lock is None:
+            self._written = values  # so that it is said of each change once
+            self._problems.put(texts.SETTINGS_ELSEWHERE)
+            return
+        settings.unread = self._unread
+        saved = self._file.save(settings)
+        self._unread = settings.unread
+        if saved:
+            self._written = values
+        else:
+            self._problems.put(self._file.problem)

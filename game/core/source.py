@@ -6,12 +6,14 @@ import ast
 import inspect
 import textwrap
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
+from itertools import islice
 from pathlib import Path
 from typing import Any, Final
 
 _ROOT: Final = Path(__file__).parents[2]
+Mark = str | Callable[..., Any]  # what a line is found by: a variable, or a function that is called in it
 
 
 @dataclass(frozen=True)
@@ -28,6 +30,25 @@ class Source:
     path: str
     name: str
     lines: tuple[tuple[int, str], ...]
+    _tree: ast.AST = field(compare=False, repr=False)
+
+    def line_of(self, mark: Mark, number: int = 0) -> int:
+        """Return the number of the line that sets a variable last, or only mentions it; or that calls a function.
+
+        Of several calls, `number` chooses one. Raises LookupError if there is none.
+        """
+        if callable(mark):
+            found = sorted(node.lineno for node in ast.walk(self._tree)
+                           if isinstance(node, ast.Call) and _name(node.func) == mark.__name__)  # fmt: skip
+        else:
+            named = [node for node in ast.walk(self._tree)
+                     if isinstance(node, ast.Name | ast.Attribute) and _name(node) == mark]  # fmt: skip
+            sets = sorted((node.lineno for node in named if isinstance(node.ctx, ast.Store)), reverse=True)
+            found = sets or sorted(node.lineno for node in named)
+        line = next(islice(found, number, None), None)
+        if line is None:
+            raise LookupError(f"{self.name} has no line for {mark}")
+        return line
 
 
 @cache
@@ -39,17 +60,22 @@ def source_of(function: Callable[..., Any]) -> Source | None:
     except (OSError, TypeError):
         return None
     text = textwrap.dedent("".join(lines))
-    silent = _docstring_lines(text)
-    kept = [(first + row, line) for row, line in enumerate(text.splitlines()) if row not in silent]
+    tree = ast.parse(text).body[0]
+    assert isinstance(tree, ast.FunctionDef)
+    ast.increment_lineno(tree, first - 1)
+    silent = _docstring_lines(tree)
+    kept = [(number, line) for number, line in enumerate(text.splitlines(), first) if number not in silent]
     shown = path.relative_to(_ROOT).as_posix() if path.is_relative_to(_ROOT) else path.name
-    return Source(shown, function.__qualname__, tuple(kept))
+    return Source(shown, function.__qualname__, tuple(kept), tree)
 
 
-def _docstring_lines(text: str) -> range:
-    """Return the rows, from 0, of a function's docstring."""
-    body = ast.parse(text).body[0]
-    assert isinstance(body, ast.FunctionDef)
-    first = body.body[0]
-    if isinstance(first, ast.Expr) and isinstance(first.value, ast.Constant) and isinstance(first.value.value, str):
-        return range(first.lineno - 1, first.end_lineno or first.lineno)
-    return range(0)
+def _docstring_lines(function: ast.FunctionDef) -> range:
+    """Return the numbers of the lines of a function's docstring."""
+    if ast.get_docstring(function, clean=False) is None:
+        return range(0)
+    return range(function.body[0].lineno, (function.body[0].end_lineno or 0) + 1)
+
+
+def _name(node: ast.AST) -> str:
+    """Return the last word of a name: `find` of `self.tree.find`; empty for what is none."""
+    return node.id if isinstance(node, ast.Name) else node.attr if isinstance(node, ast.Attribute) else ""

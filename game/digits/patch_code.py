@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from types import FunctionType
 from typing import Any, Final
 
+import numpy as np
 import pygame
 
 from ai.digits.classifier import DigitClassifier
 from ai.nn import ActivationLayer, ConvolutionLayer, FullyConnectedLayer, MaxPoolingLayer
+from ai.nn.costs import softmax
 from ai.nn.images import Correlation
 from game.core import texts
 from game.core.source import Source, source_of
@@ -25,32 +26,28 @@ _BELOW: Final = 600.0  # first baseline of what the case at hand is
 
 def code_of(walk: UnitWalk) -> tuple[Source, int] | None:
     """Return the code of the stage looked at, and the number of its line that computes the sum; None without source."""
-    function, line = _function(walk)
+    function, *line = _function(walk)
     source = source_of(function)
     if source is None:
         return None
-    return source, next((number for number, text in source.lines if line in text), source.lines[0][0])
+    return source, source.line_of(*line) if line else source.lines[-1][0]
 
 
-def _function(walk: UnitWalk) -> tuple[Callable[..., Any], str]:
-    """Return the function that computes a stage, and a part of the line in which it does."""
+def _function(walk: UnitWalk) -> tuple[Any, ...]:
+    """Return the function that computes a stage, and what the line is found by in which it does, if not its last."""
     if walk.at_answer:
-        return DigitClassifier.probabilities, "softmax(outputs)" if walk.logits else "bounded.sum"
+        return DigitClassifier.probabilities, softmax if walk.logits else np.sum
     match walk.stage.layer:
-        case ConvolutionLayer(forward=Correlation(whole=True)):
-            return Correlation.correlate, "out=part.reshape"
-        case ConvolutionLayer():
-            return Correlation.correlate, "out=products.reshape"
+        case ConvolutionLayer(forward=Correlation(whole=whole)):
+            return Correlation.correlate, np.matmul, int(not whole)
         case MaxPoolingLayer():
-            return MaxPoolingLayer._maximum, "np.maximum(output"
+            return MaxPoolingLayer._maximum, np.maximum, 1
         case FullyConnectedLayer():
-            return FullyConnectedLayer.predict, ".dot("
+            return FullyConnectedLayer.predict, np.dot
         case ActivationLayer(activation=activation):
             own = activation.function
-            if isinstance(own, FunctionType) and own.__name__ != "<lambda>":
-                return own, "return"
-            return ActivationLayer.predict, "return"
-    return type(walk.stage.layer).predict, "def "
+            return (own if isinstance(own, FunctionType) and own.__name__ != "<lambda>" else ActivationLayer.predict,)
+    return (type(walk.stage.layer).predict,)
 
 
 def draw_code(canvas: Canvas, walk: UnitWalk) -> None:

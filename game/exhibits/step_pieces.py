@@ -8,12 +8,13 @@ from typing import Any, Final
 
 import numpy as np
 
+from ai.explain.recorder import Call
 from engine import World
 from engine.broad_phase import BroadPhase
 from engine.collide import deepest_face
 from engine.integrate import integrate_position, integrate_velocity
 from engine.solver import Rows, Solver
-from game.exhibits.step_record import NARROW, Call, Impulse, Pair, StepRecord
+from game.exhibits.step_record import NARROW, Impulse, Pair, StepRecord
 
 # Local variables that are told beside the lines that set them, by function, and on which axis a pair has its row.
 _TOLD: Final[dict[Callable[..., Any], tuple[int, tuple[str, ...]]]] = {
@@ -51,19 +52,21 @@ class Piece:
 def pieces_of(record: StepRecord, followed: Pair | None) -> list[Piece]:
     """Return the pieces of a step: those of one pair, or of every pair if None is followed."""
     near = record.call(BroadPhase.near)
-    pieces = [Piece("boxes", BroadPhase.near, near.lines["world"], pair=followed)]
+    pieces = [Piece("boxes", BroadPhase.near, near.numbers["world"], pair=followed)]
     pairs = record.pairs if followed is None else [followed]
     for pair in pairs:
         pieces += _meeting(record, pair)
     fall = record.call(integrate_velocity)
-    pieces.append(Piece("forces", integrate_velocity, fall.lines["velocity"], pair=followed))
+    pieces.append(Piece("forces", integrate_velocity, fall.numbers["velocity"], pair=followed))
     touching = {pair.contact: pair for pair in pairs if pair.contact is not None}
     if touching:
         solve = record.call(Solver.solve_velocities)
-        pieces.append(Piece("memory", Solver.solve_velocities, max(solve.ran - {solve.last}), pair=followed))
+        pieces.append(
+            Piece("memory", Solver.solve_velocities, max(line.number for line in solve.lines[:-1]), pair=followed)
+        )
         pieces += _pushes("impulses", record.impulses, touching)
     move = record.call(integrate_position)
-    pieces.append(Piece("motion", integrate_position, move.lines["step"], pair=followed))
+    pieces.append(Piece("motion", integrate_position, move.numbers["step"], pair=followed))
     pieces += _pushes("overlap", record.overlaps, touching)
     pieces.append(Piece("end", World.step, pair=followed))
     return pieces
@@ -77,7 +80,7 @@ def _meeting(record: StepRecord, pair: Pair) -> Iterator[Piece]:
         call = record.call(NARROW[pair.circles])
         notes = _notes(NARROW[pair.circles], call, pair.number)
         yield Piece(
-            "contact", NARROW[pair.circles], call.lines["depth" if "depth" in call.lines else "gap"], notes, pair
+            "contact", NARROW[pair.circles], call.numbers["depth" if "depth" in call.numbers else "gap"], notes, pair
         )
 
 
@@ -85,16 +88,16 @@ def _pushes(kind: str, impulses: list[Impulse], touching: dict[int, Pair]) -> It
     for impulse in impulses:
         if pair := touching.get(impulse.contact):
             notes = _notes(Rows.relax, impulse.call, impulse.column)
-            yield Piece(kind, Rows.relax, impulse.call.lines["velocity"], notes, pair, impulse)
+            yield Piece(kind, Rows.relax, impulse.call.numbers["velocity"], notes, pair, impulse)
 
 
 def _notes(function: Callable[..., Any], call: Call, row: int) -> dict[int, str]:
     axis, names = _TOLD[function]
     notes = {}
     for name in names:
-        if name in call.lines and (name not in call.first or call.lines[name] > min(call.ran)):
+        if name in call.numbers and (name not in call.arguments or call.numbers[name] > call.lines[0].number):
             values = np.atleast_1d(np.take(call.values[name], row, axis=axis)).ravel()
-            notes[call.lines[name]] = "  ".join(written(float(value)) for value in values[:_MOST])
+            notes[call.numbers[name]] = "  ".join(written(float(value)) for value in values[:_MOST])
     return notes
 
 

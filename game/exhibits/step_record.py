@@ -7,13 +7,13 @@ the exhibit ends in the state that the exhibit itself would reach.
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
-from ai.explain.recorder import RETURN, Event, Recorder
+from ai.explain.recorder import RETURN, Call, Recorder
 from engine import Polygon
 from engine.broad_phase import BroadPhase
 from engine.collide import collide_circles, collide_polygon_circle, collide_polygons, deepest_face
@@ -23,19 +23,17 @@ from engine.vector import Array, Ints
 from game.exhibits.exhibit import Exhibit
 from game.world.grip import Grip
 
-# Functions to record, each with an argument by whose record a call is known to begin.
-_RECORDED: Final[dict[Callable[..., Any], str]] = {
-    BroadPhase.near: "boxes",
-    deepest_face: "corners",
-    collide_polygons: "margin",
-    collide_polygon_circle: "margin",
-    collide_circles: "margin",
-    integrate_velocity: "dt",
-    Solver.solve_velocities: "dt",
-    Rows.relax: "wanted",
-    integrate_position: "dt",
-    Solver.correct_positions: "dt",
-}
+_RECORDED: Final = (
+    BroadPhase.near,
+    deepest_face,
+    collide_polygons,
+    collide_polygon_circle,
+    collide_circles,
+    integrate_velocity,
+    Solver.solve_velocities,
+    Rows.relax,
+    integrate_position,
+)
 NARROW: Final = (collide_polygons, collide_polygon_circle, collide_circles)  # by the number of circles of a pair
 
 
@@ -55,35 +53,6 @@ class Axis:
     direction: Array
     gap: float
     first: bool
-
-
-class Call:
-    """One recorded call of a function.
-
-    Attributes:
-        first: its arguments.
-        values: last value of each local variable, by name.
-        lines: number of the line that set it.
-        ran: numbers of all lines that ran.
-        last: number of the line that ran last.
-
-    """
-
-    def __init__(self, event: Event) -> None:
-        self.function = event.function
-        self.first = event.values
-        self.values: dict[str, Any] = {}
-        self.lines: dict[str, int] = {}
-        self.ran: set[int] = set()
-        self.last = 0
-        self.add(event)
-
-    def add(self, event: Event) -> None:
-        """Take in the next event of the call."""
-        self.values |= event.values
-        self.lines |= dict.fromkeys(event.values, event.number)
-        self.ran.add(event.number)
-        self.last = event.number
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,7 +110,7 @@ class Impulse:
     @property
     def before(self) -> Array:
         """Accumulated impulses before, (3,), in N·s: normal, normal, friction."""
-        before: Array = self.call.first["total"][:, self.column]
+        before: Array = self.call.arguments["total"][:, self.column]
         return before
 
     @property
@@ -172,7 +141,7 @@ class StepRecord:
         contacts: what touched, as the solver left it; None if nothing did.
         impulses: the impulses, in order.
         overlaps: the pushes out of overlaps, in order.
-        calls: recorded calls by the name of their function.
+        call: returns the last call of a function.
 
     """
 
@@ -185,32 +154,15 @@ class StepRecord:
             self.exhibit.step(grip)
         self.after = (state.pose[0].copy(), state.velocity[0].copy())
         self.contacts = self.exhibit.world.contacts
-        self.calls: dict[str, list[Call]] = {}
-        self._mending = 0  # number of the first call of `relax` that mends overlaps
-        self._read_calls(recorder.events)
+        self.call = recorder.call
         self.boxes: Array = self.call(BroadPhase.near).values["boxes"][..., 0].T
         self.fallen = self._of_movers(self.call(integrate_velocity).values["velocity"], self.before[1])
         self.steps = self._of_movers(self.call(integrate_position).values["step"], np.zeros_like(self.fallen))
         self.pairs = list(self._read_pairs())
-        relaxed = self.calls.get(Rows.relax.__qualname__, [])
-        self.warm: Array | None = relaxed[0].first["velocity"].reshape(-1, 3) if relaxed else None
-        self.impulses = list(self._read_impulses(relaxed[: self._mending]))
-        self.overlaps = list(self._read_impulses(relaxed[self._mending :]))
-
-    def call(self, function: Callable[..., Any]) -> Call:
-        """Return the last call of a function."""
-        return self.calls[function.__qualname__][-1]
-
-    def _read_calls(self, events: list[Event]) -> None:
-        begins = {function.__qualname__: argument for function, argument in _RECORDED.items()}
-        for event in events:
-            calls = self.calls.setdefault(event.function, [])
-            if not calls or begins[event.function] in event.values:
-                calls.append(Call(event))
-            else:
-                calls[-1].add(event)
-            if event.function == Solver.solve_velocities.__qualname__:
-                self._mending = len(self.calls.get(Rows.relax.__qualname__, []))
+        relaxed, solved = recorder.calls(Rows.relax), recorder.calls(Solver.solve_velocities)
+        self.warm: Array | None = relaxed[0].arguments["velocity"].reshape(-1, 3) if relaxed else None
+        self.impulses = list(self._read_impulses([call for call in relaxed if call.caller in solved]))
+        self.overlaps = list(self._read_impulses([call for call in relaxed if call.caller not in solved]))
 
     def _of_movers(self, values: Array, others: Array) -> Array:
         """Return values (1, movers, 3) of the bodies that move, in the rows of all bodies; `others` for the rest."""
@@ -240,18 +192,23 @@ class StepRecord:
             axes = [*self._faces(call, number, shapes[0]), *self._faces(call, other, shapes[1], of_first=False)]
             face = call.values["face"]
             chosen = self._corners(shapes[0]) + face[other] if flip[number] else face[number]
-            return axes, int(chosen), call, call.lines["face"]
+            return axes, int(chosen), call, call.numbers["face"]
         call = self.call(NARROW[circles])
         values = call.values
         if circles == 2:
             gap = -float(values["depth"][number])
-            return [Axis(values["centre_a"][number], values["normal"][number], gap, True)], 0, call, call.lines["depth"]
+            return (
+                [Axis(values["centre_a"][number], values["normal"][number], gap, True)],
+                0,
+                call,
+                call.numbers["depth"],
+            )
         axes = list(self._faces(call, number, shapes[0], radius=float(values["radius"][number])))
         if not values["from_corner"][number]:
-            return axes, int(values["face"][number]), call, call.lines["face"]
+            return axes, int(values["face"][number]), call, call.numbers["face"]
         gap = float(values["gap"][number] - values["radius"][number])
         corner = Axis(values["nearest"][number], values["normal"][number], gap, True)
-        return [*axes, corner], len(axes), call, call.lines["normal"]
+        return [*axes, corner], len(axes), call, call.numbers["normal"]
 
     def _corners(self, shape: int) -> int:
         polygon = self.exhibit.world.shapes[shape]

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Final
 
+from ai.files import take
 from ai.flights.recording import AS_IT_IS
 from ai.flights.verification import landing_score
-from game.core.lock import held
 from game.flight.flight import Flight, StickHolder
 
 FILE_NAME: Final = "demonstrations.json"
@@ -33,7 +34,7 @@ def add_demonstration(flight: Flight, folder: Path) -> bool:
         return False
     ground = recording.seed if recording.pads > 1 else None
     lesson = Demonstration(recording.seed, tuple(recording.actions), recording.spawn, begins, ground, pad)
-    with held(folder / f".{FILE_NAME}.lock"):  # another game may add to it as well
+    with take(folder / f".{FILE_NAME}.lock", 1.0) or nullcontext():  # another window may add to it as well
         write(folder / FILE_NAME, [*read(folder / FILE_NAME), lesson])
     return True
 

@@ -169,11 +169,8 @@ def read(path: Path) -> Record:
 
 
 def write(path: Path, record: Record) -> None:
-    """Write a new flight file whole or not at all; without a flush to disk, which would drop frames.
-
-    Raises FileExistsError if the name is taken, and OSError if it cannot be written.
-    """
-    write_text(path, to_text(record), flush=False, new=True)
+    """Write a flight file whole or not at all, without a flush to disk, which would drop frames; raises OSError."""
+    write_text(path, to_text(record), flush=False)
 
 
 def to_text(record: Record) -> str:

@@ -5,7 +5,6 @@ Only `read` raises for a bad disk or a damaged file; otherwise `problem` says wh
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
@@ -14,10 +13,10 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any, Final
 
-from ai.files import brief, parse_json, read_as, read_end
+from ai.files import append_line, brief, free_path, read_lines
 from ai.flights.verification import DESCENT, landing_score
 from game.core import texts
-from game.core.names import LibraryError, free_path
+from game.core.names import LibraryError
 from game.core.trash import Trash
 from game.flight import flight_file
 from game.flight.flight import Flight
@@ -77,10 +76,9 @@ class Records:
         self.problem = ""
         entry = describe(flight, when, **more)
         try:
-            self.folder.mkdir(parents=True, exist_ok=True)
             x, y, angle = flight.poses.now[0].tolist()
             entry = self._write(Record(flight.recording, entry, (x, y, angle)))
-            self._append(entry)
+            append_line(self.logbook, asdict(entry))
             self._make_room()
         except OSError as error:
             self.problem = texts.FLIGHT_NOT_KEPT.format(reason=error.strerror or error)
@@ -91,19 +89,14 @@ class Records:
 
         Invalid lines are counted in `problem` and left in the file.
         """
-        self.problem, found, damaged = "", [], 0
+        self.problem = ""
         try:
-            text = read_end(self.logbook, _LARGEST).decode(errors="replace")
+            found, damaged = read_lines(Entry, self.logbook, _LARGEST)
         except FileNotFoundError:
             return []
         except OSError as error:
             self.problem = texts.FLIGHTS_UNREADABLE.format(path=self.logbook, reason=error.strerror or error)
             return []
-        for line in text.splitlines():
-            try:
-                found.append(read_as(Entry, parse_json(line), strict=True))
-            except ValueError:
-                damaged += bool(line.strip())
         if damaged:
             self.problem = texts.FLIGHTS_DAMAGED.format(count=damaged, path=self.logbook)
         return found
@@ -150,23 +143,12 @@ class Records:
         return texts.FLIGHT_TOO_OLD if entry.file in older else texts.FLIGHT_MISSING
 
     def _write(self, record: Record) -> Entry:
-        """Write a flight's file under an unused name, also with another game running; return its line."""
+        """Write a flight's file under an unused name; return its line."""
         moment = f"{datetime.fromtimestamp(record.entry.when):%Y-%m-%d %H.%M.%S.%f}"[:-3]
-        while True:
-            path = free_path(self.folder, moment, ".json")
-            entry = replace(record.entry, file=path.name)
-            with suppress(FileExistsError):
-                flight_file.write(path, replace(record, entry=entry))
-                return entry
-
-    def _append(self, entry: Entry) -> None:
-        """Append a line, on a new line even if a killed game left the last one unfinished."""
-        with self.logbook.open("a+b") as file:
-            unfinished = False
-            if file.seek(0, 2):
-                file.seek(-1, 2)
-                unfinished = file.read(1) != b"\n"
-            file.write(b"\n" * unfinished + json.dumps(asdict(entry)).encode() + b"\n")
+        path = free_path(self.folder, moment, ".json")
+        entry = replace(record.entry, file=path.name)
+        flight_file.write(path, replace(record, entry=entry))
+        return entry
 
     def _make_room(self) -> None:
         """Delete the files of flights that are neither recent nor among the best."""

@@ -14,7 +14,7 @@ from ai.files import brief
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.lander.sensing import SURROUNDINGS
 from game.core import texts
-from game.core.folders import looks_like_item
+from game.core.collection import looks_like_item
 from game.core.kept import Kept
 from game.flight.study_runs import best_runs
 

@@ -183,10 +183,10 @@ class BackwardsChapter(Chapter):
         shapes = " ← ".join(str(blame.size) for blame in self.blames[1:])
         weights = " x ".join(map(str, (self.blames[2].size, DIGITS)))
         return [
-            Code(NeuralNetwork.backward_propagate, "error = layer.backward_propagate",
-                 {"error = layer.backward_propagate": shapes}),
-            Code(FullyConnectedLayer.input_error, "output_error.dot", {"output_error.dot": weights}),
-            Code(FullyConnectedLayer.fill_gradients, "self.input"),
+            Code(NeuralNetwork.backward_propagate, FullyConnectedLayer.backward_propagate,
+                 {FullyConnectedLayer.backward_propagate: shapes}),
+            Code(FullyConnectedLayer.input_error, np.dot, {np.dot: weights}),
+            Code(FullyConnectedLayer.fill_gradients, np.dot),
         ]  # fmt: skip
 
     def draw(self, canvas: Canvas, alpha: float) -> None:  # noqa: ARG002

@@ -15,6 +15,7 @@ import pygame
 
 from game.core import texts
 from game.core.scene import Route
+from game.core.source import Mark
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import MARGIN, VIEW_SIZE
 from game.ui.actions import Table
@@ -32,14 +33,14 @@ class Code:
 
     Attributes:
         function: the function whose source is shown.
-        current: a part of the line that is lit; empty for none.
-        notes: by a part of a line, what stands beside it: numbers of the case at hand.
+        current: what the line is found by that is lit; None for none.
+        notes: by what a line is found by, what stands beside it: numbers of the case at hand.
 
     """
 
     function: Callable[..., Any]
-    current: str = ""
-    notes: Mapping[str, str] = field(default_factory=dict)
+    current: Mark | None = None
+    notes: Mapping[Mark, str] = field(default_factory=dict)
 
 
 class Chapter(ABC):

@@ -92,7 +92,7 @@ class DaringChapter(RunsChapter):
     def code(self) -> Sequence[Code]:
         """Return where an action is replaced by a random one, and the schedule."""
         share = f"ε = {DARING[self.choice]:g}"
-        return [Code(DeepQAgent.act, "explore = ", {"explore = ": share}), Code(exploration)]
+        return [Code(DeepQAgent.act, "explore", {"explore": share}), Code(exploration)]
 
     def draw(self, canvas: Canvas, alpha: float) -> None:  # noqa: ARG002
         """Draw both groups of landers, and below each how many of its latest flights landed."""

@@ -222,9 +222,9 @@ class DownhillChapter(Chapter):
     def code(self) -> Sequence[Code]:
         """Return the step of the optimizers, with this moment's slope."""
         slope = float((self.plain if self.valley else self.line).slopes[0])
-        plain = Code(SGD._fill_step, "np.multiply", {"np.multiply": f"{slope:+.3f} · {self.rate:.3f}"})
-        adam = Code(Adam._fill_step, "np.divide", {"np.divide": texts.LEARN_DOWNHILL_ADAM_NOTE})
-        return [plain, adam, Code(Optimizer.step, "values -= self.scratch")]
+        plain = Code(SGD._fill_step, np.multiply, {np.multiply: f"{slope:+.3f} · {self.rate:.3f}"})
+        adam = Code(Adam._fill_step, np.divide, {np.divide: texts.LEARN_DOWNHILL_ADAM_NOTE})
+        return [plain, adam, Code(Optimizer.step, "values")]
 
     def draw(self, canvas: Canvas, alpha: float) -> None:  # noqa: ARG002
         """Draw the line with its ball, or the map with two trails."""

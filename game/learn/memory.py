@@ -10,7 +10,7 @@ import numpy as np
 import pygame
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.replay import PrioritisedReplayBuffer, ReplayBuffer
+from ai.agent.replay import PrioritisedReplayBuffer, ReplayBuffer, SumTree
 from ai.common.environment import Doubles
 from ai.lander.environment import OBSERVATION_SCALE
 from ai.training.config import Config
@@ -142,9 +142,9 @@ class MemoryChapter(RunsChapter):
             else ""
         )
         return [
-            Code(ReplayBuffer.sample, "rng.integers", {"rng.integers": held}),
-            Code(PrioritisedReplayBuffer.sample, "self.tree.find"),
-            Code(DeepQAgent._learn_from, "replay.sample"),
+            Code(ReplayBuffer.sample, np.random.Generator.integers, {np.random.Generator.integers: held}),
+            Code(PrioritisedReplayBuffer.sample, SumTree.find),
+            Code(DeepQAgent._learn_from, ReplayBuffer.sample),
         ]
 
     # The picture

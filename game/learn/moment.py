@@ -13,6 +13,7 @@ from ai.agent.agent import DeepQAgent
 from ai.common.decision import Decision, in_points
 from ai.common.environment import Floats
 from ai.lander.environment import LanderEnv, Outcome
+from ai.nn import NeuralNetwork
 from ai.training.config import Config
 from game.core import texts
 from game.core.scene import Route
@@ -206,12 +207,12 @@ class MomentChapter(Chapter):
         best = f"{float(values.max()):.3f}"
         scaled = f"{best} / {config.reward_scale:g} = {signed(float(self.points.max()))}"
         return [
-            Code(DeepQAgent.q_values, "network.predict", {
-                "network.predict": texts.LEARN_MOMENT_BEST.format(value=best),
+            Code(DeepQAgent.q_values, NeuralNetwork.predict, {
+                NeuralNetwork.predict: texts.LEARN_MOMENT_BEST.format(value=best),
             }),
-            Code(in_points, "points: NDArray", {"points: NDArray": scaled}),
-            Code(DeepQAgent.targets, "targets: Floats", {
-                "discount = np": f"γ = {config.discount:g}, {config.n_step}",
+            Code(in_points, "points", {"points": scaled}),
+            Code(DeepQAgent.targets, "targets", {
+                "discount": f"γ = {config.discount:g}, {config.n_step}",
             }),
         ]  # fmt: skip
 

@@ -15,6 +15,7 @@ from ai.nn import ActivationFunctions, ActivationLayer, CostFunctions, FullyConn
 from engine import DT
 from game.core import texts
 from game.core.scene import Route
+from game.core.source import Mark
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL, TEXT
 from game.learn.chapter import STAGE, Chapter, Code
@@ -164,8 +165,8 @@ class NeuronChapter(Chapter):
         """Return the layer's sum, with the numbers of this decision."""
         inputs, weights = self.sensed[0], self.layer.weights[:, 0]
         total = " ".join(f"{value:+.2f}×{weight:.1f}" for value, weight in zip(inputs, weights, strict=True))
-        sums = {"input_data.dot": total, "output += bias": f"{float(self.layer.bias[0]):+.1f}"}
-        return [Code(FullyConnectedLayer.predict, "input_data.dot", sums)]
+        sums: dict[Mark, str] = {np.dot: total, "output": f"{float(self.layer.bias[0]):+.1f}"}
+        return [Code(FullyConnectedLayer.predict, np.dot, sums)]
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the flight, and the neuron below it."""

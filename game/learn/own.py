@@ -174,7 +174,7 @@ class OwnChapter(Chapter):
 
     def code(self) -> Sequence[Code]:
         """Return one decision of training."""
-        return [Code(Training.advance, "agent.train_step"), Code(DeepQAgent.train_step), Code(DeepQAgent.learn)]
+        return [Code(Training.advance, DeepQAgent.train_step), Code(DeepQAgent.train_step), Code(DeepQAgent.learn)]
 
     def draw(self, canvas: Canvas, alpha: float) -> None:  # noqa: ARG002
         """Draw the list."""

@@ -217,11 +217,7 @@ class PayChapter(Chapter):
         """Return the step of the environment that adds up the pay, with this pay's weights."""
         pay = PAYS[self.pay]
         weights = texts.LEARN_PAY_NOTE.format(time=pay.time, terminal=pay.terminal)
-        return [
-            Code(
-                LanderEnv.step, "parts = np.array", {"parts = np.array": weights, "reward = np.add": f"{len(REWARDS)}"}
-            )
-        ]
+        return [Code(LanderEnv.step, "parts", {"parts": weights, np.add.accumulate: f"{len(REWARDS)}"})]
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the landers of the run, or those that fly what it has learnt, and below how far it is."""

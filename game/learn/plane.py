@@ -16,9 +16,11 @@ from ai.nn import (
     CostFunctions,
     FullyConnectedLayer,
     NeuralNetwork,
+    Optimizer,
 )
 from game.core import texts
 from game.core.scene import Route
+from game.core.source import Mark
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import FAINT, INK, LABEL, MUTE, SMALL
@@ -150,11 +152,11 @@ class PlaneChapter(Chapter):
         """Return a pass through the layers, and a learning step, with this network's shapes and cost."""
         stages = self.network.activations(self.points)
         shapes = " → ".join(str(stage.shape[1]) for stage in (self.points, *stages[1::2]))
-        passes = {"data = layer.forward_propagate(data)": shapes}
-        step = {"cost = self.cost": f"{self.cost:.4f}", "optimizer.step": f"{self.network.values.size}"}
+        passes: dict[Mark, str] = {FullyConnectedLayer.forward_propagate: shapes}
+        step: dict[Mark, str] = {"cost": f"{self.cost:.4f}", Optimizer.step: f"{self.network.values.size}"}
         return [
-            Code(NeuralNetwork.forward_propagate, "data = layer.forward_propagate(data)", passes),
-            Code(NeuralNetwork.correct, "self.backward_propagate", step),
+            Code(NeuralNetwork.forward_propagate, FullyConnectedLayer.forward_propagate, passes),
+            Code(NeuralNetwork.correct, NeuralNetwork.backward_propagate, step),
         ]
 
     def draw(self, canvas: Canvas, alpha: float) -> None:  # noqa: ARG002

@@ -102,10 +102,10 @@ class TargetChapter(RunsChapter):
         """Return how a target is made, and when the target network is copied."""
         every = EVERY[self.choice]
         return [
-            Code(DeepQAgent.targets, "targets: Floats", {"discount = np": f"γ = {SMALL_RUN.discount:g}"}),
-            Code(DeepQAgent._next_value, "self.target.predict", {"self.target.predict": texts.LEARN_TARGET_JUDGE}),
-            Code(DeepQAgent._update_target, "self.gradient_steps %", {
-                "self.gradient_steps %": texts.LEARN_TARGET_EVERY.format(every=every),
+            Code(DeepQAgent.targets, "targets", {"discount": f"γ = {SMALL_RUN.discount:g}"}),
+            Code(DeepQAgent._next_value, "values", {"values": texts.LEARN_TARGET_JUDGE}),
+            Code(DeepQAgent._update_target, "gradient_steps", {
+                "gradient_steps": texts.LEARN_TARGET_EVERY.format(every=every),
             }),
         ]  # fmt: skip
 

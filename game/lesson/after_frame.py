@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 import pygame
 
+from ai.explain.recorder import Function
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import EMBER, FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET
@@ -35,7 +36,7 @@ class AfterFrame(Frame):
     def __init__(
         self,
         words: Sequence[str],
-        functions: Sequence[str],
+        functions: Sequence[Function],
         step: LearningStep,
         names: Sequence[str],
         values: tuple[float, float, float],

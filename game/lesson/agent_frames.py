@@ -6,9 +6,14 @@ from typing import Final
 
 import numpy as np
 
-from ai.agent.network import build_network
-from ai.explain.agent_lesson import Lesson, functions
+from ai.agent.agent import DeepQAgent
+from ai.agent.n_step import NStep
+from ai.agent.network import build_network, make_optimizer
+from ai.agent.normalizer import Normalizer
+from ai.explain.agent_lesson import Lesson
+from ai.explain.learning_step import backward_functions, forward_functions
 from ai.lander.environment import ACTION_NAMES
+from ai.nn import NeuralNetwork, Optimizer
 from game.core import texts
 from game.lesson.after_frame import AfterFrame
 from game.lesson.error_frame import ErrorFrame
@@ -17,7 +22,7 @@ from game.lesson.frame import Frame
 from game.lesson.gradient_frame import GradientFrame
 from game.lesson.moment_frame import HappenedFrame, MomentFrame, said_action
 from game.lesson.network_frame import NetworkFrame
-from game.lesson.part import BACKWARD, FORWARD, Part
+from game.lesson.part import Part
 from game.lesson.step import LearningStep
 from game.lesson.target_frame import TargetFrame
 
@@ -37,28 +42,28 @@ def learning_step(lesson: Lesson) -> LearningStep:
 def agent_frames(lesson: Lesson) -> list[Part]:
     """Return the seven frames of a lesson of the agent."""
     step, scale = learning_step(lesson), lesson.config.reward_scale
-    action, words = int(lesson.cell.action), texts.LESSON_FRAMES
+    action, words, network = int(lesson.cell.action), texts.LESSON_FRAMES, step.network
+    forward, backward = forward_functions(network), backward_functions(network, make_optimizer(lesson.config))
     predicted, after = float(lesson.predicted[action]), float(lesson.predicted_after[action])
     derivative = lesson.derivative
     name, sentence = words["values"]
     sentence = sentence.format(action=said_action(action), value=points(predicted / scale))
     figure = texts.LESSON_POINTS.format(points=points(predicted / scale))
-    values = NetworkFrame(name, figure, sentence, FORWARD, step, _NETWORK, "activations", step.taken.gradient)
+    values = NetworkFrame(name, figure, sentence, forward, step, _NETWORK, "activations", step.taken.gradient)
     name, sentence = words["gradient"]
     length = texts.LESSON_LENGTH.format(length=number(step.taken.gradient_length))
-    gradient = GradientFrame(name, length, sentence, BACKWARD, step)
+    gradient = GradientFrame(name, length, sentence, backward, step)
     places = step.strongest(step.taken.taken, 8)
     frames: list[Frame] = [
-        MomentFrame(lesson, words["moment"], ("Agent.learn", "._learn_from", "Normalizer.__call__")),
+        MomentFrame(lesson, words["moment"], (DeepQAgent.learn, DeepQAgent._learn_from, Normalizer.__call__)),
         values,
-        HappenedFrame(lesson, words["happened"], ("NStep.add",)),
-        TargetFrame(lesson, words["target"], ("DeepQAgent.targets", "._next_value", "NeuralNetwork.predict")),
-        ErrorFrame(lesson, words["error"], (".gradient_step", "<locals>.function", "<locals>.derivative")),
+        HappenedFrame(lesson, words["happened"], (NStep.add,)),
+        TargetFrame(lesson, words["target"], (DeepQAgent.targets, DeepQAgent._next_value, NeuralNetwork.predict)),
+        ErrorFrame(lesson, words["error"], (DeepQAgent.gradient_step, network.cost.function, network.cost.derivative)),
         gradient,
-        AfterFrame(words["after"], ("Optimizer.step", "._update_target"), step,
+        AfterFrame(words["after"], (Optimizer.step, DeepQAgent._update_target), step,
                     [gradient.weight_name(place) for place in places],
                     (predicted, after, lesson.target), derivative, texts.LESSON_NEARER),
     ]  # fmt: skip
-    known = functions(lesson.config)
     lines = (*(lesson.flown.lines if lesson.flown else ()), *lesson.step.lines)
-    return [Part.of(frame, lines, known) for frame in frames]
+    return [Part.of(frame, lines) for frame in frames]

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Final
+from collections.abc import Iterable, Sequence
+from typing import Final
 
 import numpy as np
 import pygame
 
-from ai.explain.learning_step import Line, Value
+from ai.explain.learning_step import Value
+from ai.explain.recorder import Function, Line
 from game.core import texts
 from game.core.source import Source, source_of
 from game.drawing import typeface
@@ -35,8 +36,8 @@ _FEW: Final = 6  # numbers of an array that are written out
 class CodeWalk:
     """Walk through the lines that ran for one frame.
 
-    `functions` are those of the lesson by their qualified names. `fallback` is shown, with no line lit, where no line
-    was recorded. The walk begins at the last line that sets `begin`, a variable as it is recorded.
+    Of the lines that ran, those of `functions` are walked through; where there are none, the first function is shown,
+    with no line lit. The walk begins at the last line that sets `begin`, a variable as it is recorded.
 
     Attributes:
         lines: the lines, in the order in which they ran.
@@ -47,18 +48,17 @@ class CodeWalk:
 
     def __init__(
         self,
-        lines: Sequence[Line],
-        functions: Mapping[str, Callable[..., Any]],
-        fallback: Callable[..., Any] | None = None,
+        lines: Iterable[Line],
+        functions: Sequence[Function],
         begin: str = "",
     ) -> None:
-        self.lines = tuple(lines)
+        self._functions = {function.__qualname__: function for function in functions}
+        self.lines = tuple(line for line in lines if line.function in self._functions)
         # Without such a line, begin where numbers are set, past the head of the function.
         sets = [number for number, line in enumerate(self.lines[:-1]) if number and line.values]
-        named = (number for number in reversed(sets) if begin in [value.name for value in self.lines[number].values])
+        named = (number for number in reversed(sets) if begin in self.lines[number].values)
         self.index = next(named, next(iter(sets), 0))
         self.pointed: tuple[Value, Point] | None = None
-        self._functions, self._fallback = functions, fallback
         self._cache = PaintCache()
 
     @property
@@ -68,9 +68,8 @@ class CodeWalk:
 
     @property
     def source(self) -> Source | None:
-        """Source of the current line's function; None without one."""
-        function = self._functions.get(self.line.function) if self.line else self._fallback
-        return source_of(function) if function else None
+        """Source of the current line's function; None where the program was installed without it."""
+        return source_of(self._functions[self.line.function] if self.line else next(iter(self._functions.values())))
 
     def step(self, direction: int) -> None:
         """Go to the line before or after."""
@@ -80,7 +79,7 @@ class CodeWalk:
     def follow(self, point: Point | None) -> None:
         """Point at a place of the view; None for none."""
         self.pointed = None
-        values = self.line.values[:_MOST] if self.line else ()
+        values = _values(self.line)[:_MOST] if self.line else []
         for row, value in enumerate(values):
             box = pygame.FRect(CODE.left, CODE.top + _VALUES + _ROW * row + 17, CODE.width, _ROW)
             if point is not None and box.collidepoint(point) and value.case is not None:
@@ -126,7 +125,7 @@ class CodeWalk:
             if line.number == source.lines[0][0]:
                 break  # the head of the call
             if line.values:
-                notes.setdefault(line.number, _note(line.values))
+                notes.setdefault(line.number, _note(_values(line)))
         return notes
 
     def _paint_values(self, sheet: Canvas, line: Line) -> None:
@@ -134,7 +133,7 @@ class CodeWalk:
         sheet.line((0, _VALUES - 8), (CODE.width, _VALUES - 8), LINE)
         words = texts.LESSON_SETS if line.values else texts.LESSON_SETS_NOTHING
         sheet.text(words, (0, _VALUES + 10), size=LABEL, colour=MUTE, room=CODE.width)
-        values = line.values[:_MOST]
+        values = _values(line)[:_MOST]
         names = min(max((typeface.width(each.name, LABEL, "code") for each in values), default=0.0), _NAME)
         for row, value in enumerate(values):
             y = _VALUES + 12 + _ROW * (row + 1)
@@ -151,6 +150,10 @@ class CodeWalk:
         if more > 0:
             y = _VALUES + 12 + _ROW * (_MOST + 1)
             sheet.text(texts.LESSON_MORE.format(count=more), (0, y), size=LABEL, colour=MUTE, room=CODE.width)
+
+
+def _values(line: Line) -> list[Value]:
+    return list(line.values.values())
 
 
 def shape_of(value: Value) -> str:

@@ -9,8 +9,14 @@ import numpy as np
 import pygame
 
 from ai.common.environment import Floats
+from ai.digits.classifier import DigitClassifier
 from ai.digits.config import build_digit_network
-from ai.explain.digit_lesson import DigitLesson, digit_functions
+from ai.digits.training import DigitTraining
+from ai.explain.digit_lesson import DigitLesson
+from ai.explain.learning_step import backward_functions, forward_functions
+from ai.explain.recorder import Function
+from ai.nn import OPTIMIZERS, Optimizer
+from ai.nn.costs import softmax
 from game.core import texts
 from game.drawing.canvas import Canvas, Point
 from game.drawing.paint import mix
@@ -20,7 +26,7 @@ from game.lesson.figures import number, signed
 from game.lesson.frame import PICTURE, SMALL_PICTURE, Explanation, Frame, Spot, rows_of
 from game.lesson.gradient_frame import GradientFrame
 from game.lesson.network_frame import NetworkFrame
-from game.lesson.part import BACKWARD, FORWARD, Part
+from game.lesson.part import Part
 from game.lesson.step import LearningStep
 
 _SIDE: Final = 28
@@ -28,15 +34,14 @@ _PIXEL: Final = 14.0  # points
 _ROW: Final = 36.0
 _NUMBERS: Final = 80.0  # left end of the columns of numbers
 _NETWORK: Final = (0.0, 8.0, 752.0, 426.0)
-_ANSWER: Final = ("DigitClassifier.probabilities", "softmax")
-_COST: Final = ("<locals>.function", "<locals>.derivative")
+_ANSWER: Final[tuple[Function, ...]] = (DigitClassifier.probabilities, softmax)
 _OUTPUT, _PROBABILITY, _TARGET, _BACK = 1, 2, 3, 4  # columns, by their texts
 
 
 class ImageFrame(Frame):
     """Frame of the image: its pixels, each with its number."""
 
-    def __init__(self, lesson: DigitLesson, digit: int, words: Sequence[str], functions: Sequence[str]) -> None:
+    def __init__(self, lesson: DigitLesson, digit: int, words: Sequence[str], functions: Sequence[Function]) -> None:
         super().__init__(words[0], texts.LESSON_LABEL.format(digit=digit), words[1], functions)
         self.begin = "images"
         self._image = lesson.image
@@ -75,7 +80,7 @@ class DigitFrame(Frame):
         self,
         words: Sequence[str],
         figure: str,
-        functions: Sequence[str],
+        functions: Sequence[Function],
         digit: int,
         columns: Sequence[tuple[int, Floats]],
     ) -> None:
@@ -140,6 +145,9 @@ def digit_step(lesson: DigitLesson) -> LearningStep:
 def digit_frames(lesson: DigitLesson) -> list[Part]:
     """Return the seven frames of a lesson of a digit network."""
     step, words = digit_step(lesson), texts.LESSON_DIGIT_FRAMES
+    network, optimizer = step.network, OPTIMIZERS[lesson.config.optimizer](lesson.step.learning_rate)
+    forward, backward = forward_functions(network), backward_functions(network, optimizer)
+    cost = network.cost.function, network.cost.derivative
     digit = int(lesson.labels[lesson.step.row])
     value = float(lesson.outputs[digit])
     before, after = float(lesson.probabilities_before[digit]), float(lesson.probabilities_after[digit])
@@ -149,20 +157,19 @@ def digit_frames(lesson: DigitLesson) -> list[Part]:
     if lesson.config.dropout:
         sentence = f"{sentence} {texts.LESSON_DROPOUT_NOTE}"
     length = texts.LESSON_LENGTH.format(length=number(lesson.step.gradient_length))
-    gradient = GradientFrame(words["gradient"][0], length, words["gradient"][1], BACKWARD, step)
+    gradient = GradientFrame(words["gradient"][0], length, words["gradient"][1], backward, step)
     names = [gradient.weight_name(place) for place in step.strongest(lesson.step.taken, 8)]
     answer = int(lesson.probabilities_before.argmax())
     frames: list[Frame] = [
-        ImageFrame(lesson, digit, words["image"], ("DigitTraining.advance",)),
-        NetworkFrame(words["values"][0], number(value), sentence, FORWARD, step, _NETWORK, "activations",
+        ImageFrame(lesson, digit, words["image"], (DigitTraining.advance,)),
+        NetworkFrame(words["values"][0], number(value), sentence, forward, step, _NETWORK, "activations",
                      lesson.step.gradient),
         DigitFrame(words["answer"], str(answer), _ANSWER, digit, (output, probability)),
-        DigitFrame(words["target"], str(digit), ("DigitTraining.advance",), digit, (output, target)),
-        DigitFrame(words["error"], signed(float(lesson.derivative[digit])), _COST, digit, (output, target, back)),
+        DigitFrame(words["target"], str(digit), (DigitTraining.advance,), digit, (output, target)),
+        DigitFrame(words["error"], signed(float(lesson.derivative[digit])), cost, digit, (output, target, back)),
         gradient,
-        AfterFrame(words["after"], ("Optimizer.step",), step, names, (before, after, 1.0), None,
+        AfterFrame(words["after"], (Optimizer.step,), step, names, (before, after, 1.0), None,
                    texts.LESSON_DIGIT_NEARER),
     ]  # fmt: skip
-    known = digit_functions(lesson.config)
     lines = (*lesson.step.lines, *lesson.lines)
-    return [Part.of(frame, lines, known) for frame in frames]
+    return [Part.of(frame, lines) for frame in frames]

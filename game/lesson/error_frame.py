@@ -11,6 +11,7 @@ import pygame
 
 from ai.common.environment import Doubles
 from ai.explain.agent_lesson import Lesson
+from ai.explain.recorder import Function
 from ai.nn.costs import COSTS, Cost
 from game.core import texts
 from game.drawing.canvas import Canvas
@@ -29,7 +30,7 @@ _WIDEST: Final = 1.15  # the axis reaches so many times as far as the largest er
 class ErrorFrame(Frame):
     """Frame of the error."""
 
-    def __init__(self, lesson: Lesson, words: Sequence[str], functions: Sequence[str]) -> None:
+    def __init__(self, lesson: Lesson, words: Sequence[str], functions: Sequence[Function]) -> None:
         self._scale, self._lesson = lesson.config.reward_scale, lesson
         error = texts.LESSON_POINTS.format(points=points(lesson.error / self._scale))
         super().__init__(words[0], error, f"{words[1]} {self._said()}".strip(), functions)

@@ -9,6 +9,7 @@ from typing import Final
 
 import pygame
 
+from ai.explain.recorder import Function
 from game.drawing import typeface
 from game.drawing.canvas import Align, Canvas, Point
 from game.drawing.paint_cache import PaintCache
@@ -77,14 +78,14 @@ class Frame:
         name: its name in the strip.
         figure: the one figure that stands for it in the strip.
         sentence: the field's term for what happens here, then plain words for it.
-        functions: qualified names of the functions whose lines are shown beside it.
+        functions: the functions whose lines are shown beside it.
         begin: variable that the line sets which is lit at first; empty for any.
         labels: the texts of the picture.
         spots: parts that can be pointed at, besides labels that explain themselves.
 
     """
 
-    def __init__(self, name: str, figure: str, sentence: str, functions: Sequence[str]) -> None:
+    def __init__(self, name: str, figure: str, sentence: str, functions: Sequence[Function]) -> None:
         self.name, self.figure, self.sentence, self.functions = name, figure, sentence, tuple(functions)
         self.begin = ""
         self.labels: list[Label] = []

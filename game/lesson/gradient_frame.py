@@ -10,6 +10,7 @@ from typing import Final
 
 import numpy as np
 
+from ai.explain.recorder import Function
 from ai.nn import OPTIMIZERS, Array
 from ai.nn.optimizers import Adam, Momentum
 from game.core import texts
@@ -34,7 +35,9 @@ class GradientFrame(NetworkFrame):
 
     """
 
-    def __init__(self, name: str, figure: str, sentence: str, functions: Sequence[str], step: LearningStep) -> None:
+    def __init__(
+        self, name: str, figure: str, sentence: str, functions: Sequence[Function], step: LearningStep
+    ) -> None:
         super().__init__(name, figure, sentence, functions, step, _NETWORK, "gradients", step.taken.gradient)
         self.alone = False
         self.weight = next(iter(step.strongest(step.taken.gradient, 1)), None)

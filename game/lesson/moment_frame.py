@@ -12,6 +12,7 @@ import pygame
 
 from ai.common.environment import Doubles, Floats
 from ai.explain.agent_lesson import Lesson
+from ai.explain.recorder import Function
 from ai.lander.environment import ACTION_NAMES, OBSERVATION_SCALE, PARAMS, Outcome
 from game.core import texts
 from game.drawing.canvas import Canvas
@@ -62,7 +63,7 @@ def sensed(value: float, feature: int) -> str:
 class MomentFrame(Frame):
     """Frame of the moment: the little picture, and the nine inputs with their units."""
 
-    def __init__(self, lesson: Lesson, words: Sequence[str], functions: Sequence[str]) -> None:
+    def __init__(self, lesson: Lesson, words: Sequence[str], functions: Sequence[Function]) -> None:
         self._state = np.asarray(lesson.cell.state)
         units = in_units(self._state)
         super().__init__(words[0], sensed(float(units[1]), 1), words[1], functions)
@@ -148,7 +149,7 @@ class HappenedFrame(Frame):
 
     _LEFT, _BARS, _SUM, _AFTER = 0.0, 150.0, 470.0, 510.0
 
-    def __init__(self, lesson: Lesson, words: Sequence[str], functions: Sequence[str]) -> None:
+    def __init__(self, lesson: Lesson, words: Sequence[str], functions: Sequence[Function]) -> None:
         scale = lesson.config.reward_scale
         pay = float(lesson.cell.reward) / scale
         super().__init__(words[0], texts.LESSON_POINTS.format(points=points(pay)), words[1], functions)

@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 import pygame
 
+from ai.explain.recorder import Function
 from ai.nn import Array
 from game.core import texts
 from game.drawing.canvas import Canvas, Point
@@ -36,7 +37,7 @@ class NetworkFrame(Frame):
         name: str,
         figure: str,
         sentence: str,
-        functions: Sequence[str],
+        functions: Sequence[Function],
         step: LearningStep,
         box: pygame.typing.RectLike,
         show: Show,

@@ -11,6 +11,7 @@ import pygame
 from ai.common.decision import in_points
 from ai.common.environment import Floats
 from ai.explain.agent_lesson import Lesson
+from ai.explain.recorder import Function
 from game.core import texts
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
@@ -31,7 +32,7 @@ _BAR: Final = 170.0
 class TargetFrame(Frame):
     """Frame of the target."""
 
-    def __init__(self, lesson: Lesson, words: Sequence[str], functions: Sequence[str]) -> None:
+    def __init__(self, lesson: Lesson, words: Sequence[str], functions: Sequence[Function]) -> None:
         self._scale = lesson.config.reward_scale
         target = lesson.target / self._scale
         super().__init__(words[0], texts.LESSON_POINTS.format(points=points(target)), words[1], functions)

@@ -5,14 +5,13 @@ A line is written when an attempt begins and another when it ends, so that leavi
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from datetime import date, datetime
 from pathlib import Path
 from typing import Annotated, Final
 
-from ai.files import Count, OneOf, Sized, parse_json, read_as, read_end
+from ai.files import Count, OneOf, Sized, append_line, read_lines
 from ai.flights.verification import DAILY
 from ai.lander.environment import Outcome
 from game.core import texts
@@ -39,7 +38,7 @@ class Attempt:
 
     """
 
-    day: Annotated[str, Sized(10, 10)]
+    day: Annotated[str, Sized(10, 10), date.fromisoformat]
     outcome: Annotated[str, OneOf(Outcome.__members__)] = Outcome.FLYING.name
     score: Count = 0
     barred: Annotated[str, Sized(40)] = ""
@@ -80,21 +79,14 @@ class Days:
 
     def _read(self) -> dict[str, Attempt]:
         found: dict[str, Attempt] = {}
-        damaged = 0
         try:
-            text = read_end(self._path, _LARGEST).decode(errors="replace")
+            attempts, damaged = read_lines(Attempt, self._path, _LARGEST)
         except FileNotFoundError:
             return found
         except OSError as error:
             self.problem = texts.FLIGHTS_UNREADABLE.format(path=self._path, reason=error.strerror or error)
             return found
-        for row in text.splitlines():
-            try:
-                attempt = read_as(Attempt, parse_json(row))
-                date.fromisoformat(attempt.day)
-            except ValueError:
-                damaged += bool(row.strip())
-                continue
+        for attempt in attempts:
             before = found.get(attempt.day)
             if before is None or before.outcome == Outcome.FLYING.name:  # a later attempt is practice
                 found[attempt.day] = attempt
@@ -106,9 +98,7 @@ class Days:
         """Note that a day's first attempt has begun, or ended."""
         self.problem, self.attempts = "", {**self.attempts, attempt.day: attempt}
         try:
-            self._path.parent.mkdir(parents=True, exist_ok=True)
-            with self._path.open("ab") as file:
-                file.write(b"\n" + json.dumps(asdict(attempt)).encode() + b"\n")
+            append_line(self._path, asdict(attempt))
         except OSError as error:
             self.problem = texts.DAYS_NOT_KEPT.format(reason=error.strerror or error)
 

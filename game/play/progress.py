@@ -13,9 +13,9 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any, Final
 
-from ai.files import parse_json, read_bytes, read_text, sound_fields, write_bytes, write_text
+from ai.files import free_path, parse_json, read_bytes, read_text, sound_fields, write_bytes, write_text
 from game.core import texts
-from game.core.names import LibraryError, free_path, library_errors
+from game.core.names import LibraryError, library_errors
 from game.core.settings import Settings
 from game.core.trash import Trash
 from game.flight.logbook import FOLDER, LOGBOOK, Records

@@ -268,9 +268,5 @@ class ChapterScene(FormScene):
 
 def placed(source: Source, code: Code) -> tuple[int | None, Mapping[int, str]]:
     """Return the number of the lit line, and what stands beside lines by their numbers."""
-
-    def number(part: str) -> int | None:
-        return next((number for number, line in source.lines if part in line), None) if part else None
-
-    notes = {found: note for part, note in code.notes.items() if (found := number(part)) is not None}
-    return number(code.current), notes
+    notes = {source.line_of(mark): note for mark, note in code.notes.items()}
+    return source.line_of(code.current) if code.current else None, notes

@@ -10,6 +10,7 @@ from typing import Final
 
 import pygame
 
+from ai.files import free_path
 from ai.flights.code import code_of
 from ai.flights.recording import SharedFlight
 from ai.lander.environment import Outcome
@@ -19,7 +20,7 @@ from game.core import texts
 from game.core.assets import PACKED
 from game.core.clock import STEP
 from game.core.collection import exports_dir
-from game.core.names import LONGEST_NAME, fitting, free_path
+from game.core.names import LONGEST_NAME, fitting
 from game.core.pace import SlowMotion
 from game.core.scene import Pop, Push, Transition, push
 from game.drawing import typeface

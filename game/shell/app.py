@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Final
 
 import pygame
 
-from ai.files import write_bytes
+from ai.files import free_path, write_bytes
 from game.core import texts
 from game.core.clock import FixedStep
 from game.core.scene import Push, Route
-from game.core.settings_writer import SettingsWriter
+from game.core.settings import SettingsWriter
 from game.drawing import letters, typeface
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import paint_on
@@ -262,8 +262,6 @@ class App:
 
     def _save_screenshot(self) -> None:
         """Save a screenshot, whole or not at all."""
-        from game.core.names import free_path
-
         path = free_path(self.context.user_dir / "screenshots", f"{datetime.now():%Y-%m-%d %H.%M.%S.%f}", ".png")
         try:
             picture = BytesIO()  # pygame itself does not report a full disk

@@ -12,8 +12,7 @@ from ai.files import Share, Within, brief, inside, read_as, read_json
 from ai.training.checkpoints import TRAINING_FILE
 from ai.training.config import LANDER
 from game.core import texts
-from game.core.collection import Collection, ItemKind
-from game.core.folders import leads_nowhere, there
+from game.core.collection import Collection, ItemKind, leads_nowhere, there
 from game.core.names import LONGEST_NAME, reason
 from game.flight.networks import PARTS, PLAYERS
 

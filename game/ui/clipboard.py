@@ -7,9 +7,8 @@ from typing import Final
 
 import pygame
 
-from ai.files import write_text
+from ai.files import free_path, write_text
 from game.core import texts
-from game.core.names import free_path
 from game.ui.context import Context
 
 FOLDER: Final = "codes"  # in the player's folder, where there is no clipboard

@@ -92,6 +92,19 @@ def test_step_in_a_batch_of_1000_equals_the_same_step_alone(make, steps):
     assert touched > steps / 4
 
 
+@pytest.mark.parametrize(("batch", "steps"), [(2, 200), (3, 60), (7, 40), (17, 20)])
+@pytest.mark.parametrize("make", [landers, toys])
+def test_every_world_of_a_small_batch_equals_itself_alone_at_each_step(make, batch, steps):
+    many = make(batch)
+    throw(many, seed=batch)
+    few = [like(many, make, [row]) for row in range(batch)]
+    for _ in range(steps):
+        many.step()
+        for row, alone in enumerate(few):
+            alone.step()
+            assert_same(many, alone, [row])
+
+
 def test_a_second_landing_owes_nothing_to_the_first():
     # A box that hops alone must not meet the impulses of its last landing again.
     def hopper(batch):
@@ -107,6 +120,20 @@ def test_a_second_landing_owes_nothing_to_the_first():
         alone.step()
         pair.step()
         assert_same(pair, alone, [0])
+
+
+def test_what_is_set_in_one_world_leaves_the_impulses_of_others_alone():
+    pair, alone = World(gravity=(0, -9.81), batch=2), World(gravity=(0, -9.81))
+    for world in (pair, alone):
+        world.add(Polygon.box(20, 1), (0, -0.5), static=True)
+        for row in range(4):
+            world.add(Polygon.box(1, 1), (0.1 * row, 0.5 + row), friction=0.5)
+        advance(world, 10)
+    for _ in range(20):
+        pair.bodies[1].set(position=(0.0, 0.5), mask=np.array([True, False]))
+        pair.step()
+        alone.step()
+        assert_same(pair, alone, [1])
 
 
 def test_a_reset_leaves_no_residue():

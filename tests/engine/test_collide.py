@@ -63,6 +63,14 @@ def convex(seed):
     return Polygon(np.stack([np.cos(angle), np.sin(angle)], axis=1) * random.uniform(0.5, 1.5, 2))
 
 
+def test_box_on_box():
+    manifold = collide(BOX, pose(0, 0), BOX, pose(0.5, 1.9))
+    assert manifold.normal[0] == pytest.approx(np.array([0.0, 1.0]))
+    assert manifold.depth[0] == pytest.approx(np.array([0.1, 0.1]))
+    assert manifold.valid[0].all()
+    assert sorted(manifold.points[0].tolist()) == [pytest.approx([-0.5, 0.95]), pytest.approx([1.0, 0.95])]
+
+
 def test_box_on_its_corner_has_one_point():
     manifold = collide(BOX, pose(0, 0), BOX, pose(0.2, 0.9 + np.sqrt(2), np.pi / 4))
     assert manifold.valid[0].sum() == 1

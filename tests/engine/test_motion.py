@@ -15,6 +15,17 @@ def run(world, steps):
     advance(world, steps)
 
 
+def test_free_fall_is_semi_implicit_euler_exactly_and_the_parabola_nearly():
+    world = World(gravity=(0.0, -G))
+    body = world.add(Circle(0.5), (3.0, 100.0))
+    run(world, 300)
+    time = 300 * DT
+    assert body.velocity[0, 1] == pytest.approx(-G * time, rel=1e-12)
+    assert body.position[0, 1] == pytest.approx(100 - G * DT**2 * 300 * 301 / 2, rel=1e-12)
+    assert body.position[0, 1] == pytest.approx(100 - G * time**2 / 2, abs=G * time * DT / 2 + 1e-9)
+    assert body.position[0, 0] == 3.0
+
+
 def test_gravity_may_differ_between_worlds_and_change():
     world = World(batch=3)
     body = world.add(Circle(1.0), (0, 0))

@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from engine import Circle, Polygon, World
 from tests.support.worlds import advance
@@ -133,6 +135,21 @@ def test_a_body_laid_onto_a_sleeping_one_wakes_it_and_a_moved_wall_too():
     assert world.bodies[1].position[0, 0] < -0.05
 
 
+def test_wake_wakes_an_island_in_the_worlds_of_a_mask_and_all_of_it():
+    world = sleeping_tower(batch=3)
+    world.bodies[2].wake(np.array([False, True, False]))
+    assert asleep(world)[:, 1:].all(axis=1).tolist() == [True, False, True]
+    assert not asleep(world)[1].any()
+    advance(world, 60)
+    assert asleep(world)[:, 1:].all()
+    world.wake()
+    assert not asleep(world).any()
+    advance(world, 60)
+    world.gravity = np.array([[0.0, -9.81], [1.0, -9.81], [0.0, -9.81]])
+    world.step()
+    assert asleep(world)[:, 1].tolist() == [True, False, True]
+
+
 def test_a_body_added_wakes_the_world_and_lies_down_with_it():
     world = sleeping_tower(height=2)
     world.add(BOX, (0.0, 3.5))
@@ -212,6 +229,42 @@ def test_a_heap_comes_to_rest_and_sleeps_island_by_island(seed):
             assert slept.all() or not slept.any()
     assert asleep(world)[0, 3:].all()
     assert np.where(world.contacts.valid, world.contacts.depth, 0.0).max() < 0.02
+
+
+@settings(max_examples=5, deadline=None)
+@given(data=st.data())
+def test_worlds_that_sleep_and_wake_in_a_batch_are_the_same_alone(data):
+    batch = 3
+    many, few = tower(batch=batch), [tower() for _ in range(batch)]
+    for row in range(batch):
+        aside = data.draw(st.floats(-0.1, 0.1))
+        many.bodies[2].set(position=(aside, 1.5), mask=np.arange(batch) == row)
+        few[row].bodies[2].position = (aside, 1.5)
+    for _ in range(5):
+        row = data.draw(st.integers(0, batch - 1))
+        body = data.draw(st.integers(1, 3))
+        kind = data.draw(st.sampled_from(["push", "throw", "wake", "nothing"]))
+        mask = np.arange(batch) == row
+        if kind == "push":
+            many.bodies[body].apply_force(mask[:, None] * np.array([150.0, 0.0]))
+            few[row].bodies[body].apply_force((150.0, 0.0))
+        elif kind == "throw":
+            many.bodies[body].set(velocity=(1.0, 2.0), mask=mask)
+            few[row].bodies[body].velocity = (1.0, 2.0)
+        elif kind == "wake":
+            many.bodies[body].wake(mask)
+            few[row].bodies[body].wake()
+        for _ in range(data.draw(st.integers(5, 45))):
+            many.step()
+            for row, alone in enumerate(few):
+                alone.step()
+                assert_same(many, alone, [row])
+                assert asleep(many)[row].tolist() == asleep(alone)[0].tolist()
+    for row, alone in enumerate(few):
+        rows = np.flatnonzero(many.contacts.world == row) if many.contacts else np.zeros(0, dtype=int)
+        assert len(rows) == (len(alone.contacts) if alone.contacts else 0)
+        if len(rows):
+            assert np.array_equal(many.contacts.impulse[rows], alone.contacts.impulse)
 
 
 def test_a_recalled_memory_brings_sleep_back_too():

@@ -81,6 +81,14 @@ def test_ten_boxes_laid_unevenly_stand_for_ten_seconds():
     assert abs(world.state.velocity).max() < early
 
 
+def test_a_leaning_tower_falls():
+    world = ground()
+    for row in range(4):
+        world.add(Polygon.box(1.0, 1.0), (0.45 * row, 0.5 + row))
+    run(world, 4)
+    assert world.bodies[4].position[0, 1] < 2.0
+
+
 def test_more_manifolds_than_a_word_has_bits():
     # A plank under eighty balls: each needs a colour of its own, or some would not be held up.
     world = ground()

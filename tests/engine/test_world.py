@@ -21,6 +21,18 @@ def run(world, steps):
     advance(world, steps)
 
 
+def test_an_empty_world_one_of_static_bodies_and_a_single_body():
+    world, fixed = World(), floor()
+    fixed.add(BOX, (0, 0), static=True)
+    for each in (world, fixed):
+        run(each, 3)
+        assert each.contacts is None
+    body = world.add(BOX, (0, 5))
+    run(world, 60)
+    assert world.contacts is None
+    assert body.velocity[0, 1] == pytest.approx(-1.62)
+
+
 @pytest.mark.parametrize("last", [True, False])
 def test_bodies_may_be_added_in_any_order(last):
     def fill(order):

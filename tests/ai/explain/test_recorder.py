@@ -3,6 +3,7 @@
 import sys
 
 import numpy as np
+import pytest
 
 from ai.explain.recorder import LARGE, RETURN, Recorder, Row
 
@@ -16,6 +17,10 @@ def scaled(numbers, factor):
     return numbers, total
 
 
+def countdown(number):
+    return 1 if number == 0 else 1 + countdown(number - 1)
+
+
 def doubled(numbers):
     return 2 * numbers
 
@@ -24,14 +29,15 @@ def test_each_line_has_the_values_that_it_set():
     numbers = np.array([1.0, 2.0])
     with Recorder([scaled]) as recorder:
         scaled(numbers, 3.0)
-    values = [event.values for event in recorder.events]
-    assert values[0]["factor"] == 3.0
-    np.testing.assert_array_equal(values[0]["numbers"], [1.0, 2.0])
-    assert [each["total"] for each in values if "total" in each] == [0.0, 3.0, 9.0]
-    np.testing.assert_array_equal(recorder.last("scaled", "numbers"), [3.0, 6.0])  # changed in place
-    np.testing.assert_array_equal(recorder.last("scaled", f"{RETURN}.0"), [3.0, 6.0])
-    first = scaled.__code__.co_firstlineno
-    assert [event.number - first for event in recorder.events] == [0, 2, 3, 4, 3, 4, 3, 5, 6]
+    call, first = recorder.call(scaled), scaled.__code__.co_firstlineno
+    assert call.arguments["factor"] == 3.0
+    np.testing.assert_array_equal(call.arguments["numbers"], [1.0, 2.0])
+    assert [line.values["total"] for line in call.lines if "total" in line.values] == [0.0, 3.0, 9.0]
+    np.testing.assert_array_equal(call.values["numbers"], [3.0, 6.0])  # changed in place
+    np.testing.assert_array_equal(call.values[f"{RETURN}.0"], [3.0, 6.0])
+    assert [line.number - first for line in recorder.lines] == [0, 2, 3, 4, 3, 4, 3, 5, 6]
+    assert call.numbers["total"] - first == 4
+    assert {line.function for line in call.lines} == {"scaled"}
 
 
 def test_what_is_recorded_stays_when_the_array_changes():
@@ -39,7 +45,17 @@ def test_what_is_recorded_stays_when_the_array_changes():
     with Recorder([scaled]) as recorder:
         scaled(numbers, 2.0)
     numbers[:] = 7.0
-    np.testing.assert_array_equal(recorder.last("scaled", "numbers"), [2.0, 2.0, 2.0])
+    np.testing.assert_array_equal(recorder.call(scaled).values["numbers"], [2.0, 2.0, 2.0])
+
+
+def test_each_call_is_kept_apart_also_one_within_another():
+    with Recorder([countdown, doubled]) as recorder:
+        countdown(2)
+    assert [call.arguments["number"] for call in recorder.calls(countdown)] == [2, 1, 0]
+    assert [call.values[RETURN] for call in recorder.calls(countdown)] == [3, 2, 1]
+    assert recorder.calls(doubled, scaled) == []
+    with pytest.raises(LookupError, match="doubled did not run"):
+        recorder.call(doubled)
 
 
 def test_only_the_functions_asked_for_are_recorded_and_only_within():
@@ -47,9 +63,8 @@ def test_only_the_functions_asked_for_are_recorded_and_only_within():
     with Recorder([scaled]) as recorder:
         sorted([3, 1])
         doubled(np.ones(2))
-    assert recorder.events == []
     scaled(np.ones(2), 2.0)
-    assert recorder.events == []
+    assert recorder.lines == recorder.calls(scaled) == []
     assert sys.gettrace() is before
 
 
@@ -57,7 +72,7 @@ def test_of_a_large_array_one_row_is_recorded():
     numbers = np.arange(2.0 * LARGE).reshape(4, -1)
     with Recorder([scaled], row=2) as recorder:
         scaled(numbers, 1.0)
-    row = recorder.last("scaled", "numbers")
+    row = recorder.call(scaled).values["numbers"]
     assert isinstance(row, Row)
     assert row.shape == numbers.shape
     np.testing.assert_array_equal(row.values, numbers[2])

@@ -207,7 +207,7 @@ def fully(inputs, outputs):
 
 
 def convolution(shape, filters):
-    sizes = {"inputs": shape, "filters": filters, "kernel": 1, "stride": 1, "padding": 0}
+    sizes = {"inputs": shape, "filters": filters, "kernel": 3, "stride": 1, "padding": 1}
     return {"type": "ConvolutionLayer", **sizes, "arrays": {}}
 
 
@@ -215,10 +215,10 @@ def convolution(shape, filters):
     ("layers", "said"),
     [
         ([{"type": "ActivationLayer", "activation": {"name": "tanh"}}] * 60_000, "at most 500 layers"),
-        ([fully(1024, 1024)] * 400, "at most 12,000,000 parameters"),
+        ([fully(3400, 3400)] * 2, "at most 12,000,000 parameters"),
         ([fully(1_000_000, 64)], "at most 12,000,000 parameters"),
         ([convolution([28, 28, 1], 1 << 20)], "values of an example"),
-        ([convolution([32, 32, 256], 256)] * 100, "multiplications"),
+        ([convolution([32, 32, 256], 256)] * 2, "multiplications"),
         ([convolution([1024, 1024, 1], 1 << 20)], "values of an example"),
     ],
 )
@@ -276,11 +276,10 @@ def test_a_written_file_waits_for_its_content_and_then_for_its_name(tmp_path, mo
         fsync(descriptor)
 
     monkeypatch.setattr(os, "fsync", note)
-    for new in (True, False):
-        write_text(tmp_path / "settings.json", "{}", new=new)
-    assert flushed == ["content", ["settings.json"]] * 2
+    write_text(tmp_path / "settings.json", "{}")
+    assert flushed == ["content", ["settings.json"]]
     write_text(tmp_path / "settings.json", "{}", flush=False)
-    assert len(flushed) == 4
+    assert len(flushed) == 2
 
 
 def test_a_folder_that_cannot_wait_for_the_disk_is_no_failure(tmp_path, monkeypatch):
@@ -483,16 +482,16 @@ def test_the_second_training_of_a_folder_is_told(tmp_path, capsys):
         assert main(command) == 1
         assert "another training" in capsys.readouterr().err
     assert main(command) == 0
-    assert [path.name for path in tmp_path.iterdir()] == ["run"]
+    assert not list(tmp_path.glob("*.lock"))
 
 
 def test_a_lock_that_was_let_go_is_free_at_once_and_leaves_nothing(tmp_path):
     first = take(tmp_path / "a.lock")
     assert take(tmp_path / "a.lock") is None
-    first.release()
+    first.close()
     with take(tmp_path / "a.lock"):
         assert take(tmp_path / "a.lock") is None
-        first.release()  # once more, which must not free what another holds
+        first.close()  # once more, which must not free what another holds
         assert take(tmp_path / "a.lock") is None
     assert not list(tmp_path.iterdir())
 
@@ -500,7 +499,7 @@ def test_a_lock_that_was_let_go_is_free_at_once_and_leaves_nothing(tmp_path):
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no pipes")
 def test_a_pipe_in_place_of_a_lock_lets_nobody_wait(tmp_path):
     os.mkfifo(tmp_path / ".run.lock")
-    waiter = "from ai.files import take_folder; import sys; take_folder(sys.argv[1]).release()"
+    waiter = "from ai.files import take_folder; import sys; take_folder(sys.argv[1]).close()"
     subprocess.run([sys.executable, "-c", waiter, tmp_path / "run"], check=True, timeout=300)
 
 
@@ -536,17 +535,3 @@ def test_a_claimed_folder_is_checked_before_there_is_anything_to_write(tmp_path)
     (tmp_path / "letter").write_text("dear")
     with pytest.raises(FileExistsError, match="left as it is"), claimed_folder(tmp_path, KIND):
         pytest.fail("this was not ours")
-
-
-def no_links(*_):
-    raise PermissionError(1, "this disk has none")
-
-
-def test_a_new_file_takes_no_name_that_is_taken(tmp_path, monkeypatch):
-    write_text(tmp_path / "a", "first", new=True)
-    for _ in range(2):
-        with pytest.raises(FileExistsError):
-            write_text(tmp_path / "a", "second", new=True)
-        monkeypatch.setattr(os, "link", no_links)
-    assert (tmp_path / "a").read_text() == "first"
-    assert [path.name for path in tmp_path.iterdir()] == ["a"]

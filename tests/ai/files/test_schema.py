@@ -41,13 +41,13 @@ def test_what_is_wrong_is_named_with_its_place(subtests):
     wrong: Any
     for wrong, said in [
         ({"name": 1}, "name: 1 is no text"),
-        ({"name": ""}, "name: '' has a length of 0"),
-        ({"name": "x" * 9}, "not of 1 to 8"),
+        ({"name": ""}, "name: '' has not a length of 1 to 8"),
+        ({"name": "x" * 9}, "not a length of 1 to 8"),
         ({"wheels": {}}, "wheels: {} is no list"),
         ({"wheels": [1]}, r"wheels\[0\]: 1 is no table"),
         ({"wheels": [{"radius": 0}]}, r"wheels\[0\].radius: 0.0 is not above 0"),
         ({"wheels": [{"radius": 1}, {}]}, r"wheels\[1\].radius is missing"),
-        ({"wheels": [{"radius": 1, "spokes": 2}]}, r"wheels\[0\].spokes: 2 is no whole number from 3 to 60"),
+        ({"wheels": [{"radius": 1, "spokes": 2}]}, r"wheels\[0\].spokes: 2 does not lie between 3 and 60"),
         ({"wheels": [{"radius": 1, "spokes": 32.0}]}, "no whole number"),
         ({"wheels": [{"radius": 1, "spokes": True}]}, "no whole number"),
         ({"place": [1, 2, 3]}, "no list of 2"),

@@ -1,6 +1,7 @@
 """Saving whole or not at all, and naming what is wrong on the way back."""
 
 import json
+import os
 import re
 from typing import Any
 
@@ -313,8 +314,9 @@ def test_a_stop_between_the_renames_is_recovered(saved):
 
 
 def test_leavings_of_a_stopped_save_are_cleared(saved):
-    saved.with_name(".model.new").mkdir()
-    saved.with_name(".model.old").mkdir()
+    for left in (".model.new", ".model.0a1b2c3d.new", ".model.old", ".model.0a1b2c3d.old"):
+        saved.with_name(left).mkdir()
+        os.utime(saved.with_name(left), (1e9, 1e9))
     every_layer().save(saved)
     assert [path.name for path in saved.parent.iterdir()] == ["model"]
 

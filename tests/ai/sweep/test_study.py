@@ -101,6 +101,7 @@ def test_what_a_kill_leaves_half_written_is_no_trial_and_is_cleared_away(study):
     half = study.folder / "trials" / ".0002.0123abcd.new"
     half.mkdir()
     (half / "trial.json").write_text("{")
+    os.utime(half, (1e9, 1e9))
     assert sorted(Study.load(study.folder).trials) == [0, 1]
     with study.claimed():
         assert not half.exists()

@@ -166,9 +166,11 @@ def test_damage_is_named_with_the_way_out_wherever_it_is(tmp_path, monkeypatch):
 
 def test_numbers_that_no_run_can_have_had_are_refused(tmp_path, subtests):
     training = on(begun(SMALL.changed(success_pass=True)), 30)
+    while not training.state()["env"]["flights"]["contacts"]["contacts"]:
+        training.advance()
     changes = {
         "held": lambda state: state["held"].fill(6),
-        "contacts": lambda state: state["env"]["flights"]["contacts"]["impulses"].update(key=np.array([10**9])),
+        "contacts": lambda state: state["env"]["flights"]["contacts"]["contacts"]["world"].fill(10**9),
         "outcome": lambda state: state["env"]["flights"]["landers"]["outcome"].fill(9),
         "target": lambda state: state["env"]["flights"]["landers"]["target"].fill(3),
         "streams": lambda state: state["env"]["streams"].pop(),

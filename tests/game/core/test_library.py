@@ -15,7 +15,7 @@ from ai.agent.agent import DeepQAgent
 from ai.training.checkpoints import resume_run, save_run
 from ai.training.config import Config
 from ai.training.loop import Training
-from game.core import copying, texts
+from game.core import collection, texts
 from game.core.collection import UNSAVED
 from game.core.names import LONGEST_NAME, LibraryError, is_valid_name
 from game.flight import networks
@@ -166,9 +166,9 @@ def test_what_is_no_plain_network_is_not_copied(
         case "deep":
             (strange / Path(*"abcdefghijkl")).mkdir(parents=True)
         case "many":
-            monkeypatch.setattr(copying, "MOST_FILES", 4)
+            monkeypatch.setattr(collection, "MOST_FILES", 4)
         case "large":
-            monkeypatch.setattr(copying, "MOST_BYTES", 10)
+            monkeypatch.setattr(collection, "MOST_BYTES", 10)
     with pytest.raises(LibraryError, match="strange is not copied"):
         library.import_folder(strange)
     assert library.runs() == []
@@ -343,7 +343,7 @@ def test_a_full_disk_is_said_and_leaves_nothing_half_done(
     add(library, "run")
 
     def full(source: Path, target: Path, **_: bool) -> None:
-        target.mkdir()
+        (target / "half").mkdir()
         raise error
 
     monkeypatch.setattr(shutil, "copytree", full)

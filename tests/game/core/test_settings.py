@@ -5,14 +5,13 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from threading import Event, Thread, current_thread
+from threading import Event, current_thread
 
 import pytest
 
-from ai.files import take, write_text
-from game.core.lock import held
-from game.core.settings import DAMAGED_NAME, FILE_NAME, Settings, SettingsFile
-from game.core.settings_writer import SettingsWriter
+from ai.files import write_text
+from game.core import texts
+from game.core.settings import DAMAGED_NAME, FILE_NAME, Settings, SettingsFile, SettingsWriter
 
 DAMAGED = [
     b"",
@@ -160,16 +159,24 @@ def opened(folder: Path) -> tuple[SettingsWriter, Settings]:
     return SettingsWriter(file, settings), settings
 
 
-def test_two_games_on_one_folder_leave_each_others_choices_alone(tmp_path: Path):
+def test_of_two_windows_on_one_folder_the_first_writes_and_the_second_says_so(tmp_path: Path):
     SettingsFile(tmp_path).save(Settings(model="eagle"))
     (one, mine), (other, yours) = opened(tmp_path), opened(tmp_path)
-    mine.colour_safe = True
-    one.save(mine)
-    one.wait()
     yours.reduced_motion = True
-    other.close(yours)
+    other.save(yours)
+    other.wait()
+    assert other.problem() == texts.SETTINGS_ELSEWHERE
+    mine.colour_safe = True
     one.close(mine)
-    assert SettingsFile(tmp_path).load() == Settings(model="eagle", colour_safe=True, reduced_motion=True)
+    other.close(yours)
+    assert not other.problem()
+    assert SettingsFile(tmp_path).load() == Settings(model="eagle", colour_safe=True)
+    again, settings = opened(tmp_path)
+    settings.muted = True
+    again.close(settings)
+    assert not again.problem()
+    assert SettingsFile(tmp_path).load().muted
+    assert [path.name for path in tmp_path.iterdir()] == [FILE_NAME]
 
 
 def test_what_is_set_and_set_back_is_what_it_was(tmp_path: Path):
@@ -228,7 +235,7 @@ def test_a_kill_at_any_moment_leaves_a_whole_file(tmp_path: Path):
     SettingsFile(tmp_path).save(Settings(model="eagle"))
     script = (
         "import sys; from pathlib import Path\n"
-        "from game.core.settings import *; from game.core.settings_writer import *\n"
+        "from game.core.settings import *\n"
         "file = SettingsFile(Path(sys.argv[1])); settings = file.load(); writer = SettingsWriter(file, settings)\n"
         "print(flush=True)\n"
         "while True:\n"
@@ -244,30 +251,3 @@ def test_a_kill_at_any_moment_leaves_a_whole_file(tmp_path: Path):
         file = SettingsFile(tmp_path)
         assert file.load().model == "eagle"
         assert not file.problem
-
-
-def test_who_reads_and_writes_under_one_lock_loses_nothing(tmp_path: Path):
-    lock, total = tmp_path / ".lock", tmp_path / "total"
-    total.write_text("0")
-
-    def add() -> None:
-        for _ in range(20):
-            with held(lock, 60):
-                total.write_text(str(int(total.read_text()) + 1))
-
-    threads = [Thread(target=add) for _ in range(3)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert total.read_text() == "60"
-
-
-def test_a_lock_that_is_never_released_stops_nobody_for_good(tmp_path: Path):
-    other = take(tmp_path / ".lock")
-    with held(tmp_path / ".lock", 0.03):
-        pass
-    assert other
-    other.release()
-    with held(tmp_path / ".lock", 0):
-        assert take(tmp_path / ".lock") is None

@@ -13,7 +13,6 @@ from ai.lander.environment import Outcome
 from ai.lander.missions import MISSIONS
 from ai.lander.pilots import ScriptedPilot
 from game.core import texts
-from game.flight import flight_file
 from game.flight import logbook as records
 from game.flight.flight import Flight, Recording, StickHolder
 from game.flight.flight_file import Entry, Record, from_text, to_text
@@ -38,20 +37,6 @@ def entry(outcome: str = "LANDED", when: float = NOON, **figures) -> Entry:
 @pytest.fixture
 def kept(tmp_path: Path) -> Records:
     return Records(tmp_path / "user")
-
-
-def test_two_games_that_keep_a_flight_in_one_millisecond_keep_both(kept: Records, monkeypatch: pytest.MonkeyPatch):
-    write, others = flight_file.write, Records(kept.folder.parent)
-
-    def after_another(path: Path, record: Record) -> None:
-        monkeypatch.setattr(flight_file, "write", write)
-        others.keep(fly(seed=4), NOON)
-        write(path, record)
-
-    monkeypatch.setattr(flight_file, "write", after_another)
-    kept.keep(fly(seed=3), NOON)
-    assert sorted(kept.read(each.file).recording.seed for each in kept.entries()) == [3, 4]
-    assert len(kept.kept()) == 2
 
 
 def test_of_a_huge_logbook_the_end_is_read(kept: Records):

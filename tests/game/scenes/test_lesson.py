@@ -9,10 +9,9 @@ import pygame
 import pytest
 
 from ai.common.decision import in_points
-from ai.explain.agent_lesson import Lesson, functions
+from ai.explain.agent_lesson import Lesson
 from ai.nn.costs import COSTS
 from game.core import texts
-from game.core.source import source_of
 from game.drawing.canvas import Canvas
 from game.lesson.code import CODE
 from game.lesson.error_frame import ErrorFrame
@@ -104,20 +103,19 @@ def test_a_gamepads_pointer_picks_a_weight(open_game: Open):
 
 
 def test_lines_are_stepped_through_and_stand_in_the_source(driver: Driver, lesson: Lesson):
-    known = functions(lesson.config)
     seen = 0
     for part in driver.top.parts:
-        code = part.code
-        for line in code.lines:
-            source = source_of(known[line.function])
-            assert source is not None
-            assert line.number in dict(source.lines), f"{line.function}, line {line.number}"
+        begin = part.code.index
+        for place, line in enumerate(part.code.lines):
+            part.code.index = place
+            assert line.number in dict(part.code.source.lines), f"{line.function}, line {line.number}"
             seen += 1
+        part.code.index = begin
     assert seen > 100
     driver.top.show(3)
     code = driver.top.code
     before = code.index
-    assert "targets" in [value.name for value in code.line.values], "the walk begins where the target is set"
+    assert "targets" in code.line.values, "the walk begins where the target is set"
     driver.keys(pygame.K_UP, pygame.K_UP, pygame.K_DOWN)
     assert code.index == before - 1
     driver.keys(*[pygame.K_UP] * (before + 5))
@@ -131,17 +129,15 @@ def test_lines_and_their_numbers_are_on_the_screen(driver: Driver):
     text = dict(source.lines)[line.number].strip()
     assert any(word and text.startswith(word) for word in words)
     assert line.values
-    for value in line.values:
-        assert value.name in words
+    for name in line.values:
+        assert name in words
 
 
 def test_the_numbers_of_a_line_are_listed_under_the_mouse(driver: Driver, lesson: Lesson):
     driver.top.show(5)
     code = driver.top.code
-    code.index = next(
-        number_ for number_, line in enumerate(code.lines) if any(each.name == "output_error" for each in line.values)
-    )
-    row = [each.name for each in code.line.values].index("output_error")
+    code.index = next(number_ for number_, line in enumerate(code.lines) if "output_error" in line.values)
+    row = [*code.line.values].index("output_error")
     driver.move((CODE.left + 60, CODE.top + 308 + 18 * row + 26))
     assert code.pointed is not None
     assert code.pointed[0].name == "output_error"
@@ -158,7 +154,7 @@ def test_the_line_that_does_it_is_lit_at_first_with_this_cases_numbers_beside_th
     sets = {0: "rows", 2: "self._returns", 3: "targets", 4: "errors", 6: "values"}
     for frame, name in sets.items():
         code = driver.top.parts[frame].code
-        assert name in [value.name for value in code.line.values]
+        assert name in code.line.values
         assert "_start" not in dict(code.source.lines)[code.line.number], "the sum itself, not its empty beginning"
     words = shown(driver, 3)
     assert words.count(number(lesson.target)) == 2, "beside the line, and below"
@@ -182,7 +178,7 @@ def test_shapes_and_numbers_below_the_listing_never_touch(driver: Driver, monkey
             drawn.clear()
             driver.key(pygame.K_DOWN)
             driver.frames(1)
-            names = [value.name for value in driver.top.code.line.values]
+            names = list(driver.top.code.line.values)
             for name, box, sheet in [each for each in drawn if each[0] in names]:
                 row = sorted((other for _, other, its in drawn if its == sheet and abs(other.bottom - box.bottom) < 4),
                              key=lambda each: each.left)  # fmt: skip

@@ -5,9 +5,7 @@ from collections.abc import Callable
 import pytest
 
 from ai.explain.agent_lesson import Lesson
-from ai.explain.digit_lesson import digit_functions
 from game.core import texts
-from game.core.source import source_of
 from game.lesson.figures import number, points
 from game.lesson.frame import Explanation
 from game.lesson.gradient_frame import GradientFrame
@@ -105,9 +103,10 @@ def test_an_image_is_shown_in_seven_frames_as_well(open_game: Open, preset: str)
     assert number(lesson.step.gradient_length) in " ".join(words[5])
     before, after = (float(each[digit]) for each in (lesson.probabilities_before, lesson.probabilities_after))
     assert any(number(before) in word and number(after) in word for word in words[6])
-    known = digit_functions(lesson.config)
     for part in driver.top.parts:
-        assert all(line.number in dict(source_of(known[line.function]).lines) for line in part.code.lines)
+        for number_, line in enumerate(part.code.lines):
+            part.code.index = number_
+            assert line.number in dict(part.code.source.lines)
 
 
 @pytest.mark.parametrize("preset", ["classic", "modern"])
