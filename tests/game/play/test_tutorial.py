@@ -100,8 +100,8 @@ def test_the_very_first_flight_teaches_all_of_it_and_free_flights_follow(
     assert play(driver).waiting
     driver.app.close()
     assert saved(driver) == (True, True)
-    driver = open_game(SettingsScene, "flights")
-    assert driver.widget(texts.TUTORIAL_OPEN)._figure() == texts.TUTORIAL_FLOWN
+    settings = open_game(SettingsScene, "flights")
+    assert settings.widget(texts.TUTORIAL_OPEN)._figure() == texts.TUTORIAL_FLOWN
 
 
 def test_only_the_very_first_flight_teaches(open_game: Open):
