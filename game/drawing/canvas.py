@@ -18,6 +18,7 @@ from game.drawing.tokens import FAINT, INK, NIGHT0, PALETTE, PANEL, PANEL_ALPHA,
 from game.drawing.typeface import Weight
 
 _MOST_WORDS: Final = 256  # text boxes noted in a frame, at most
+_MOST_SEEN: Final = 16  # pads and craft likewise
 _FAINT_WORDS: Final = 0.4  # alpha below which text is not noted
 _AROUND: Final = 4.0  # points of margin around noted text
 # Least size of a text that has too little room, as a share of the size it is laid out in: English always fits; other
@@ -62,6 +63,7 @@ class Canvas:
         grows: whether small text is enlarged by `typeface.grow`, instead of everything by `zoom`.
         pointer: position of the mouse in points; None while it is not in use.
         words: boxes of words, widgets and panels of the last frame with a margin, in the window's pixels.
+        looked_at: boxes of what is looked at in the last frame, pads and craft, in the window's pixels.
         explained: areas of this frame that can be explained, in the order in which they were drawn.
 
     """
@@ -76,6 +78,8 @@ class Canvas:
         self.pointer: Point | None = None
         self.words: list[pygame.Rect] = []
         self._covered: deque[pygame.Rect] = deque(maxlen=_MOST_WORDS)  # boxes noted in this frame
+        self.looked_at: list[pygame.Rect] = []
+        self._seen: deque[pygame.Rect] = deque(maxlen=_MOST_SEEN)
         self.explained: deque[Explanation] = deque(maxlen=_MOST_WORDS)
         self.attach(window)
 
@@ -182,7 +186,7 @@ class Canvas:
         sheet = copy(self)
         sheet.size = (max(1, math.ceil(width * self.scale)), max(1, math.ceil(height * self.scale)))
         sheet._own()
-        sheet._covered, sheet.explained = deque(maxlen=0), deque(maxlen=0)
+        sheet._covered, sheet._seen, sheet.explained = deque(maxlen=0), deque(maxlen=0), deque(maxlen=0)
         if spare is not None and spare.get_size() == sheet.size:
             spare.fill((0, 0, 0, 0))
             sheet.surface = spare
@@ -194,7 +198,7 @@ class Canvas:
         """Return a canvas at the same scale on its own opaque surface, to be copied as often as it is drawn."""
         picture = copy(self)
         picture._own()
-        picture._covered = deque(maxlen=0)
+        picture._covered, picture._seen = deque(maxlen=0), deque(maxlen=0)
         picture.surface = pygame.Surface(self.rect(0, 0, width, height).size)
         return picture
 
@@ -212,6 +216,10 @@ class Canvas:
         """Note an area of the surface, in pixels, that holds something to read, for stars and notes to avoid."""
         self._covered.append(area.move(self._corner))
 
+    def look_at(self, area: pygame.typing.RectLike) -> None:
+        """Note an area of the surface, in pixels, that a player looks at, for notes to avoid."""
+        self._seen.append(pygame.Rect(area).move(self._corner))
+
     @contextmanager
     def unnoted(self) -> Iterator[None]:
         """Draw without noting areas that hold something to read; a context manager."""
@@ -226,8 +234,9 @@ class Canvas:
         """Begin a new frame: move the noted areas to `words`."""
         around = 2 * self.px(_AROUND)
         self.words = [box.inflate(around, around) for box in self._covered]
-        self._covered.clear()
-        self.explained.clear()
+        self.looked_at = list(self._seen)
+        for noted in (self._covered, self._seen, self.explained):
+            noted.clear()
 
     def explain(self, box: pygame.typing.RectLike, what: str, now: Now = str) -> None:
         """Note what stands in a box, in points, and a function that says what it means now, for those who ask."""

@@ -81,7 +81,7 @@ class LogbookScene(ListScene[Entry]):
             Chart((_LEFT, _CHARTS[0], _WIDTH, _CHART_HEIGHT), texts.BECOMING_TITLE, limits=(0.0, 10.0),
                   read="{:.1f}".format, read_x=texts.LOGBOOK_FLIGHT.format, empty=texts.BECOMING_NONE),
             Chart((_LEFT, _CHARTS[1], _WIDTH, _CHART_HEIGHT - 20), texts.LOGBOOK_FUEL, read="{:.1f} s".format,
-                  read_x=texts.LOGBOOK_FLIGHT.format),
+                  read_x=texts.LOGBOOK_FLIGHT.format, empty=texts.LOGBOOK_FUEL_NONE),
         ])  # fmt: skip
         self.form.add(VirtualPointer(manager, self._charts.box, self._charts.follow))
         paste_box = (MARGIN + 130, _LAYOUT.foot, 220, VERB_LINE)
@@ -232,9 +232,14 @@ class LogbookScene(ListScene[Entry]):
     def _draw_chosen(self, canvas: Canvas) -> None:
         """Write below the verbs why a flight does not count, and why it cannot be seen any more."""
         y = _LAYOUT.verbs[1] + 22 + VERB_LINE * len(self._verbs)
-        bar = texts.NOT_COUNTED[self.chosen.bar] if self.chosen and self.chosen.bar else ""
+        bar = why_in_brackets(self.chosen) if self.chosen and self.chosen.bar else ""
         for text in filter(None, (bar, self._why_gone)):
             y = draw_wrapped(canvas, text, (_LEFT, y), _WIDTH, colour=MUTE, leading=19)
+
+
+def why_in_brackets(entry: Entry) -> str:
+    """Return the points of a flight that does not count, as its row has them, and why it does not."""
+    return f"{texts.LOGBOOK_UNCOUNTED.format(points=entry.score)}: {texts.NOT_COUNTED[entry.bar]}"
 
 
 def _draw_totals(canvas: Canvas, sums: Totals) -> None:

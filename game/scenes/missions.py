@@ -1,4 +1,4 @@
-"""Missions scene: the campaign's missions with goals and best results, and the start of the day."""
+"""Missions scene: the campaign's missions with goals and best results."""
 
 from __future__ import annotations
 
@@ -8,8 +8,7 @@ from typing import Final
 
 import pygame
 
-from ai.flights.verification import DAILY
-from ai.lander.missions import FIRST, MISSIONS
+from ai.lander.missions import MISSIONS
 from ai.lander.rules import tenths
 from game.cockpit.hud import draw_ring
 from game.core import texts
@@ -22,8 +21,7 @@ from game.flight import flight_file
 from game.flight.credit import TOGETHER
 from game.flight.flight_file import Entry, Record
 from game.flight.logbook import Records, rank
-from game.play.challenge import Challenge, FlownMission
-from game.play.tutorial import Tutorial
+from game.play.challenge import FlownMission
 from game.ui.context import Context
 from game.ui.list_scene import ListLayout, ListScene
 from game.ui.listing import Row
@@ -46,7 +44,7 @@ _RIVAL: Final = (_LEFT, 412, _WIDTH, 32)
 _RIVAL_LABEL: Final = 112.0
 _NETWORK: Final = 468.0  # baseline of the network's result
 _FLIGHTS: Final = "flights"  # in the game's own data
-_NAMES: Final = (FIRST.name, *MISSIONS, DAILY)
+_NAMES: Final = tuple(MISSIONS)
 
 
 class MissionsScene(ListScene[str]):
@@ -67,17 +65,12 @@ class MissionsScene(ListScene[str]):
         self._kept, self._together = self._records.kept(), landed_together(self._records.entries())
         gold = sum(entry.medal == 3 for name, entry in self._best.items() if name in MISSIONS)
         self._line = texts.MISSIONS_LINE.format(gold=gold, count=len(MISSIONS))
-        self._show(_NAMES, self.items and self.chosen, otherwise=1)
+        self._show(_NAMES, self.items and self.chosen)
 
     @property
     def chosen(self) -> str:
         """Name of the chosen mission."""
         return _NAMES[self._list.index]
-
-    def _challenge(self) -> Challenge:
-        if self.chosen == FIRST.name:
-            return Tutorial()
-        return self._mission(self.chosen, self._chosen_rival)
 
     def _mission(self, name: str, rival: str) -> FlownMission:
         """Return a mission beside a ghost, with the way to the next one."""
@@ -98,15 +91,13 @@ class MissionsScene(ListScene[str]):
         return self._fly()
 
     def _fly(self) -> Transition:
-        return push("days") if self.chosen == DAILY else push("play", 0, challenge=self._challenge())
+        return push("play", 0, challenge=self._mission(self.chosen, self._chosen_rival))
 
     # Ghosts
 
     @property
     def _offered(self) -> list[str]:
         """Names of the ghosts available in the chosen mission."""
-        if self.chosen not in MISSIONS:
-            return []
         best = self._best.get(self.chosen)
         return ["network", "recorded", *(["own"] if best and best.file in self._kept else [])]
 
@@ -120,8 +111,6 @@ class MissionsScene(ListScene[str]):
     def _make_verbs(self) -> list[Widget]:
         """Return the choice of ghosts for the chosen mission, and the button that begins it."""
         offered = self._offered
-        if not offered:
-            return self._fly_button
         words = [texts.MISSION_RIVALS[name] for name in offered]
         rivals = Choice(self.form.manager, _RIVAL, texts.MISSION_RIVAL_LABEL, words, offered.index(self._chosen_rival),
                         self._choose_rival(offered), label_width=_RIVAL_LABEL)  # fmt: skip
@@ -146,13 +135,9 @@ class MissionsScene(ListScene[str]):
 
     def _row(self, name: str) -> Row:
         best = self._best.get(name)
-        title = f"{icon(name)}   {(_TOLD.get(name) or texts.MISSIONS[name])[0]}"
-        if name == FIRST.name:
-            return title, texts.TUTORIAL_FLOWN if self.context.settings.first_flown else "–", ""
+        title = f"{icon(name)}   {texts.MISSIONS[name][0]}"
         if best is None:
             return title, texts.MISSION_TOGETHER if name in self._together else "–", ""
-        if name == DAILY:
-            return title, "", texts.SCORE.format(count=best.score)
         return title, texts.MEDALS[best.medal], f"{tenths(best.fuel):.1f} s"
 
     # The picture
@@ -160,7 +145,7 @@ class MissionsScene(ListScene[str]):
     def _draw_chosen(self, canvas: Canvas) -> None:
         """Draw the lamps of the medals in the list, and the chosen mission beside it."""
         for row, name in enumerate(_NAMES):
-            if name in MISSIONS and name in self._best:
+            if name in self._best:
                 end, medal = self._list.right - _LAYOUT.columns[0] - _LAMPS, self._best[name].medal
                 _draw_lamps(canvas, (end - _LAMP * medal, self._list.baseline(row) - 4), medal)
             elif name in self._together:
@@ -169,13 +154,12 @@ class MissionsScene(ListScene[str]):
         self._draw_mission(canvas, self.chosen)
 
     def _draw_mission(self, canvas: Canvas, name: str) -> None:
-        title, asked = _TOLD.get(name) or texts.MISSIONS[name]
+        title, asked = texts.MISSIONS[name]
         canvas.text(title, (_LEFT, 190), size=TITLE + 6, weight="light")
         draw_wrapped(canvas, asked, (_LEFT, 224), _WIDTH, size=TEXT, leading=22)
         best = self._best.get(name)
-        if name in MISSIONS:
-            self._draw_medals(canvas, name)
-            draw_wrapped(canvas, _network_words(name), (_LEFT, _NETWORK), _WIDTH, colour=MUTE, leading=19)
+        self._draw_medals(canvas, name)
+        draw_wrapped(canvas, _network_words(name), (_LEFT, _NETWORK), _WIDTH, colour=MUTE, leading=19)
         if best:
             fuel, seconds = tenths(best.fuel), tenths(best.seconds)
             words = texts.MISSION_BEST.format(fuel=fuel, seconds=seconds, count=best.score)
@@ -197,12 +181,6 @@ def _draw_lamps(canvas: Canvas, first: tuple[float, float], medal: int) -> None:
     """Draw a medal: three lamps for gold, two for silver, one for bronze."""
     for lamp in range(medal):
         canvas.dot((first[0] + _LAMP * lamp, first[1]), 4, MEDALS[medal])
-
-
-_TOLD: Final = {
-    FIRST.name: (texts.TUTORIAL_TITLE, texts.TUTORIAL_ASKS),
-    DAILY: (texts.DAILY, texts.DAILY_BEGIN),
-}
 
 
 def landed_together(entries: list[Entry]) -> set[str]:

@@ -1,4 +1,4 @@
-"""Notes: short messages over any screen, placed where they hide nothing to read or press."""
+"""Notes: short messages over any screen, placed where they hide nothing to read, to press or to look at."""
 
 from __future__ import annotations
 
@@ -7,24 +7,26 @@ from typing import Final
 
 import pygame
 
-from game.drawing.canvas import LEAST, Canvas
-from game.drawing.prose import wrapped
-from game.drawing.tokens import FAINT, INK, SMALL, VIEW_SIZE
+from game.drawing.canvas import Canvas
+from game.drawing.cursor import LEADING, Cursor
+from game.drawing.prose import lines
+from game.drawing.tokens import FAINT, INK, SMALL
 
 _STEPS_SHOWN: Final = 60 * 5
 _STEPS_FADING: Final = 20
-_LONGEST: Final = round(150 / LEAST)  # characters; translations are longer than the English
-_WIDEST: Final = VIEW_SIZE[0] - 64.0  # points of a line; a longer message takes two
-_HEIGHT: Final = 32  # of one line
-_LINE: Final = 18  # from one to the next
-_TOPS: Final = (68, 640, 104, 24, 600, 140, 560, 176, 520, 212, 480, 248, 440)  # where its top may be, the best first
-_SHIFTS: Final = (0, -200, 200)  # horizontal shift, if there is no room in the middle
-_PLACES: Final = tuple((VIEW_SIZE[0] / 2 + shift, top) for shift, top in product(_SHIFTS, _TOPS))
+_LONGEST: Final = 220  # characters
+_WIDEST: Final = 520.0  # points of a line; a longer message takes more of them
+_MARGINS: Final = (16.0, 7.0)  # points beside and above what it says
 _COVER: Final = 0.96  # opacity of the panel, over any background
+# Where its middle may be across the window, as shares of what is left beside it, and its top down from there: the best
+# first. The rows near the upper and the lower edge, and then those between them.
+_ACROSS: Final = (0.5, 0.25, 0.75, 0.0, 1.0)
+_DOWN: Final = (0.10, 0.92, 0.15, 0.03, 0.86, 0.20, 0.80, 0.26, 0.74, 0.32, 0.68, 0.38, 0.62, 0.44, 0.56)
+_PLACES: Final = tuple(product(_ACROSS, _DOWN))
 
 
 class Note:
-    """Note that shows one message at a time, for five seconds.
+    """Note that shows one message at a time, for five seconds; it is laid out on the canvas for text that flows.
 
     Attributes:
         text: the message that is shown, or was shown last.
@@ -44,39 +46,47 @@ class Note:
         self.text, self._left, self._place = text, _STEPS_SHOWN, _PLACES[0]
 
     def update(self, canvas: Canvas) -> None:
-        """Advance by 1/60 s; move to where the note hides least of the last frame's words, widgets and panels."""
+        """Advance by 1/60 s; move to where the note hides least of what the last frame's reader sees."""
         self._left = max(0, self._left - 1)
         if not self._left:
             return
-        covered = {place: self._covers(canvas, place) for place in _PLACES}
-        if covered[self._place] > min(covered.values()):
-            self._place = min(_PLACES, key=covered.__getitem__)
+        reading, taken = canvas.reading, [*canvas.words, *canvas.looked_at]
+        if _covers(reading, self._box_at(reading, self._place), taken):
+            covered = {place: _covers(reading, self._box_at(reading, place), taken) for place in _PLACES}
+            if covered[self._place] > min(covered.values()):
+                self._place = min(_PLACES, key=covered.__getitem__)
 
-    def box(self, canvas: Canvas) -> pygame.FRect:
-        """Return the note's panel, in points."""
-        return self._box_at(canvas, self._place)
+    def box(self, canvas: Canvas) -> pygame.Rect:
+        """Return the note's panel, in the window's pixels."""
+        reading = canvas.reading
+        return reading.rect(*self._box_at(reading, self._place))
 
-    def _box_at(self, canvas: Canvas, place: tuple[float, float]) -> pygame.FRect:
-        lines = wrapped(canvas, self.text, SMALL, _WIDEST)
-        width = max(canvas.text_width(line, size=SMALL) for line in lines) + 32
-        view, high = canvas.view, _HEIGHT + _LINE * (len(lines) - 1)
-        box = pygame.FRect(place[0] - width / 2, view.top + place[1], width, high)
-        return box.clamp(view) if width < view.w else box
-
-    def _covers(self, canvas: Canvas, at: tuple[float, float]) -> int:
-        """Return the number of pixels of noted words, widgets and panels that a note at a place would hide."""
-        place = canvas.rect(*self._box_at(canvas, at))
-        return sum(place.clip(area).w * place.clip(area).h for area in canvas.words)
+    def _box_at(self, reading: Canvas, place: tuple[float, float]) -> pygame.FRect:
+        view, (beside, above) = reading.view, _MARGINS
+        room = min(_WIDEST, view.width - 4 * beside)
+        told = lines(self.text, SMALL, "regular", room, reading.scale)
+        width = max(reading.text_width(line, size=SMALL) for line in told) + 2 * beside
+        height = len(told) * LEADING * SMALL + 2 * above
+        across, down = place
+        return pygame.FRect(across * (view.width - width), down * (view.height - height), width, height)
 
     def draw(self, canvas: Canvas) -> None:
         """Draw the message, if there is one."""
         if not self._left:
             return
         alpha = min(1.0, self._left / _STEPS_FADING)
-        box = self.box(canvas)
-        with canvas.unnoted():  # the note avoids the page, not itself
-            canvas.panel(box, _COVER, alpha)
-            canvas.outline(box, 8, FAINT, alpha=alpha)
-            for number, line in enumerate(wrapped(canvas, self.text, SMALL, _WIDEST)):
-                middle = (box.centerx, box.top + 20 + _LINE * number)
-                canvas.text(line, middle, size=SMALL, colour=INK, align="centre", alpha=alpha)
+        reading = canvas.reading
+        box = self._box_at(reading, self._place)
+        with reading.unnoted():  # the note avoids the page, not itself
+            reading.panel(box, _COVER, alpha)
+            reading.outline(box, 8, FAINT, alpha=alpha)
+            beside, above = _MARGINS
+            room = box.width - 2 * beside + 1
+            words = Cursor(box.left + beside, box.top + above, room, reading.scale, reading, size=SMALL, colour=INK)
+            words.text(self.text, "centre", alpha)
+
+
+def _covers(reading: Canvas, box: pygame.FRect, taken: list[pygame.Rect]) -> int:
+    """Return how many pixels of these areas a note would hide."""
+    place = reading.rect(*box)
+    return sum(place.clip(area).w * place.clip(area).h for area in taken)

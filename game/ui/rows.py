@@ -47,7 +47,8 @@ class RowWidget(Widget):
         top = cursor.y
         if cursor.canvas and self.ringed and self.warmth > 0.02:
             ring = pygame.Rect(self.box.topleft, (round(self.reach) or self.box.width, self.box.height))
-            cursor.canvas.outline(ring.inflate(24, 2), 8, INK, 1, 0.4 * self.warmth)
+            colour, strength = (HUMAN, 0.9) if self.typing else (INK, 0.4)
+            cursor.canvas.outline(ring.inflate(24, 2), 8, colour, 1, strength * self.warmth)
         cursor.gap(self.pad)
         self.write(cursor)
         cursor.gap(self.pad)

@@ -124,9 +124,6 @@ class BindingCell(RowWidget):
 
     def write(self, cursor: Cursor) -> None:
         """Write the keys, or the prompt for a new one."""
-        if cursor.canvas and self.warmth > 0.02:
-            colour, strength = (HUMAN, 0.9) if self.typing else (INK, 0.4)
-            cursor.canvas.outline(self.box.inflate(16, -2), 6, colour, 1, strength * self.warmth)
         if self.typing:
             words, colour = texts.BINDINGS_PRESS_BUTTON if self._for_pads else texts.BINDINGS_PRESS_KEY, HUMAN
         else:

@@ -122,7 +122,8 @@ class SettingsScene(PanelScene):
                     lambda pace: self._set("pace", round(pace, 2)), step=0.1, figure=_percent)  # fmt: skip
         left.gap(6)
         left.aside(texts.ASSISTS_COUNTED)
-        right.button(texts.TUTORIAL_OPEN, _fly_first_flight, colour=INK)
+        flown = texts.TUTORIAL_FLOWN if self.context.settings.first_flown else ""
+        right.button(texts.TUTORIAL_OPEN, _fly_first_flight, figure=flown, colour=INK)
         right.button(texts.PROGRESS_RESET, self._ask_to_reset, colour=INK)
         if self._progress.restorable:
             right.button(texts.PROGRESS_RESTORE, self._restore, colour=INK)

@@ -17,7 +17,7 @@ from game.flight.logbook import Records
 from game.play.daily import DailyStart
 from game.play.days import FILE_NAME, Attempt, Days
 from game.scenes.days import DaysScene
-from game.scenes.missions import MissionsScene
+from game.scenes.menus.flights import FlightsScene
 from game.scenes.play import PlayScene
 from game.scenes.replay import ReplayScene
 from game.ui.context import Context
@@ -63,10 +63,10 @@ def clipboard(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     return held
 
 
-def test_the_missions_lead_to_the_day(open_game: Open):
-    driver = open_game(MissionsScene)
+def test_the_page_of_play_leads_to_the_day(open_game: Open):
+    driver = open_game(FlightsScene)
     driver.frames(2)
-    driver.keys(pygame.K_END, pygame.K_RETURN)
+    driver.press_on(texts.FLIGHTS["day"][0])
     assert driver.top_name == "DaysScene"
 
 
@@ -202,14 +202,10 @@ def test_a_disk_that_cannot_be_written_is_told(open_game: Open, context: Context
 
 
 def test_a_gamepad_alone_gets_there_flies_and_copies(open_game: Open, context: Context, clipboard: list[str]):
-    driver = open_game(MissionsScene)
+    driver = open_game(FlightsScene)
     driver.frames(2)
-    driver.button(pygame.CONTROLLER_BUTTON_DPAD_UP)
-    for _ in range(20):
-        if not isinstance(driver.top, DaysScene):
-            driver.button(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
-            if driver.top.chosen == "daily":
-                driver.button(pygame.CONTROLLER_BUTTON_A)
+    driver.button(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
+    driver.button(pygame.CONTROLLER_BUTTON_A)
     assert isinstance(driver.top, DaysScene)
     driver.button(pygame.CONTROLLER_BUTTON_A)
     scene = play(driver)

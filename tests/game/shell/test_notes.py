@@ -4,9 +4,11 @@ from collections.abc import Callable
 
 import pytest
 
-from game.drawing.tokens import VIEW_SIZE
+from game.drawing.tokens import TEXT_SIZES, VIEW_SIZE
 from game.scenes.menus.menu import MenuScene
+from game.ui.context import Context
 from tests.support.driver import Driver
+from tests.support.screens import crashed, opened, settle
 
 Open = Callable[..., Driver]
 NOTE = "Saved as a network with a rather long name: fly with it, or watch it."
@@ -20,6 +22,30 @@ def test_a_note_moves_aside_where_the_middle_is_taken_in_every_row(open_game: Op
     monkeypatch.setattr(canvas, "words", [taken])
     notes.show(NOTE)
     notes.update(canvas)
-    box = canvas.rect(*notes.box(canvas))
+    box = notes.box(canvas)
     assert not box.colliderect(taken)
     assert canvas.surface.get_rect().contains(box)
+
+
+LONG = "You turned the dial: help stays where you put it. “Your flights” lets it fade again. " * 2
+
+
+@pytest.mark.parametrize("size", [(1280, 720), (800, 600), (720, 1280), (1920, 1080)])
+@pytest.mark.parametrize("text_size", list(TEXT_SIZES))
+def test_a_long_note_lies_on_no_word_pad_or_craft_before_a_flight_and_on_no_card_after_it(
+    open_game: Open, context: Context, size: tuple[int, int], text_size: str
+):
+    settle(context, text_size=text_size)
+    driver = opened(open_game, "Play")
+    driver.resize(size)
+    for happens in (lambda _: None, crashed):
+        happens(driver)
+        driver.app.context.note(LONG)
+        driver.frames(3)
+        notes, canvas = driver.app.notes, driver.app.canvas
+        place = notes.box(canvas)
+        canvas.turn_page()
+        assert canvas.looked_at
+        hidden = [area for area in (*canvas.words, *canvas.looked_at) if area.colliderect(place)]
+        assert not hidden
+        assert canvas.surface.get_rect().contains(place)

@@ -79,11 +79,12 @@ def a_note_hides_nothing_that_is_to_be_read_or_pressed(visit: Visit) -> None:
     driver.app.context.note(NOTE)
     driver.frames(2)
     notes, canvas = driver.app.notes, driver.app.canvas
-    place = canvas.rect(*notes.box(canvas))
+    place = notes.box(canvas)
     canvas.turn_page()  # what stands on the last frame
     assert not [area for area in canvas.words if area.colliderect(place)], "the note lies on words"
+    assert not [area for area in canvas.looked_at if area.colliderect(place)], "the note lies on a pad or a craft"
     driver.frames(30)
-    assert place == canvas.rect(*notes.box(canvas)), "the note does not stay where it is"
+    assert place == notes.box(canvas), "the note does not stay where it is"
 
 
 # Few things to choose from, and few words
