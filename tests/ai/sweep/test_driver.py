@@ -132,7 +132,8 @@ def assert_as_alone(folder):
     study = Study.load(folder)
     assert sorted(study.trials) == list(range(study.plan.trials))
     assert study.damaged == []
-    kept: dict[int | None, bytes] = {None: b""}  # the runs of each trial; the study forgets the states of members that others went on from
+    # The runs of each trial; the study forgets the states of members that others went on from.
+    kept: dict[int | None, bytes] = {None: b""}
     for number, trial in sorted(study.trials.items()):
         parent = None if trial.parent is None else study.trials[trial.parent]
         alone, runs = run_alone(study.plan, Asked(number, trial.params, parent), kept[trial.parent])
