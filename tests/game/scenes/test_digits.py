@@ -292,7 +292,7 @@ def test_a_fix_is_learnt_in_the_background_shown_and_undone(drawing: Driver, con
 
 def test_menu_leads_to_drawing_and_back(open_game: Open):
     driver = open_game()
-    driver.keys(*[pygame.K_DOWN] * 5, pygame.K_RETURN)
+    driver.keys(*[pygame.K_DOWN] * 3, pygame.K_RETURN)
     assert driver.top_name == "DigitsScene"
     driver.key(pygame.K_ESCAPE)
     assert driver.top_name == "MenuScene"

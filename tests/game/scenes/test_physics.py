@@ -190,12 +190,14 @@ def test_between_two_steps_bodies_are_drawn_in_between(open_game: Open):
     assert not np.array_equal(*pictures)
 
 
-def test_menu_leads_to_physics_and_back(open_game: Open):
+def test_learn_leads_to_physics_and_back(open_game: Open):
     driver = open_game()
-    driver.keys(*[pygame.K_DOWN] * 7, pygame.K_RETURN)
+    driver.keys(*[pygame.K_DOWN] * 4, pygame.K_RETURN)
+    assert driver.top_name == "LearnScene"
+    driver.press_on(texts.LEARN_PHYSICS)
     assert driver.top_name == "PhysicsScene"
     driver.key(pygame.K_BACKSPACE)
-    assert driver.top_name == "MenuScene"
+    assert driver.top_name == "LearnScene"
 
 
 # The command

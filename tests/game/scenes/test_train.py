@@ -31,7 +31,7 @@ from game.training.knob_descriptions import knob_descriptions
 from game.training.library import Library
 from game.training.run import TrainingRun
 from game.ui import focus
-from game.ui.entry import Entry
+from game.ui.rows import EntryRow
 from game.ui.scrubber import Scrubber
 from game.ui.widget import Widget
 from game.ui.widgets import Choice
@@ -52,7 +52,7 @@ def start(driver: Driver) -> None:
 
 def save_as(driver: Driver, name: str) -> None:
     driver.press_on(texts.TRAIN_SAVE)
-    driver.the(Entry).text = name
+    driver.the(EntryRow).text = name
     driver.key(pygame.K_RETURN)
 
 
@@ -163,7 +163,7 @@ def test_a_name_that_is_taken_is_told_and_can_be_changed(train: Driver) -> None:
     scene = train.top
     (scene.library.folder / "mine").mkdir()
     train.press_on(texts.TRAIN_SAVE)
-    train.the(Entry).text = "mine"
+    train.the(EntryRow).text = "mine"
     train.key(pygame.K_RETURN)
     assert train.top_name == "NameDialog"
     train.post(pygame.TEXTINPUT, text="M2")

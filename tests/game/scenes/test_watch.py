@@ -231,7 +231,7 @@ def test_landings_are_counted_and_a_resize_is_survived(watching: Driver):
 
 def test_menu_leads_to_watch_and_back(open_game: Open):
     driver = open_game()
-    driver.keys(pygame.K_DOWN, pygame.K_DOWN, pygame.K_DOWN, pygame.K_RETURN)
+    driver.keys(pygame.K_DOWN, pygame.K_RETURN)
     assert driver.top_name == "WatchScene"
     driver.frames(5)
     driver.keys(pygame.K_ESCAPE, pygame.K_ESCAPE)
