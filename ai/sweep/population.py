@@ -1,7 +1,7 @@
 """Population-based training (Jaderberg et al. 2017), in generations.
 
 Every member of a generation trains for the same number of decisions. Then the worst quarter goes on with copies of
-networks of the best quarter, and with their knobs, changed a little; the others go on with their own. A member's run
+runs of the best quarter, and with their knobs, changed a little; the others go on with their own. A member's run
 goes on as `train --resume DIR --set NAME=VALUE` does.
 
 The paper lets members copy whenever they are ready. Here a generation waits for its last member. So what a member is

@@ -16,13 +16,15 @@ from ai.training.state import StateWriter, broken, read_state
 DIGITS: Final = RunKind(KIND, snapshot)
 
 
-def save_digit_run(training: DigitTraining, folder: str | Path, final: bool = False) -> dict[str, Any]:
-    """Save a run's best network and all that it goes on from, whole or not at all; return its description.
+def save_digit_run(
+    training: DigitTraining, folder: str | Path, final: bool = False, *, state: bool = True
+) -> dict[str, Any]:
+    """Save a run's best network and, with `state`, all that it goes on from, whole or not at all.
 
-    `final` measures it on MNIST's test images. Raises OSError if it cannot be written, MnistError if there
-    are no test images.
+    Returns its description. `final` measures it on MNIST's test images. Raises OSError if it cannot be written,
+    MnistError if there are no test images.
     """
-    return save(training, DIGITS, folder, final=final)
+    return save(training, DIGITS, folder, final=final, state=state)
 
 
 def resume_digit_run(folder: str | Path, **options: Any) -> DigitTraining:

@@ -59,16 +59,6 @@ def test_the_targets_of_many_memories_are_those_of_each_alone(changes):
         assert targets[row] == pytest.approx(cells.reward[row] + left, rel=1e-4, abs=1e-5)
 
 
-def test_double_q_lets_the_online_network_pick():
-    agent = DeepQAgent(3, 2, SMALL.changed(double=True, discount=0.9))
-    agent.online.values = np.random.default_rng(1).normal(size=agent.online.values.shape)
-    states = np.random.default_rng(2).normal(size=(20, 3)).astype(np.float32)
-    cell = Transition(states, states, np.zeros(20, dtype=int), np.zeros(20, dtype=np.float32),
-                      np.zeros(20, dtype=bool), np.ones(20, dtype=int))  # fmt: skip
-    best = agent.online.predict(states).argmax(axis=1)
-    assert agent.targets(cell)[0] == pytest.approx(0.9 * agent.target.predict(states)[np.arange(20), best], rel=1e-5)
-
-
 def test_an_update_moves_only_the_chosen_action_towards_its_target():
     agent = DeepQAgent(3, 2, SMALL.changed(optimizer="sgd", learning_rate=0.01, cost="mse"))
     states = np.ones((1, 3), dtype=np.float32)

@@ -8,7 +8,6 @@ import pytest
 from ai.nn import (
     ActivationFunctions,
     ActivationLayer,
-    Adam,
     CostFunctions,
     DivergenceError,
     DropoutLayer,
@@ -40,15 +39,6 @@ def test_learns_xor_by_plain_steps():
     assert len(history) == 2000
     assert history[-1] < 1e-3
     np.testing.assert_array_equal(network.predict(XOR_X).round(), XOR_Y)
-
-
-@pytest.mark.parametrize("cost", [CostFunctions.use_mse(), CostFunctions.use_huber()])
-def test_learns_a_curve_with_adam(cost):
-    x = np.random.default_rng(1).uniform(-1, 1, size=(256, 2))
-    y = np.sin(3 * x[:, :1]) * x[:, 1:]
-    network = small_network(hidden=32, cost=cost)
-    history = network.train(x, y, epochs=150, batch_size=64, sampling="random", optimizer=Adam(0.01))
-    assert history[-1] < 0.05 * history[0]
 
 
 def test_training_is_reproducible():
@@ -259,16 +249,6 @@ def test_a_copy_is_independent():
     network.train(XOR_X, XOR_Y)
     np.testing.assert_array_equal(twin.predict(XOR_X), expected)
     assert not np.array_equal(network.predict(XOR_X), expected)
-
-
-def test_a_soft_update_is_one_line():
-    online, target = small_network(1), small_network(2)
-    expected = 0.9 * target.values + 0.1 * online.values
-    target.values += 0.1 * (online.values - target.values)
-    np.testing.assert_allclose(target.values, expected, rtol=1e-5)
-    target.values = online.values
-    np.testing.assert_array_equal(target.predict(XOR_X), online.predict(XOR_X))
-    assert not np.shares_memory(target.values, online.values)
 
 
 def test_what_predict_returned_stays():

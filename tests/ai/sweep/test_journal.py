@@ -62,6 +62,7 @@ def test_a_line_cut_off_by_a_kill_is_left_out(study):
     for cut in (1, 40):
         file.write_text(whole + whole.splitlines()[-1][:-cut])
         assert again(study).left == [1, 2]
+        assert again(study).left == [1, 2], "what was appended meanwhile can be read"
         assert file.read_text().startswith(whole)
 
 
@@ -104,24 +105,27 @@ class Full:
 
 def test_a_strangers_journal_is_refused_in_a_sentence(study, subtests):
     file = study.folder / JOURNAL
-    lines = [json.loads(line) for line in file.read_text().splitlines()]
+    sound = file.read_text()
+    lines = [json.loads(line) for line in sound.splitlines()]
     setting = next(line for line in lines if line["op_code"] == 5)
-    for name, content in {
-        "no JSON": "{\n",
-        "a list": "[]\n",
-        "nested": "[" * 5000 + "\n",
-        "another operation": json.dumps(lines[0] | {"op_code": 99}) + "\n",
-        "an unknown word": json.dumps(lines[0] | {"py/object": "os.system"}) + "\n",
-        "a trial of nothing": json.dumps(lines[1] | {"study_id": 3}) + "\n",
-        "settings of no trial": json.dumps(lines[0]) + "\n" + json.dumps(setting | {"trial_id": 77}) + "\n",
-        "a distribution": json.dumps(lines[0]) + "\n" + json.dumps(lines[1]) + "\n"
-                          + json.dumps(setting | {"distribution": '{"name": "x", "attributes": {}}'}) + "\n",
-        "nothing": "",
-    }.items():  # fmt: skip
+    for name, line in {
+        "no JSON": "{",
+        "a list": "[]",
+        "nested": "[" * 5000,
+        "another operation": json.dumps(lines[1] | {"op_code": 1}),
+        "an unknown word": json.dumps(lines[1] | {"py/object": "os.system"}),
+        "another study": json.dumps(lines[1] | {"study_id": 3}),
+        "a long one": json.dumps(setting | {"param_name": "x" * 101}),
+    }.items():
         with subtests.test(name=name):
-            file.write_text(content)
+            file.write_text(f"{sound}{line}\n")
             with pytest.raises(StudyError, match="cannot be read"):
                 again(study)
+    file.write_text(f"{sound}{json.dumps(setting | {'trial_id': 77})}\n")
+    assert again(study).left == [1, 2], "settings of no trial are passed over"
+    file.write_text("")
+    with pytest.raises(StudyError, match="does not know trial 0"):
+        again(study)
     with file.open("wb") as large:
         large.truncate(30 << 30)
     with pytest.raises(OSError, match=r"large"):
@@ -133,7 +137,8 @@ def test_settings_out_of_the_space_are_not_run(study):
     lines = [json.loads(line) for line in file.read_text().splitlines()]
     for line in lines:
         if line["op_code"] == 5 and line["trial_id"] == 2 and line["param_name"] == "tau":
-            line["param_name"] = "env"
+            lines.append(line | {"param_name": "env"})
+            break
     file.write_text("".join(json.dumps(line) + "\n" for line in lines))
     assert again(study).left == [1]
 

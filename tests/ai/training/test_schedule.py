@@ -78,7 +78,7 @@ def test_what_is_not_turned_on_changes_nothing():
 def test_what_a_run_says_is_in_force_is_what_it_learns_and_flies_with():
     run = live(TINY)
     told = [next(run)]
-    training = getgeneratorlocals(run)["run"].training
+    training = getgeneratorlocals(run)["session"].training
     told += [next(run) for _ in range(80)]
     assert isinstance(told[0][-2], InForce) or any(isinstance(each, InForce) for each in told[0])
     (said,) = [each for each in run.send(ChangeSetting("discount", 0.9)) if isinstance(each, InForce)]
