@@ -15,7 +15,7 @@ from game.drawing.tokens import FAINT, INK, SMALL
 _STEPS_SHOWN: Final = 60 * 5
 _STEPS_FADING: Final = 20
 _LONGEST: Final = 220  # characters
-_WIDEST: Final = 520.0  # points of a line; a longer message takes more of them
+_WIDEST: Final = 380.0  # points of a line; a longer message takes more of them
 _MARGINS: Final = (16.0, 7.0)  # points beside and above what it says
 _COVER: Final = 0.96  # opacity of the panel, over any background
 # Where its middle may be across the window, as shares of what is left beside it, and its top down from there: the best

@@ -258,6 +258,12 @@ def reset(driver: Driver) -> None:
     driver.frames(5)
 
 
+def rest(driver: Driver) -> None:
+    """Draw frames until a message has moved away from what has moved."""
+    for _ in range(3):
+        driver.frames(1)
+
+
 class Blank(Scene):
     """Nothing, for a dialog to stand over."""
 
@@ -357,20 +363,20 @@ class Walk:
             self._note(driver, f"{name}, {size}")
             for other in others:
                 driver.write_in(other)
-                driver.frames(2)
+                rest(driver)
                 self._note(driver, f"{name}, {other}")
             if others:
                 driver.write_in(size)
-                driver.frames(2)
+                rest(driver)
             for widget in list(self._widgets(driver)):
                 if widget not in self._widgets(driver):
                     break
                 driver.form.focus(widget)
-                driver.frames(1)
+                rest(driver)
                 self._note(driver, f"{name}, {widget.label}, {size}")
                 for number in range(len(widget.options)) if isinstance(widget, Choice) else ():
                     widget.choose(number)
-                    driver.frames(2)
+                    rest(driver)
                     self._note(driver, f"{name}, {widget.label} {number}, {size}")
         finally:
             driver.app.close()
