@@ -36,6 +36,7 @@ class BroadPhase:
         self._boxes = np.zeros((4, len(params.group), batch))
         self._shape_boxes = np.zeros((4, len(shapes), batch))  # only those of fixed bodies are filled
         self._stale = self._fixed.copy()  # fixed bodies (bodies,) whose boxes are to be computed anew
+        # For each pair of bodies, its pairs of shapes are `_count` rows of `_movers_first`, from row `_first` on.
         self._movers_first, self._first, self._count = _meeting_pairs(params, shapes)
         self._meet = self._count[..., None] > 0  # (moving, bodies, 1)
         a, b = self._movers_first.T
@@ -63,7 +64,8 @@ class BroadPhase:
             return world, world
         order = np.argsort(world, kind="stable")
         mover, other, world = mover[order], other[order], world[order]
-        # From pairs of bodies to the pairs of their shapes, which stand one after another in `pairs`.
+        # From pairs of bodies to the pairs of their shapes, which stand one after another in `pairs`: each pair of
+        # bodies becomes a run of `count` entries, `last - count` to `last`, that counts up from its `first` row.
         count = self._count[mover, other]
         last = count.cumsum()
         pair = np.arange(last[-1]) + (self._first[mover, other] - last + count).repeat(count)
@@ -122,7 +124,7 @@ def _meeting_pairs(params: BodyParams, shapes: ShapeTable) -> tuple[Ints, Ints, 
     """
     bodies = np.arange(len(params.group))
     moving = bodies[span(params.dynamic)]
-    meet = (bodies > moving[:, None]) | ~params.dynamic
+    meet = (bodies > moving[:, None]) | ~params.dynamic  # of two that can move, each pair once
     meet &= (params.group == 0) | (params.group != params.group[moving, None])
     shapes_of = [np.flatnonzero(shapes.body == body).tolist() for body in bodies]
     first, count = np.zeros((2, *meet.shape), dtype=np.intp)

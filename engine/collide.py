@@ -83,6 +83,7 @@ def collide_polygons(ab: PlacedPolygons, margin: float) -> Manifold:
     """Contacts of n pairs of convex polygons; `ab` has the n polygons A, and after them the n polygons B."""
     count = len(ab.start) // 2
     rows = np.arange(count)
+    # Faces of A against corners of B, and faces of B against corners of A, in one go.
     gap, face = deepest_face(ab, np.concatenate([ab.start[count:], ab.start[:count]]))
     gap_a, gap_b = gap[:count], gap[count:]
     flip = gap_b > gap_a + REFERENCE_BIAS  # B holds the reference face
@@ -115,7 +116,8 @@ def collide_polygon_circle(a: PlacedPolygons, centre: Array, radius: Array, marg
     nearest = start + edge * along[:, None]
     away = centre - nearest
     distance = length(away)
-    # Outside and past the end of the face, a corner is nearest, and the normal points from it.
+    # Outside, the normal leads from the nearest point, which past an end of the face is a corner. A centre that lies
+    # inside, or on the surface, has the face's own normal.
     from_corner = (gap > 1e-9) & (distance > 1e-9)
     normal = np.where(from_corner[:, None], away / np.maximum(distance, 1e-9)[:, None], normal)
     gap = np.where(from_corner, distance, gap)
@@ -133,7 +135,10 @@ def collide_circles(centre_a: Array, radius_a: Array, centre_b: Array, radius_b:
 
 
 def deepest_face(a: PlacedPolygons, corners: Array) -> tuple[Array, Ints]:
-    """Largest gap between a face of `a` and all `corners`, (n,), below 0 for an overlap; and which face."""
+    """Gap along the best separating axis, (n,) metres, below 0 for an overlap; and the face whose normal that is, (n,).
+
+    A face's gap is its distance to the deepest of the `corners` (n, corners, 2) of the other polygon.
+    """
     x, y = np.moveaxis(corners[:, :, None], (3, 1), (0, 1))  # each (corners, n, 1)
     # Corners first, in memory too: a minimum along the last axis would be several times slower.
     along = np.multiply(x, a.normal[..., 0], order="C")
@@ -144,7 +149,7 @@ def deepest_face(a: PlacedPolygons, corners: Array) -> tuple[Array, Ints]:
 
 
 def _clip(start: Array, end: Array, incident_start: Array, incident_end: Array) -> Array:
-    """Both ends of the incident edge, cut to lie above the reference edge, (n, 2, 2)."""
+    """Both ends of the incident edge, (n, 2, 2), cut to the strip between the normals at the reference edge's ends."""
     edge = end - start
     tangent = edge / length(edge)[:, None]
     # Along the reference edge: where the incident edge's ends lie, and where its own do.

@@ -106,6 +106,7 @@ class NarrowPhase:
         if not last:
             return
         key, last_key = self._key(contacts.world, contacts.pair), self._key(last.world, last.pair)
+        # Look up each contact's key among those of the last step: `row` is where it stands there, if it does.
         rising = np.argsort(last_key)
         row = rising[np.minimum(last_key.searchsorted(key, sorter=rising), len(rising) - 1)]
         known = last_key[row] == key  # pairs that touched in the last step, in its `row`
@@ -129,6 +130,7 @@ def _pass_on(contacts: Contacts, rows: Ints, last: Contacts, impulse: Array, sam
     """
     alike = dot(last.normal, contacts.normal[rows]) > _ALIKE
     new, gone = contacts.valid[rows] & ~same, last.valid & ~same & alike[:, None]
+    # Two new points and two that are gone can be matched straight or crosswise: the nearer way holds.
     away = length(contacts.points[rows][:, :, None] - last.points[:, None])  # (n, new, gone)
     away = np.where(new[:, :, None] & gone[:, None], np.minimum(away, _NEAR), _NEAR)
     crossed = away[:, 0, 1] + away[:, 1, 0] < away[:, 0, 0] + away[:, 1, 1]
@@ -142,8 +144,9 @@ def _pass_on(contacts: Contacts, rows: Ints, last: Contacts, impulse: Array, sam
 def _colours(slots: Ints, free: Bools) -> Ints:
     """Colour m contacts so that no two of a colour share a body that can move: numbers from 0 on, (m,).
 
-    slots (m, 2) name the bodies and `free` (m, 2) says which can move. Each contact takes the first colour that neither
-    of its bodies has yet, so a world is solved in the same order alone and among others.
+    `slots` (m, 2) name the bodies and `free` (m, 2) says which can move. Each contact takes the first colour that
+    neither of its bodies has yet (greedy graph colouring), so a world is solved in the same order alone and among
+    others.
     """
     taken = [0] * (int(slots.max(initial=-1)) + 1)  # for each body, one bit for each colour of its contacts
     colours = []

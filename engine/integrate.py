@@ -16,8 +16,12 @@ def integrate_velocity(
     Of them, those move that are active, and `awake` (batch, bodies) if that is given. Gravity pulls only at bodies that
     forces can move.
 
-    Drag is the force -(linear + quadratic·|v|)·v, for translation and rotation apart. With v taken as it is after the
-    step (implicitly), no coefficient, however large, can turn a motion round; terminal speeds are exact.
+    Drag is the force -(k + q·|v|)·v, with k the linear coefficient (kg/s) and q the quadratic one (kg/m):
+
+        v' = (v + (F/m + g)·dt) / (1 + (k + q·|v|)·dt/m)
+
+    and likewise for the spin, with torque, inertia, kg·m²/s and kg·m². v is taken as it is after the step (implicitly),
+    |v| as it was before. So no coefficient, however large, can turn a motion round, and terminal speeds are exact.
     """
     velocity = state.velocity[:, movers]
     per_force = params.inverse_mass[movers] * dt

@@ -90,11 +90,11 @@ class Rest:
         """Let sleep every island that lies on something, and has no body that moves or is disturbed."""
         moves = disturbed | ~self._dynamic & state.velocity.any(axis=2)
         moves[:, self._moving] |= self._still < STEPS
-        held = ~self._dynamic & ~moves
+        supports = ~self._dynamic & ~moves
         if contacts is None:
             self.asleep = np.zeros_like(moves)
         else:
-            self.asleep = self._dynamic & _spread(held, contacts, self._dynamic)
+            self.asleep = self._dynamic & _spread(supports, contacts, self._dynamic)
             self.asleep &= ~_spread(moves, contacts, self._dynamic)
         self.awake = ~self.asleep & (self._dynamic | moves) if self.asleep.any() else None
 

@@ -74,6 +74,7 @@ class Polygon:
         after = _following(edges)
         if (length(edges) < 1e-9).any() or (cross(edges, after) <= 0).any():
             raise ValueError(f"a polygon must be convex, its corners distinct and not in line: {vertices!r}")
+        # A star turns left at each corner, too, but more than once around.
         turns = np.arctan2(cross(edges, after), dot(edges, after))
         if turns.sum() > 2 * np.pi + 1e-6:
             raise ValueError(f"a polygon must not cross itself: {vertices!r}")
@@ -98,14 +99,18 @@ class Polygon:
 
     @cached_property
     def centroid(self) -> Array:
-        """Centre of area, (2,)."""
+        """Centre of area, (2,): Σ (vᵢ + vᵢ₊₁)·(vᵢ × vᵢ₊₁) / 6A over the vertices v, with A the area."""
         sums = self.vertices + _following(self.vertices)
         centre: Array = (sums * self._fans[:, None]).sum(axis=0) / (6 * self.area)
         return centre
 
     @cached_property
     def second_moment(self) -> float:
-        """Polar second moment of area about the centroid, m⁴; times density it is the inertia."""
+        """Polar second moment of area about the centroid c, m⁴; times density it is the inertia.
+
+        About the origin it is Σ (a × b)·(a·a + a·b + b·b) / 12 over the edges from a to b; about c it is less by A·c·c
+        (parallel axis theorem).
+        """
         a, b = self.vertices, _following(self.vertices)
         about_origin = (self._fans * (dot(a, a) + dot(a, b) + dot(b, b))).sum() / 12
         return float(about_origin - self.area * dot(self.centroid, self.centroid))

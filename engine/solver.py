@@ -28,12 +28,13 @@ SLOP = 0.005
 CORRECTION = 0.25
 # Smallest excess that is corrected, so that a stack at rest needs no correction; metres.
 TOLERANCE = 1e-4
-# The same between bodies that are to fall asleep, for a point under load where they have touched for OLD steps. What
-# is left by then is jammed: to press it out, a few iterations at a time and without friction, would make a heap creep
-# for as long as one looks.
+# In place of TOLERANCE for worlds in which bodies fall asleep, at a point under load whose bodies have touched for OLD
+# steps; metres. What overlap is left by then is jammed: to press it out, a few iterations at a time and without
+# friction, would make a heap creep for ever.
 LENIENCE = 1e-2
 OLD = 15
-# Share of what two points' pushes do to each other by which they must differ, or they nearly coincide.
+# Two points nearly coincide if the determinant of K, their 2 × 2 matrix of speed per push, is less than this share of
+# the product of its diagonal.
 NARROWEST = 1e-3
 
 
@@ -53,30 +54,35 @@ class Solver:
         self._colours = [self._rows.part(span) for span in self._spans]
 
     def solve_velocities(self, state: BodyState, iterations: int, restitution_threshold: float, dt: float) -> None:
-        """Apply normal impulses, with restitution, and friction to the velocities; add them to the contacts'."""
+        """Apply normal impulses, with restitution, and friction to the velocities; add them to the contacts'.
+
+        A point that closes faster than the threshold (m/s) is to part at e times that speed, with e the restitution;
+        any other is to close no faster than its gap allows.
+        """
         contacts, closing = self._contacts, self._approach[:2]
         rebound = np.where(closing > restitution_threshold, contacts.restitution * closing, 0.0)
-        # Where there still is a gap, this step may use it up.
+        # Speed of parting that each point is to have at least: below 0 where a gap is left, which this step may use up.
         target = np.where(rebound > 0, rebound, np.minimum(contacts.depth.T, 0.0) / dt)
-        velocity = state.velocity.reshape(-1)
+        velocity = state.velocity.reshape(-1)  # a view: what is written here is in the state
         for rows, span in zip(self._colours, self._spans, strict=True):
             velocity[rows.index] += rows.effect(self._impulse[:, span])
         self._iterate(velocity, self._impulse, target, contacts.friction, iterations)
 
     def correct_positions(self, state: BodyState, iterations: int, dt: float, lenient: bool = False) -> None:
-        """Move bodies out of overlaps by a velocity that lasts for this step alone, and so adds no energy.
+        """Move bodies out of overlaps, beyond SLOP, by shifts that are solved for as velocities are, and add no energy.
 
-        A `lenient` solver leaves alone what is up to LENIENCE more, if that has not gone within OLD steps.
+        A `lenient` solver leaves alone up to LENIENCE more at points under load that have not parted within OLD steps.
         """
         contacts = self._contacts
-        # What a rebound is about to undo is left to it; taken back twice, it would lift a ball at each bounce.
+        # Depths were measured before bodies moved by their new speeds. What a rebound has undone since is not undone
+        # once more, or a ball would be lifted at each bounce.
         depth = contacts.depth.T - dt * self._rows.speeds(state.velocity.reshape(-1))[:2]
         excess = np.where(contacts.valid.T, depth - SLOP, 0.0)
         jammed = (contacts.age >= OLD) & (self._impulse[:2] > 0) & lenient
         excess[excess < np.where(jammed, LENIENCE, TOLERANCE)] = 0.0
         if not excess.any():
             return
-        shift, push = np.zeros(state.velocity.size), np.zeros_like(self._impulse)
+        shift, push = np.zeros(state.velocity.size), np.zeros_like(self._impulse)  # m and rad; kg·m
         self._iterate(shift, push, CORRECTION * excess, None, iterations)
         state.pose += shift.reshape(state.pose.shape)
         self._keep_angular_momentum(state, push)
@@ -84,14 +90,16 @@ class Solver:
     def _keep_angular_momentum(self, state: BodyState, push: Array) -> None:
         """Take back the angular momentum that free bodies gained as overlaps pushed them aside across their motion.
 
-        Each pair turns a little about its common centre of mass as if it were one body, like a skater who spreads the
-        arms, so the two move neither apart nor along each other. Where that would add energy, what they move besides
-        becomes so much less.
+        Written for each pair, seen from its common centre of mass:
 
-                  along: how B moves as seen from A
-                  ^
-                  |          momentum about the common centre: reduced · (A→B × along) + both spins' own;
-            A ----B          turning as one body by one radian a second it would be `whole`
+            r = B - A        v = velocity of B as seen from A (`along`)        μ = mA·mB / (mA + mB) (`reduced`)
+            angular momentum       L = μ·(r × v) + IA·ωA + IB·ωB
+            inertia as one body    I = μ·r² + IA + IB (`whole`)
+
+        The `push` p along the contact normal n moved B by p/μ as seen from A, so L has grown by p·(n × v). L is brought
+        back by turning the pair as one body, at L/I radians a second (`turn`), like a skater who spreads the arms. So
+        the bodies come no nearer by it and do not slide on each other. The rest of their motion is their own (`own`),
+        and has no angular momentum. Where the turn adds energy, ½L²/I, their own motion is slowed to make up for it.
         """
         rows = np.flatnonzero((self._inverse_mass[:, :, 0] > 0).all(axis=1) & push[:2].any(axis=0))
         if not len(rows):
@@ -100,18 +108,18 @@ class Solver:
         places = contacts.world[rows, None], contacts.body[rows]
         pose, velocity = state.pose[places], state.velocity[places]
         along, spins = velocity[:, 1, :2] - velocity[:, 0, :2], velocity[..., 2].T
-        turned = -right_of(pose[:, 1, :2] - pose[:, 0, :2])  # `along` of a pair that turns as one by 1 rad/s
-        share = mass[0] / (mass[0] + mass[1])
-        reduced = share * mass[1]  # mass with which the two move against each other
+        turned = -right_of(pose[:, 1, :2] - pose[:, 0, :2])  # v of a pair that turns as one by 1 rad/s
+        share = mass[0] / (mass[0] + mass[1])  # of a change of v that B takes; A takes the rest, the other way
+        reduced = share * mass[1]
         whole = reduced * dot(turned, turned) + inertia[0] + inertia[1]
         now = reduced * dot(turned, along) + inertia[0] * spins[0] + inertia[1] * spins[1]
         before = now - (push[0, rows] + push[1, rows]) * cross(contacts.normal[rows], along)
-        turn = now / whole  # as one body; the rest of the motion is their own
+        turn = now / whole
         own, own_spins = along - turn[:, None] * turned, spins - turn
         twice_energy = reduced * dot(own, own) + inertia[0] * own_spins[0] ** 2 + inertia[1] * own_spins[1] ** 2
         excess = np.divide(before**2 - now**2, whole * twice_energy, out=np.zeros_like(whole), where=twice_energy > 0)
-        less = np.sqrt(np.clip(1.0 - excess, 0.0, 1.0)) - 1.0  # change of their own motion, so that energy stays
-        turn = before / whole - turn
+        less = np.sqrt(np.clip(1.0 - excess, 0.0, 1.0)) - 1.0  # relative change of their own motion, 0 or below
+        turn = before / whole - turn  # change of the turning
         change = np.empty_like(velocity)
         pull = turn[:, None] * turned + less[:, None] * own
         change[:, 0, :2], change[:, 1, :2] = (share - 1.0)[:, None] * pull, share[:, None] * pull
@@ -121,6 +129,8 @@ class Solver:
     def _iterate(self, velocity: Array, total: Array, target: Array, friction: Array | None, iterations: int) -> None:
         """Projected Gauss-Seidel: drive each normal speed to `target` (2, m) or more, by pushing only.
 
+        Changes `velocity`, of all bodies laid flat, and the accumulated impulses `total` (3, m). Positions are solved
+        alike, with shifts in metres in place of speeds.
         It ends early only where a further iteration would change no bit, so a world is the same alone and among others.
         """
         parts = [
@@ -137,18 +147,21 @@ class Solver:
 class Rows:
     """Constraint rows of m contacts: normal at each point, and friction; every array ends with the contacts.
 
+    J is the Jacobian, M the masses and inertias of both bodies: rows respond to impulses p by speeds J·M⁻¹·Jᵀ·p. The
+    entries of that 3 × 3 matrix are called stiffness here; K is its part for the two pushes.
+
     Scalar products are added up one after another by NumPy itself. The linear algebra library behind `@` adds in an
     order of its own on each kind of processor, and fuses additions on some: flights would differ.
     """
 
     index: Ints  # (6, m): where x, y and turn of A, then of B, stand among all velocities, laid flat
     jacobian: Array  # (3, 6, m): J; J · velocities is the speed along each row
-    response: Array  # (3, 6, m): velocity change per unit of impulse: J / mass
+    response: Array  # (3, 6, m): velocity change per unit of impulse: M⁻¹·Jᵀ, laid out as J is
     mass: Array  # (3, m): effective mass, impulse per unit of speed; 0 for a point that is not there
-    coupling: Array  # (m,): speed at one point per unit of push at the other
+    coupling: Array  # (m,): K's entry beside the diagonal: speed at one point per unit of push at the other
     rub_coupling: Array  # (2, m): speed of sliding per unit of push at each point
-    inverse: Array  # (2, m): of the 2 × 2 matrix of both pushes, the diagonal
-    cross_inverse: Array  # (m,): and what stands beside it
+    inverse: Array  # (2, m): diagonal of K⁻¹
+    cross_inverse: Array  # (m,): K⁻¹'s entry beside the diagonal
 
     @classmethod
     def build(cls, state: BodyState, inverse_mass: Array, contacts: Contacts, impulse: Array) -> Rows:
@@ -190,10 +203,10 @@ class Rows:
         return total
 
     def relax(self, velocity: Array, total: Array, wanted: Array, friction: Array | None) -> bool:
-        """Bring these contacts to rest, friction last, so that it ends within its cone; return whether that took any.
+        """Solve these contacts once, friction last, so that it ends within its cone; return whether that changed any.
 
-        Changes all velocities, laid flat, and the accumulated impulses `total` (3, m). Each point is to close at minus
-        `wanted` (2, m) m/s, or less. Without `friction` coefficients (m,), there is none.
+        Changes all velocities, laid flat, and the accumulated impulses `total` (3, m). Each point is to part at
+        `wanted` (2, m) m/s or more. Without `friction` coefficients (m,), there is none.
         """
         motion = velocity[self.index]
         speed = (self.jacobian * motion).sum(axis=1)
@@ -201,6 +214,7 @@ class Rows:
         change = np.zeros_like(total)
         change[:2] = pushes - total[:2]
         if friction is not None:
+            # Sliding as the new pushes leave it; the impulse that would stop it is cut to the cone μ·(p0 + p1).
             sliding = speed[2] + self.rub_coupling[0] * change[0] + self.rub_coupling[1] * change[1]
             cone = friction * (pushes[0] + pushes[1])
             rub = np.minimum(np.maximum(total[2] - self.mass[2] * sliding, -cone), cone)
@@ -213,7 +227,8 @@ class Rows:
         """Return impulses p (2, m) ≥ 0 in place of `total`, so that each point gains the speed it is `lacking`.
 
         With K the 2 × 2 matrix of speed per push, that is p = total + K⁻¹·lacking. Where a point would be pulled, it
-        gets nothing, and may gain more than it lacked.
+        gets nothing, and may gain more than it lacked: the linear complementarity problem p ≥ 0, K·(p - total) ≥
+        lacking, with equality in one of the two at each point.
         """
         both = total + self.inverse * lacking + self.cross_inverse * lacking[::-1]
         if both.min() >= 0:
@@ -224,7 +239,7 @@ class Rows:
 
 
 def _stiffness(jacobian: Array, response: Array) -> Array:
-    """Speed per unit of impulse: of each row (3, m), of both pushes on each other, of friction on both."""
+    """J·M⁻¹·Jᵀ, speed per unit of impulse, (6, m): of each row (3), both pushes on each other, friction on each."""
     products: Array = (jacobian[[0, 1, 2, 0, 0, 1]] * response[[0, 1, 2, 1, 2, 2]]).sum(axis=1)
     return products
 
@@ -237,7 +252,12 @@ def _coincide(stiffness: Array) -> Bools:
 
 
 def _jacobian(positions: Array, contacts: Contacts) -> Array:
-    """Rows (3, 6, m) of contacts between bodies centred at `positions` (m, 2, 2)."""
+    """Jacobian (3, 6, m) of contacts between bodies centred at `positions` (m, 2, 2).
+
+    A row along the unit vector u at the point q is (-u, -(q - A) × u, u, (q - B) × u). Times the velocities, it is the
+    speed along u of B's point as seen from A's, so parting is above 0. For friction, u lies a quarter right of the
+    normal.
+    """
     valid = contacts.valid
     both = (valid[:, 0] & valid[:, 1])[:, None]
     first, second = contacts.points[:, 0], contacts.points[:, 1]

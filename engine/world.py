@@ -159,7 +159,7 @@ class World:
             world, pair = self._broad_phase.near(state, rest.awake)
             contacts = self._narrow_phase.touching(state, world, pair)
             if not rest.wake_touched(contacts, state, self.contacts):
-                break  # else what has woken is to be looked at, too
+                break  # else again: what has woken may touch others, which `near` left out as asleep
         if contacts:
             self._narrow_phase.warm_start(contacts, self._impulses, self._impulse_share(), pass_on=self.sleeping)
             solver = Solver(state, params, contacts)
@@ -187,7 +187,8 @@ class World:
     def _impulse_share(self) -> Array | None:
         """Share of the last step's impulses that gravity, if it has changed, asks for now, (batch,) 0 to 1; None: all.
 
-        Impulses that bore a stack under a stronger one would throw it up, and a few iterations do not take that back.
+        With gravity g before and g' now it is (g·g') / (g·g), kept within 0 to 1. Impulses that bore a stack under a
+        stronger gravity would throw it up, and a few iterations do not take that back.
         """
         before, now = self._gravity_before, self.gravity
         if before is now:
@@ -264,7 +265,8 @@ class World:
     def memory(self) -> dict[str, Any]:
         """Return what the next step takes over from the last one, arrays that no step changes; `recall` puts it back.
 
-        Together with `state`, `gravity` and `params`, it is all that a world's future depends on.
+        Together with `state`, `gravity`, `params` and the settings of the constructor, it is all that a world's future
+        depends on.
         """
         self._prepare()
         contacts = vars(self._impulses) if self._impulses else {}

@@ -68,7 +68,8 @@ class DeepQAgent:
     comes from `rng`.
 
     Attributes:
-        online, target: the network that learns, and the slower copy of it that its targets come from.
+        online: the network that learns.
+        target: a copy that follows it. It judges next states if `config.target_judges`, flies if `config.fly_target`.
         decisions: decisions taken so far, of single landers.
         gradient_steps: gradient steps taken so far.
         loss: mean absolute temporal-difference error of the last `learn`, in scaled reward.
@@ -159,7 +160,7 @@ class DeepQAgent:
 
     @np.errstate(over="ignore", invalid="ignore")  # what overflows is found by the optimizer
     def learn(self) -> float | None:
-        """Take `config.gradient_steps` steps, and a second pass over successes if asked for; return the mean loss.
+        """Take `config.gradient_steps` steps, and a second pass over successes if asked for; return `loss`.
 
         None until `config.learning_starts` transitions have been stored, and while it is `paused`. Raises
         DivergenceError when a number is no longer finite.
@@ -177,7 +178,8 @@ class DeepQAgent:
     def _learn_from(self, replay: ReplayBuffer, batch_size: int, *, first_pass: bool = True) -> tuple[float, float]:
         """Take steps on minibatches of a replay buffer; return the mean absolute error and mean value of next states.
 
-        Only steps of the first pass count, and only after those is the target network updated.
+        All targets are computed before the first step. Only steps of the first pass count, and only after those is the
+        target network updated.
         """
         replay.importance = importance(self.config, self.decisions)
         transitions, rows, weights = replay.sample(batch_size * self.config.gradient_steps, self.rng)
@@ -200,7 +202,11 @@ class DeepQAgent:
         return float(np.abs(errors).mean()), float(values.mean())
 
     def targets(self, transitions: Transition) -> tuple[Floats, Floats]:
-        """Return Bellman targets (n,), reward + γ^steps · value, and the values (n,) of the next states."""
+        """Return Bellman targets (n,), reward + γ^steps · value, and the values (n,) of the next states.
+
+        A value is max Q(s', a) over the actions a, of the network that judges; after a terminal decision the target is
+        the reward alone. Both are in scaled reward.
+        """
         firsts = range(0, len(transitions.action), TOGETHER)
         parts = (transitions.next_state[first : first + TOGETHER] for first in firsts)
         value = np.concatenate([self._next_value(part) for part in parts])
@@ -209,7 +215,10 @@ class DeepQAgent:
         return targets, value
 
     def _next_value(self, states: Floats) -> Floats:
-        """Return the value of the best action in each state by the network that judges, (n,)."""
+        """Return the value of the best action in each state by the network that judges, (n,).
+
+        With double Q-learning it is Q_target(s, argmax Q_online(s, a)).
+        """
         values = self.target.predict(states) if self.config.target_judges else self.online.predict(states)
         # van Hasselt et al. 2016: the online network picks, the target judges.
         best = (self.online.predict(states) if self.double else values).argmax(axis=1)
@@ -229,6 +238,7 @@ class DeepQAgent:
         # Outputs have costs of their own: those of the other actions are 0.
         derivative[rows, actions] = self.online.cost.derivative(chosen[:, None], targets[:, None])[:, 0] * weights
         self.online.backward_propagate(derivative)
+        # Here the optimizer only asks whether the cost is finite, and a sum of squares tells that of either cost.
         self.optimizer.step(self.online.values, self.online.gradients, cost=float(np.dot(errors, errors)))
         return errors
 

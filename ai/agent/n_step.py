@@ -17,7 +17,8 @@ _KEPT: Final = ("_states", "_actions", "_returns", "_ages", "_open")
 class NStep:
     """N-step returns: sums the rewards of up to `n` decisions into one transition (Sutton and Barto 2018, 7.1).
 
-    Transitions of an episode's last decisions are shorter. `discount` is γ, for each decision; it may be changed.
+    From decision t on, a transition has the reward Σ γⁱ · r(t + i) over i = 0 … k - 1, and leads to state t + k. k is
+    `n`, or less where the episode ended before. `discount` is γ, for each decision; it may be changed.
     """
 
     def __init__(self, n: int, discount: float) -> None:
@@ -27,17 +28,17 @@ class NStep:
     def add(
         self, state: Floats, action: Ints, reward: Floats, next_state: Floats, terminal: Bools, ended: Bools
     ) -> tuple[Transition, Ints]:
-        """Take one decision of each of n slots; return the m transitions that are now complete, and their slots (m,).
+        """Take one decision of every slot; return the m transitions that are now complete, and their slots (m,).
 
-        `state` and `next_state` are (n, features), the others (n,). `terminal` marks a next state without value,
-        `ended` any end of an episode. A transition's `reward` is the discounted sum, its `steps` how many it has.
-        Slots that have ended before and wait for a reset must not be passed on with a new decision.
+        `state` and `next_state` are (slots, features), the others (slots,). `terminal` marks a next state without
+        value, `ended` any end of an episode. A transition's `reward` is the discounted sum, its `steps` how many it
+        has. Slots that have ended before and wait for a reset must not be passed on with a new decision.
         """
         if self._states is None or self._states.shape[1:] != state.shape:
             self._start(state)
         assert self._states is not None
-        # The last n decisions are a ring of rows. The newest begins a transition in each slot, and every transition
-        # that is open gets this reward, discounted by its age.
+        # The last n decisions are a ring of rows, (n, slots). The newest begins a transition in each slot, and every
+        # transition that is open gets this reward, discounted by its age.
         newest = self._count % self.n
         self._states[newest], self._actions[newest] = state, action
         self._returns[newest], self._ages[newest] = 0.0, 0
@@ -71,7 +72,7 @@ class NStep:
         return {"count": self._count} | {name: getattr(self, name).copy() for name in _KEPT}
 
     def load_state(self, state: Mapping[str, Any], observation: Floats) -> None:
-        """Go on from what `state` returned, for observations like this one (n, features).
+        """Go on from what `state` returned, for observations like this one (slots, features).
 
         Raises KeyError, TypeError or ValueError for anything else.
         """
@@ -100,7 +101,7 @@ class Episodes:
     def add(self, cells: Transition, slots: Ints, ended: Bools, success: Bools) -> Iterator[Transition]:
         """Take m new transitions with their slots (m,); yield every successful episode that is now whole.
 
-        `ended` and `success` (n,) are of all slots.
+        `ended` and `success` are of all slots, (slots,).
         """
         for slot in np.unique(slots).tolist():
             mine = slots == slot

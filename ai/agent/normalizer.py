@@ -29,7 +29,10 @@ class Normalizer:
         self._refresh()
 
     def update(self, observations: Floats) -> None:
-        """Update mean and deviation by n more observations (n, features) (Chan, Golub and LeVeque 1983)."""
+        """Update mean and deviation by n more observations (n, features) (Chan, Golub and LeVeque 1983).
+
+        The squares of two sets add up to S + S' + d²·N·n / (N + n), with N and n their counts, d the distance of means.
+        """
         new, mean = len(observations), observations.mean(axis=0, dtype=float)
         shift, total = mean - self.mean, self.count + new
         self.squares += ((observations - mean) ** 2).sum(axis=0) + shift**2 * (self.count * new / total)

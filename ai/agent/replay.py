@@ -126,7 +126,7 @@ class PrioritisedReplayBuffer(ReplayBuffer):
     def sample(self, count: int, rng: np.random.Generator) -> tuple[Transition, Ints, Floats]:
         """Draw `count` transitions; return them, the rows where they lie, and their weights in the cost, (count,).
 
-        Weights are (size · probability)^-importance, relative to the largest of those drawn.
+        Weights are (size · probability)^-β, with β the `importance`, relative to the largest of those drawn.
         """
         # One draw from each of `count` equal parts of the total: less noise than independent draws.
         rows = self.tree.find((np.arange(count) + rng.random(count)) / count * self.tree.total)
@@ -136,7 +136,7 @@ class PrioritisedReplayBuffer(ReplayBuffer):
         return self.at(rows), rows, (weights / weights.max()).astype(np.float32)
 
     def update_priorities(self, rows: Ints, errors: Floats) -> None:
-        """Set the priorities of the transitions at `rows` by their errors (n,)."""
+        """Set the priorities of the transitions at `rows` by their errors (n,): (|error| + 0.001)^α."""
         priorities = (np.abs(errors).astype(float) + 1e-3) ** self.exponent
         self.largest = max(self.largest, float(priorities.max()))
         self.tree.set(rows, priorities)
@@ -171,7 +171,7 @@ class SumTree:
         """Set the priorities of some rows; of a row named twice, the last counts."""
         nodes = rows + self.first_leaf
         self.nodes[nodes] = priorities
-        for _ in range(self.depth):
+        for _ in range(self.depth):  # up to the root; where many rows share parents, each is summed once
             nodes = np.unique(nodes >> 1) if len(nodes) > 64 else nodes >> 1
             self.nodes[nodes] = self.nodes[2 * nodes] + self.nodes[2 * nodes + 1]
 

@@ -39,7 +39,11 @@ def importance(config: AgentConfig, decisions: int) -> float:
 
 
 def exploration(config: AgentConfig, decisions: int, episodes: int) -> float:
-    """Return the share of random actions, ε, of the lander that explores least."""
+    """Return the share of random actions, ε, of the lander that explores least.
+
+    It falls by a factor with each episode, in a straight line with decisions, or both: the line then starts at what the
+    factor has left. Never does it fall below `epsilon_end`.
+    """
     start, end = config.epsilon_start, config.epsilon_end
     start = geometric(start, end, config.epsilon_decay, episodes)
     return linear(start, end, decisions, config.epsilon_decisions) if config.epsilon_decisions else start
@@ -48,7 +52,8 @@ def exploration(config: AgentConfig, decisions: int, episodes: int) -> float:
 def exploration_of_each(config: AgentConfig, epsilon: float, count: int) -> Doubles:
     """Return the ε of each lander, (count,): from `epsilon` for the first to a larger one for the last.
 
-    As in Horgan et al. 2018, they are powers of one ε: bold landers go on finding what careful ones never try.
+    Lander i of `count` has ε to the power of 1 - spread · i / (count - 1). As in Horgan et al. 2018, they are powers of
+    one ε: bold landers go on finding what careful ones never try.
     """
     reach = np.linspace(1.0, 1.0 - config.epsilon_spread, count)
     return np.asarray(epsilon**reach)

@@ -13,7 +13,10 @@ from ai.common.environment import Floats, Ints
 
 @dataclass(frozen=True)
 class Symmetry:
-    """Mirror symmetry of an environment: data augmentation by a second transition for each one made."""
+    """Mirror symmetry of an environment: a transition's mirror image is a transition that could have been, too.
+
+    Feature i of a mirrored state is signs[i] · state[features[i]]; the mirror image of action a is actions[a].
+    """
 
     signs: Floats  # (features,) to multiply a state by
     features: Ints  # (features,) which feature stands in each place

@@ -92,7 +92,8 @@ class CostFunctions:
         """Cross-entropy -Σ target · log softmax(prediction), averaged over the batch (Bridle 1990).
 
         Targets are probabilities, (batch, classes): one-hot rows, or smoothed ones. Predictions are logits:
-        the network ends without an activation, and `softmax` of its outputs are its probabilities.
+        the network ends without an activation, and `softmax` of its outputs are its probabilities. The derivative
+        is softmax(prediction) · Σ target - target.
         """
 
         def function(prediction: Array, target: Array) -> float:

@@ -24,12 +24,16 @@ class Correlation:
     """Windows of images times kernels, as matrix products.
 
     Arrays are transposed: images (channels, width, height, batch), with `padding` zeros around each; kernels (kernel
-    column, kernel row, channel, filter). Windows lie `stride` pixels apart, `width` of them in a row.
+    column, kernel row, channel, filter). Windows lie `stride` pixels apart, `width` of them in a row. For each example,
+    with s the stride and a sum over i, j and c,
 
-    Windows are copied into the columns of a matrix (Chellapilla, Puri & Simard 2006): whole, so that one product with
-    the kernels is the result; or only one column of each, and the products with all columns of the kernels are added,
-    every one shifted by its place. For each pixel the first moves kernel² · channels numbers in and `filters` out, the
-    second kernel · channels in and kernel · filters out; `whole` says that the first moves less.
+        output[f, x, y] = bias[f] + Σ kernels[i, j, c, f] · images[c, s·x + i, s·y + j]
+
+    Windows are copied into the columns of a matrix (Chellapilla, Puri & Simard 2006), in one of two ways. Whole: one
+    product with the kernels is the result. Or single columns of pixels, each once: column X meets all columns of the
+    kernels in one product, and what column i makes of it is added at x = X - i. For each pixel the first way moves
+    kernel² · channels numbers in and `filters` out, the second kernel · channels in and kernel · filters out; `whole`
+    says that the first moves less, or that the second can't be taken for the stride.
     """
 
     def __init__(
@@ -61,7 +65,7 @@ class Correlation:
 
     def gradient(self, images: Array, error: Array) -> Array:
         """Return the gradient of the kernels, flat, given that of the output."""
-        # The sums are small either way, so the way that copies least is best.
+        # Σ windowᵀ · error. The sums are small either way, so the way that copies least is best: single columns.
         columns = 1 if self.stride == 1 else self.kernel
         gradients = [np.zeros((0, 0), error.dtype)] * (self.kernel // columns)
         for block, (matrix, x, y) in enumerate(self._blocks(images, columns)):
@@ -82,6 +86,7 @@ class Correlation:
         windows = windows[:, :: self.stride, :: self.stride].transpose(4, 5, 0, 1, 2, 3)
         width, height, batch = windows.shape[3:]
         rows = int(np.prod(windows.shape[:3]))
+        # Windows of one image that fit into a block, with what is made of them.
         fit = max(1, BLOCK // (batch * (rows + self.kernel // columns * self.filters)))
         for x, y in product(_parts(margin, width - margin, fit // height), _parts(0, height, fit)):
             block = windows[..., x, y, :]
@@ -90,7 +95,7 @@ class Correlation:
             yield matrix.reshape(rows, *block.shape[3:]), x, y
 
     def _shifted(self, x: slice, shift: int) -> tuple[slice, slice]:
-        """Return which columns of a block meet the output when they are shifted, and where."""
+        """Return which columns of a block at `x` meet the output, column X at X - `shift`, and where they do."""
         first = max(x.start, shift)
         last = max(first, min(x.stop, self.width + shift))
         return slice(first - x.start, last - x.start), slice(first - shift, last - shift)
@@ -242,6 +247,7 @@ class MaxPoolingLayer(HalvedLayer):
         given, left = (self.kept(name, self.output.shape, bool) for name in ("given", "left"))
         left.fill(True)  # squares whose error no pixel has been given yet
         *others, (_, last) = zip(self._squares(self.input), self._squares(found), strict=True)
+        # The last pixel of a square needs no comparison: it gets what no other has been given.
         for pixel, error in others:
             np.equal(pixel, self.output, out=given)
             given &= left

@@ -195,7 +195,7 @@ class FullyConnectedLayer(HalvedLayer):
         return output
 
     def row_step(self, memory: Array, values: Array, output: Array) -> Callable[[], object]:
-        """Return x W + b of one example, as the one product [x 1] [W; b]: a sum apart takes a fifth longer."""
+        """Return the step x W + b of one example, as the one product [x 1] [W; b]: a sum apart takes a fifth longer."""
         return partial(memory.dot, values.reshape(-1, output.size), output)
 
     def fill_gradients(self, output_error: Array) -> None:
@@ -221,7 +221,8 @@ class DuelingLayer(FullyConnectedLayer):
     """A fully connected layer in which Q-values share one estimate of the state: Q = V + A - mean A.
 
     Wang et al. 2016, eq. 9, with both streams linear. The weights' first column makes the value V, the others
-    the advantages A.
+    the advantages A. With n outputs, Q = [V A]·M, and M is `mixture`: a row of ones above the unit matrix less 1/n. So
+    the error E of Q is E·Mᵀ for the streams.
     """
 
     def __init__(self, inputs: int, outputs: int, **options: Any) -> None:
@@ -244,7 +245,7 @@ class DuelingLayer(FullyConnectedLayer):
         return q
 
     def row_step(self, memory: Array, values: Array, output: Array) -> Callable[[], object]:
-        """Return Q of one example."""
+        """Return the step that fills in Q of one example."""
         streams, mixture = np.empty(self.shapes["bias"], output.dtype), self.mixture
         fill_streams = super().row_step(memory, values, streams)
 
@@ -285,7 +286,7 @@ class ActivationLayer(HalvedLayer):
         return self.activation.function(input_data)
 
     def row_step(self, memory: Array, values: Array, output: Array) -> Callable[[], object]:  # noqa: ARG002
-        """Return f(x) of one example."""
+        """Return the step that fills in f(x) of one example."""
         return partial(self.activation.function, memory[:-1], output)
 
     def input_error(self, output_error: Array) -> Array:
@@ -298,6 +299,9 @@ class ActivationLayer(HalvedLayer):
 
 class LayerNormalisation(HalvedLayer):
     """Each example to mean 0 and variance 1 over its values, then a learned gain and bias (Ba et al. 2016).
+
+    y = gain · n + bias, with n = (x - mean x) / deviation and deviation = √(variance + epsilon). `centred` is
+    x - mean x and `stretch` is gain / deviation, so y = centred · stretch + bias.
 
     Means are products with a constant vector, because BLAS sums rows several times faster than `mean` does.
     Likewise gain / deviation is made by an outer product, and then one plain product of two arrays does for two
@@ -335,7 +339,7 @@ class LayerNormalisation(HalvedLayer):
         return output
 
     def row_step(self, memory: Array, values: Array, output: Array) -> Callable[[], object]:
-        """Return one example normalised: `predict`, with plain numbers in place of columns of one number."""
+        """Return the step that normalises one example: `predict`, with plain numbers in place of columns of one."""
         example, average = memory[:-1], self._average
         gain, bias = values.reshape(2, self.size)
 
@@ -356,6 +360,7 @@ class LayerNormalisation(HalvedLayer):
     def input_error(self, output_error: Array) -> Array:
         """Return D - mean D - n · mean(n D), with D = gain · E / deviation and means over the values."""
         error: Array = np.multiply(output_error, self.stretch, out=self.error)
+        # n is centred · inverse_deviation, and it occurs twice.
         along = np.vecdot(self.centred, error)[:, None]
         along *= self.inverse_deviation**2 / self.size
         error -= error.dot(self._average)[:, None]

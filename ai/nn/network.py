@@ -88,6 +88,7 @@ class NeuralNetwork:
         for layer in self.layers:
             outputs = layer.outputs if isinstance(layer.outputs, int) else len(memory) - 1
             following = np.ones(outputs + 1, self.dtype)
+            # Each layer's answer is written beside a 1, as the next one's example. Values are cut off as they are used.
             size = sum(parameter.value.size for parameter in layer.parameters)
             steps.append(layer.row_step(memory, values[:size], following[:-1]))
             memory, values = following, values[size:]

@@ -58,7 +58,7 @@ class Optimizer(ABC):
             raise DivergenceError("cost", self)
         if self.scratch.shape != values.shape or self.scratch.dtype != values.dtype:
             self._prepare(values)
-        with np.errstate(over="ignore", invalid="ignore"):  # once, as it takes as long as a pass: found right below
+        with np.errstate(over="ignore", invalid="ignore"):  # one for all: overflow is found by the lengths below
             length = _length(gradients)
             if not math.isfinite(length):
                 raise DivergenceError("gradient", self)
@@ -143,8 +143,13 @@ class Momentum(Optimizer):
 class Adam(Optimizer):
     """Adam (Kingma & Ba 2015, algorithm 1).
 
-    The paper's moments are (1 - β) times the sums kept here: the factor, like the bias correction, goes into
-    two numbers per step instead of passes over every parameter.
+    The paper's step is learning_rate · m̂ / (√v̂ + ε), with moments m̂ and v̂ of the gradient g, corrected for bias:
+
+        m̂ = a · G, a = (1 - β₁) / (1 - β₁ᵗ)        G = β₁·G + g  (`gradient_sum`)
+        v̂ = b² · S, b² = (1 - β₂) / (1 - β₂ᵗ)      S = β₂·S + g² (`square_sum`)
+
+    That is learning_rate · (a / b) · G / (√S + ε / b): two numbers per step take the place of passes over every
+    parameter.
     """
 
     remembers = ("gradient_sum", "square_sum")
@@ -164,7 +169,7 @@ class Adam(Optimizer):
 
     def _fill_step(self, gradients: Array, number: int) -> None:
         gradient_sum, square_sum, scratch = *self.memory.values(), self.scratch
-        first = (1 - self.beta1) / (1 - self.beta1**number)
+        first = (1 - self.beta1) / (1 - self.beta1**number)  # a, and below it b
         second = math.sqrt((1 - self.beta2) / (1 - self.beta2**number))
 
         gradient_sum *= self.beta1
