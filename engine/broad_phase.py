@@ -50,7 +50,9 @@ class BroadPhase:
     def near(self, state: BodyState, awake: Bools | None = None) -> tuple[Ints, Ints]:
         """Return world and row of `pairs`, each (n,), where boxes overlap; sorted by world, then by row.
 
-        Given which bodies are `awake`, (batch, bodies), pairs without any are left out.
+        Given which bodies are `awake`, (batch, bodies), pairs without any are left out. Pairs of bodies are found
+        first. Each then becomes a run of `count` pairs of shapes: the entries up to `last`, which count up from its
+        first row.
         """
         boxes = self._body_boxes(state)
         overlap = _overlap(boxes[:, self._moving, None], boxes[:, None], self._meet)  # (moving, bodies, batch)
@@ -64,8 +66,7 @@ class BroadPhase:
             return world, world
         order = np.argsort(world, kind="stable")
         mover, other, world = mover[order], other[order], world[order]
-        # From pairs of bodies to the pairs of their shapes, which stand one after another in `pairs`: each pair of
-        # bodies becomes a run of `count` entries, `last - count` to `last`, that counts up from its `first` row.
+        # From pairs of bodies to the pairs of their shapes, which stand one after another in `pairs`.
         count = self._count[mover, other]
         last = count.cumsum()
         pair = np.arange(last[-1]) + (self._first[mover, other] - last + count).repeat(count)

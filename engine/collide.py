@@ -80,10 +80,12 @@ def collide_pairs(shapes: ShapeTable, state: BodyState, world: Ints, pair: Ints,
 
 
 def collide_polygons(ab: PlacedPolygons, margin: float) -> Manifold:
-    """Contacts of n pairs of convex polygons; `ab` has the n polygons A, and after them the n polygons B."""
+    """Contacts of n pairs of convex polygons; `ab` has the n polygons A, and after them the n polygons B.
+
+    Faces of A are tried against corners of B, and faces of B against corners of A, in one go.
+    """
     count = len(ab.start) // 2
     rows = np.arange(count)
-    # Faces of A against corners of B, and faces of B against corners of A, in one go.
     gap, face = deepest_face(ab, np.concatenate([ab.start[count:], ab.start[:count]]))
     gap_a, gap_b = gap[:count], gap[count:]
     flip = gap_b > gap_a + REFERENCE_BIAS  # B holds the reference face
@@ -105,7 +107,10 @@ def collide_polygons(ab: PlacedPolygons, margin: float) -> Manifold:
 
 
 def collide_polygon_circle(a: PlacedPolygons, centre: Array, radius: Array, margin: float) -> Manifold:
-    """Contacts of n convex polygons with n circles, `centre` (n, 2) and `radius` (n,)."""
+    """Contacts of n convex polygons with n circles, `centre` (n, 2) and `radius` (n,).
+
+    A centre that lies inside the polygon, or on its surface, is pushed out along the normal of the nearest face.
+    """
     rows = np.arange(len(centre))
     gaps = dot(a.normal, centre[:, None] - a.start)
     face = gaps.argmax(axis=1)
@@ -116,8 +121,7 @@ def collide_polygon_circle(a: PlacedPolygons, centre: Array, radius: Array, marg
     nearest = start + edge * along[:, None]
     away = centre - nearest
     distance = length(away)
-    # Outside, the normal leads from the nearest point, which past an end of the face is a corner. A centre that lies
-    # inside, or on the surface, has the face's own normal.
+    # Outside and past the end of the face, a corner is nearest, and the normal points from it.
     from_corner = (gap > 1e-9) & (distance > 1e-9)
     normal = np.where(from_corner[:, None], away / np.maximum(distance, 1e-9)[:, None], normal)
     gap = np.where(from_corner, distance, gap)

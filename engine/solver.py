@@ -57,13 +57,14 @@ class Solver:
         """Apply normal impulses, with restitution, and friction to the velocities; add them to the contacts'.
 
         A point that closes faster than the threshold (m/s) is to part at e times that speed, with e the restitution;
-        any other is to close no faster than its gap allows.
+        any other is to close no faster than its gap allows. `target` (2, m) is that least speed of parting, below 0
+        where a gap is left.
         """
         contacts, closing = self._contacts, self._approach[:2]
         rebound = np.where(closing > restitution_threshold, contacts.restitution * closing, 0.0)
-        # Speed of parting that each point is to have at least: below 0 where a gap is left, which this step may use up.
+        # Where there still is a gap, this step may use it up.
         target = np.where(rebound > 0, rebound, np.minimum(contacts.depth.T, 0.0) / dt)
-        velocity = state.velocity.reshape(-1)  # a view: what is written here is in the state
+        velocity = state.velocity.reshape(-1)
         for rows, span in zip(self._colours, self._spans, strict=True):
             velocity[rows.index] += rows.effect(self._impulse[:, span])
         self._iterate(velocity, self._impulse, target, contacts.friction, iterations)
@@ -206,7 +207,8 @@ class Rows:
         """Solve these contacts once, friction last, so that it ends within its cone; return whether that changed any.
 
         Changes all velocities, laid flat, and the accumulated impulses `total` (3, m). Each point is to part at
-        `wanted` (2, m) m/s or more. Without `friction` coefficients (m,), there is none.
+        `wanted` (2, m) m/s or more. Friction goes by `sliding`, as the new pushes leave it: the impulse that would stop
+        it is cut to the cone μ·(p₀ + p₁). Without `friction` coefficients μ (m,), there is none.
         """
         motion = velocity[self.index]
         speed = (self.jacobian * motion).sum(axis=1)
@@ -214,7 +216,6 @@ class Rows:
         change = np.zeros_like(total)
         change[:2] = pushes - total[:2]
         if friction is not None:
-            # Sliding as the new pushes leave it; the impulse that would stop it is cut to the cone μ·(p0 + p1).
             sliding = speed[2] + self.rub_coupling[0] * change[0] + self.rub_coupling[1] * change[1]
             cone = friction * (pushes[0] + pushes[1])
             rub = np.minimum(np.maximum(total[2] - self.mass[2] * sliding, -cone), cone)

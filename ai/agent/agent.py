@@ -228,7 +228,8 @@ class DeepQAgent:
     def gradient_step(self, states: Floats, actions: Ints, targets: Floats, weights: Floats) -> Floats:
         """Take one step of the optimizer on a minibatch; return the temporal-difference errors (n,).
 
-        `states` (n, features) are normalised; `weights` (n,) are those of importance sampling.
+        `states` (n, features) are normalised; `weights` (n,) are those of importance sampling. The optimizer only asks
+        whether the cost is finite: a sum of squares tells that of either cost.
         """
         predicted = self.online.forward_propagate(states)
         rows = np.arange(len(actions))
@@ -238,7 +239,6 @@ class DeepQAgent:
         # Outputs have costs of their own: those of the other actions are 0.
         derivative[rows, actions] = self.online.cost.derivative(chosen[:, None], targets[:, None])[:, 0] * weights
         self.online.backward_propagate(derivative)
-        # Here the optimizer only asks whether the cost is finite, and a sum of squares tells that of either cost.
         self.optimizer.step(self.online.values, self.online.gradients, cost=float(np.dot(errors, errors)))
         return errors
 

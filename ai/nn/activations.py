@@ -130,7 +130,7 @@ def _leaky_slope(slope: float, x: Array, _y: Array, out: Array) -> None:
 
 
 def _tanh_slope(_x: Array, y: Array, out: Array) -> None:
-    # 1 - y²
+    """Fill `out` with 1 - y²."""
     np.multiply(y, y, out=out)
     np.subtract(1, out, out=out)
 
@@ -144,6 +144,6 @@ def _sigmoid(x: Array, out: Array | None = None) -> Array:
 
 
 def _sigmoid_slope(_x: Array, y: Array, out: Array) -> None:
-    # y · (1 - y)
+    """Fill `out` with y · (1 - y)."""
     np.subtract(1, y, out=out)
     out *= y

@@ -64,8 +64,8 @@ class Correlation:
                 part += products[shift][:, inside]
 
     def gradient(self, images: Array, error: Array) -> Array:
-        """Return the gradient of the kernels, flat, given that of the output."""
-        # Σ windowᵀ · error. The sums are small either way, so the way that copies least is best: single columns.
+        """Return the gradient of the kernels, flat, given that of the output: Σ windowᵀ · error over all windows."""
+        # The sums are small either way, so the way that copies least is best.
         columns = 1 if self.stride == 1 else self.kernel
         gradients = [np.zeros((0, 0), error.dtype)] * (self.kernel // columns)
         for block, (matrix, x, y) in enumerate(self._blocks(images, columns)):
@@ -242,12 +242,14 @@ class MaxPoolingLayer(HalvedLayer):
         return self._maximum(input_data, np.empty((len(input_data), *self.outputs), input_data.dtype, "F"))
 
     def input_error(self, output_error: Array) -> Array:
-        """Return the error of the largest pixels, and 0 for all others: (batch, height, width, channels)."""
+        """Return the error of the largest pixels, and 0 for all others: (batch, height, width, channels).
+
+        The last pixel of a square is not compared: it gets what no other has been given.
+        """
         found = self.kept("error", self.input.shape, self.input.dtype)
         given, left = (self.kept(name, self.output.shape, bool) for name in ("given", "left"))
         left.fill(True)  # squares whose error no pixel has been given yet
         *others, (_, last) = zip(self._squares(self.input), self._squares(found), strict=True)
-        # The last pixel of a square needs no comparison: it gets what no other has been given.
         for pixel, error in others:
             np.equal(pixel, self.output, out=given)
             given &= left

@@ -358,9 +358,11 @@ class LayerNormalisation(HalvedLayer):
         ones(len(output_error), self.dtype).dot(output_error, bias.gradient)
 
     def input_error(self, output_error: Array) -> Array:
-        """Return D - mean D - n · mean(n D), with D = gain · E / deviation and means over the values."""
+        """Return D - mean D - n · mean(n D), with D = gain · E / deviation and means over the values.
+
+        n is centred / deviation and occurs twice, hence the square in `along`.
+        """
         error: Array = np.multiply(output_error, self.stretch, out=self.error)
-        # n is centred · inverse_deviation, and it occurs twice.
         along = np.vecdot(self.centred, error)[:, None]
         along *= self.inverse_deviation**2 / self.size
         error -= error.dot(self._average)[:, None]

@@ -58,7 +58,7 @@ class Optimizer(ABC):
             raise DivergenceError("cost", self)
         if self.scratch.shape != values.shape or self.scratch.dtype != values.dtype:
             self._prepare(values)
-        with np.errstate(over="ignore", invalid="ignore"):  # one for all: overflow is found by the lengths below
+        with np.errstate(over="ignore", invalid="ignore"):  # once, as it takes as long as a pass: found right below
             length = _length(gradients)
             if not math.isfinite(length):
                 raise DivergenceError("gradient", self)
@@ -149,7 +149,7 @@ class Adam(Optimizer):
         v̂ = b² · S, b² = (1 - β₂) / (1 - β₂ᵗ)      S = β₂·S + g² (`square_sum`)
 
     That is learning_rate · (a / b) · G / (√S + ε / b): two numbers per step take the place of passes over every
-    parameter.
+    parameter. In the code a is `first`, and b `second`.
     """
 
     remembers = ("gradient_sum", "square_sum")
@@ -169,7 +169,7 @@ class Adam(Optimizer):
 
     def _fill_step(self, gradients: Array, number: int) -> None:
         gradient_sum, square_sum, scratch = *self.memory.values(), self.scratch
-        first = (1 - self.beta1) / (1 - self.beta1**number)  # a, and below it b
+        first = (1 - self.beta1) / (1 - self.beta1**number)
         second = math.sqrt((1 - self.beta2) / (1 - self.beta2**number))
 
         gradient_sum *= self.beta1
