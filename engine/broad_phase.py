@@ -78,7 +78,7 @@ class BroadPhase:
         """Boxes (4, bodies, batch) of all bodies as they are now."""
         if self._stale.any():
             self._box_fixed(state, np.flatnonzero(self._stale))
-            # A lift has other boxes in the next step.
+            # A fixed body with a velocity, such as a lift, has other boxes in the next step.
             self._stale = self._fixed & state.velocity.any(axis=(0, 2))
         centre, reach = state.pose[:, self._moving, :2].transpose(2, 1, 0), self._reach[self._moving, None]
         self._boxes[:2, self._moving], self._boxes[2:, self._moving] = centre - reach, centre + reach

@@ -88,6 +88,7 @@ class Rest:
 
     def _find_sleepers(self, state: BodyState, contacts: Contacts | None, disturbed: Bools) -> None:
         """Let sleep every island that lies on something, and has no body that moves or is disturbed."""
+        # Both reach whole islands, along contacts: what holds them up, and what in them moves.
         moves = disturbed | ~self._dynamic & state.velocity.any(axis=2)
         moves[:, self._moving] |= self._still < STEPS
         supports = ~self._dynamic & ~moves

@@ -4,8 +4,9 @@ A contact is three rows of a constraint: a normal impulse at each of two points,
 midpoint, for in two dimensions both points slide alike. Friction stays within Coulomb's cone: at most the friction
 coefficient times the sum of the normal impulses.
 
-The two normal impulses of a contact are found together, exactly, as a linear complementarity problem: solved in turn,
-the first point would get more than the second, and a tall stack would slowly sway.
+The two normal impulses of a contact are found together, exactly, as a linear complementarity problem (as in the block
+solver of Box2D): solved in turn, the first point would get more than the second, and a tall stack would slowly sway.
+docs/adr/0007-contacts-two-points-one-friction.md says why there is one friction.
 
 Contacts of one colour share no body that can move. They are solved at once, in one set of array operations however many
 worlds and bodies they span.
@@ -180,9 +181,10 @@ class Rows:
             jacobian[shallower, :, spare] = impulse[shallower, spare] = 0.0
             response = jacobian * inverse_masses
             stiffness = _stiffness(jacobian, response)
-        first, second, _, coupling = stiffness[:4]
+        first, second, _, coupling = stiffness[:4]  # K's diagonal, friction's own, K's entry beside the diagonal
         mass = np.divide(1.0, stiffness[:3], out=np.zeros_like(stiffness[:3]), where=stiffness[:3] > 0)
         alone = first * second == 0
+        # K⁻¹ is 1 / determinant times K with its diagonal swapped and the rest negated; a point alone has 1 / K.
         determinant = np.where(alone, 1.0, first * second - coupling**2)
         inverse = np.where(alone, mass[:2], stiffness[1::-1] / determinant)
         cross_inverse = np.where(alone, 0.0, -coupling / determinant)
@@ -257,7 +259,7 @@ def _jacobian(positions: Array, contacts: Contacts) -> Array:
 
     A row along the unit vector u at the point q is (-u, -(q - A) × u, u, (q - B) × u). Times the velocities, it is the
     speed along u of B's point as seen from A's, so parting is above 0. For friction, u lies a quarter right of the
-    normal.
+    normal, and q half-way between the points. Rows of points that are not there are 0.
     """
     valid = contacts.valid
     both = (valid[:, 0] & valid[:, 1])[:, None]

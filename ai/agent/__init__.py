@@ -1,6 +1,8 @@
 """Deep Q-learning agent: its settings, network, replay buffers, schedules and files.
 
-To read in this order: config, network, replay, n_step, normalizer, symmetry, schedule, agent, storage.
+To read in this order: config, network, replay, n_step, normalizer, symmetry, schedule, agent, storage. A field of a
+configuration is made by `ai.common.knobs.knob`, with its help and range; `ai.common.environment` has the contract of an
+environment.
 """
 
 from ai.agent.agent import DeepQAgent

@@ -78,7 +78,8 @@ class NeuralNetwork:
         """Memory for one example (1, inputs), the steps that predict it, and memory for its answer (1, outputs).
 
         Each step has its arrays at hand, so that a decision of a small network takes little more time than its
-        arithmetic. The layers' own `predict` says the same at length. Networks that take images have no steps.
+        arithmetic; the layers' own `predict` does the same at length. Networks that take images have no steps. (The
+        memory is longer by a 1, which a bias is multiplied by.)
         """
         sizes = [size for layer in self.layers for size in (layer.inputs, layer.outputs) if isinstance(size, int)]
         if not sizes or any(isinstance(layer.inputs, tuple) for layer in self.layers):
