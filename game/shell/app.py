@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 LOG_NAME: Final = "tranquility.log"
 _SETTLE: Final = 0.1  # seconds of constant size before a redraw: a landscape takes too long to paint while resizing
-_PLACED: Final = 0.4  # share of the enlargement for which screens have room whose words do not flow
+_PLACED: Final = 5 / 12  # share of the enlargement for which screens have room whose words do not flow
 _MOUSE: Final = (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP)
 _log = logging.getLogger("tranquility")
 

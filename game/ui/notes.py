@@ -21,7 +21,7 @@ _COVER: Final = 0.96  # opacity of the panel, over any background
 # Where its middle may be across the window, as shares of what is left beside it, and its top down from there: the best
 # first. The rows near the upper and the lower edge, and then those between them.
 _ACROSS: Final = (0.5, 0.25, 0.75, 0.0, 1.0)
-_DOWN: Final = (0.10, 0.92, 0.15, 0.03, 0.86, 0.20, 0.80, 0.26, 0.74, 0.32, 0.68, 0.38, 0.62, 0.44, 0.56)
+_DOWN: Final = (0.10, 0.92, 0.15, 0.03, 0.875, 0.86, 0.20, 0.80, 0.26, 0.74, 0.32, 0.68, 0.38, 0.62, 0.44, 0.56)
 _PLACES: Final = tuple(product(_ACROSS, _DOWN))
 
 

@@ -96,7 +96,10 @@ def test_two_games_one_after_the_other_hear_the_same_pad(open_game: Callable[...
     assert again.app.context.controls.main
 
 
-def test_a_pad_pulled_out_in_flight_pauses_and_another_flies_on(open_game: Callable[..., Driver], pads: VirtualPads):
+def test_a_pad_pulled_out_in_flight_pauses_and_another_flies_on(
+    open_game: Callable[..., Driver], game: Driver, pads: VirtualPads
+):
+    game.app.close()  # one window at a time keeps the settings
     game = open_game(PlayScene, 3)
     play = game.top
     pads.plug_in()
