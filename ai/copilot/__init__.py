@@ -1,7 +1,4 @@
-"""Co-pilot that shares control with a pilot, inference of the pad the pilot means, measurement of the help.
-
-May be imported by `digits`, `gym` and `cli`.
-"""
+"""Co-pilot that shares control with a pilot, inference of the pad the pilot means, measurement of the help."""
 
 from ai.copilot.copilot import CoPilot, Mode, SharedDecision
 from ai.copilot.guardian import ActionSource

@@ -1,7 +1,4 @@
-"""Handwritten digit recognition: classifier, MNIST, preprocessing and training.
-
-May be imported by `gym` and `cli`.
-"""
+"""Handwritten digit recognition: classifier, MNIST, preprocessing and training."""
 
 from ai.digits.classifier import DigitClassifier
 from ai.digits.mnist import MnistError, load_mnist

@@ -1,4 +1,1 @@
-"""The lander as an environment of Gymnasium. Needs the extra `gym`.
-
-May be imported by `cli`.
-"""
+"""The lander as an environment of Gymnasium. Needs the extra `gym`."""

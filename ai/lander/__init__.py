@@ -1,7 +1,4 @@
-"""Lunar lander: its craft, ground, conditions, rules, rewards and environment, and pilots that fly it.
-
-Every package of `ai` but `common` may import it.
-"""
+"""Lunar lander: its craft, ground, conditions, rules, rewards and environment, and pilots that fly it."""
 
 from ai.lander.environment import Cause, LanderEnv, Limits, Outcome
 from ai.lander.ground import Ground, Pad

@@ -1,4 +1,1 @@
-"""Training runs: the loop, what is measured and kept of it, and a session that can be watched and steered.
-
-May be imported by `copilot`, `digits`, `gym` and `cli`.
-"""
+"""Training runs: the loop, what is measured and kept of it, and a session that can be watched and steered."""

@@ -1,4 +1,1 @@
-"""Cockpit: read-outs and cards over a flight, and the display of shared control with the co-pilot.
-
-May be imported by `exhibits`, `digits`, `play`, `export`, `shell` and `scenes`.
-"""
+"""Cockpit: read-outs and cards over a flight, and the display of shared control with the co-pilot."""

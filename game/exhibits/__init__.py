@@ -1,7 +1,4 @@
-"""Exhibits of the physics gallery: small worlds, each showing one law of the engine.
-
-May be imported by `digits`, `play`, `export`, `shell` and `scenes`.
-"""
+"""Exhibits of the physics gallery: small worlds, each showing one law of the engine."""
 
 from __future__ import annotations
 

@@ -1,4 +1,1 @@
-"""Export of replays as GIF or MP4.
-
-May be imported by `shell` and `scenes`.
-"""
+"""Export of replays as GIF or MP4."""

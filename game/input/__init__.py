@@ -1,4 +1,1 @@
-"""Input devices: keyboard, gamepads and mouse, mapped to held flight controls and to commands.
-
-Every package of `game` but `core` may import it.
-"""
+"""Input devices: keyboard, gamepads and mouse, mapped to held flight controls and to commands."""

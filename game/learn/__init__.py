@@ -1,4 +1,1 @@
-"""The path: ten short chapters, each one question and one thing to touch, with the real network, engine and agent.
-
-May be imported by `export`, `shell` and `scenes`.
-"""
+"""The path: ten short chapters, each one question and one thing to touch, with the real network, engine and agent."""

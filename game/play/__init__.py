@@ -1,4 +1,1 @@
-"""Challenges, races and the tutorial, with the ghosts, captions and outcome cards of flights.
-
-May be imported by `export`, `shell` and `scenes`.
-"""
+"""Challenges, races and the tutorial, with the ghosts, captions and outcome cards of flights."""

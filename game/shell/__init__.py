@@ -1,4 +1,1 @@
-"""Application shell: the window, the main loop and the scene stack.
-
-May be imported by `scenes`.
-"""
+"""Application shell: the window, the main loop and the scene stack."""

@@ -1,4 +1,1 @@
-"""The moon and what flies above it, in metres: drawn in code, at the window's own resolution.
-
-May be imported by `panels`, `cockpit`, `exhibits`, `digits`, `play`, `export`, `shell` and `scenes`.
-"""
+"""The moon and what flies above it, in metres: drawn in code, at the window's own resolution."""
