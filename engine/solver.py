@@ -114,18 +114,20 @@ class Solver:
         share = mass[0] / (mass[0] + mass[1])  # of a change of v that B takes; A takes the rest, the other way
         reduced = share * mass[1]
         whole = reduced * dot(turned, turned) + inertia[0] + inertia[1]
-        now = reduced * dot(turned, along) + inertia[0] * spins[0] + inertia[1] * spins[1]
-        before = now - (push[0, rows] + push[1, rows]) * cross(contacts.normal[rows], along)
-        turn = now / whole
+        momentum = reduced * dot(turned, along) + inertia[0] * spins[0] + inertia[1] * spins[1]
+        momentum_before = momentum - (push[0, rows] + push[1, rows]) * cross(contacts.normal[rows], along)
+        turn = momentum / whole
         own, own_spins = along - turn[:, None] * turned, spins - turn
         twice_energy = reduced * dot(own, own) + inertia[0] * own_spins[0] ** 2 + inertia[1] * own_spins[1] ** 2
-        excess = np.divide(before**2 - now**2, whole * twice_energy, out=np.zeros_like(whole), where=twice_energy > 0)
-        less = np.sqrt(np.clip(1.0 - excess, 0.0, 1.0)) - 1.0  # relative change of their own motion, 0 or below
-        turn = before / whole - turn  # change of the turning
+        excess = np.divide(
+            momentum_before**2 - momentum**2, whole * twice_energy, out=np.zeros_like(whole), where=twice_energy > 0
+        )
+        own_change = np.sqrt(np.clip(1.0 - excess, 0.0, 1.0)) - 1.0  # relative, 0 or below
+        turn_change = momentum_before / whole - turn
         change = np.empty_like(velocity)
-        pull = turn[:, None] * turned + less[:, None] * own
-        change[:, 0, :2], change[:, 1, :2] = (share - 1.0)[:, None] * pull, share[:, None] * pull
-        change[..., 2] = (turn + less * own_spins).T
+        along_change = turn_change[:, None] * turned + own_change[:, None] * own
+        change[:, 0, :2], change[:, 1, :2] = (share - 1.0)[:, None] * along_change, share[:, None] * along_change
+        change[..., 2] = (turn_change + own_change * own_spins).T
         np.add.at(state.velocity, places, change)
 
     def _iterate(self, velocity: Array, total: Array, target: Array, friction: Array | None, iterations: int) -> None:
