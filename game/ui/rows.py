@@ -10,7 +10,7 @@ import pygame
 
 from game.core.scene import Transition
 from game.drawing.cursor import BASELINE, LEADING, Cursor
-from game.drawing.tokens import HUMAN, INK, MUTE, NET, STEP, TEXT, Colour
+from game.drawing.tokens import HUMAN, INK, MUTE, NET, SMALL, STEP, TEXT, Colour
 from game.drawing.typeface import Weight
 from game.ui.entry import Entry
 from game.ui.listing import Listing, Row
@@ -116,10 +116,19 @@ class ButtonRow(RowWidget, TextButton):
             cursor.aside(aside)
 
     def lay(self, cursor: Cursor) -> None:
-        """Lay it out without a ring: its line shows the focus."""
+        """Lay it out without a ring, as its line shows the focus, and no wider than what it says."""
         ringed, self.ringed = self.ringed, False
         super().lay(cursor)
         self.ringed = ringed
+        if cursor.canvas is None:
+            self.rect.width = min(round(self._reach(cursor)), self.rect.width)
+
+    def _reach(self, cursor: Cursor) -> float:
+        """Return how far to the right a pointer finds it."""
+        figure, aside = self._figure(), self._aside()
+        beside = _WORDS + cursor.in_style(TEXT).measured(figure) if figure else 0.0
+        below = cursor.in_style(SMALL).measured(aside) if aside else 0.0
+        return max(self.measured(cursor) + beside, below) + _WORDS
 
 
 class ToggleRow(RowWidget, Toggle):
