@@ -2,12 +2,21 @@ import json
 import os
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+from game.core import texts
+from game.scenes.menus.settings import SettingsScene
+from tests.support.driver import Driver
 from tests.support.window import ROOT, Window, screen, skip_without_a_screen, start
+
+LESS_MOTION = texts.SETTINGS["reduced_motion"][0]
+TO_SETTINGS = (*["Down"] * 5, "Return")
+TO_LESS_MOTION = (*["Down"] * 3, "Return")
+SHOWN = 2.0  # seconds after which a screen that was chosen is there, on a busy machine too
 
 
 @pytest.fixture(scope="module")
@@ -24,24 +33,33 @@ def setting(window: Window, name: str) -> object:
 @pytest.mark.slow
 def test_a_setting_chosen_with_real_keys_survives_a_restart(display: str, tmp_path: Path):
     with start(display, tmp_path / "user") as window:
-        window.key(*["Down"] * 9, "Return")  # Settings
-        window.key("Down", "Return")  # Reduced motion
+        window.key(*TO_SETTINGS)
+        window.key(*TO_LESS_MOTION)
         window.wait_for(lambda: setting(window, "reduced_motion") is True, "the setting to be saved")
         window.key("Escape")
         assert window.close() == 0
     with start(display, tmp_path / "user") as window:
-        window.key(*["Down"] * 9, "Return", "Down", "Return")
+        window.key(*TO_SETTINGS, *TO_LESS_MOTION)
         window.wait_for(lambda: setting(window, "reduced_motion") is False, "the setting to change back")
         assert window.close() == 0
 
 
+def place_of(driver: Driver, label: str, size: tuple[int, int]) -> tuple[int, int]:
+    """Where the middle of a widget is in a window of that size, in pixels."""
+    driver.resize(size)
+    return driver.to_window(driver.widget(label).box.center)
+
+
 @pytest.mark.slow
-def test_the_mouse_meets_what_it_sees_in_a_letterboxed_window(display: str, tmp_path: Path):
+def test_the_mouse_meets_what_it_sees_in_a_letterboxed_window(display: str, tmp_path: Path, open_game):
+    size = (900, 760)
+    settings = place_of(open_game(), texts.MENU["settings"][0], size)
+    less_motion = place_of(open_game(SettingsScene), LESS_MOTION, size)
     with start(display, tmp_path / "user") as window:
-        window.resize(900, 760)
-        scale, top = 900 / 1280, (760 - 900 * 9 / 16) / 2
-        window.click(round(90 * scale), round(595 * scale + top))  # Settings
-        window.click(round(464 * scale), round((124 + 60 + 28) * scale + top))
+        window.resize(*size)
+        window.click(*settings)
+        time.sleep(SHOWN)
+        window.click(*less_motion)
         window.wait_for(lambda: setting(window, "reduced_motion") is True, "the setting to be saved")
         assert window.close() == 0
 
@@ -92,20 +110,20 @@ def test_no_screen_is_a_message_and_exit_code_2(tmp_path: Path):
 
 
 @pytest.mark.slow
-def test_the_mouse_meets_what_it_sees_in_full_screen_and_back(tmp_path: Path):
+def test_the_mouse_meets_what_it_sees_in_full_screen_and_back(tmp_path: Path, open_game):
     skip_without_a_screen()
+    driver = open_game(SettingsScene)
     with screen("1366x768x24") as display, start(display, tmp_path / "user") as window:
         for wide, high in ((1366, 768), (1280, 720)):  # the whole screen, and the window as it was before
             if wide == 1366:
                 window.key("F11")
                 window.wait_for(lambda: window.picture().get_size() == (1366, 768), "the whole screen")
-                window.key(*["Down"] * 9, "Return")
+                window.key(*TO_SETTINGS)
+                time.sleep(SHOWN)
             else:
                 window.key("F11")
                 window.wait_for(lambda: window.picture().get_size() == (1280, 720), "the window")
-            scale = min(wide / 1280, high / 720)
-            left, top = (wide - 1280 * scale) / 2, (high - 720 * scale) / 2
-            window.click(round(464 * scale + left), round((124 + 60 + 28) * scale + top))
+            window.click(*place_of(driver, LESS_MOTION, (wide, high)))
             wanted = wide == 1366
             window.wait_for(lambda: setting(window, "reduced_motion") is wanted, "the switch")  # noqa: B023
         assert window.close() == 0

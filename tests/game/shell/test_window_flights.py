@@ -37,7 +37,7 @@ def test_play_hand_over_take_back_hand_over_and_it_lands(display: str, tmp_path:
     (tmp_path / "user").mkdir()
     (tmp_path / "user" / "settings.json").write_text('{"tutored": true}', encoding="utf-8")  # or a first flight teaches
     with start(display, tmp_path / "user") as window:
-        window.key("Return")
+        window.key("Return", "Return")  # the page of Play, and free flight
         window.wait_for(lambda: shows(window, HUMAN, LAMP_AT_THE_TOP), "the lamp that says you fly")
         window.key("Tab")
         window.wait_for(lambda: shows(window, NET, LAMP_AT_THE_TOP), "the lamp that says the network flies")
@@ -62,7 +62,7 @@ def test_play_hand_over_take_back_hand_over_and_it_lands(display: str, tmp_path:
 @needs_a_network
 def test_watch_flies_a_swarm_and_counts_its_landings(display: str, tmp_path: Path):
     with start(display, tmp_path / "user") as window:
-        window.key("Down", "Down", "Down", "Return")
+        window.key("Down", "Return")
         window.wait_for(lambda: shows(window, NET, LAMP_AT_THE_TOP), "the network to fly")
         window.key("Down", "Right", "Right", "plus", "plus")
         window.wait_for(lambda: shows(window, PALETTE.good, pygame.Rect(60, 88, 80, 36)), "landings", 40)
