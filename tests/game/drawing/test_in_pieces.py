@@ -1,5 +1,6 @@
 """Land takes longer to paint than a frame may last: it is rough at once, and whole a few frames later."""
 
+from collections import deque
 from collections.abc import Callable, Iterator
 
 import numpy as np
@@ -7,7 +8,7 @@ import pygame
 import pytest
 
 from ai.lander.descent import LegStart, leg_of
-from game.drawing import letters
+from game.drawing import letters, paint_cache
 from game.drawing.canvas import Canvas
 from game.drawing.paint import PIECE
 from game.drawing.paint_cache import A_FRAME, idle, paint_on, painted, spread
@@ -78,7 +79,8 @@ def test_in_pieces_the_same_picture_comes_of_it_as_at_once(in_pieces: None, size
     assert not np.array_equal(rough, whole)
 
 
-def test_where_nobody_goes_on_painting_it_is_whole_at_once():
+def test_where_nobody_goes_on_painting_it_is_whole_at_once(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(paint_cache, "_unfinished", deque())  # what other tests have left
     picture = land((640, 360), leg=5)
     before = picture()
     assert idle()
