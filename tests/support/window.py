@@ -87,7 +87,11 @@ class Window:
         self._xdotool("keyup", name)
 
     def click(self, x: int, y: int) -> None:
-        self._xdotool("mousemove", "--window", self.id, str(x), str(y), "click", "1")
+        self._xdotool("mousemove", "--window", self.id, str(x), str(y))
+        time.sleep(0.3)  # a hand is no quicker
+        self._xdotool("mousedown", "1")
+        time.sleep(0.1)
+        self._xdotool("mouseup", "1")
         time.sleep(0.1)
 
     def drag(self, points: Sequence[tuple[int, int]]) -> None:
