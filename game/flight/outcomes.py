@@ -13,7 +13,7 @@ from ai.lander.rules import tenths
 from game.core import texts
 
 _LEVEL: Final = math.cos(math.radians(30))  # upward part of the unit normal of ground that still counts as level
-_TIPPED: Final = math.radians(45)  # tilt from which on no engine can brake the fall: that came first
+TIPPED: Final = math.radians(45)  # tilt from which on no engine can brake the fall: that came first
 
 
 @dataclass(frozen=True)
@@ -124,7 +124,7 @@ def cause_of(env: LanderEnv, slot: int = 0) -> Cause:
 
 
 def _tipped(env: LanderEnv, slot: int) -> bool:
-    return bool(env.impact[slot, 2] > _TIPPED)
+    return bool(env.impact[slot, 2] > TIPPED)
 
 
 def _exceeded(env: LanderEnv, slot: int) -> dict[Cause, tuple[float, float]]:

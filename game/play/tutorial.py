@@ -21,7 +21,7 @@ from game.drawing.tokens import INK, MUTE, SMALL, TEXT
 from game.flight.credit import Credit
 from game.flight.flight import Flight, StickHolder
 from game.flight.networks import Policy, QPolicy
-from game.flight.outcomes import OutcomeCard, outcome_card
+from game.flight.outcomes import TIPPED, OutcomeCard, outcome_card
 from game.input.bindings import Command, Held
 from game.input.controls import Controls
 from game.play.challenge import Challenge, DrawnFlight
@@ -43,7 +43,6 @@ _PRAISE: Final = 40  # steps that a finished lesson stays on the screen, with a 
 _LONG: Final = 840  # steps in flight after which the network lands a rescue that does not come down
 _NEAR: Final = 4.0  # metres above the pad, below which the craft should be upright
 _TOLD_WHY: Final = 240  # steps in flight that the reason for a restart stays on the screen
-_ON_ITS_SIDE: Final = np.radians(45)  # tilt from which on firing does not brake
 _SIDEWAYS: Final = 12.0  # metres from the pad that count as far
 _BESIDE: Final = 1.6  # metres from the middle of a craft to the text beside it
 _EDGE: Final = 24.0
@@ -265,7 +264,7 @@ class Tutorial(Challenge):
     def _urgent(self, env: LanderEnv) -> str:
         """Return an urgent warning, which precedes any lesson; empty if nothing is urgent."""
         if falls_too_fast(env):
-            return texts.TUTORIAL_TURN_FIRST if env.tilt[0] > _ON_ITS_SIDE else texts.TUTORIAL_TOO_FAST
+            return texts.TUTORIAL_TURN_FIRST if env.tilt[0] > TIPPED else texts.TUTORIAL_TOO_FAST
         if leaves_at_the_top(env):
             return texts.TUTORIAL_TOO_HIGH
         if self.lesson.name == "land" and env.altitude[0] < _NEAR and env.tilt[0] > env.limits.touch_tilt / 2:
