@@ -81,6 +81,7 @@ class _Job:
     so_far: FinishedTrial | None = None
     worker: Any = None
     tries: int = 0
+    begun: bool = False  # on this worker; one that a cluster has no core for waits
 
 
 class Driver:
@@ -155,6 +156,7 @@ class Driver:
             options = {"num_cpus": 1, "max_restarts": 0}
             job.worker = self._idle.pop() if self._idle else ray.remote(**options)(Worker).remote(self._study.plan)
         job.tries += 1
+        job.begun = False
         self._jobs[job.worker.begin.remote(fingerprint(), job.asked, job.runs, job.so_far)] = job
 
     def _take(self, done: Any) -> None:
@@ -163,16 +165,18 @@ class Driver:
         try:
             answer = ray.get(done)
         except ray.exceptions.RayTaskError as error:
-            self._idle.append(job.worker)
+            self._rest(job.worker)
             self._lose(job, brief(str(error.cause)))
             return
         except ray.exceptions.RayError as error:
             job.worker = None
+            self._idle.clear()  # they may have been on the node that is gone
             if job.tries < TRIES:
                 self._start(job)
             else:
                 self._lose(job, brief(str(error).strip().splitlines()[-1]))
             return
+        job.begun = True
         if answer == "":
             self._jobs[job.worker.step.remote()] = job
             return
@@ -181,7 +185,7 @@ class Driver:
         else:
             result, runs, over = answer
         if over or self._falls_behind(result):
-            self._idle.append(job.worker)
+            self._rest(job.worker)
             self.running.pop(result.number)
             self._waiting.append((result, runs if over else b""))
             self._write()
@@ -190,6 +194,11 @@ class Driver:
         if runs:
             job.runs, job.so_far = runs, result
         self._jobs[job.worker.step.remote()] = job
+
+    def _rest(self, worker: Any) -> None:
+        """Keep a worker for the next trial; let it end if another one waits for the core that it would hold."""
+        if all(job.begun for job in self._jobs.values()):
+            self._idle.append(worker)
 
     def _falls_behind(self, result: FinishedTrial) -> bool:
         try:
