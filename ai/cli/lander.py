@@ -155,7 +155,7 @@ def _evaluate(arguments: argparse.Namespace) -> int:
 def _agent_and_task(arguments: argparse.Namespace) -> tuple[DeepQAgent, Task[Any], str]:
     """Read the network, what it is measured by, and its environment; raises ValueError where they do not fit."""
     from ai.training.config import load_agent
-    from ai.training.tasks import task_of
+    from ai.training.loop import task_of
 
     agent, config = load_agent(arguments.model, env=arguments.env)
     env = config.env

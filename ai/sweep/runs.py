@@ -19,8 +19,8 @@ from ai.digits.training import DigitTraining
 from ai.sweep.metric import Point
 from ai.training.checkpoints import resume_digit_run, resume_run, save_digit_run, save_run
 from ai.training.config import Config
-from ai.training.loop import Training
-from ai.training.tasks import VALIDATION_SEED, task_of
+from ai.training.loop import Training, task_of
+from ai.training.tasks import VALIDATION_SEED
 
 AGENT: Final = "agent"  # kinds of run
 DIGITS: Final = "digits"

@@ -25,10 +25,11 @@ from ai.agent.replay import ReplayBuffer, make_replay
 from ai.agent.schedule import exploration, exploration_of_each
 from ai.common.environment import Env, Floats, StepResult
 from ai.files import array_like, count_of, number_of
-from ai.training.config import LANDER, Config
+from ai.training.config import ANYWHERE, LANDER, Config
+from ai.training.gym_task import GymTask
 from ai.training.state import State, StateWriter, restore_buffer
 from ai.training.statistics import EpisodeStatistics
-from ai.training.tasks import VALIDATION_SEED, Score, Task, Trial, task_of
+from ai.training.tasks import VALIDATION_SEED, AnywhereTask, LanderTask, Score, Task, Trial
 
 
 @dataclass
@@ -311,6 +312,17 @@ class Training:
 
 def _network(values: Floats, normalizer: Normalizer | None) -> State:
     return {"values": values.copy(), "normalizer": normalizer.to_json() if normalizer else None}
+
+
+def task_of(config: Config) -> Task[Any]:
+    """Make the task that a configuration names.
+
+    Raises ValueError for an environment that does not exist or cannot be learnt by Q-learning, and ImportError
+    where Gymnasium is needed and not installed.
+    """
+    if config.env in (LANDER, ANYWHERE):
+        return LanderTask(config) if config.env == LANDER else AnywhereTask(config)
+    return GymTask(config)
 
 
 def passed(before: int, now: int, every: int) -> bool:

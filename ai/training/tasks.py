@@ -30,7 +30,7 @@ from ai.lander.environment import (
 from ai.lander.pilots import Pilot
 from ai.lander.sensing import SURROUNDINGS, SURROUNDINGS_MIRROR
 from ai.lander.spawns import CURRICULA, SPAWNS, TEACH_HARD
-from ai.training.config import ANYWHERE, LANDER, Config, touchdown_limits
+from ai.training.config import Config, touchdown_limits
 from ai.training.state import State, rebuilt
 
 VALIDATION_SEED: Final = 1_000_003  # episodes that choose the best checkpoint
@@ -137,19 +137,6 @@ class Task(ABC, Generic[S]):
     def read_score(self, values: Any) -> S:
         """Read what a score's `to_json` gave; raises ValueError for anything else."""
         return read_as(self.score, values)
-
-
-def task_of(config: Config) -> Task[Any]:
-    """Make the task that a configuration names.
-
-    Raises ValueError for an environment that does not exist or cannot be learnt by Q-learning, and ImportError
-    where Gymnasium is needed and not installed.
-    """
-    if config.env in (LANDER, ANYWHERE):
-        return LanderTask(config) if config.env == LANDER else AnywhereTask(config)
-    from ai.training.gym_task import GymTask
-
-    return GymTask(config)
 
 
 @dataclass(frozen=True)

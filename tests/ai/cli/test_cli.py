@@ -200,9 +200,10 @@ def test_the_network_of_the_last_moment_stands_for_election_too(tmp_path, monkey
 
     def score(task, pilot, episodes, seed):
         measured.append((pilot.decisions, seed))
+        yield
         return Evaluation(episodes, 0.0, 1.0, 0.0, 0.0, float(pilot.decisions), None, None, 0.0)
 
-    monkeypatch.setattr(LanderTask, "evaluate", score)
+    monkeypatch.setattr(LanderTask, "trial", score)
     monkeypatch.setattr(LanderTask, "evaluate_every", 320)
     assert main(["train", "--decisions", "800", "--output", str(tmp_path / "run"), *SMALL]) == 0
     assert [decisions for decisions, seed in measured if seed == VALIDATION_SEED] == [320, 640, 800]
