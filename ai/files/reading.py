@@ -246,8 +246,6 @@ def _check_directory(file: BinaryIO) -> None:
 
 def _unpack(archive: zipfile.ZipFile, member: zipfile.ZipInfo, expect: Expect) -> npt.NDArray[Any]:
     name = brief(member.filename.removesuffix(".npy"), 60)
-    if member.flag_bits & 1:
-        raise ValueError(f"{name} is encrypted")
     if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
         raise ValueError(f"{name} is packed in an unknown way")
     with archive.open(member) as file:
