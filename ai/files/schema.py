@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping
 from contextlib import suppress
-from dataclasses import MISSING, fields, is_dataclass
+from dataclasses import MISSING, fields
 from functools import cache, partial
 from itertools import islice
 from pathlib import Path
@@ -165,7 +165,7 @@ def _check_of(hint: Any, strict: bool) -> Check:
         return partial(_tuple, [_check_of(kind, strict) for kind in inner if kind is not Ellipsis], Ellipsis in inner)
     if origin is dict:
         return partial(_table, _check_of(inner[1], strict))
-    return partial(read_as, hint, strict=strict) if is_dataclass(hint) else _PLAIN[hint]
+    return _PLAIN[hint] if hint in _PLAIN else partial(read_as, hint, strict=strict)
 
 
 def _ruled(check: Check, rules: tuple[Check, ...], value: Any) -> Any:
