@@ -14,7 +14,9 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from ai.nn.layers import FullyConnectedLayer, HalvedLayer, ImageShape, Layer, checked_size, ones
+from ai.nn.layer import HalvedLayer, Layer
+from ai.nn.layers import FullyConnectedLayer, ones
+from ai.nn.limits import ImageShape, checked_size
 from ai.nn.parameter import Array
 
 L = TypeVar("L", bound=Layer)
