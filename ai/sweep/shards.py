@@ -58,7 +58,7 @@ def fly(shard: Shard) -> FlightSums:
     env = LanderEnv(shard.last - shard.first, shard.seed, shard.spawn, shard.frame_skip)
     for slot, number in enumerate(range(shard.first, shard.last)):
         # The generator that number `number` of a batch gets, which NumPy spawns from the seed.
-        env.draw_from(slot, np.random.default_rng(np.random.SeedSequence(shard.seed, spawn_key=(number,))))
+        env.streams[slot] = np.random.default_rng(np.random.SeedSequence(shard.seed, spawn_key=(number,)))
     env.reset()
     return finished(flown(packed_agent(shard.agent), env))
 

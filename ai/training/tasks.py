@@ -16,18 +16,9 @@ from ai.agent.symmetry import Symmetry
 from ai.common.environment import Doubles, Env, Ints
 from ai.files import MOST, array_like, read_as
 from ai.lander.anywhere import SITES, AnywhereEnv
-from ai.lander.environment import (
-    LIMITS,
-    MIRROR_ACTIONS,
-    MIRROR_FEATURES,
-    MIRROR_SIGNS,
-    NUM_ACTIONS,
-    NUM_FEATURES,
-    LanderEnv,
-    Outcome,
-    engines_switched,
-)
+from ai.lander.environment import LIMITS, NUM_ACTIONS, NUM_FEATURES, LanderEnv, Outcome
 from ai.lander.pilots import Pilot
+from ai.lander.rules import MIRROR_ACTIONS, MIRROR_FEATURES, MIRROR_SIGNS, engines_switched
 from ai.lander.sensing import SURROUNDINGS, SURROUNDINGS_MIRROR
 from ai.lander.spawns import CURRICULA, SPAWNS, TEACH_HARD
 from ai.training.config import Config, touchdown_limits
