@@ -91,7 +91,10 @@ class NetworkEditor:
 
     def __init__(self, agent: DeepQAgent) -> None:
         self._agent = agent
-        self.forget()
+        self._steps: list[Edit] = []  # those in force since it has learnt last
+        self._before: tuple[Floats, Floats] | None = None  # all parameters, before the first edit of all
+        self._learnt: tuple[Floats, Floats] | None = None  # and as it had learnt, before the first of the steps
+        self._learnt_on = 0  # edits from which it has learnt on
 
     @property
     def edits(self) -> NetworkEdits:
@@ -141,7 +144,7 @@ class NetworkEditor:
 
     def undo(self) -> None:
         """Undo the last step; after the last one, the agent learns again."""
-        if not self._steps:
+        if not self._steps or self._learnt is None:
             return
         self._steps.pop()
         self._agent.online.values, self._agent.target.values = self._learnt
@@ -172,9 +175,8 @@ class NetworkEditor:
     def forget(self) -> None:
         """Let the agent learn, and keep no way back: its networks have been replaced, or are as they were."""
         self._agent.paused = False
-        self._steps: list[Edit] = []  # those in force since it has learnt last
-        self._before: tuple[Floats, Floats] | None = None  # all parameters, before the first edit of all
-        self._learnt_on = 0  # edits from which it has learnt on
+        self._before, self._learnt_on = None, 0
+        self._steps.clear()
 
     def _set(self, edit: Edit) -> None:
         for network in (self._agent.online, self._agent.target):
