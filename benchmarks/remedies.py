@@ -31,11 +31,11 @@ from ai.explain.inspection import NetworkHealth
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.training.config import PRESETS, Config
 from ai.training.edits import EditNetwork, SilenceUnit
+from ai.training.experiments import SABOTAGES
 from ai.training.hints import Adviser, Hint, RecentCurves
 from ai.training.history import Checkpoint, History, Point, SettingChange
 from ai.training.lander_session import live
 from ai.training.messages import ChangeSetting, NetworkState, RestoreCheckpoint, RunStarted
-from ai.training.sabotage import SABOTAGES
 
 NEAR: Final = PRESETS["modern"].changed(
     num_envs=128, spawn="near", hidden=(64,), gradient_steps=8, learning_starts=500, epsilon_decisions=4_000,
