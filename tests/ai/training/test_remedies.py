@@ -2,17 +2,69 @@
 
 import json
 from collections.abc import Iterator
+from itertools import count
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from ai.training.captions import caption
-from ai.training.config import PRESETS
+from ai.training.config import PRESETS, Config
 from ai.training.edits import EditNetwork, LearnOn, SilenceUnit, UndoEdit
-from ai.training.hints import RULES, RecentCurves
+from ai.training.hints import RULES, Adviser, RecentCurves
+from ai.training.history import Checkpoint, History, Point, SettingChange
+from ai.training.lander_session import live
 from ai.training.messages import ChangeSetting, RestoreCheckpoint
-from benchmarks.remedies import HEALTHY, NEAR, Watched
 from tests.support.recordings import recorded
+
+# As `benchmarks.remedies` has it.
+NEAR = PRESETS["modern"].changed(
+    num_envs=128, spawn="near", hidden=(64,), gradient_steps=8, learning_starts=500, epsilon_decisions=4_000,
+    schedule_decisions=30_000,
+)  # fmt: skip
+HEALTHY = 38_000  # decisions after which it lands, nine times of ten
+PACE = 10_000.0  # decisions a second of the clock that hints go by
+
+
+class Watched:
+    """A live run with its hints, as the scene follows it."""
+
+    def __init__(self, config: Config, resume: Path | None = None, keep: Path | None = None) -> None:
+        clock = count(0.0, 0.5 * config.num_envs / PACE).__next__
+        self._run = live(config, 0, keep=keep, resume=resume, clock=clock)
+        self.config, self.adviser = config, Adviser(config)
+        self.history = History.read(resume) if resume else History()
+        self.history.reward_scale = config.reward_scale
+        self._take(next(self._run))
+
+    @property
+    def decisions(self) -> int:
+        return int(self.history["decisions"][-1]) if len(self.history) else 0
+
+    @property
+    def landed(self) -> float:
+        return RecentCurves(self.history, self.config).last("success")
+
+    def send(self, command: Any) -> None:
+        self._take(self._run.send(command))
+
+    def go_on(self) -> str:
+        """Take one step; return the name of the hint that is shown."""
+        if self._take(next(self._run)):
+            self.adviser.advise(self.history, self.config)
+        return self.adviser.shown.name if self.adviser.shown else ""
+
+    def _take(self, told: tuple[Any, ...]) -> bool:
+        news = [message for message in told if isinstance(message, Point | SettingChange | Checkpoint)]
+        for message in news:
+            self.history.append(message)
+            if isinstance(message, SettingChange) and hasattr(self.config, message.name):
+                self.config = self.config.turned(message.name, message.after)
+        return bool(news)
+
+    def close(self) -> None:
+        self._run.close()
+
 
 TRIED = json.loads(Path(__file__).with_name("remedies.json").read_text())
 
@@ -39,7 +91,7 @@ def hint_after(run: Watched, decisions: int = 60_000) -> str:
     end = run.decisions + decisions
     while run.decisions < end:
         if hint := run.go_on():
-            return hint.name
+            return hint
     return ""
 
 
