@@ -5,9 +5,11 @@
     python -m benchmarks.guardian --live [--flights 4]                     decisions of flights in real time
 
 With the dial at 0.04, 0.27 and 1, there must be a landing after 1, 4 and 12 decisions of an action. Starts are fresh:
-no network was trained with them. All hands fly from the same, "good" among them, which is the network alone. Flights
-are flown in rounds, all of some families at once, and noted in the file, so that they can be broken off. The costs are of moments of flights by random keys, with the network that comes with
-the game; processor time is that of this process alone, so that others lengthen it little.
+no network was trained with them. All hands fly from the same; "good" among them is the network alone. Flights are flown
+in rounds, all of some families at once, and noted in the file, so that they can be broken off.
+
+The costs are of moments of flights by random keys, with the network that comes with the game; processor time is that of
+this process alone, so that others lengthen it little.
 
 Live flights take as long as in the game, with futures from a process of their own, and a machine that does nothing
 else is needed for figures that say something. Of the decisions, those are *late* in which the plan was flown on only

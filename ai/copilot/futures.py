@@ -209,8 +209,8 @@ class Lookahead:
         once: list[tuple[int, Opening]] = [(row, (*before, push)) for row, push in asked]
         if decisions == 1:
             return [Future(plan) for plan in self.plans(moment, once)]
-        lasts = [plan is not None
-                 for plan in self.plans(moment, [(row, (*before, *(push,) * decisions)) for row, push in asked])]  # fmt: skip
+        longer: list[tuple[int, Opening]] = [(row, (*before, *(push,) * decisions)) for row, push in asked]
+        lasts = [plan is not None for plan in self.plans(moment, longer)]
         wanted = [opening for opening, last in zip(once, lasts, strict=True) if last or not lasting]
         plans = iter(self.plans(moment, wanted))
         return [Future(next(plans) if last or not lasting else None, last) for last in lasts]

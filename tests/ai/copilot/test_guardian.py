@@ -146,7 +146,10 @@ def test_the_first_wish_that_passes_is_found_without_flying_the_rest(agent, monk
     decision = copilot.decide(env.observe(), [first[slot].action for slot in range(4)], None, None, env, known)
     assert not (decision.overridden & every.lasts.any(axis=1)).any()
     monkeypatch.setattr(Lookahead, "futures", lambda *_, **__: [])
-    head = copilot.guardians[0].plan.push(Here.of(env))
+    plan_held = copilot.guardians[0].plan
+    assert plan_held
+    head = plan_held.push(Here.of(env))
+    assert head
     assert copilot.first_passing(env, {0: [head]}, [{}]) == {0: head}  # the held plan begins with it
 
 
