@@ -22,6 +22,7 @@ from ai.agent.network import make_optimizer
 from ai.agent.normalizer import Normalizer
 from ai.agent.replay import ReplayBuffer, make_replay
 from ai.agent.schedule import exploration, exploration_of_each
+from ai.agent.storage import agent_state, load_agent_state
 from ai.common.environment import Env, Floats, StepResult
 from ai.files import array_like, count_of, number_of
 from ai.training.config import LANDER, Config
@@ -218,7 +219,7 @@ class Training:
             best = {"score": self.best.to_json(), "values": self.best_values.copy(), "normalizer": scale}
         return {
             "episodes": self.episodes, "evaluated": self._evaluated, "seconds": self.seconds, "best": best,
-            "observation": self.observation.copy(), "held": self._held.copy(), "agent": self.agent.state(),
+            "observation": self.observation.copy(), "held": self._held.copy(), "agent": agent_state(self.agent),
             "env": self.task.env_state(self.env), "statistics": self.statistics.state(),
         }  # fmt: skip
 
@@ -241,7 +242,7 @@ class Training:
                 if (self._held < 0).any() or (self._held >= self.task.num_actions).any():
                     raise ValueError("actions are none of the environment's")
                 self.statistics.load_state(state["statistics"])
-            agent.load_state(state["agent"], env.num_envs)
+            load_agent_state(agent, state["agent"], env.num_envs)
             whole = [
                 restore_buffer(folder, getattr(agent, name), state["buffers"][name], self.task.num_actions)
                 for name in ("replay", "successes") if name in state["buffers"]
