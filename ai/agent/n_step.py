@@ -121,13 +121,13 @@ class Episodes:
 
         Raises KeyError, TypeError or ValueError for anything else.
         """
-        slots = state["slots"] if state else self._slots[:0]
-        like = _zeros(len(slots), observation.shape[1])
-        if state:
-            like = Transition(*(array_like(part, state[name], name) for name, part in like._asdict().items()))
+        like = _zeros(len(state["slots"]) if state else 0, observation.shape[1])
+        slots = array_like(like.steps, state["slots"], "slots") if state else like.steps
         if (slots < 0).any() or (slots >= len(observation)).any():
             raise ValueError("transitions are of no slot of the environment")
-        self._transitions, self._slots = like, array_like(like.steps, slots, "slots")
+        parts = like._asdict().items() if state else ()
+        self._transitions = like._replace(**{name: array_like(part, state[name], name) for name, part in parts})
+        self._slots = slots
 
 
 def joined(parts: Sequence[Transition]) -> Transition:
