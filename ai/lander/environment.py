@@ -245,7 +245,8 @@ class LanderEnv:
 
     def _standing(self, pad: Any) -> Doubles:
         """Return where the centre of mass of a lander is that stands there, of that shape."""
-        return self._top(pad) + np.array([0.0, self.params.stand])
+        place: Doubles = self._top(pad) + np.array([0.0, self.params.stand])
+        return place
 
     def reset(self, mask: Bools | None = None) -> Floats:
         """Begin a new flight in the slots of `mask` (n,), or in all; return every slot's observation."""
