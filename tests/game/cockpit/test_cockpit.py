@@ -8,15 +8,15 @@ import pytest
 
 from ai.common.decision import Decision, decide
 from ai.lander.environment import PARAMS, Outcome
-from game.cockpit.guardian_words import dial_words
-from game.cockpit.overrides import difference
 from game.core import texts
 from game.core.settings import SettingsFile
 from game.flight import networks
 from game.flight.flight import StickHolder
 from game.flight.flight_file import Entry
 from game.flight.logbook import LOGBOOK, Records
-from game.scenes.play import PlayScene
+from game.scenes.play.guardian_words import dial_words
+from game.scenes.play.overrides import difference
+from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import play

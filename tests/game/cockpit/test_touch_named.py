@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from ai.lander.environment import Cause, Outcome
-from game.cockpit import hud
 from game.core import texts
 from game.flight.flight import Flight
 from game.flight.outcomes import cause_of, outcome_card, struck_side
+from game.scenes.play import card as hud
 
 FIGURES = {Cause.HARD: 1, Cause.SLIDING: 2, Cause.TILTED: 3}
 

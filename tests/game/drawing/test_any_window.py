@@ -9,15 +9,15 @@ from hypothesis import given
 from hypothesis import settings as examples
 from hypothesis import strategies as st
 
-from game.cockpit import hud
-from game.cockpit.copilot_panel import PANEL
 from game.core import texts
 from game.core.scene import Scene
 from game.drawing.canvas import PAGE, Canvas
 from game.drawing.tokens import MARGIN
 from game.scenes.menus.menu import MenuScene
-from game.scenes.play import PlayScene
-from game.scenes.watch import WatchScene
+from game.scenes.play import card as hud
+from game.scenes.play.copilot_panel import PANEL
+from game.scenes.play.scene import PlayScene
+from game.scenes.watch.scene import WatchScene
 from game.ui.context import Context
 from game.world.camera import LAND_REACH, WIDEST, Camera, CameraTarget
 from game.world.landscape.backdrop import Backdrop

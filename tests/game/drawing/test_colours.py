@@ -6,7 +6,6 @@ import numpy as np
 import pygame
 import pytest
 
-from game.cockpit import hud
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import (
     COLOUR_SAFE,
@@ -22,6 +21,7 @@ from game.drawing.tokens import (
     Colour,
     Palette,
 )
+from game.scenes.play import card as hud
 
 # How eyes without one kind of cone see linear RGB: Machado, Oliveira and Fernandes, "A Physiologically-based Model for
 # Simulation of Color Vision Deficiency", IEEE Transactions on Visualization and Computer Graphics 15(6), 2009,

@@ -12,7 +12,6 @@ from ai.flights.verification import begun
 from ai.lander.descent import LegStart
 from ai.lander.environment import Outcome
 from ai.lander.moment import Moment
-from game.cockpit.guardian_words import why_bare
 from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.core.settings import Settings
@@ -21,6 +20,7 @@ from game.flight.difficulty import Difficulty
 from game.flight.flight import Flight, StickHolder
 from game.flight.futures import FuturesProcess
 from game.flight.guard import Guard, Taps, nearest, push_of, shares_of
+from game.scenes.play.guardian_words import why_bare
 from tests.support.futures import AtOnce
 
 GUARD = 0.04  # of the dial: one decision ahead

@@ -11,7 +11,7 @@ import pytest
 from game.core import texts
 from game.drawing.glyphs import SIGN
 from game.input.controls import Command
-from game.scenes.play import PlayScene
+from game.scenes.play.scene import PlayScene
 from tests.support.driver import Driver
 
 GAME_CONTROLLER, AXES, BUTTONS = 1, 6, 15

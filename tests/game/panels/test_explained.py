@@ -11,8 +11,8 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.panels.q_values import QValues, value_words
 from game.panels.training_charts import TrainingCharts
-from game.scenes.play import PlayScene
-from game.scenes.watch import WatchScene
+from game.scenes.play.scene import PlayScene
+from game.scenes.watch.scene import WatchScene
 from tests.support.driver import Driver
 
 Open = Callable[..., Driver]

@@ -15,8 +15,8 @@ from game.core.assets import MODELS_DIR
 from game.flight import networks
 from game.flight.flight import Flight, StickHolder
 from game.flight.forecast import Forecast
-from game.play.challenge import FlownMission, Race
-from game.scenes.play import PlayScene
+from game.scenes.play.challenge import FlownMission, Race
+from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import kept, play, scripted

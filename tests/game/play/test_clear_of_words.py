@@ -7,11 +7,11 @@ import pygame
 import pytest
 
 from ai.lander.environment import Outcome
-from game.cockpit.copilot_panel import PANEL
 from game.drawing.canvas import Canvas
 from game.flight import networks
-from game.scenes.play import PlayScene
-from game.scenes.watch import WatchScene
+from game.scenes.play.copilot_panel import PANEL
+from game.scenes.play.scene import PlayScene
+from game.scenes.watch.scene import WatchScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import play

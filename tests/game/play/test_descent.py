@@ -13,8 +13,8 @@ from game.core import texts
 from game.flight.flight import Flight, StickHolder
 from game.flight.logbook import Records, longest_descent
 from game.flight.replay import FlightReplay
-from game.play.descent import Descent, best_of
-from game.scenes.play import PlayScene
+from game.scenes.play.descent import Descent
+from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from tests.support.descent import stand_on
 from tests.support.driver import Driver

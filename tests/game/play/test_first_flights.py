@@ -21,10 +21,10 @@ from game.flight.guard import Guard
 from game.flight.logbook import Records, best
 from game.flight.replay import FlightReplay
 from game.flight.skill import Skill
-from game.play.ladder import Ladder
-from game.play.rescue_offer import CRASHES, HELP
-from game.play.tutorial import Tutorial
-from game.scenes.play import PlayScene
+from game.scenes.play.ladder import Ladder
+from game.scenes.play.rescue_offer import CRASHES, HELP
+from game.scenes.play.scene import PlayScene
+from game.scenes.play.tutorial import Tutorial
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import fly_out, kept, play

@@ -19,12 +19,12 @@ from game.flight.flight_file import Entry
 from game.flight.logbook import LOGBOOK, Records
 from game.flight.rescues import Rescues
 from game.input.controls import Command
-from game.play import growth
-from game.play.challenge import Challenge, FlownMission
-from game.play.tutorial import Tutorial
-from game.scenes.choices import ChoicesScene
-from game.scenes.logbook import LogbookScene
-from game.scenes.play import PlayScene
+from game.scenes.logbook.scene import LogbookScene
+from game.scenes.play import growth
+from game.scenes.play.challenge import Challenge, FlownMission
+from game.scenes.play.choices import ChoicesScene
+from game.scenes.play.scene import PlayScene
+from game.scenes.play.tutorial import Tutorial
 from game.ui.context import Context
 from game.ui.widgets import Toggle
 from tests.support.driver import Driver

@@ -3,13 +3,12 @@ from collections.abc import Callable
 import numpy as np
 import pygame
 import pytest
+from game.scenes.play.surroundings import surroundings
 
 from ai.agent.agent import DeepQAgent
 from ai.flights.verification import landing_score
 from ai.lander.environment import PARAMS, Cause, Outcome
 from ai.lander.missions import MISSIONS
-from game.cockpit.hud import flight_readouts
-from game.cockpit.surroundings import surroundings
 from game.core import texts
 from game.core.assets import ASSETS_DIR, MODELS_DIR
 from game.core.settings import Settings
@@ -22,11 +21,12 @@ from game.flight.flight_file import Record
 from game.flight.logbook import Records
 from game.flight.outcomes import OutcomeCard, flight_figures
 from game.flight.replay import FlightReplay, ReplayedFlight
-from game.play.challenge import FlownMission
-from game.scenes.logbook import LogbookScene
-from game.scenes.missions import MissionsScene
-from game.scenes.play import PlayScene
-from game.scenes.replay import ReplayScene
+from game.scenes.logbook.replay import ReplayScene
+from game.scenes.logbook.scene import LogbookScene
+from game.scenes.play.card import flight_readouts
+from game.scenes.play.challenge import FlownMission
+from game.scenes.play.missions import MissionsScene
+from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from game.ui.listing import Listing
 from tests.support.driver import Driver

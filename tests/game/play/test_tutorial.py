@@ -13,11 +13,11 @@ from game.flight.flight import StickHolder
 from game.flight.logbook import Records
 from game.flight.outcomes import crash_reason
 from game.input.bindings import Held
-from game.play.tutorial import Tutorial
-from game.play.tutorial_lessons import LESSONS, NEED_COPILOT
 from game.scenes.menus.menu import MenuScene
 from game.scenes.menus.settings import SettingsScene
-from game.scenes.play import PlayScene
+from game.scenes.play.scene import PlayScene
+from game.scenes.play.tutorial import Tutorial
+from game.scenes.play.tutorial_lessons import LESSONS, NEED_COPILOT
 from game.ui.context import Context
 from tests.support.drawn import Drawn
 from tests.support.driver import Driver

@@ -7,25 +7,25 @@ from functools import cache
 import numpy as np
 import pygame
 import pytest
+from game.scenes.play.race import fly_on, race
 
 from ai.lander.environment import PARAMS, Outcome
 from ai.lander.missions import MISSIONS
 from game.core import texts
 from game.flight import networks
+from game.flight.days import Days
 from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Entry
 from game.flight.logbook import Records
 from game.flight.replay import FlightReplay
-from game.play.challenge import FlownMission
-from game.play.daily import DailyStart
-from game.play.days import Days
-from game.play.race import fly_on, race
-from game.play.tutorial import Tutorial
-from game.scenes.choices import ChoicesScene
-from game.scenes.logbook import LogbookScene, entry_row
-from game.scenes.missions import MissionsScene
-from game.scenes.play import PlayScene
-from game.scenes.replay import ReplayScene
+from game.scenes.logbook.replay import ReplayScene
+from game.scenes.logbook.scene import LogbookScene, entry_row
+from game.scenes.play.challenge import FlownMission
+from game.scenes.play.choices import ChoicesScene
+from game.scenes.play.daily import DailyStart
+from game.scenes.play.missions import MissionsScene
+from game.scenes.play.scene import PlayScene
+from game.scenes.play.tutorial import Tutorial
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import fly_out, kept, play

@@ -15,7 +15,7 @@ from game.flight import networks
 from game.scenes.digit_training import DigitTrainingScene
 from game.scenes.digits import DigitsScene
 from game.scenes.train import TrainScene
-from game.scenes.watch import COUNTS, WatchScene
+from game.scenes.watch.scene import COUNTS, WatchScene
 from game.training.run import TrainingRun
 from game.ui.context import Context
 from tests.support.driver import Driver

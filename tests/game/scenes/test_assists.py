@@ -11,10 +11,10 @@ from ai.lander.environment import Outcome
 from ai.lander.missions import MISSIONS
 from game.core import texts
 from game.flight.logbook import Records, best
-from game.play.challenge import FlownMission
 from game.scenes.menus.menu import MenuScene
 from game.scenes.menus.settings import AssistsScene, SettingsScene
-from game.scenes.play import PlayScene
+from game.scenes.play.challenge import FlownMission
+from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from game.ui.switch_scan import DWELL, HELD, SwitchScan
 from tests.support.driver import Driver

@@ -11,8 +11,8 @@ from game.core import texts
 from game.flight import networks
 from game.flight.outcomes import crash_reason
 from game.flight.replay import ReplayedFlight
-from game.play.captions import BELOW_OPENING
-from game.scenes.play import PlayScene
+from game.scenes.play.captions import BELOW_OPENING
+from game.scenes.play.scene import PlayScene
 from game.world.camera import View
 from tests.support.driver import Driver
 

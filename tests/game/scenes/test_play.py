@@ -16,7 +16,7 @@ from game.drawing.canvas import Canvas
 from game.flight import networks
 from game.flight.flight import StickHolder
 from game.flight.logbook import Records
-from game.scenes.play import PlayScene
+from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 

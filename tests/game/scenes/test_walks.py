@@ -11,7 +11,7 @@ from game.core.scene import Scene
 from game.flight.flight import StickHolder
 from game.scenes.menus.menu import MenuScene
 from game.scenes.menus.settings import GROUPS_OF_SETTINGS
-from game.scenes.play import PlayScene
+from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from game.ui.listing import Listing
 from tests.support.driver import Driver

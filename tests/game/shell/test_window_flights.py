@@ -6,9 +6,9 @@ from pathlib import Path
 import pygame
 import pytest
 
-from game.cockpit.hud import CARD
 from game.core.assets import MODELS_DIR
 from game.drawing.tokens import HUMAN, NET, PALETTE, Colour
+from game.scenes.play.card import CARD
 from tests.support.window import Window, screen, skip_without_a_screen, start
 
 needs_a_network = pytest.mark.skipif(not (MODELS_DIR / "lander" / "modern").exists(), reason="no trained network here")

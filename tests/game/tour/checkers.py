@@ -14,9 +14,9 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK, VIEW_SIZE
 from game.input.bindings import KEYBOARD, Bindings, Command, Held
 from game.input.controls import Controls, key_name
+from game.scenes.logbook.replay import ReplayScene
 from game.scenes.menus.background import LOADER
-from game.scenes.play import PlayScene
-from game.scenes.replay import ReplayScene
+from game.scenes.play.scene import PlayScene
 from game.ui.actions import Action, Table
 from tests.game.tour.stops import Stop
 from tests.support.driver import Driver

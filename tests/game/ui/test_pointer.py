@@ -11,7 +11,7 @@ from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.training.config import Config
 from game.flight.flight import Flight
 from game.flight.logbook import Records
-from game.scenes.logbook import LogbookScene
+from game.scenes.logbook.scene import LogbookScene
 from game.scenes.physics import PhysicsScene
 from game.scenes.train import TrainScene
 from game.ui.context import Context

@@ -8,7 +8,7 @@ from ai.lander.environment import LIMITS, PARAMS, LanderEnv
 from ai.lander.ground import Ground, hilly
 from game.drawing.tokens import VIEW_SIZE
 from game.flight.flight import Flight
-from game.play.captions import BELOW_OPENING
+from game.scenes.play.captions import BELOW_OPENING
 from game.world import framing
 from game.world.camera import CLOSEST, GROUND_LINE, GROUND_ROW, WIDEST, Camera, CameraTarget, View
 from game.world.landscape.sheet import WorldPicture

@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pygame
 import pytest
+from game.scenes.play.surroundings import surroundings
 
 from ai.flights.recording import AREA
 from ai.lander.environment import LIMITS, LanderEnv, Outcome
@@ -12,7 +13,6 @@ from ai.lander.ground import hilly
 from ai.lander.rules import AREAS
 from ai.lander.sensing import NEAR, near_edges
 from game.audio.flight_sounds import FlightSound
-from game.cockpit.surroundings import surroundings
 from game.drawing.canvas import Canvas
 from game.flight.flight import Flight, Recording
 from game.flight.replay import ReplayedFlight
