@@ -23,11 +23,12 @@ class OutcomeCard:
 
     For a shared flight, `stepped_in` is how often the co-pilot intervened, and `saved` how often it saved the
     person; None for a flight without a guardian that could tell, or without a landing. `medal` is 3 for gold, 2, 1,
-    0 for none. `assists` says what made the flight easier, and `bare` from when on a guardian held no plan, and
-    why. `place` is where the card stands across the window, 0 to 1. `growth` are lines on what the flight has shown of the person's own skill.
-    `intact` is whether the craft came down whole beside the pad. `rung` is the place on the ladder of starts, None
-    off it, and `climb` what the flight has changed there. `ring` is whether it was landed together with the
-    network. `quality` says how well it was landed, and `compared` are other scores from the same start.
+    0 for none. `assists` says what made the flight easier, and `bare` why help did not save a lost one, and what
+    would have. `place` is where the card stands across the window, 0 to 1. `growth` are lines on what the flight has
+    shown of the person's own skill. `intact` is whether the craft came down whole beside the pad. `rung` is the place
+    on the ladder of starts, None off it, and `climb` what the flight has changed there. `ring` is whether it was
+    landed together with the network. `quality` says how well it was landed, and `compared` are other scores from the
+    same start, in words and a figure.
     """
 
     good: bool

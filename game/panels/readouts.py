@@ -39,6 +39,7 @@ Lamp = tuple[Shape, Colour, float]  # shape, colour and strength of the glow
 
 # Four columns on the left, three on the right: the landing pad stands in the middle.
 COLUMNS: Final = (64.0, 194.0, 324.0, 454.0, 880.0, 1002.0, 1124.0)
+READOUTS: Final = 80.0  # points at the foot of a page that they take
 PILOT: Final = 4  # read-outs that a pilot needs in flight
 _LABEL_LINE: Final = 663.0
 _FIGURE_LINE: Final = 697.0
@@ -48,8 +49,8 @@ _TITLE_ROOM: Final = 400.0  # points for who flies
 _SHADE, _SHADE_TOP = 0.6, 640.0  # greatest darkness behind the read-outs, and the row from which it begins
 _CAPITAL: Final = 0.72  # height of a figure, in shares of its font size
 # A readout's words are painted on a sheet: how far that reaches beyond them to the left and above, and its size.
-_ASIDE, _ABOVE = 4.0, 16.0
-_WORDS: Final = (180.0, 66.0)
+_ASIDE, _ABOVE = 4.0, 28.0
+_WORDS: Final = (180.0, 78.0)
 _FIGURES: Final = PaintCache(64)
 _LITTLE_TIME: Final = 5.0
 _NAMED: Final = {Cause.HARD: 1, Cause.SLIDING: 2, Cause.TILTED: 3}  # which of the read-outs a crash is named by

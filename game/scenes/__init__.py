@@ -19,9 +19,10 @@ ROUTES: Final = {
     "digit_inside": "digit_inside.DigitInsideScene", "why_not": "why_not.WhyNotScene",
     "dream": "dream.DreamScene", "quiz": "quiz.QuizScene", "physics": "physics.PhysicsScene",
     "physics_step": "physics_step.PhysicsStepScene",
-    "logbook": "logbook.scene.LogbookScene", "replay": "logbook.replay.ReplayScene", "settings": "menus.settings.SettingsScene",
-    "bindings": "menus.keys.BindingsScene", "choices": "play.choices.ChoicesScene", "assists": "menus.settings.AssistsScene",
-    "pause": "play.pause.PauseScene", "flight_pause": "play.pause.FlightPause",
+    "logbook": "logbook.scene.LogbookScene", "replay": "logbook.replay.ReplayScene",
+    "settings": "menus.settings.SettingsScene", "assists": "menus.settings.AssistsScene",
+    "bindings": "menus.keys.BindingsScene", "choices": "play.choices.ChoicesScene",
+    "pause": "play.pause.PauseScene", "flight_pause": "play.pause.FlightPauseScene",
     "learn": "learn.LearnScene", "chapter": "chapter.ChapterScene", "lesson": "lesson.LessonScene",
     "error_screen": "error_screen.ErrorScene", "study": "study.StudyScene",
 }  # fmt: skip

@@ -41,8 +41,9 @@ from game.scenes.play.choices import ChoicesScene
 from game.scenes.play.daily import DailyStart
 from game.scenes.play.descent import Descent
 from game.scenes.play.missions import MissionsScene
-from game.scenes.play.pause import PauseScene
+from game.scenes.play.pause import FlightPauseScene, PauseScene
 from game.scenes.play.scene import PlayScene
+from game.scenes.play.tutorial import Tutorial
 from game.scenes.quiz import QuizScene
 from game.scenes.runs import NetworksScene
 from game.scenes.study import StudyScene
@@ -115,10 +116,12 @@ FLOWN: dict[str, Make] = {
     "Play": lambda context: PlayScene(context, 3),
     "swarm": lambda context: WatchScene(context, 16, seed=2),
     "mission": lambda context: PlayScene(context, 0, challenge=FlownMission(MISSIONS["wind"])),
+    "tutorial": lambda context: PlayScene(context, 0, challenge=Tutorial()),
     "descent": lambda context: PlayScene(context, 3, challenge=Descent()),
     **{f"chapter, {key}": partial(ChapterScene, key=key) for key in PATH if key != FIRST},
 }
 OVER_OTHERS: dict[str, Callable[[Scene], Scene]] = {
+    "FlightPauseScene": lambda below: FlightPauseScene(below.context, below, retry=lambda: None),
     "PauseScene": lambda below: PauseScene(below.context, below, retry=lambda: None),
     "ChoicesScene": lambda below: ChoicesScene(below.context, below, Skill([]), begun=False),
     "QuestionDialog": lambda below: QuestionDialog(below, "?", "", [("yes", lambda: None), ("no", lambda: None)]),
@@ -159,6 +162,7 @@ def settle(context: Context, **settings: object) -> None:
 
 def opened(open_game: Callable[..., Driver], name: str, below: Make = MenuScene, frames: int = 5) -> Driver:
     """Open a screen; one that stands over others does so over the menu, or what is given."""
+    below = FLOWN["Play"] if name == "FlightPauseScene" else below
     driver = open_game(below if name in OVER_OTHERS else {**SCREENS, **FLOWN}[name])
     if name in OVER_OTHERS:
         driver.app.scenes.apply(Push(OVER_OTHERS[name](driver.top)))

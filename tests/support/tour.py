@@ -35,7 +35,7 @@ from game.scenes.play.challenge import FlownMission
 from game.scenes.play.daily import DailyStart
 from game.scenes.play.descent import Descent
 from game.scenes.play.scene import PlayScene
-from game.scenes.play.starts import against
+from game.scenes.play.starts import race
 from game.scenes.quiz import QuizScene
 from game.scenes.watch.scene import COUNTS, WatchScene
 from game.scenes.why_not import WhyNotScene
@@ -105,9 +105,7 @@ def makers(context: Context) -> dict[str, Callable[[], Scene | None]]:
         "mission": lambda: PlayScene(context, 0, challenge=FlownMission(missions[rng.integers(len(missions))])),
         "daily": lambda: PlayScene(context, 1, challenge=DailyStart(date(2026, 1, 1), Days(context.user_dir))),
         "descent": lambda: PlayScene(context, 1, challenge=Descent()),
-        "race": lambda: replayed(
-            lambda _, record: PlayScene(context, record.recording.seed, challenge=against(record))
-        ),
+        "race": lambda: replayed(race),
         "LessonScene": lambda: LessonScene(context, lesson_of("modern")),
         "ReplayScene": lambda: replayed(ReplayScene),
         "DreamScene": lambda: of_digits(DreamScene),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Final
 
 from game.core import texts
@@ -14,17 +14,13 @@ from game.scenes.play.challenge import Challenge
 from game.scenes.play.ladder import COUNT, rung_of
 from game.ui.actions import Action, Run
 
-_IN_FLIGHT: Final = (Command.HANDOVER, Command.PAUSE)  # keys that are named while the craft flies
+IN_FLIGHT: Final = (Command.HANDOVER, Command.PAUSE)  # keys that are named while the craft flies, for the mouse
 
 
 def title(flight: Flight, challenge: Challenge | None, network: Network, hands: str) -> tuple[str, str]:
     """Return the kind of a flight, and its name or who can take over."""
     if challenge:
-        flown = (
-            texts.WITH_NETWORK.format(network=titled(network.name)) if flight.network and challenge.elsewhere else ""
-        )
-        small = texts.MISSION_FLOWN.format(mission=challenge.title, flown=flown) if flown else challenge.title
-        return small, challenge.line
+        return challenge.title, challenge.line
     flown = texts.WITH_NETWORK.format(network=titled(network.name)) if flight.network else texts.ALONE
     if hands != OWN:
         flown = texts.HANDICAPS.format(hands=texts.CHOICES_HANDS_WORDS[hands])
@@ -46,7 +42,12 @@ def opening(flight: Flight, challenge: Challenge | None, *, begun: bool, stuck: 
 
 
 def flight_actions(
-    runs: Mapping[Command, Run], flight: Flight, challenge: Challenge | None, *, leaves: bool, calm: bool
+    runs: Mapping[Command, Run],
+    flight: Flight,
+    challenge: Challenge | None,
+    *,
+    leaves: bool,
+    named: Collection[Command],
 ) -> list[Action]:
     """Return what keys do in flight, with the hints that fit the moment.
 
@@ -55,7 +56,7 @@ def flight_actions(
         flight: the flight.
         challenge: the challenge it belongs to, if any.
         leaves: whether Escape goes straight back.
-        calm: whether nothing flies, so that there is time to read all hints.
+        named: the keys that may be named.
 
     """
     hints = {Command.PAUSE: texts.HINT_LEAVE if leaves else texts.HINT_PAUSE, Command.RETRY: texts.HINT_RETRY}
@@ -66,9 +67,7 @@ def flight_actions(
     if flight.network and not flight.over:
         taken = flight.hand is StickHolder.NETWORK
         hints[Command.HANDOVER] = texts.HINT_TAKE_BACK if taken else texts.HINT_HAND_OVER
-    if not calm:
-        hints = {command: hint for command, hint in hints.items() if command in _IN_FLIGHT}
-    return [Action(command, run, hints.get(command, "")) for command, run in runs.items()]
+    return [Action(command, run, hints.get(command, "") if command in named else "") for command, run in runs.items()]
 
 
 def card_actions(

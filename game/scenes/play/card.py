@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 _WIDEST: Final = 480.0
 _MARGIN: Final = 32.0
 _AROUND: Final = 16.0  # least points from the sides of the window
+_NARROW, _KEYS = 860.0, 54.0  # in a narrower one, keys stand above the card
 _TOP: Final = 136.0  # of the card, in a window with room
 _NEXT_LAMP, _FLASH = 0.3, 0.22  # seconds from one lamp of a medal to the next, and in which its flash fades
 _RING_PARTS: Final = 14
@@ -58,7 +59,8 @@ class ShownCard:
         left = view.left + _AROUND + self.card.place * (view.width - 2 * _AROUND - width)
         if width < 0.6 * view.width and self.card.place != PLACES[0]:  # beside the path, but not at the very edge
             left += 48 * (1 if self.card.place < 0.5 else -1)
-        top = max(view.top + _AROUND, min(_TOP, (view.height - height) / 3))
+        above = _KEYS if view.width < _NARROW else _AROUND  # below the keys of the flight
+        top = max(view.top + above, min(_TOP, (view.height - height) / 3))
         return pygame.FRect(left, top - 10 * (1 - self.shown), width, height)
 
     def _foot(self, canvas: Canvas, width: float) -> float:

@@ -19,7 +19,7 @@ from game.flight.skill import Skill, said
 from game.input.controls import Command
 from game.panels.becoming_band import draw_curve
 from game.scenes.play.cockpit import MODES
-from game.scenes.play.help_words import HELP, OTHER, choose, word_of
+from game.scenes.play.help_words import HELP, OTHER, choose, means, word_of
 from game.ui.actions import Action, Table
 from game.ui.panel_scene import PanelScene
 from game.ui.still_picture import StillPicture
@@ -92,7 +92,7 @@ class ChoicesScene(PanelScene):
         words = [*HELP, *([OTHER] if now == OTHER else [])]
         labels = [texts.HELP.get(word, texts.CHOICES_MORE) for word in words]
         column.choice(texts.CHOICES_HELP, labels, words.index(now), lambda index: self._choose_help(words[index]))
-        column.aside(lambda: texts.HELP_MEANS[word_of(helped)])
+        column.aside(lambda: means(helped))
 
     def _choose_help(self, word: str) -> None:
         if word != OTHER:
@@ -114,7 +114,7 @@ class ChoicesScene(PanelScene):
         )  # fmt: skip
         column.slider(
             texts.CHOICES_LADDER, max(0.0, settings.rung), (0.0, float(TOP_RUNG)),
-            lambda rung: self._set("rung", round(rung)), step=1.0, figure=_rung,
+            lambda rung: self._set("rung", round(rung)), step=1.0, figure=_rung, aside=texts.CHOICES_LADDER_HELP,
         )  # fmt: skip
         column.choice(
             texts.CHOICES_HANDS, [texts.CHOICES_HANDS_WORDS[name] for name in hands],

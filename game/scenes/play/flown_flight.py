@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 from ai.common.environment import Doubles
+from ai.flights.verification import landing_score
 from ai.lander.environment import Outcome
 from game.audio.flight_sounds import FlightSound
 from game.core import texts
@@ -26,7 +27,7 @@ from game.flight.logbook import Records
 from game.flight.networks import Network, Policy
 from game.flight.six_futures import SixFutures
 from game.flight.skill import Skill
-from game.panels.readouts import COLUMNS, PILOT, at_touch, draw_readouts, flight_readouts
+from game.panels.readouts import COLUMNS, PILOT, READOUTS, Readout, at_touch, draw_readouts, flight_readouts
 from game.scenes.play import captions
 from game.scenes.play.challenge import Challenge, DrawnFlight
 from game.scenes.play.cockpit import Cockpit
@@ -116,6 +117,7 @@ class FlownFlight:
         self._heard = FlightSound(context.sound, self.flight.env, self.pace)
         self.ending = FlightEnding(self.flight, self.pace, calm)
         self._readouts = flight_readouts(self.flight.env)
+        self._network_here = self._shadow()
         self.path_preview = PathPreview(self.flight, self._guide)
 
     def _begin(self, seed: int, spawn: str, pads: int) -> Flight:
@@ -126,6 +128,15 @@ class FlownFlight:
         if challenge.eases:
             challenge.easing = easing
         return challenge.flight(seed, self._policy)
+
+    def _shadow(self) -> Flight | None:
+        """Return the network's own flight from the same start, flown unseen: the card tells its score."""
+        if self._policy is None or self.challenge:
+            return None
+        recording = self.flight.recording
+        shadow = Flight(recording.seed, self._policy, recording.spawn, pads=recording.pads, easing=recording.easing)
+        shadow.hand_over()
+        return shadow
 
     def _guard(self) -> None:
         """Let futures be flown ahead, once the flight is shared with a guardian."""
@@ -144,6 +155,11 @@ class FlownFlight:
     def rival(self) -> Ghost | None:
         """The ghost that the card compares the flight with."""
         return self.ghost if self.challenge and self.challenge.compares else None
+
+    @property
+    def stuck(self) -> bool:
+        """Whether the craft hangs, and a control that is held must first be let go."""
+        return self.waiting and self._held_before and not self.flight.over
 
     def set_calm(self, calm: bool) -> None:
         """Set whether motion is reduced."""
@@ -210,6 +226,8 @@ class FlownFlight:
         flight = self.flight
         if self.ghost:
             self.ghost.step()
+        if self._network_here:
+            self._network_here.step(0)
         self.path_preview.follow(waiting=False)
         if not self._was_over:
             if self._settings.show_thinking:
@@ -228,6 +246,16 @@ class FlownFlight:
             self._context.sound.play(told)
 
     # The end
+
+    def compared(self, best: int) -> tuple[tuple[str, str], ...]:
+        """Return other scores from the same start: the player's `best` before, 0 for none, and the network's."""
+        rows = [(texts.CARD_BEST_HERE, texts.SCORE.format(count=best))] if best else []
+        if shadow := self._network_here:
+            while not shadow.over:
+                shadow.step(0)
+            score = landing_score(shadow.env)
+            rows.append((texts.CARD_NETWORK, texts.SCORE.format(count=score) if score else texts.CARD_NO_LANDING))
+        return tuple(rows)
 
     def make_card(self, skill: Skill) -> None:
         """Make the outcome card of the finished flight."""
@@ -293,8 +321,7 @@ class FlownFlight:
         `network` is the one whose name is told.
         """
         flight, challenge, controls, cockpit = self.flight, self.challenge, self._context.controls, self.cockpit
-        waits = self.waiting and not flight.over
-        stuck = waits and self._held_before
+        waits, stuck = self.waiting and not flight.over, self.stuck
         told = challenge.sentence(flight, controls, waiting=waits, stuck=stuck) if challenge else None
         helps = cockpit.help_words if cockpit.helps and not flight.over else None
         if not (waits or whole or flight.over):
@@ -309,18 +336,23 @@ class FlownFlight:
         apart = texts.HELP_NOT_HERE if without and self._settings.assist > 0 and not self.begun else ""
         aside = [
             apart,
+            self.credit.header if self.credit.alone and not flight.over else "",
             self.credit.notice or goal,
             *surroundings(flight.env),
             *(challenge.asides(flight) if challenge else ()),
         ]
         head = Head(caption=caption, name=name, rung=rung_of(flight), aside=list(filter(None, aside)), hints=hints)
         if flight.over:
-            return head if told is None or self.ending.shown else replace(head, sentence=told)
+            return Head(hints=hints) if self.ending.shown else replace(head, sentence=told or "")
         if not waits:
             return replace(head, sentence=self.credit.header, lamp=cockpit.lamp())
         opening = captions.opening(flight, challenge, begun=self.begun, stuck=stuck, check=self.credit.check)
         keys = flight_hints(controls) if opening and told is None else ()
-        paths = path_words(texts.PATH_YOURS, texts.PATH_NETWORK if self.path_preview.asks else "") if keys else ()
+        paths = (
+            path_words(texts.PATH_YOURS, texts.PATH_NETWORK if self.path_preview.asks else "")
+            if keys and not challenge
+            else ()
+        )
         return replace(
             head, sentence=told or opening, lamp=cockpit.lamp(), controls=keys, paths=paths, help=helps,
             means=cockpit.means,
@@ -328,28 +360,35 @@ class FlownFlight:
 
     def lay_out(self, head: Head) -> None:
         """Keep the flight clear of its words, and of what the network thinks."""
+        self.clear = self._clear_of(head)
+        if not self.begun:
+            self.scenery.clear = self.clear
+            self.scenery.cut()
+
+    def _clear_of(self, head: Head) -> ClearArea:
         reading = self._context.reading()
         scale, view = reading.whole.scale, reading.whole.view
         low = head.write(reading, drawn=False) * reading.scale / scale + _BELOW_HEAD + min(view.top, 0.0)
         right = float(VIEW_SIZE[0])
         if self.thinks:
             right = min(right, (self.cockpit.panel_box(reading).left - 16) * reading.scale / scale + view.left)
-        self.clear = ClearArea(right=max(right, 0.4 * VIEW_SIZE[0]), head=max(low, ClearArea.head))
-        if not self.begun:
-            self.scenery.clear = self.clear
-            self.scenery.cut()
+        return ClearArea(right=max(right, 0.4 * VIEW_SIZE[0]), head=max(low, ClearArea.head))
 
     @property
     def thinks(self) -> bool:
         """Whether what the network thinks is shown in flight."""
-        return self._settings.show_thinking and self.cockpit.copilot_panel.shown and not self.flight.over
+        flies = not (self.waiting or self.flight.over)
+        return self._settings.show_thinking and self.cockpit.copilot_panel.shown and flies
 
     def moment(self, alpha: float) -> DrawnFlight:
         """Return the moment that a challenge draws over, once the fraction `alpha` of a step has passed."""
         return DrawnFlight(alpha, self.waiting, self._settings.reduced_motion, self._age)
 
-    def draw(self, canvas: Canvas, alpha: float, head: Head, *, whole: bool) -> None:
-        """Draw the world, the craft, the read-outs and the words; `whole` is for all that can be known of it."""
+    def draw(self, canvas: Canvas, alpha: float, head: Head, *, whole: bool, low: float = 0.0) -> None:
+        """Draw the world, the craft, the read-outs and the words; `whole` is for all that can be known of it.
+
+        `low` is how far a card reaches down, in points, which the read-outs give way to.
+        """
         world, flight = canvas.whole, self.flight
         alpha = self.pace.between(alpha)
         view = self.scenery.view(world.scale, alpha).filling(world)
@@ -369,10 +408,11 @@ class FlownFlight:
             self.ghost.draw(world, view, alpha)
         self.scenery.draw_craft(world, alpha, words=self.ending.shown == 0)
         pose = flight.poses.at(alpha)[0]
-        self.cockpit.draw_beside(world, view, pose, self.clear)
+        self.cockpit.draw_beside(world, view, pose, self._clear_of(head))
         if self.challenge:
             self.challenge.draw(world, view, flight, self.moment(alpha))
-        self._draw_readouts(world, whole=whole)
+        if low * canvas.scale < world.surface.get_height() - READOUTS * world.scale:
+            self._draw_readouts(world, whole=whole)
         head.write(canvas)
         if thinks and not self._behind_panel(canvas, view, pose):
             self.cockpit.copilot_panel.draw(canvas, flight.share)
@@ -380,10 +420,14 @@ class FlownFlight:
     def _draw_readouts(self, canvas: Canvas, *, whole: bool) -> None:
         """Draw the read-outs: the four that a pilot needs, and what is left of a tank that is small; or all."""
         if whole:
-            draw_readouts(canvas, self._readouts)
+            flown = self._readouts if self.flight.recording.shares else self._without_thrust()
+            draw_readouts(canvas, flown, COLUMNS if len(flown) == len(COLUMNS) else (*COLUMNS[:PILOT], *COLUMNS[-2:]))
             return
         fuel = [self._readouts[-2]] if self.flight.env.conditions.tank < math.inf else []
         draw_readouts(canvas, [*self._readouts[:PILOT], *fuel], (*COLUMNS[:PILOT], COLUMNS[-1]))
+
+    def _without_thrust(self) -> list[Readout]:
+        return [*self._readouts[:PILOT], *self._readouts[-2:]]
 
     def _behind_panel(self, canvas: Canvas, view: View, pose: Doubles) -> bool:
         """Whether the craft is behind the panel, which happens only where the camera can't keep it clear."""

@@ -30,6 +30,12 @@ def word_of(settings: Settings) -> str:
     return here[0] if here else OTHER
 
 
+def means(settings: Settings) -> str:
+    """Say what the help that is set means."""
+    word = word_of(settings)
+    return texts.HELP_MEANS[settings.copilot if word == OTHER else word]
+
+
 def choose(settings: Settings, word: str) -> None:
     """Set the help of a word."""
     settings.assist = HELP[word]

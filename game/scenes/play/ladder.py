@@ -1,7 +1,7 @@
 """The ladder of starts: free flights of a new player begin above the pad, farther out with every landing.
 
-It is a curriculum, as networks have one: a landing leads a rung up, a crash a rung down. A player who has reached its
-top flies from anywhere, and has left it.
+It is a curriculum, as networks have one: a landing leads a rung up, two misses in a row a rung down. A
+player who has reached its top flies from anywhere, and has left it.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from game.flight.flight_file import Entry
 from game.flight.outcomes import OutcomeCard
 
 COUNT: Final = len(RUNGS)
+MISSES: Final = 2  # in a row, after which the next flight begins nearer
 
 
 class Ladder:
@@ -26,6 +27,7 @@ class Ladder:
 
     def __init__(self, settings: Settings, entries: Iterable[Entry]) -> None:
         self._settings = settings
+        self._misses = 0  # in a row, on this rung
         if settings.rung < 0:
             settings.rung = min(TOP_RUNG, sum(entry.landed and not entry.course for entry in entries))
 
@@ -35,7 +37,7 @@ class Ladder:
         return LADDER.spawn(max(0, self._settings.rung))  # progress can be put away during a flight
 
     def climb(self, flight: Flight, card: OutcomeCard) -> OutcomeCard:
-        """Move a rung up after a landing and down after a crash; return the card, which says so.
+        """Move a rung up after a landing, and down after two misses in a row; return the card, which says so.
 
         Only flights that the player has brought to their end move it, with help or without.
         """
@@ -44,9 +46,11 @@ class Ladder:
         rung = LADDER.stage_of(flight.recording.spawn)
         mine, landed = flight.hand is StickHolder.HUMAN, flight.outcome is Outcome.LANDED
         if mine and landed:
-            self._settings.rung = rung + 1
+            self._settings.rung, self._misses = rung + 1, 0
         elif mine and not flight.intact:
-            self._settings.rung = max(0, rung - 1)
+            self._misses += 1
+            if self._misses >= MISSES:
+                self._settings.rung, self._misses = max(0, rung - 1), 0
         # What a landing counts for, helped or not, is said once, by the line of the ladder.
         reason = texts.OUTCOMES[Outcome.LANDED.name][1] if landed else card.reason
         return replace(card, reason=reason, rung=self._settings.rung, climb=_words(rung, self._settings.rung))

@@ -12,6 +12,7 @@ from game.core.scene import Pop, Scene, Transition, push
 from game.drawing.tokens import INK
 from game.input.controls import Command
 from game.panels.explained import Explained
+from game.panels.readouts import READOUTS
 from game.ui.actions import Action, Table
 from game.ui.hints import HintRow, hint_lines
 from game.ui.panel_scene import PanelScene
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
 
 _WORD: Final = 22.0
 _AHEAD: Final = 3  # decisions of six futures that are flown in a frame
-_READOUTS: Final = 92.0  # points of a page that the read-outs take at its foot
 
 
 class PauseScene(PanelScene):
@@ -88,7 +88,7 @@ class PauseScene(PanelScene):
         return Pop()
 
 
-class FlightPause(PauseScene):
+class FlightPauseScene(PauseScene):
     """Pause of a flight, which is seen with all read-outs, what the network thinks, and its six futures as paths."""
 
     most = 300.0
@@ -102,7 +102,8 @@ class FlightPause(PauseScene):
         """Add which flight it is, and what is to be known of it."""
         head = self._flight.titles()
         panel.aside(head.caption)
-        panel.text(head.name)
+        if self._flight.challenge:
+            panel.text(head.name)
         for words in head.aside:
             panel.aside(words)
 
@@ -127,7 +128,7 @@ class FlightPause(PauseScene):
 
     def hint_rows(self, canvas: Canvas) -> Sequence[HintRow]:
         """Return the hints above the read-outs."""
-        low = _READOUTS * canvas.whole.scale / canvas.scale
+        low = (READOUTS + 12) * canvas.whole.scale / canvas.scale
         left, _ = self._between(canvas)
         return hint_lines(self.hints, canvas, (left, canvas.view.bottom - low), self.most)
 

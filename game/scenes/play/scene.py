@@ -9,6 +9,7 @@ from typing import Final
 
 import pygame
 
+from ai.flights.verification import landing_score
 from ai.lander.missions import MISSIONS
 from game.core import texts
 from game.core.scene import Pop, Push, Scene, Transition, push
@@ -19,6 +20,7 @@ from game.flight.credit import Credit
 from game.flight.flight import Flight, StickHolder
 from game.flight.handicap import HANDS, OWN
 from game.flight.logbook import Records
+from game.flight.outcomes import OutcomeCard
 from game.flight.skill import Skill
 from game.input.controls import Command, translate
 from game.panels.explained import Explained
@@ -78,6 +80,8 @@ class PlayScene(Scene):
         entries = self._records.entries()
         self._skill, self._ladder = Skill(entries), Ladder(context.settings, entries)
         self._offer = RescueOffer()
+        self._landed_before = any(entry.landed and not entry.bar for entry in entries)
+        self._best_here: dict[tuple[int, str, int], int] = {}  # scores of one's own landings by their starts
         if self._records.problem:
             context.note(self._records.problem)
         if self.challenge:
@@ -149,9 +153,8 @@ class PlayScene(Scene):
 
     @property
     def _head(self) -> Head:
-        """The words at the head; in flight, keys are named for the mouse alone, which presses their names."""
-        mouse, flies = self._controls.mouse_in_use, not (self.waiting or self.flight.over)
-        named = mouse or (self._settings.show_hints and not flies)
+        """The words at the head."""
+        named = self._settings.show_hints or self._controls.mouse_in_use  # for the mouse, they are what it presses
         hints = hints_of(self._flight_actions(), self._controls) if named else []
         return self.flown.head(hints, self.network, whole=False)
 
@@ -179,8 +182,9 @@ class PlayScene(Scene):
         return Push(QuestionDialog(self, *stake, answers))
 
     def _flight_actions(self) -> list[Action]:
-        calm = self.waiting or self.flight.over
-        actions = captions.flight_actions(self._runs, self.flight, self.challenge, leaves=self._leaves, calm=calm)
+        runs, calm = self._runs, self.waiting or self.flight.over
+        named = runs.keys() if calm else captions.IN_FLIGHT if self._controls.mouse_in_use else ()
+        actions = captions.flight_actions(runs, self.flight, self.challenge, leaves=self._leaves, named=named)
         if not (self.credit.check and self.waiting):
             return actions
         skip = Action(Command.NEXT, self._skip_check, texts.CHECK_SKIP)
@@ -235,8 +239,10 @@ class PlayScene(Scene):
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the flight and, at the end, the card."""
-        self.flown.draw(canvas, alpha, self._head, whole=False)
-        if card := self._card:
+        card = self._card
+        low = card.box(canvas).bottom if card else 0.0
+        self.flown.draw(canvas, alpha, self._head, whole=False, low=low)
+        if card:
             card.draw(canvas)
         if not self._stick.mouse_flies:  # a mouse that flies asks for nothing
             self.explained.draw(canvas)
@@ -318,10 +324,25 @@ class PlayScene(Scene):
         card = self.ending.card
         assert card is not None
         before = self._settings.rung
+        card = self._compare(card)
         card = self._ladder.climb(self.flight, card)
         self.ending.card = self._offer.follow(self.flight, self.credit, card, self.flown.helped)
         if before != self._settings.rung:
             self.context.apply_settings()
+
+    def _compare(self, card: OutcomeCard) -> OutcomeCard:
+        """Return the card with other scores from the same start; the player's first landing alone has its own words."""
+        recording, score = self.flight.recording, landing_score(self.flight.env)
+        here = recording.seed, recording.spawn, recording.pads
+        card = replace(card, compared=self.flown.compared(self._best_here.get(here, 0)))
+        if not self.credit.counts or not card.good:
+            return card
+        self._best_here[here] = max(score, self._best_here.get(here, 0))
+        if self._landed_before:
+            return card
+        self._landed_before = True
+        self._sound.play("choose")
+        return replace(card, title=texts.FIRST_LANDING, reason=texts.FIRST_LANDING_LINE)
 
     def _accept_help(self) -> None:
         """Turn the dial to the offered help, and try again."""

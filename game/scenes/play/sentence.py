@@ -79,15 +79,13 @@ def surroundings(env: LanderEnv) -> Iterator[str]:
     params, conditions, time = env.params, env.conditions, float(env.time[0])
     if params.gravity != PARAMS.gravity:
         yield texts.GRAVITY.format(gravity=params.gravity, times=params.gravity / PARAMS.gravity)
-    if conditions.pushes:
-        yield texts.WIND.format(push=abs(wind(env)))
     if conditions.moves:
         speed = float(env.pad_velocity[0])
         yield (texts.PAD_RIGHT if speed > 0 else texts.PAD_LEFT).format(speed=abs(speed))
     start, _ = conditions.outage
-    if time < start < math.inf:
+    if _SOON <= start - time < math.inf:
         yield texts.ENGINE_FAILS.format(seconds=start - time)
-    yield from dangers(env) if time else ()
+    yield from dangers(env)
 
 
 def wind(env: LanderEnv) -> float:

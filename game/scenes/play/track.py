@@ -44,7 +44,7 @@ class FlownPath:
         return np.array(self._points)
 
     def beside(self, places: Sequence[float], view: View) -> float:
-        """Return the place of a card across the view, out of `places` from 0 to 1, at which it hides the least of the path."""
+        """Return the place of a card across the view, out of `places` from 0 to 1, at which it hides least of it."""
         points = view.points(self.path)
 
         def hidden(place: float) -> int:

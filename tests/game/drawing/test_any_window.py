@@ -13,9 +13,8 @@ from game.core import texts
 from game.core.scene import Scene
 from game.drawing.canvas import PAGE, Canvas
 from game.drawing.tokens import MARGIN
+from game.panels import readouts
 from game.scenes.menus.menu import MenuScene
-from game.scenes.play import card as hud
-from game.scenes.play.copilot_panel import PANEL
 from game.scenes.play.scene import PlayScene
 from game.scenes.watch.scene import WatchScene
 from game.ui.context import Context
@@ -147,7 +146,7 @@ def test_a_choice_at_the_foot_and_a_hint_at_the_head_are_pressed_where_they_are_
     driver.click(seen["16"].center)
     assert driver.top.swarm.env.num_envs == 16
     driver.click(seen["pause"].center)
-    assert driver.top_name == "PauseScene"
+    assert "PauseScene" in driver.top_name
 
 
 @pytest.mark.parametrize("size", SHAPES)
@@ -171,14 +170,17 @@ def test_a_stopped_lander_is_dragged_where_it_is_seen(open_game, context: Contex
 
 @pytest.mark.parametrize("size", SHAPES)
 def test_the_panel_that_explains_stands_at_the_right_edge(open_game, context, written: Written, size: tuple[int, int]):
-    settle(context, three_pads=True, assist=0.4, explain=True)
+    settle(context, three_pads=True, assist=0.4, show_thinking=True)
     driver = opened(open_game, "Play")
     reshape(driver, size)
     shared(driver)
     page = written.turn(driver.app.canvas)
     driver.app.draw()
-    view = driver.app.canvas.view
-    assert any(panel.right == pytest.approx(view.right - (1280 - PANEL.right), abs=1) for panel in page.panels)
+    reading, canvas = driver.app.canvas.reading, driver.app.canvas
+    box = play(driver).flown.cockpit.panel_box(reading)
+    assert box.right == pytest.approx(reading.view.right, abs=40)
+    right = canvas.view.left + box.right * reading.scale / canvas.scale
+    assert any(panel.right == pytest.approx(right, abs=1) for panel in page.panels)
 
 
 def test_the_window_may_change_while_something_is_asked(open_game, context: Context):
@@ -203,11 +205,12 @@ def test_scenes_with_a_world_fill_the_window_and_pages_do_not():
     def fills(scene: type[Scene]) -> bool:
         return scene.fills
 
-    assert all(map(fills, (PlayScene, WatchScene)))
+    assert fills(WatchScene)
+    assert PlayScene.flows
     assert MenuScene.flows
     assert not Scene.fills
     assert not Scene.flows
-    assert hud.COLUMNS[0] == MARGIN
+    assert readouts.COLUMNS[0] == MARGIN
 
 
 def test_a_crash_is_not_hidden(open_game, context: Context):

@@ -103,7 +103,7 @@ def test_one_key_goes_from_area_to_area(watching: Driver, written: list[str], de
     assert watching.top_name == "WatchScene"
     assert not shows(watching, written, order[-1])
     press(pygame.K_ESCAPE, pygame.CONTROLLER_BUTTON_START)
-    assert watching.top_name == "PauseScene"
+    assert "PauseScene" in watching.top_name
 
 
 def test_explaining_stops_nothing(watching: Driver):

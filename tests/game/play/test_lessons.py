@@ -60,8 +60,8 @@ class Reader:
     def sentence(self) -> tuple[str, dict[str, str]]:
         """Return which sentence is written, and the keys that it names."""
         scene = play(self.driver)
-        moment = scene.flown.moment(1.0)
-        words = self.challenge.words(scene.flight, moment.controls, waiting=moment.waiting, stuck=moment.stuck)
+        controls, flown = self.driver.app.context.controls, scene.flown
+        words = self.challenge.words(scene.flight, controls, waiting=flown.waiting, stuck=flown.stuck)
         for name, pattern in SENTENCES:
             if found := pattern.fullmatch(words):
                 return name, found.groupdict()

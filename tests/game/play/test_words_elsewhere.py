@@ -24,7 +24,9 @@ from tests.support.reading import COUNTS as EARNED
 from tests.support.reading import FLEW, OnlyFlies, Reading, Weighs, pattern
 
 Open = Callable[..., Driver]
-NOBODYS = [pattern(text) for text in (*FLEW, texts.YOU_FLY, texts.YOU_SHARE, *texts.NOT_COUNTED.values(), *EARNED)]
+NOBODYS = [
+    pattern(text) for text in (*FLEW, texts.YOU_FLY, *texts.YOU_SHARE.values(), *texts.NOT_COUNTED.values(), *EARNED)
+]
 NETWORKS = {"weighs": Weighs(), "only flies": OnlyFlies(), networks.SCRIPTED: OnlyFlies()}
 BROKEN = "its target is missing"
 
