@@ -2,7 +2,7 @@
 
     python -m benchmarks.lunar_lander [--seeds 3] [--decisions 300000] [--rival-seeds 3] [--rival-seconds 300]
 
-Ours has the settings `ai.training.gym_task.LUNAR_LANDER`; the rival those its authors tuned for this. Every 20,000
+Ours has the settings `ai.training.config.LUNAR_LANDER`; the rival those its authors tuned for this. Every 20,000
 decisions (the rival: every ten seconds) the network flies 100 validation episodes without random actions, and the best
 so far is kept; in the end that one flies 100 others, which had no say in the choice. No clock chooses ours: the same
 seed and decisions give the same figures. Seconds are processor time on one thread, of training alone.
@@ -24,8 +24,10 @@ from importlib.util import find_spec
 
 import numpy as np
 
-from ai.training.gym_task import GymTask, gym_config
-from ai.training.loop import TEST_SEED, VALIDATION_SEED, Training
+from ai.training.config import gym_config
+from ai.training.gym_task import GymTask
+from ai.training.loop import Training
+from ai.training.tasks import TEST_SEED, VALIDATION_SEED
 from benchmarks.learning import Checkpoint, followed, sb3_dqn
 
 ENV = "LunarLander-v3"

@@ -17,11 +17,10 @@ from ai.digits.config import DigitConfig
 from ai.digits.mnist import TRAIN, load_part
 from ai.digits.training import DigitTraining
 from ai.sweep.metric import Point
-from ai.training.checkpoints import resume_run, save_run
+from ai.training.checkpoints import resume_digit_run, resume_run, save_digit_run, save_run
 from ai.training.config import Config
-from ai.training.digit_run import resume_digit_run, save_digit_run
-from ai.training.loop import VALIDATION_SEED, Training
-from ai.training.tasks import task_of
+from ai.training.loop import Training, task_of
+from ai.training.tasks import VALIDATION_SEED
 
 AGENT: Final = "agent"  # kinds of run
 DIGITS: Final = "digits"

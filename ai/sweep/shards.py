@@ -25,7 +25,7 @@ from ai.lander.pilots import Pilot, ScriptedPilot
 from ai.sweep.cluster import each
 from ai.sweep.trial import archive, unpack
 from ai.training.config import Config
-from ai.training.lander_task import FlightSums, counted
+from ai.training.tasks import FlightSums, finished, flown
 
 SHARD: Final = 10_000  # flights at once, in 5 KB each
 PILOTS: Final = 8  # of a part of a table: the more fly at once, the less time each takes
@@ -58,14 +58,9 @@ def fly(shard: Shard) -> FlightSums:
     env = LanderEnv(shard.last - shard.first, shard.seed, shard.spawn, shard.frame_skip)
     for slot, number in enumerate(range(shard.first, shard.last)):
         # The generator that number `number` of a batch gets, which NumPy spawns from the seed.
-        env.draw_from(slot, np.random.default_rng(np.random.SeedSequence(shard.seed, spawn_key=(number,))))
-    going = counted(packed_agent(shard.agent), env)
-    while True:
-        try:
-            next(going)
-        except StopIteration as done:
-            sums: FlightSums = done.value
-            return sums
+        env.streams[slot] = np.random.default_rng(np.random.SeedSequence(shard.seed, spawn_key=(number,)))
+    env.reset()
+    return finished(flown(packed_agent(shard.agent), env))
 
 
 def flown_shards(parts: list[Shard], address: str | None, workers: int | None) -> Iterator[FlightSums | None]:

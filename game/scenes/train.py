@@ -27,9 +27,9 @@ from game.panels.training_status import lander_status
 from game.scenes.split_scene import SplitTrainingScene
 from game.scenes.train_dialogs import TrainDialogs
 from game.scenes.training_scene import DISPLAY_WIDTH, LEFT
-from game.training.kinds import LANDERS
 from game.training.library import Library
-from game.training.run import PACES, TrainingRun
+from game.training.run import TrainingRun
+from game.training.workers import LANDERS, PACES
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.hints import HintRow

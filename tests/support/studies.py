@@ -10,8 +10,7 @@ from ai.sweep.results import FinishedTrial, SeedResult
 from ai.sweep.space import knob_space
 from ai.sweep.study import Study
 from ai.sweep.trial import Asked, Trial, archive
-from ai.training.config import PRESETS
-from ai.training.gym_task import gym_config
+from ai.training.config import PRESETS, gym_config
 from game.core.assets import MODELS_DIR
 
 TINY = {"num_envs": 4, "learning_starts": 64, "gradient_steps": 1, "hidden": (16,), "replay_size": 2000}

@@ -10,8 +10,8 @@ from game.flight.flight import Flight, StickHolder
 from game.flight.handicap import OWN
 from game.flight.networks import Network, titled
 from game.input.controls import Command
-from game.scenes.play.challenge import Challenge
-from game.scenes.play.ladder import COUNT, rung_of
+from game.scenes.play.scene.challenge import Challenge
+from game.scenes.play.scene.ladder import COUNT, rung_of
 from game.ui.actions import Action, Run
 
 IN_FLIGHT: Final = (Command.HANDOVER, Command.PAUSE)  # keys that are named while the craft flies, for the mouse

@@ -21,8 +21,8 @@ from ai.sweep.runs import AgentRun
 from ai.sweep.space import knob_space
 from ai.sweep.study import Study, StudyError, find
 from ai.sweep.trial import Asked, Trial, archive, unpack
+from ai.training.checkpoints import save_digit_run
 from ai.training.config import PRESETS
-from ai.training.digit_run import save_digit_run
 from main import main
 from tests.support.studies import TINY, finished_study, networks_in, run_alone, tiny_plan
 

@@ -15,7 +15,7 @@ from game.core.assets import MODELS_DIR
 from game.flight import networks
 from game.flight.flight import Flight, StickHolder
 from game.flight.forecast import Forecast
-from game.scenes.play.challenge import FlownMission, Race
+from game.scenes.play.scene.challenge import FlownMission, Race
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from tests.support.driver import Driver

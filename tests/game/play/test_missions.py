@@ -23,10 +23,10 @@ from game.flight.replay import FlightReplay, ReplayedFlight
 from game.panels.readouts import flight_readouts
 from game.scenes.logbook.replay import ReplayScene
 from game.scenes.logbook.scene import LogbookScene
-from game.scenes.play.challenge import FlownMission
-from game.scenes.play.missions import MissionsScene
+from game.scenes.play.scene.challenge import FlownMission
+from game.scenes.play.scene.missions import MissionsScene
 from game.scenes.play.scene import PlayScene
-from game.scenes.play.sentence import surroundings
+from game.scenes.play.scene.sentence import surroundings
 from game.ui.context import Context
 from game.ui.listing import Listing
 from tests.support.driver import Driver
