@@ -19,7 +19,7 @@ TOGETHER: Final = ("helped", "handed_over")  # reasons not to count that a landi
 
 
 class CreditRules(Protocol):
-    """Challenge of a flight, as far as it decides what counts; implemented in `game.scenes.play.scene.challenge`."""
+    """Challenge of a flight, as far as it decides what counts; implemented in `game.scenes.play.challenge`."""
 
     @property
     def kept(self) -> bool:

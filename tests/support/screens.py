@@ -35,15 +35,15 @@ from game.scenes.menus.menu import MenuScene
 from game.scenes.menus.settings import AssistsScene, SettingsScene
 from game.scenes.physics import PhysicsScene
 from game.scenes.physics_step import PhysicsStepScene
-from game.scenes.play.scene.calendar import DaysScene
-from game.scenes.play.scene.challenge import FlownMission
-from game.scenes.play.scene.choices import ChoicesScene
-from game.scenes.play.scene.daily import DailyStart
-from game.scenes.play.scene.descent import Descent
-from game.scenes.play.scene.missions import MissionsScene
-from game.scenes.play.scene.pause import FlightPauseScene, PauseScene
+from game.scenes.play.calendar import DaysScene
+from game.scenes.play.challenge import FlownMission
+from game.scenes.play.choices import ChoicesScene
+from game.scenes.play.daily import DailyStart
+from game.scenes.play.descent import Descent
+from game.scenes.play.missions import MissionsScene
+from game.scenes.play.pause import FlightPauseScene, PauseScene
 from game.scenes.play.scene import PlayScene
-from game.scenes.play.scene.tutorial import Tutorial
+from game.scenes.play.tutorial import Tutorial
 from game.scenes.quiz import QuizScene
 from game.scenes.runs import NetworksScene
 from game.scenes.study import StudyScene

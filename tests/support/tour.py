@@ -31,11 +31,11 @@ from game.scenes.logbook.replay import ReplayScene
 from game.scenes.menus.dialogs import ListDialog, NameDialog, QuestionDialog
 from game.scenes.physics import PhysicsScene
 from game.scenes.physics_step import PhysicsStepScene
-from game.scenes.play.scene.challenge import FlownMission
-from game.scenes.play.scene.daily import DailyStart
-from game.scenes.play.scene.descent import Descent
+from game.scenes.play.challenge import FlownMission
+from game.scenes.play.daily import DailyStart
+from game.scenes.play.descent import Descent
 from game.scenes.play.scene import PlayScene
-from game.scenes.play.scene.starts import race
+from game.scenes.play.starts import race
 from game.scenes.quiz import QuizScene
 from game.scenes.watch.scene import COUNTS, WatchScene
 from game.scenes.why_not import WhyNotScene

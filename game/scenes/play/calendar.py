@@ -15,7 +15,7 @@ from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, MARGIN, MUTE, SMALL, TEXT, TITLE, VIEW_SIZE
 from game.flight import sharing
 from game.flight.days import Attempt, Days
-from game.scenes.play.scene.daily import DailyStart
+from game.scenes.play.daily import DailyStart
 from game.ui.clipboard import give
 from game.ui.context import Context
 from game.ui.list_scene import ListLayout, ListScene

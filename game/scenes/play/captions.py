@@ -10,17 +10,19 @@ from game.flight.flight import Flight, StickHolder
 from game.flight.handicap import OWN
 from game.flight.networks import Network, titled
 from game.input.controls import Command
-from game.scenes.play.scene.challenge import Challenge
-from game.scenes.play.scene.ladder import COUNT, rung_of
+from game.scenes.play.challenge import Challenge
+from game.scenes.play.ladder import COUNT, rung_of
 from game.ui.actions import Action, Run
 
 IN_FLIGHT: Final = (Command.HANDOVER, Command.PAUSE)  # keys that are named while the craft flies, for the mouse
 
 
-def title(flight: Flight, challenge: Challenge | None, network: Network, hands: str) -> tuple[str, str]:
-    """Return the kind of a flight, and its name or who can take over."""
+def title(flight: Flight, challenge: Challenge | None, network: Network, hands: str, *, whole: bool) -> tuple[str, str]:
+    """Return the kind of a flight, and its name or who can take over; `whole` is for all that can be said of it."""
     if challenge:
-        return challenge.title, challenge.line
+        named = whole and flight.network and challenge.elsewhere
+        flown = texts.WITH_NETWORK.format(network=titled(network.name)) if named else ""
+        return texts.DIAL_JOIN.join(filter(None, (challenge.title, flown))), challenge.line
     flown = texts.WITH_NETWORK.format(network=titled(network.name)) if flight.network else texts.ALONE
     if hands != OWN:
         flown = texts.HANDICAPS.format(hands=texts.CHOICES_HANDS_WORDS[hands])

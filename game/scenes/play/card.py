@@ -14,8 +14,8 @@ from game.drawing.cursor import BASELINE, LEADING, Cursor
 from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MEDALS, MUTE, NET, SMALL, TEXT, TITLE
 from game.flight.outcomes import OutcomeCard, RivalOutcome
 from game.panels.readouts import draw_share
-from game.scenes.play.scene.ladder_mark import WIDTH as LADDER_WIDTH
-from game.scenes.play.scene.ladder_mark import draw_ladder
+from game.scenes.play.ladder_mark import WIDTH as LADDER_WIDTH
+from game.scenes.play.ladder_mark import draw_ladder
 from game.ui.hints import Hint, HintRow, hint_lines
 
 if TYPE_CHECKING:
@@ -29,6 +29,7 @@ _NARROW, _KEYS = 860.0, 54.0  # in a narrower one, keys stand above the card
 _TOP: Final = 136.0  # of the card, in a window with room
 _NEXT_LAMP, _FLASH = 0.3, 0.22  # seconds from one lamp of a medal to the next, and in which its flash fades
 _RING_PARTS: Final = 14
+_FIGURES: Final = LEADING * LABEL + 4 + LEADING * TITLE  # points of a row of figures
 _SIGN: Final = 34.0  # points for the sign before the title
 # Where a card may stand across the window, as shares of the room that is left: where it hides least of the path.
 PLACES: Final = (0.5, 0.0, 1.0)
@@ -140,18 +141,20 @@ class ShownCard:
         rows.y = title.y
 
     def _write_figures(self, rows: Cursor) -> None:
-        """Write the figures of the flight side by side."""
+        """Write the figures of the flight side by side, in two rows where their names need it."""
         figures = self.card.figures
-        column = rows.width / len(figures)
-        below = rows.y + LEADING * LABEL + 4 + LEADING * TITLE
-        if canvas := rows.canvas:
-            for number, (label, value, unit) in enumerate(figures):
-                x = rows.left + number * column
-                line = rows.y + LEADING * LABEL + 4 + BASELINE * TITLE
-                canvas.text(label, (x, rows.y + LABEL), size=LABEL, colour=MUTE, weight="medium", room=column - 8)
+        widest = max(rows.in_style(LABEL, weight="medium").measured(label) for label, _, _ in figures) + 12
+        across = len(figures) if widest * len(figures) <= rows.width else (len(figures) + 1) // 2
+        column = rows.width / across
+        for number, (label, value, unit) in enumerate(figures):
+            if number and number % across == 0:
+                rows.gap(_FIGURES)
+            if canvas := rows.canvas:
+                x, line = rows.left + number % across * column, rows.y + LEADING * LABEL + 4 + BASELINE * TITLE
+                canvas.text(label, (x, rows.y + LABEL), size=LABEL, colour=MUTE, weight="medium")
                 figure = canvas.text(value, (x, line), size=TITLE, weight="light", tabular=True)
                 canvas.text(unit, (figure.right + 4, line), size=LABEL, colour=MUTE)
-        rows.y = below + 4
+        rows.gap(_FIGURES + 4)
 
     def _write_rival(self, rows: Cursor) -> None:
         """Write a rival's name, result and figures, in the columns of the player's own."""

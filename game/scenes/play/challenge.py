@@ -21,7 +21,7 @@ from game.flight.networks import Policy
 from game.flight.outcomes import OutcomeCard
 from game.flight.replay import FlightReplay, ReplayedFlight
 from game.input.controls import Controls
-from game.scenes.play.scene.ghost import Ghost
+from game.scenes.play.ghost import Ghost
 from game.world.camera import View
 
 _AFTER_OUTAGE: Final = 2.0  # seconds after an engine failure in which the speed that it left can't be braked

@@ -18,8 +18,8 @@ from game.flight.logbook import RECENT_OWN
 from game.flight.skill import Skill, said
 from game.input.controls import Command
 from game.panels.becoming_band import draw_curve
-from game.scenes.play.scene.cockpit import MODES
-from game.scenes.play.scene.help_words import HELP, OTHER, choose, means, word_of
+from game.scenes.play.cockpit import MODES
+from game.scenes.play.help_words import HELP, OTHER, choose, means, word_of
 from game.ui.actions import Action, Table
 from game.ui.panel_scene import PanelScene
 from game.ui.still_picture import StillPicture

@@ -22,12 +22,12 @@ from game.flight.outcomes import OutcomeCard, outcome_card
 from game.flight.rescues import Rescues
 from game.input.controls import Command, translate
 from game.panels.readouts import Lamp, draw_arrow
-from game.scenes.play.scene.copilot_panel import CopilotPanel
-from game.scenes.play.scene.guardian_words import by_values, dial_words, why_not_saved
-from game.scenes.play.scene.help_words import HelpWords
-from game.scenes.play.scene.overrides import Overrides
-from game.scenes.play.scene.sentence import wind
-from game.scenes.play.scene.track import FlownPath
+from game.scenes.play.copilot_panel import CopilotPanel
+from game.scenes.play.guardian_words import by_values, dial_words, why_not_saved
+from game.scenes.play.help_words import HelpWords
+from game.scenes.play.overrides import Overrides
+from game.scenes.play.sentence import wind
+from game.scenes.play.track import FlownPath
 from game.world.camera import ClearArea, View
 
 if TYPE_CHECKING:

@@ -21,7 +21,7 @@ from game.flight.six_futures import HELD, SixFutures
 from game.panels.landings import Landing, Landings, RecentLandings, draw_landings
 from game.panels.q_values import HEIGHT, QValues, decision_words, draw_q_values
 from game.panels.readouts import draw_share
-from game.scenes.play.scene.guardian_words import Why, why_saved
+from game.scenes.play.guardian_words import Why, why_saved
 
 if TYPE_CHECKING:
     from ai.copilot.copilot import SharedDecision

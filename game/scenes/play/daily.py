@@ -11,8 +11,8 @@ from game.flight.flight import Flight
 from game.flight.flight_file import Entry, Record
 from game.flight.networks import Policy
 from game.flight.replay import ReplayedFlight
-from game.scenes.play.scene.challenge import Challenge
-from game.scenes.play.scene.ghost import Ghost
+from game.scenes.play.challenge import Challenge
+from game.scenes.play.ghost import Ghost
 
 
 class DailyStart(Challenge):

@@ -28,8 +28,8 @@ from game.flight.logbook import best_descent
 from game.flight.networks import Policy
 from game.flight.outcomes import OutcomeCard
 from game.flight.replay import ReplayedFlight
-from game.scenes.play.scene.challenge import Challenge, DrawnFlight
-from game.scenes.play.scene.ghost import Ghost
+from game.scenes.play.challenge import Challenge, DrawnFlight
+from game.scenes.play.ghost import Ghost
 from game.world.camera import ClearArea, View
 
 _MOST: Final = 5  # the highest factor of a row of landings

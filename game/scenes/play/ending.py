@@ -12,11 +12,11 @@ from game.flight import outcomes
 from game.flight.flight import Flight
 from game.flight.last_chance import LastChance
 from game.flight.skill import Skill
-from game.scenes.play.scene.card import PLACES, ShownCard
-from game.scenes.play.scene.challenge import Challenge
-from game.scenes.play.scene.cockpit import Cockpit
-from game.scenes.play.scene.ghost import Ghost
-from game.scenes.play.scene.ladder import rung_of
+from game.scenes.play.card import PLACES, ShownCard
+from game.scenes.play.challenge import Challenge
+from game.scenes.play.cockpit import Cockpit
+from game.scenes.play.ghost import Ghost
+from game.scenes.play.ladder import rung_of
 from game.ui.hints import Hint
 from game.world.camera import CameraTarget
 from game.world.scenery import Scenery

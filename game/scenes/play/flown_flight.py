@@ -28,14 +28,14 @@ from game.flight.networks import Network, Policy
 from game.flight.six_futures import SixFutures
 from game.flight.skill import Skill
 from game.panels.readouts import COLUMNS, PILOT, READOUTS, Readout, at_touch, draw_readouts, flight_readouts
-from game.scenes.play.scene import captions
-from game.scenes.play.scene.challenge import Challenge, DrawnFlight
-from game.scenes.play.scene.cockpit import Cockpit
-from game.scenes.play.scene.ending import FlightEnding
-from game.scenes.play.scene.ghost import Ghost
-from game.scenes.play.scene.head import Head, path_words
-from game.scenes.play.scene.ladder import rung_of
-from game.scenes.play.scene.sentence import sentence, surroundings
+from game.scenes.play import captions
+from game.scenes.play.challenge import Challenge, DrawnFlight
+from game.scenes.play.cockpit import Cockpit
+from game.scenes.play.ending import FlightEnding
+from game.scenes.play.ghost import Ghost
+from game.scenes.play.head import Head, path_words
+from game.scenes.play.ladder import rung_of
+from game.scenes.play.sentence import sentence, surroundings
 from game.ui.hints import Hint, flight_hints
 from game.world.camera import ClearArea, View
 from game.world.landscape.ground import begin_hills
@@ -330,7 +330,7 @@ class FlownFlight:
                 words, warns = words
             shown = helps if cockpit.help_words.shown else None
             return Head(words, warns, cockpit.lamp(), hints=hints, help=shown, means=cockpit.means)
-        caption, name = captions.title(flight, challenge, network, self.hands)
+        caption, name = captions.title(flight, challenge, network, self.hands, whole=whole)
         goal = challenge.goal if challenge else ""
         without = challenge is not None and challenge.kept and helps is not None and self.helped.assist == 0
         apart = texts.HELP_NOT_HERE if without and self._settings.assist > 0 and not self.begun else ""

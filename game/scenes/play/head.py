@@ -16,12 +16,12 @@ from game.drawing.canvas import Now
 from game.drawing.cursor import LEADING, Cursor
 from game.drawing.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, TEXT, Colour
 from game.panels.readouts import Lamp
-from game.scenes.play.scene.ladder_mark import WIDTH, draw_ladder
+from game.scenes.play.ladder_mark import WIDTH, draw_ladder
 from game.ui.hints import Hint, HintRow
 
 if TYPE_CHECKING:
     from game.drawing.canvas import Canvas
-    from game.scenes.play.scene.help_words import HelpWords
+    from game.scenes.play.help_words import HelpWords
 
 _SIDES, _TOP = 0.05, 20.0  # free at either side, of the width; and points above
 _NARROW: Final = 860.0  # points of a window in which keys stand above names

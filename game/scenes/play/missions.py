@@ -20,8 +20,8 @@ from game.flight import flight_file
 from game.flight.credit import TOGETHER
 from game.flight.flight_file import Entry, Record
 from game.flight.logbook import Records, rank
-from game.scenes.play.scene.card import draw_ring
-from game.scenes.play.scene.challenge import FlownMission
+from game.scenes.play.card import draw_ring
+from game.scenes.play.challenge import FlownMission
 from game.ui.context import Context
 from game.ui.list_scene import ListLayout, ListScene
 from game.ui.listing import Row

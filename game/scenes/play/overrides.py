@@ -12,7 +12,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.shapes import Shape
 from game.drawing.tokens import HUMAN, NET, Colour
 from game.flight.flight import Flight, StickHolder
-from game.scenes.play.scene.guardian_words import sentence
+from game.scenes.play.guardian_words import sentence
 from game.world import lander as art
 from game.world.camera import View
 

@@ -11,7 +11,7 @@ from game.core.settings import Settings
 from game.flight.credit import Credit
 from game.flight.flight import Flight
 from game.flight.outcomes import OutcomeCard
-from game.scenes.play.scene.help_words import choose
+from game.scenes.play.help_words import choose
 
 CRASHES: Final = 3
 

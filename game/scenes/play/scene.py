@@ -24,15 +24,15 @@ from game.flight.outcomes import OutcomeCard
 from game.flight.skill import Skill
 from game.input.controls import Command, translate
 from game.panels.explained import Explained
-from game.scenes.play.scene import captions, growth
-from game.scenes.play.scene.card import ShownCard
-from game.scenes.play.scene.challenge import Challenge, Duel
-from game.scenes.play.scene.ending import FlightEnding
-from game.scenes.play.scene.flight_controls import FlightControls
-from game.scenes.play.scene.flown_flight import FlownFlight
-from game.scenes.play.scene.head import Head
-from game.scenes.play.scene.ladder import Ladder, rung_of
-from game.scenes.play.scene.rescue_offer import RescueOffer
+from game.scenes.play import captions, growth
+from game.scenes.play.card import ShownCard
+from game.scenes.play.challenge import Challenge, Duel
+from game.scenes.play.ending import FlightEnding
+from game.scenes.play.flight_controls import FlightControls
+from game.scenes.play.flown_flight import FlownFlight
+from game.scenes.play.head import Head
+from game.scenes.play.ladder import Ladder, rung_of
+from game.scenes.play.rescue_offer import RescueOffer
 from game.ui.actions import Action, Run, Table, answering, hints_of
 from game.ui.clipboard import give
 from game.ui.context import Context
@@ -73,7 +73,7 @@ class PlayScene(Scene):
         self._controls, self._settings, self._sound = context.controls, context.settings, context.sound
         self._load_network()
         if self.challenge is None and seed is None and not context.settings.tutored:
-            from game.scenes.play.scene.tutorial import Tutorial
+            from game.scenes.play.tutorial import Tutorial
 
             self.challenge = Tutorial()
         self._records = Records(context.user_dir)

@@ -14,8 +14,8 @@ from game.flight.flight import Flight, StickHolder
 from game.flight.outcomes import TIPPED
 from game.input.bindings import Command, Held
 from game.input.controls import Controls
-from game.scenes.play.scene.overrides import Overrides
-from game.scenes.play.scene.tutorial_lessons import falls_too_fast, leaves_at_the_top, turned
+from game.scenes.play.overrides import Overrides
+from game.scenes.play.tutorial_lessons import falls_too_fast, leaves_at_the_top, turned
 
 _SOON: Final = 3.0  # seconds ahead that a failure is announced
 _LITTLE_TIME: Final = 5.0  # seconds that are left

@@ -8,10 +8,10 @@ from ai.lander.missions import MISSIONS
 from game.core import texts
 from game.flight.flight_file import Record
 from game.flight.replay import FlightReplay
-from game.scenes.play.scene.challenge import ContinuedFlight, FlownMission, Race
-from game.scenes.play.scene.descent import Descent
+from game.scenes.play.challenge import ContinuedFlight, FlownMission, Race
+from game.scenes.play.descent import Descent
 from game.scenes.play.scene import PlayScene
-from game.scenes.play.scene.tutorial import Tutorial
+from game.scenes.play.tutorial import Tutorial
 from game.ui.context import Context
 
 

@@ -23,9 +23,9 @@ from game.flight.networks import Policy, QPolicy
 from game.flight.outcomes import TIPPED, OutcomeCard, outcome_card
 from game.input.bindings import Command, Held
 from game.input.controls import Controls
-from game.scenes.play.scene.challenge import Challenge
-from game.scenes.play.scene.help_words import GUARDIAN, choose
-from game.scenes.play.scene.tutorial_lessons import (
+from game.scenes.play.challenge import Challenge
+from game.scenes.play.help_words import GUARDIAN, choose
+from game.scenes.play.tutorial_lessons import (
     LESSONS,
     NEED_COPILOT,
     NEED_NETWORK,

@@ -13,7 +13,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import INK, LABEL, MARGIN, MUTE, SMALL
 from game.panels.q_values import signed
-from game.scenes.watch.scene.watched import Watched
+from game.scenes.watch.watched import Watched
 from game.world.policy_map import ACTION, COLOURS, OFF, score_colours
 
 _LEFT, _TOP, _ROW = float(MARGIN), 226.0, 17.0

@@ -22,10 +22,10 @@ from game.input.controls import Command
 from game.panels import readouts
 from game.panels.explained import Explained
 from game.panels.run_status import draw_landings
-from game.scenes.watch.scene.decision_panel import PANEL, draw_decision
-from game.scenes.watch.scene.map_legend import draw_legend
-from game.scenes.watch.scene.touch import Hand
-from game.scenes.watch.scene.watched import SIZES, Watched
+from game.scenes.watch.decision_panel import PANEL, draw_decision
+from game.scenes.watch.map_legend import draw_legend
+from game.scenes.watch.touch import Hand
+from game.scenes.watch.watched import SIZES, Watched
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.form_scene import FormScene

@@ -15,7 +15,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK
 from game.flight.networks import Policy
 from game.flight.swarm import REST_STEPS, Swarm
-from game.scenes.watch.scene.decision_panel import PANEL
+from game.scenes.watch.decision_panel import PANEL
 from game.ui.context import Context
 from game.ui.playback import Playback
 from game.world import framing

@@ -14,8 +14,8 @@ from game.flight import networks
 from game.flight.flight import StickHolder
 from game.flight.flight_file import Entry
 from game.flight.logbook import LOGBOOK, Records
-from game.scenes.play.scene.help_words import HELP, word_of
-from game.scenes.play.scene.overrides import difference
+from game.scenes.play.help_words import HELP, word_of
+from game.scenes.play.overrides import difference
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from tests.support.driver import Driver

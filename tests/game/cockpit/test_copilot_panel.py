@@ -8,7 +8,7 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.flight.flight import Flight
 from game.panels.landings import Landing, Landings, RecentLandings
-from game.scenes.play.scene.copilot_panel import CopilotPanel
+from game.scenes.play.copilot_panel import CopilotPanel
 from tests.support.drawn import Drawn, read_panel
 
 

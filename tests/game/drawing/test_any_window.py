@@ -15,6 +15,7 @@ from game.drawing.canvas import PAGE, Canvas
 from game.drawing.tokens import MARGIN
 from game.panels import readouts
 from game.scenes.menus.menu import MenuScene
+from game.scenes.play.help_words import HELP
 from game.scenes.play.scene import PlayScene
 from game.scenes.watch.scene import WatchScene
 from game.ui.context import Context
@@ -46,7 +47,7 @@ def reshape(driver: Driver, size: tuple[int, int]) -> None:
     [
         ({}, crashed, SHAPES[0]),
         ({"assist": 0.4, "three_pads": True}, shared, SHAPES[1]),
-        ({"assist": 0.4, "explain": False}, shared, SHAPES[2]),
+        ({"assist": 0.4, "show_thinking": True}, shared, SHAPES[2]),
     ],
 )
 def test_nor_in_flight_or_at_its_end(open_game, context, written: Written, settings, happens, size):
@@ -77,12 +78,9 @@ def test_read_outs_keep_their_distance_from_the_edges(open_game, context: Contex
 
     def places() -> list[tuple[pygame.FRect, str, str]]:
         areas = {area.what: area.box for area in driver.app.canvas.explained}
-        *_, last = driver.top.hint_rows(driver.app.canvas)[0].boxes(driver.app.canvas)
         return [
             (areas[texts.EXPLAIN_READOUTS[0]], "left", "bottom"),
-            (areas[texts.EXPLAIN_READOUTS[5]], "right", "bottom"),
-            (areas[texts.EXPLAIN_DIAL], "centerx", "top"),
-            (last, "right", "top"),
+            (areas[texts.EXPLAIN_READOUTS[3]], "left", "bottom"),
         ]
 
     before = places()
@@ -128,13 +126,13 @@ def test_sky_and_land_fill_the_window_wherever_the_camera_goes(size: tuple[int, 
 
 
 @pytest.mark.parametrize("size", SHAPES)
-def test_the_dial_is_turned_by_the_mouse_where_it_is_seen(open_game, context: Context, size: tuple[int, int]):
+def test_help_is_chosen_by_the_mouse_where_it_is_seen(open_game, context, written: Written, size: tuple[int, int]):
     settle(context, three_pads=True)
     driver = opened(open_game, "Play")
     reshape(driver, size)
-    view = driver.app.canvas.view
-    driver.click((640 + 54, view.top + 59))
-    assert context.settings.assist == pytest.approx(0.8, abs=0.06)
+    canvas = driver.app.canvas
+    driver.click(canvas.reading.points(canvas.pixels(boxes(written, driver)[texts.HELP["guide"]].center)))
+    assert context.settings.assist == HELP["guide"]
 
 
 @pytest.mark.parametrize("size", SHAPES)

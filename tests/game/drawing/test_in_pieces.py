@@ -14,7 +14,7 @@ from game.drawing.paint import PIECE
 from game.drawing.paint_cache import A_FRAME, idle, paint_on, painted, spread
 from game.drawing.sky import NightSky
 from game.scenes.menus.menu import MenuScene
-from game.scenes.play.scene.descent import Descent
+from game.scenes.play.descent import Descent
 from game.scenes.play.scene import PlayScene
 from game.shell.app import App
 from game.world.camera import Camera, CameraTarget

@@ -20,7 +20,7 @@ from game.flight.difficulty import Difficulty
 from game.flight.flight import Flight, StickHolder
 from game.flight.futures import FuturesProcess
 from game.flight.guard import Guard, Taps, nearest, push_of, shares_of
-from game.scenes.play.scene.guardian_words import why_not_saved
+from game.scenes.play.guardian_words import why_not_saved
 from tests.support.futures import AtOnce
 
 GUARD = 0.04  # of the dial: one decision ahead

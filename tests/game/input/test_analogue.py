@@ -9,7 +9,7 @@ from ai.flights.recording import STEPS
 from game.core.settings import Settings
 from game.input.analogue import Stick
 from game.input.controls import Controls
-from game.scenes.play.scene.flight_controls import FINE, FlightControls
+from game.scenes.play.flight_controls import FINE, FlightControls
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from tests.game.input.test_pads import VirtualPads, pads

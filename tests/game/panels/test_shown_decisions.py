@@ -16,8 +16,8 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.flight.flight import DECISION_STEPS, Flight
 from game.panels.q_values import SPAN
-from game.scenes.play.scene.copilot_panel import CopilotPanel
-from game.scenes.watch.scene.decision_panel import draw_decision
+from game.scenes.play.copilot_panel import CopilotPanel
+from game.scenes.watch.decision_panel import draw_decision
 from game.scenes.watch.scene import WatchScene
 from game.ui.context import Context
 from tests.support.drawn import Drawn, Panel, number, read_panel

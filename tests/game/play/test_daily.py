@@ -17,8 +17,8 @@ from game.flight.flight import Flight
 from game.flight.logbook import Records
 from game.scenes.logbook.replay import ReplayScene
 from game.scenes.menus.flights import FlightsScene
-from game.scenes.play.scene.calendar import DaysScene
-from game.scenes.play.scene.daily import DailyStart
+from game.scenes.play.calendar import DaysScene
+from game.scenes.play.daily import DailyStart
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from tests.support.driver import Driver

@@ -13,7 +13,7 @@ from game.core import texts
 from game.flight.flight import Flight, StickHolder
 from game.flight.logbook import Records, best_descent, longest_descent
 from game.flight.replay import FlightReplay
-from game.scenes.play.scene.descent import Descent
+from game.scenes.play.descent import Descent
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from tests.support.descent import stand_on

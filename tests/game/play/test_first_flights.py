@@ -21,11 +21,11 @@ from game.flight.guard import Guard
 from game.flight.logbook import Records, best
 from game.flight.replay import FlightReplay
 from game.flight.skill import Skill
-from game.scenes.play.scene.help_words import HELP
-from game.scenes.play.scene.ladder import Ladder
-from game.scenes.play.scene.rescue_offer import CRASHES
+from game.scenes.play.help_words import HELP
+from game.scenes.play.ladder import Ladder
+from game.scenes.play.rescue_offer import CRASHES
 from game.scenes.play.scene import PlayScene
-from game.scenes.play.scene.tutorial import Tutorial
+from game.scenes.play.tutorial import Tutorial
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import fly_out, kept, play

@@ -15,7 +15,7 @@ from game.scenes.digit_training import DigitTrainingScene
 from game.scenes.logbook.replay import ReplayScene
 from game.scenes.logbook.scene import LogbookScene
 from game.scenes.menus.menu import MenuScene
-from game.scenes.play.scene.challenge import ContinuedFlight, FlownMission, Race
+from game.scenes.play.challenge import ContinuedFlight, FlownMission, Race
 from game.scenes.play.scene import PlayScene
 from game.scenes.runs import NetworksScene
 from game.ui.context import Context

@@ -10,7 +10,7 @@ from game.core.scene import Push
 from game.flight import networks
 from game.flight.flight import DECISION_STEPS, Flight, StickHolder
 from game.scenes.menus.menu import MenuScene
-from game.scenes.play.scene.ghost import Ghost
+from game.scenes.play.ghost import Ghost
 from game.scenes.play.scene import PlayScene
 from game.world.camera import Camera, View
 from tests.support.driver import Driver

@@ -21,11 +21,11 @@ from game.flight.rescues import Rescues
 from game.flight.skill import said
 from game.input.controls import Command
 from game.scenes.logbook.scene import LogbookScene
-from game.scenes.play.scene import growth
-from game.scenes.play.scene.challenge import Challenge, FlownMission
-from game.scenes.play.scene.choices import ChoicesScene
+from game.scenes.play import growth
+from game.scenes.play.challenge import Challenge, FlownMission
+from game.scenes.play.choices import ChoicesScene
 from game.scenes.play.scene import PlayScene
-from game.scenes.play.scene.tutorial import Tutorial
+from game.scenes.play.tutorial import Tutorial
 from game.ui.context import Context
 from game.ui.widgets import Toggle
 from tests.support.driver import Driver

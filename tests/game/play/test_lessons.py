@@ -11,8 +11,8 @@ from ai.lander.pilots import ScriptedPilot
 from game.core import texts
 from game.input.bindings import Held
 from game.scenes.play.scene import PlayScene
-from game.scenes.play.scene.tutorial import Tutorial
-from game.scenes.play.scene.tutorial_lessons import NEED_COPILOT
+from game.scenes.play.tutorial import Tutorial
+from game.scenes.play.tutorial_lessons import NEED_COPILOT
 from tests.support.driver import Driver
 from tests.support.flights import play
 

@@ -6,7 +6,7 @@ from typing import Any
 import pygame
 import pytest
 
-from game.scenes.play.scene.descent import Descent
+from game.scenes.play.descent import Descent
 from game.scenes.play.scene import PlayScene
 from tests.support.driver import Driver
 from tests.support.flights import play

@@ -16,8 +16,8 @@ from game.input.bindings import Held
 from game.scenes.menus.menu import MenuScene
 from game.scenes.menus.settings import SettingsScene
 from game.scenes.play.scene import PlayScene
-from game.scenes.play.scene.tutorial import Tutorial
-from game.scenes.play.scene.tutorial_lessons import LESSONS, NEED_COPILOT
+from game.scenes.play.tutorial import Tutorial
+from game.scenes.play.tutorial_lessons import LESSONS, NEED_COPILOT
 from game.ui.context import Context
 from tests.support.drawn import Drawn
 from tests.support.driver import Driver

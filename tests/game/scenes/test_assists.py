@@ -13,7 +13,7 @@ from game.core import texts
 from game.flight.logbook import Records, best
 from game.scenes.menus.menu import MenuScene
 from game.scenes.menus.settings import AssistsScene, SettingsScene
-from game.scenes.play.scene.challenge import FlownMission
+from game.scenes.play.challenge import FlownMission
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from game.ui.switch_scan import DWELL, HELD, SwitchScan

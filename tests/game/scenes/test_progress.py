@@ -16,7 +16,7 @@ from game.flight.logbook import Records
 from game.flight.progress import Progress
 from game.scenes.menus.menu import MenuScene
 from game.scenes.menus.settings import SettingsScene
-from game.scenes.play.scene.ladder import Ladder
+from game.scenes.play.ladder import Ladder
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
