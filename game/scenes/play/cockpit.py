@@ -21,6 +21,7 @@ from game.flight.handicap import OWN
 from game.flight.outcomes import OutcomeCard, outcome_card
 from game.flight.rescues import Rescues
 from game.input.controls import Command, translate
+from game.panels.landings import Landings
 from game.panels.readouts import Lamp, draw_arrow
 from game.scenes.play.copilot_panel import CopilotPanel
 from game.scenes.play.guardian_words import by_values, dial_words, why_not_saved
@@ -123,6 +124,13 @@ class Cockpit:
         saved = self.rescues.saved(self._flight)
         advice = "" if bare else card.advice  # why it was not saved says more
         return replace(card, stepped_in=self.overrides.times, saved=saved, bare=bare, advice=advice)
+
+    @property
+    def coasting(self) -> tuple[float, bool] | None:
+        """A guardian's future of coasting, for the mark on the path; None without one, or if nobody asks."""
+        values = self.copilot_panel.values
+        shown = self._settings.show_thinking and self.copilot_panel.shown
+        return values.coasting if shown and isinstance(values, Landings) else None
 
     # The picture
 

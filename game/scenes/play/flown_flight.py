@@ -403,7 +403,7 @@ class FlownFlight:
         if thinks and self.futures:
             draw_futures(world, view, self.futures, self.clear.head)
         else:
-            self.path_preview.draw(world, view, self.scenery.clear.head)
+            self.path_preview.draw(world, view, self.scenery.clear.head, self.cockpit.coasting)
         if self.ghost:
             self.ghost.draw(world, view, alpha)
         self.scenery.draw_craft(world, alpha, words=self.ending.shown == 0)

@@ -76,7 +76,8 @@ def test_hands_off_the_copilot_lands_on_earth_too(anywhere: networks.Policy):
 
 def test_on_a_mission_elsewhere_it_is_named_and_flies_the_ghost(open_game: Open, written: list[str]):
     driver = open_game(PlayScene, 0, challenge=FlownMission(MISSIONS["earth"]))
-    driver.key(pygame.K_UP)
+    driver.frames(2)
+    driver.post(pygame.KEYDOWN, key=pygame.K_UP, mod=0, unicode="", scancode=0)
     driver.frames(9)
     driver.key(pygame.K_ESCAPE)
     driver.frames(2)
