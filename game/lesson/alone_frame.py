@@ -20,7 +20,7 @@ from game.lesson.frame import PICTURE, SMALL_PICTURE, Frame
 from game.lesson.moment_frame import said_action
 from game.lesson.step import LearningStep
 
-_CHART: Final = pygame.FRect(64, 150, 440, 250)
+_CHART: Final = pygame.FRect(64, 136, 440, 250)
 _OTHERS: Final = 560.0  # left end of the six values
 _ROW: Final = 28.0
 _PACE: Final = 4  # frames between two steps, while it goes on by itself
@@ -44,7 +44,7 @@ class AloneFrame(Frame):
             points(value / self._scale) for value in (float(lesson.predicted[self._action]), lesson.target)
         )
         sentence = words[1].format(action=said_action(self._action), value=before, target=target)
-        super().__init__(words[0], f"{before} → {target}", sentence, functions)
+        super().__init__(words[0], target, sentence, functions)
         self._frames = 0
         self.again()
 
@@ -90,7 +90,7 @@ class AloneFrame(Frame):
         x = 0.0
         for word, press in ((texts.LESSON_ALONE_ONCE, self.once), (texts.LESSON_ALONE_GO, self.go),
                             (texts.LESSON_ALONE_AGAIN, self.again)):  # fmt: skip
-            label = self.label(word, x, 100, size=TEXT, colour=INK, press=press, room=240)
+            label = self.label(word, x, 100, size=TEXT, colour=NET, press=press, room=240)
             x = label.box.right + 36
         self.label(texts.LESSON_ALONE_OTHERS, _OTHERS, 142, size=LABEL, colour=MUTE, room=PICTURE.width - _OTHERS)
         for place, (before, after) in enumerate(zip(self._first, alone.outputs, strict=True)):
@@ -99,21 +99,21 @@ class AloneFrame(Frame):
             moved = (float(after) - float(before)) / scale
             self.label(points(moved), PICTURE.width, y, align="right", size=SMALL, colour=colour, room=90)
         told = texts.LESSON_ALONE_ARRIVED if alone.arrived else texts.LESSON_ALONE_MORE
-        self.prose(told.format(count=self._step.examples - 1), 0, 428, PICTURE.width, INK if alone.arrived else MUTE)
+        self.prose(told.format(count=self._step.examples - 1), 0, 418, PICTURE.width, INK if alone.arrived else MUTE)
         self.changed()
 
-    def _places(self, box: pygame.FRect, span: int) -> list[tuple[float, float]]:
-        """Return the places of the way in a box, as wide as so many steps."""
-        low, high = sorted((self.alone.way[0], self.alone.target))
-        low, high = min(low, *self.alone.way), max(high, *self.alone.way)
+    def _height(self, value: float) -> float:
+        """Return where a value stands on the chart, in points from the top of the picture."""
+        shown = (*self.alone.way, self.alone.target)
+        low, high = min(shown), max(shown)
         around = 0.08 * max(high - low, 1e-9)
-        self._of = lambda value: box.bottom - box.height * (value - low + around) / (high - low + 2 * around)
-        return [(box.left + box.width * at / span, self._of(value)) for at, value in enumerate(self.alone.way)]
+        return _CHART.bottom - _CHART.height * (value - low + around) / (high - low + 2 * around)
 
     def paint(self, canvas: Canvas) -> None:
         """Paint the way of the value to its target, step by step."""
-        way = self._places(_CHART, max(_SPAN, len(self.alone.way) - 1))
-        y = self._of(self.alone.target)
+        span = max(_SPAN, len(self.alone.way) - 1)
+        way = [(_CHART.left + _CHART.width * at / span, self._height(value)) for at, value in enumerate(self.alone.way)]
+        y = self._height(self.alone.target)
         canvas.line((_CHART.left, _CHART.top), (_CHART.left, _CHART.bottom), LINE)
         canvas.line((_CHART.left, y), (_CHART.right, y), HUMAN, 1.5)
         canvas.text(texts.LESSON_TARGET, (_CHART.left - 8, y + 4), size=LABEL, colour=HUMAN, align="right")
