@@ -15,6 +15,7 @@ SOURCES = [path for folder in ("ai", "engine", "game", "benchmarks") for path in
 DOCUMENTS = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 _DOTTED = re.compile(r"`((?:ai|engine|game|benchmarks|tests)(?:\.\w+)+)(?<!\.pot)(?:\([^`]*\))?`")
 _FILE = re.compile(r"`((?:ai|engine|game|benchmarks|tests|models|docs|assets)/[\w/.-]+\.(?:py|json|npz|pot|md))`")
+_TEST = re.compile(r"\btests(?:/\w+)+(?:\.py)?")
 _LINK = re.compile(r"\]\(([^)#:]+)(?:#[^)]*)?\)")
 
 
@@ -40,7 +41,7 @@ def test_what_a_document_names_exists(subtests: pytest.Subtests):
         with subtests.test(document=document):
             text = document.read_text(encoding="utf-8")
             names = {name for name in _DOTTED.findall(text) if not exists(name)}
-            files = {name for name in _FILE.findall(text) if not (ROOT / name).exists()}
+            files = {name for name in _FILE.findall(text) + _TEST.findall(text) if not (ROOT / name).exists()}
             links = {link for link in _LINK.findall(text) if not (document.parent / link).exists()}
             assert not names | files | links
 
