@@ -70,8 +70,9 @@ def _lander(model: Path, envs: tuple[str, ...]) -> DeepQAgent:
 def _table(arguments: argparse.Namespace) -> int:
     from ai.copilot.copilot import Mode
     from ai.copilot.measurement import HELPS, seconds
+    from ai.lander.pilots import ScriptedPilot
     from ai.sweep.cluster import each
-    from ai.sweep.shards import fly_part, parts, tables_of
+    from ai.sweep.shards import Part, parts, tables_of
     from ai.training.config import ANYWHERE, LANDER
 
     if problem := out_of_range(arguments, episodes=EPISODES, seed=SEEDS, workers=WORKERS):
@@ -83,7 +84,8 @@ def _table(arguments: argparse.Namespace) -> int:
     try:
         agent = _lander(arguments.model, (LANDER,))
         agents = {"one_pad": agent, "three_pads": agent, "other_worlds": _lander(arguments.anywhere, (ANYWHERE,))}
-        asked = parts(agents, arguments.good == "scripted", helps, arguments.episodes, arguments.seed)
+        good = ScriptedPilot() if arguments.good == "scripted" else None
+        asked = parts(agents, good, helps, arguments.episodes, arguments.seed)
         slots = max(len(part.names) for part in asked) * arguments.episodes
         rounds = len(asked) * (1 + len(arguments.assist))
         minutes = rounds * seconds(agent, slots) / 60 / (arguments.workers or 1)
@@ -91,7 +93,7 @@ def _table(arguments: argparse.Namespace) -> int:
             f"this takes about {minutes:.0f} minutes" if minutes > 1 else "this takes about a minute", file=sys.stderr
         )
         with progress_bar(len(asked), "flying", unit="part") as bar:
-            for index, rows in each(fly_part, asked, arguments.address, arguments.workers or 1):
+            for index, rows in each(Part.fly, asked, arguments.address, arguments.workers or 1):
                 done[index] = rows
                 bar.update()
     except REFUSED as error:

@@ -17,9 +17,9 @@ from typing import Any
 
 import pytest
 
-from ai.sweep.journal import Search
-from ai.sweep.study import Study
-from ai.sweep.trial import Asked, unpack
+from ai.sweep.search import Search
+from ai.sweep.study import Files, Study, write_files
+from ai.sweep.trial import Asked
 from tests.support.studies import TINY, networks_in, run_alone
 
 pytestmark = [
@@ -106,7 +106,7 @@ def descendants(of):
 
 
 def training_workers(of):
-    return [pid for pid, name in descendants(of).items() if name.startswith("ray::Worker")]
+    return [pid for pid, name in descendants(of).items() if name.startswith("ray::trained")]
 
 
 def listening(pids):
@@ -133,12 +133,12 @@ def assert_as_alone(folder):
     assert sorted(study.trials) == list(range(study.plan.trials))
     assert study.damaged == []
     # The runs of each trial; the study forgets the states of members that others went on from.
-    kept: dict[int | None, bytes] = {None: b""}
+    kept: dict[int | None, Files] = {None: {}}
     for number, trial in sorted(study.trials.items()):
         parent = None if trial.parent is None else study.trials[trial.parent]
         alone, runs = run_alone(study.plan, Asked(number, trial.params, parent), kept[trial.parent])
         kept[number] = runs
-        unpack(runs, folder.parent / f"alone-{number}")
+        write_files(runs, folder.parent / f"alone-{number}")
         assert networks_in(folder.parent / f"alone-{number}" / "seed-1") == networks_in(
             study.trial_folder(number) / "seed-1"
         )
@@ -157,12 +157,12 @@ def test_a_population_on_two_nodes_is_what_it_is_alone(nodes, tmp_path):
 def test_any_function_is_called_for_many_items_and_each_answer_finds_its_place(nodes):
     program = f"""
 from ai.sweep.cluster import each
-from ai.sweep.report import duration
-print(sorted(each(duration, [1.0, 300.0, 8000.0], {nodes.address!r})))
+from ai.sweep.study import seed_folder
+print(sorted(each(seed_folder, [1, 300, 8000], {nodes.address!r})))
 """
     done = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False)
     # Ray itself tells of a node that is gone, if another test has taken it away before.
-    assert done.stdout.splitlines()[-1] == "[(0, '1 s'), (1, '5 min'), (2, '2 h 13 min')]", done.stderr
+    assert done.stdout.splitlines()[-1] == "[(0, 'seed-1'), (1, 'seed-300'), (2, 'seed-8000')]", done.stderr
 
 
 def test_without_an_address_nothing_listens_but_on_this_machine(tmp_path):

@@ -4,7 +4,6 @@ import json
 import os
 import shutil
 
-import numpy as np
 import pytest
 
 from ai.agent.agent import DeepQAgent
@@ -12,10 +11,12 @@ from ai.copilot import measurement
 from ai.lander.environment import LanderEnv
 from ai.sweep import shards as module
 from ai.sweep.cluster import each
-from ai.sweep.shards import flown_shards, fly, fly_part, pack_agent, packed_agent, parts, shards, tables_of
+from ai.sweep.shards import flown_shards, parts, shards, tables_of
 from ai.training.lander_task import FlightSums, evaluate
 from game.core.assets import MODELS_DIR
 from main import main
+
+pickled = pytest.importorskip("cloudpickle")
 
 MODERN = MODELS_DIR / "lander" / "modern"
 AGENT = DeepQAgent.load(MODERN)
@@ -69,7 +70,7 @@ def test_evaluate_tells_an_interval_around_the_share(capsys):
 
 def test_a_worker_flies_one_shard_after_another_with_the_same_network(monkeypatch):
     parts = shards(AGENT, 3, 0, "random")
-    assert fly(parts[0]) == fly(parts[0])
+    assert parts[0].fly() == parts[0].fly()
 
 
 def test_the_copilots_table_is_the_same_in_parts(monkeypatch):
@@ -77,9 +78,9 @@ def test_the_copilots_table_is_the_same_in_parts(monkeypatch):
     table = (lambda slots, rng: LanderEnv(slots, rng, "rung_1"), names)
     monkeypatch.setattr(measurement, "TABLES", {"one_pad": table})
     monkeypatch.setattr(module, "PILOTS", 1)
-    asked = parts({"one_pad": AGENT}, False, helps, 3, 2)
+    asked = parts({"one_pad": AGENT}, None, helps, 3, 2)
     assert len(asked) == 2
-    done = {index: fly_part(part) for index, part in reversed([*enumerate(asked)])}
+    done = {index: part.fly() for index, part in reversed([*enumerate(asked)])}
     assert tables_of(asked, done)["one_pad"] == list(measurement.rows(AGENT, AGENT, "one_pad", names, helps, 3, 2))
 
 
@@ -100,18 +101,17 @@ def test_evaluating_a_model_sends_what_was_read_and_leaves_nothing_behind(monkey
         return each(function, items, None, 1)
 
     monkeypatch.setattr(module, "each", here)
-    module.packed_agent.cache_clear()
     command = ["evaluate", "--model", str(tmp_path / "model"), "--episodes", "3", "--workers", "2"]
     assert main(command) == 0
     capsys.readouterr()
     assert asked
     for shard in asked:
-        assert b"a secret" not in shard.agent
-        assert len(shard.agent) < 1_000_000
+        sent = pickled.dumps(shard)
+        assert b"a secret" not in sent
+        assert len(sent) < 1_000_000
     assert not list((tmp_path / "temporary").iterdir())
 
 
 def test_an_agent_that_was_sent_flies_alike():
-    sent = packed_agent(pack_agent(AGENT))
-    assert np.array_equal(sent.network.values, AGENT.network.values)
-    assert not sent.folder.exists()
+    (shard,) = shards(AGENT, 5, 3, "hard")
+    assert pickled.loads(pickled.dumps(shard)).fly() == shard.fly()
