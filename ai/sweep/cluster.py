@@ -36,7 +36,6 @@ _PATIENCE: Final = 5.0  # seconds in which a cluster has to answer; Ray itself w
 # How a client of HTTP/2 begins, with settings that are empty; a server, as all of Ray's are, answers with its own.
 _PREFACE: Final = b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n" + bytes([0, 0, 0, 4, 0, 0, 0, 0, 0])
 
-Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 
@@ -172,28 +171,29 @@ def _is_local(address: str) -> bool:
 
 
 def each(
-    function: Callable[[Item], Result],
-    items: Sequence[Item],
-    address: str | None = None,
-    workers: int | None = None,
+    tasks: Sequence[Callable[[], Result]], address: str | None = None, workers: int | None = None
 ) -> Iterator[tuple[int, Result]]:
-    """Yield the place of each item and what a function gives for it, as they are done, on many cores.
+    """Yield the place of each task and what it returns, as they are done, on many cores.
 
-    On one core of this machine the function is simply called: Ray is started for more, or with an address. A call
-    whose worker or node dies is made again elsewhere. `function` is one of a module, and depends on nothing else.
+    On one core of this machine they are simply called: Ray is started for more, or with an address. A call whose
+    worker or node dies is made again elsewhere, so a task depends on nothing else.
     """
     if address is None and (workers or cores()) == 1:
-        yield from ((index, function(item)) for index, item in enumerate(items))
+        yield from ((index, task()) for index, task in enumerate(tasks))
         return
     with joined(address, workers) as count:
         import ray
 
-        remote = ray.remote(num_cpus=1, max_retries=4)(function)
+        call = ray.remote(num_cpus=1, max_retries=4)(_call)
         waiting: dict[Any, int] = {}
-        left = list(enumerate(items))[::-1]
+        left = list(enumerate(tasks))[::-1]
         while left or waiting:
             while left and len(waiting) < 2 * count:
-                index, item = left.pop()
-                waiting[remote.remote(item)] = index
+                index, task = left.pop()
+                waiting[call.remote(task)] = index
             for done in ray.wait(list(waiting))[0]:
                 yield waiting.pop(done), ray.get(done)
+
+
+def _call(task: Callable[[], Result]) -> Result:
+    return task()

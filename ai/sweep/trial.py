@@ -65,25 +65,25 @@ class SeedRun:
         if isinstance(config, DigitConfig):
             if not config.held_out:
                 raise ValueError("a study of digits needs images held out: held_out was 0")
-            self.kind, self.run = DIGITS, DigitTraining(config, seed) if parent is None else resume_digit_run(parent)
+            self.run = DigitTraining(config, seed) if parent is None else resume_digit_run(parent)
+            self.kind, self.pace = DIGITS, self.run.steps_per_epoch  # steps to a unit of the budget
         else:
             assert isinstance(config, Config)
-            self.kind, self.run = (
-                AGENTS,
-                Training(config, seed) if parent is None else resume_run(parent, env=config.env),
-            )
+            self.run = Training(config, seed) if parent is None else resume_run(parent, env=config.env)
             self.run.validation_episodes = plan.validation or self.run.validation_episodes
+            self.kind, self.pace = AGENTS, 1
         if parent is not None:
             self.run.apply_live(config)
 
     def advance(self, mark: int) -> Point:
         """Train up to so many decisions or epochs, and measure; raises FloatingPointError if it diverges."""
         run, last = self.run, None
-        for last in Limit(moment=mark * run.steps_per_epoch if self.kind is DIGITS else mark).run(run):
-            pass
+        for progress in Limit(moment=mark * self.pace).run(run):
+            last = progress
         if self.kind is DIGITS:
-            return Point(mark, last.held_out, last.held_out)
-        score = (last and last.evaluation) or run.task.evaluate(run.agent, run.validation_episodes, VALIDATION_SEED)
+            return Point(mark, run.history[-1]["held_out"], run.history[-1]["held_out"])
+        score = last.evaluation if last else None
+        score = score or run.task.evaluate(run.agent, run.validation_episodes, VALIDATION_SEED)
         return Point(run.moment, score.success, score.mean_return)
 
     def save(self, folder: Path, *, final: bool = False, state: bool = False) -> dict[str, Any]:
