@@ -1,7 +1,7 @@
 """Two-dimensional rigid bodies on NumPy, in batches of independent worlds.
 
-Reading order: `vector`, `state`, `shapes`, `integrate`, `broad_phase`, `collide`, `contacts`, `solver`, `rest`,
-`body`, `world`, `sprite`.
+Reading order: `vector`, `state`, `shapes`, `integrate`, `broad_phase`, `collide`, `contacts`, `constraints`, `solver`,
+`rest`, `body`, `world`, `sprite`.
 
     from engine import Circle, Polygon, World
 

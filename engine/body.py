@@ -2,33 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Protocol, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.state import BodyParams, BodyState
 from engine.vector import Array, Bools, cross, finite
 
+if TYPE_CHECKING:
+    from engine.world import World
+
 T = TypeVar("T", bound=np.generic)
-
-
-class Bodies(Protocol):
-    """What a handle needs of its world."""
-
-    batch: int
-    state: BodyState
-    params: BodyParams
-
-    @property
-    def asleep(self) -> Bools:
-        """Whether each body sleeps, (batch, bodies)."""
-
-    def wake(self, chosen: Bools) -> None:
-        """Wake the chosen bodies (batch, bodies), and all that they lie with."""
-
-    def moved(self, body: int, worlds: Bools | None) -> None:
-        """Take note that a body was put elsewhere, in these worlds or in all."""
 
 
 class Body:
@@ -38,7 +22,7 @@ class Body:
     property, or use `set` for some of the worlds, so that cached rotations, boxes and contacts are updated.
     """
 
-    def __init__(self, world: Bodies, index: int) -> None:
+    def __init__(self, world: World, index: int) -> None:
         self.world = world
         self.index = index
 

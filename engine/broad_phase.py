@@ -50,29 +50,31 @@ class BroadPhase:
     def near(self, state: BodyState, awake: Bools | None = None) -> tuple[Ints, Ints]:
         """Return world and row of `pairs`, each (n,), where boxes overlap; sorted by world, then by row.
 
-        Given which bodies are `awake`, (batch, bodies), pairs without any are left out. Pairs of bodies are found
-        first. Each then becomes a run of `count` pairs of shapes: the entries up to `last`, which count up from its
-        first row.
+        Given which bodies are `awake`, (batch, bodies), pairs without any are left out.
         """
         boxes = self._body_boxes(state)
+        world, mover, other = self._bodies_near(boxes, state.active, awake)
+        if not len(world):
+            return world, world
+        # Each pair of bodies becomes a run of `count` pairs of shapes: the numbers up to `end`, from its first row on.
+        count = self._count[mover, other]
+        end = count.cumsum()
+        pair = np.arange(end[-1]) + (self._first[mover, other] - end + count).repeat(count)
+        world = world.repeat(count)
+        near = self._shapes_near(state, world, pair)
+        return world[near], pair[near]
+
+    def _bodies_near(self, boxes: Array, active: Bools, awake: Bools | None) -> tuple[Ints, Ints, Ints]:
+        """Return world, row of the moving body and the other body, each (n,), where bodies' boxes overlap."""
         overlap = _overlap(boxes[:, self._moving, None], boxes[:, None], self._meet)  # (moving, bodies, batch)
-        if not state.active.all():
-            overlap &= (state.active[:, self._moving, None] & state.active[:, None]).transpose(1, 2, 0)
+        if not active.all():
+            overlap &= (active[:, self._moving, None] & active[:, None]).transpose(1, 2, 0)
         if awake is not None:
             overlap &= (awake[:, self._moving, None] | awake[:, None]).transpose(1, 2, 0)
         # Many times as fast as `nonzero` of three axes.
         mover, other, world = np.unravel_index(np.flatnonzero(overlap), overlap.shape)
-        if not len(world):
-            return world, world
         order = np.argsort(world, kind="stable")
-        mover, other, world = mover[order], other[order], world[order]
-        # From pairs of bodies to the pairs of their shapes, which stand one after another in `pairs`.
-        count = self._count[mover, other]
-        last = count.cumsum()
-        pair = np.arange(last[-1]) + (self._first[mover, other] - last + count).repeat(count)
-        world = world.repeat(count)
-        near = self._shapes_near(state, world, pair)
-        return world[near], pair[near]
+        return world[order], mover[order], other[order]
 
     def _body_boxes(self, state: BodyState) -> Array:
         """Boxes (4, bodies, batch) of all bodies as they are now."""

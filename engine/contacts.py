@@ -130,15 +130,23 @@ def _pass_on(contacts: Contacts, rows: Ints, last: Contacts, impulse: Array, sam
     """
     alike = dot(last.normal, contacts.normal[rows]) > _ALIKE
     new, gone = contacts.valid[rows] & ~same, last.valid & ~same & alike[:, None]
-    # Two new points and two that are gone can be matched straight or crosswise: the nearer way holds.
-    away = length(contacts.points[rows][:, :, None] - last.points[:, None])  # (n, new, gone)
-    away = np.where(new[:, :, None] & gone[:, None], np.minimum(away, _NEAR), _NEAR)
-    crossed = away[:, 0, 1] + away[:, 1, 0] < away[:, 0, 0] + away[:, 1, 1]
-    source = np.where(crossed[:, None], (1, 0), (0, 1))  # (n, 2): of the last points, the one that each follows
-    passed = np.take_along_axis(away, source[:, :, None], axis=2)[..., 0] < _NEAR
+    source, passed = _nearest(contacts.points[rows], new, last.points, gone)
     contacts.impulse[rows, :2] += np.where(passed, np.take_along_axis(impulse[:, :2], source, axis=1), 0.0)
     pushed = alike & (passed | same).any(axis=1)  # friction stays if any push does
     contacts.impulse[rows, 2] = np.where(pushed, impulse[:, 2], contacts.impulse[rows, 2])
+
+
+def _nearest(points: Array, new: Bools, last: Array, gone: Bools) -> tuple[Ints, Bools]:
+    """Match the new ones of `points` (n, 2, 2) with those of the `last` that are gone, straight or crosswise.
+
+    Of the two ways the shorter holds. Returns for each point which of the last it is matched with, (n, 2), and whether
+    both are there and lie near each other.
+    """
+    away = length(points[:, :, None] - last[:, None])  # (n, point, last)
+    away = np.where(new[:, :, None] & gone[:, None], np.minimum(away, _NEAR), _NEAR)
+    crossed = away[:, 0, 1] + away[:, 1, 0] < away[:, 0, 0] + away[:, 1, 1]
+    source = np.where(crossed[:, None], (1, 0), (0, 1))
+    return source, np.take_along_axis(away, source[:, :, None], axis=2)[..., 0] < _NEAR
 
 
 def _colours(slots: Ints, free: Bools) -> Ints:

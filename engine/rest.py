@@ -6,7 +6,7 @@ sleeps while each of its bodies has been still for half a second and something h
 or has only begun to slide, is never stopped. Asleep, it costs nothing: it is not moved, nor tried for contacts with
 what sleeps or stands, and its contacts stay as they were.
 
-Nothing has to be told to wake: what sleeps is compared with what it was after the last step. So a new place, a
+Nothing is woken by name: what sleeps is compared with what it was after the last step. So a new place, a
 velocity, a force, a body taken out, a floor moved away and another gravity wake alike, whoever has set them.
 """
 
@@ -72,7 +72,7 @@ class Rest:
         self._still[chosen[:, self._moving]] = 0
         self._find_sleepers(state, contacts, chosen)
 
-    def settle(self, state: BodyState, gravity: Array, contacts: Contacts | None) -> None:
+    def fall_asleep(self, state: BodyState, gravity: Array, contacts: Contacts | None) -> None:
         """Let fall asleep what has been still for long enough."""
         if not self._allowed:
             return

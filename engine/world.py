@@ -172,7 +172,7 @@ class World:
         state.refresh_rotation(movers)
         state.force[:, movers] = 0.0
         self._keep(contacts)
-        rest.settle(state, gravity, self.contacts)
+        rest.fall_asleep(state, gravity, self.contacts)
 
     def _keep(self, contacts: Contacts | None) -> None:
         """Remember a step's contacts, and those of bodies that slept in it."""

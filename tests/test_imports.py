@@ -14,7 +14,7 @@ STDLIB = set(sys.stdlib_module_names)
 PYGAME = {"pygame", "pygame_gui"}
 # What a single module may import besides, and only when it is used.
 LATE = {
-    "ai.files.lock": {"filelock"},
+    "ai.files.writing": {"filelock"},
     "ai.cli.command_line": {"tqdm"},
     "ai.training.gym_task": {"gymnasium"},
     "ai.common.places": {"platformdirs"},

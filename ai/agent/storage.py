@@ -16,7 +16,7 @@ from ai.agent.config import AgentConfig
 from ai.common.environment import Floats
 from ai.files import NETWORK, FolderKind, check_header, count_of, inside, read_arrays, read_json
 from ai.nn import ModelFormatError, NeuralNetwork, Optimizer, atomic_folder, recover_folder
-from ai.nn.layers import WIDEST
+from ai.nn.limits import WIDEST
 from ai.nn.storage import noted
 
 if TYPE_CHECKING:

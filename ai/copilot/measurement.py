@@ -105,7 +105,7 @@ def _measure(
     env = TABLES[table][0](len(names) * episodes, np.random.default_rng([_STARTS, seed]))
     for first in range(0, env.num_envs, episodes):
         for slot, rng in enumerate(np.random.default_rng([_STARTS, seed, 1]).spawn(episodes), first):
-            env.draw_from(slot, rng)
+            env.streams[slot] = rng
     env.reset()
     if env.ground.at_once > 1:
         intended = np.random.default_rng([_STARTS, seed, 2]).integers(env.ground.at_once, size=episodes)

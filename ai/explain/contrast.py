@@ -17,7 +17,7 @@ import numpy.typing as npt
 from ai.digits.classifier import DIGITS, DigitClassifier
 from ai.digits.preprocessing import SIDE, Image
 from ai.nn import Array, FullyConnectedLayer
-from ai.nn.layers import Layer
+from ai.nn.layer import Layer
 
 SQUARE: Final = 3  # pixels along a square that is emptied or filled: a stroke is 2.4 wide
 _LEAST_CHANGE: Final = 1.0  # pixels of ink: a square with less of it to take, or to put, is left out

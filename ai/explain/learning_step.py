@@ -11,7 +11,7 @@ import numpy as np
 from ai.common.environment import Floats
 from ai.explain.recorder import RETURN, Function, Line, Recorder, Row
 from ai.nn import NeuralNetwork
-from ai.nn.layers import Layer
+from ai.nn.layer import Layer
 from ai.nn.optimizers import Optimizer
 
 MOST_PARAMETERS: Final = 500_000  # of a network that is explained: a lesson holds some ten vectors of as many

@@ -9,9 +9,9 @@ from typing import Final, Literal
 import numpy as np
 import numpy.typing as npt
 
-from ai.nn.dropout import DropoutLayer
 from ai.nn.images import ConvolutionLayer, FlattenLayer, MaxPoolingLayer
-from ai.nn.layers import ActivationLayer, FullyConnectedLayer, Layer
+from ai.nn.layer import Layer
+from ai.nn.layers import ActivationLayer, DropoutLayer, FullyConnectedLayer
 from ai.nn.network import NeuralNetwork
 from ai.nn.parameter import Array
 

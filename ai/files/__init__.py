@@ -15,8 +15,8 @@ from ai.files.folder import (
     recover_folder,
     remove_state,
     state_folder,
+    take_folder,
 )
-from ai.files.lock import take, take_folder
 from ai.files.reading import (
     CONTROLS,
     MOST,
@@ -50,7 +50,7 @@ from ai.files.schema import (
     read_lines,
     sound_fields,
 )
-from ai.files.writing import append_line, free_path, write_bytes, write_text
+from ai.files.writing import append_line, free_path, take, write_bytes, write_text
 
 __all__ = [
     "CONFIG", "CONTROLS", "MOST", "NETWORK", "Above", "Count", "Duration", "FolderKind", "OneOf", "SchemaError", "Seed",

@@ -4,20 +4,20 @@ Only what is ours is ever replaced: a folder whose `config.json` says of which k
 what belongs into one of that kind.
 """
 
+import errno
 import os
 import re
 import shutil
 import time
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Final
 
-from ai.files.lock import take_folder
 from ai.files.reading import brief, read_json
-from ai.files.writing import beside, synchronise
+from ai.files.writing import beside, synchronise, take
 
 CONFIG = "config.json"  # what every model's folder holds
 _NEW, _OLD = ".new", ".old"  # ends of the names of folders that are not finished, or were moved aside for a new one
@@ -64,10 +64,10 @@ NETWORK: Final = FolderKind("tranquility network", ("layer-*-*.npy",))
 
 
 @contextmanager
-def new_folder(target: Path, put: Callable[[Path], object] | None = None) -> Iterator[Path]:
-    """Yield a new empty folder that becomes `target`, where nothing is, if the block succeeds; else nothing is left.
+def new_folder(target: Path, kind: FolderKind | None = None) -> Iterator[Path]:
+    """Yield a new empty folder that becomes `target` if the block succeeds; else nothing is left.
 
-    `put` may move it there in another way than by renaming it.
+    Nothing may be there, or with a `kind` a folder of that kind, which is moved aside.
     """
     _clear_away(target)
     new = beside(target, _NEW)
@@ -76,7 +76,7 @@ def new_folder(target: Path, put: Callable[[Path], object] | None = None) -> Ite
         yield new
         for path in [*new.rglob("*"), new]:
             synchronise(path)
-        put(new) if put else new.rename(target)
+        _put(new, target, kind)
         synchronise(target.parent)
     except BaseException:
         recover_folder(target)
@@ -94,16 +94,24 @@ def atomic_folder(target: str | Path, kind: FolderKind = NETWORK) -> Iterator[Pa
     deleted only then.
     """
     path = _checked(target, kind)
-
-    def swap(new: Path) -> None:
-        _checked(path, kind)  # something else may have been put there meanwhile
-        _swap(new, path)
-
-    with new_folder(path, swap) as new:
+    with new_folder(path, kind) as new:
         yield new
     for old in _aside(path, _OLD):
         if not any(old.iterdir()) or not kind.stranger(old):
             shutil.rmtree(old, ignore_errors=True)
+
+
+def take_folder(folder: str | Path) -> ExitStack:
+    """Return the lock of a folder that is about to be written again and again, as training does.
+
+    It lies beside the folder, which itself is replaced as a whole. Raises BlockingIOError, with a sentence, if another
+    holds it: the second of two would undo the first.
+    """
+    path = Path(os.path.realpath(folder))
+    held = take(path.parent / f".{path.name.removeprefix('.')}.lock")
+    if held is None:
+        raise BlockingIOError(errno.EAGAIN, "another training is keeping its work there", str(folder))
+    return held
 
 
 @contextmanager
@@ -131,8 +139,7 @@ def recover_folder(target: str | Path) -> None:
 def recover_all(folder: Path) -> None:
     """Put back or delete what saves that were stopped have left in a folder; raises OSError if it can't be seen."""
     for name in {found[1] for path in folder.iterdir() if (found := _ASIDE.fullmatch(path.name))}:
-        if not name.startswith("."):  # a run without a name may be saved at this moment
-            recover_folder(folder / name)
+        recover_folder(folder / name)
         _clear_away(folder / name)
 
 
@@ -191,15 +198,15 @@ def _checked(target: str | Path, kind: FolderKind) -> Path:
     return path
 
 
-def _swap(new: Path, target: Path) -> None:
-    """Move the target aside and the new folder into its place."""
-    for attempt in range(_TRIES):
-        if target.exists():
+def _put(new: Path, target: Path, kind: FolderKind | None) -> None:
+    """Move the target aside, if it is still of its kind, and the new folder into its place."""
+    for left in reversed(range(_TRIES)):
+        if kind and _checked(target, kind).exists():
             target.rename(beside(target, _OLD))
         try:
             new.rename(target)
-        except OSError:
-            if attempt == _TRIES - 1 or not target.exists():
+        except OSError:  # a reader may have put the old one back meanwhile
+            if not (left and kind and target.exists()):
                 raise
-        else:  # else a reader has put the old one back meanwhile
+        else:
             return

@@ -118,20 +118,21 @@ def _too_large(path: str | Path, most: int) -> OSError:
 # JSON
 
 
-def read_json(path: str | Path, most: int = SMALL, *, depth: int = DEPTH) -> Any:
+def read_json(path: str | Path, most: int = SMALL) -> Any:
     """Return what a JSON file says; raises OSError, or ValueError as `parse_json` does."""
-    return parse_json(read_text(path, most), depth=depth)
+    return parse_json(read_text(path, most))
 
 
-def parse_json(text: str, *, depth: int = DEPTH) -> Any:
+def parse_json(text: str) -> Any:
     """Return what a JSON text says.
 
-    Raises ValueError for what is no JSON, is nested more deeply, or has numbers that are not finite or endless.
+    Raises ValueError for what is no JSON, is nested more deeply than DEPTH, or has numbers that are not finite or
+    endless.
     """
     try:
         value = _DECODER.decode(text)
         # In most files there are too few brackets for more than that, so nobody has to look how they are nested.
-        too_deep = text.count("[") + text.count("{") > depth and _depth(value) > depth
+        too_deep = text.count("[") + text.count("{") > DEPTH and _depth(value) > DEPTH
     except RecursionError:
         too_deep = True
     if too_deep:
@@ -246,8 +247,6 @@ def _check_directory(file: BinaryIO) -> None:
 
 def _unpack(archive: zipfile.ZipFile, member: zipfile.ZipInfo, expect: Expect) -> npt.NDArray[Any]:
     name = brief(member.filename.removesuffix(".npy"), 60)
-    if member.flag_bits & 1:
-        raise ValueError(f"{name} is encrypted")
     if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
         raise ValueError(f"{name} is packed in an unknown way")
     with archive.open(member) as file:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping
 from contextlib import suppress
-from dataclasses import MISSING, fields, is_dataclass
+from dataclasses import MISSING, fields
 from functools import cache, partial
 from itertools import islice
 from pathlib import Path
@@ -86,8 +86,10 @@ def read_as(kind: type[T], values: Any, *, strict: bool = False) -> T:
 
     Fields that `kind` does not have are passed over; with `strict`, they are refused, here and in dataclasses within.
     """
-    made: T = _made(kind, strict, values)
-    return made
+    right, problems = sound_fields(kind, _named(values), strict=strict)
+    if problems:
+        raise SchemaError(problems)
+    return kind(**right)
 
 
 def read_lines(kind: type[T], path: Path, most: int) -> tuple[list[T], int]:
@@ -104,9 +106,15 @@ def read_lines(kind: type[T], path: Path, most: int) -> tuple[list[T], int]:
     return found, damaged
 
 
-def sound_fields(kind: type, values: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
+def sound_fields(kind: type, values: Mapping[str, Any], *, strict: bool = False) -> tuple[dict[str, Any], list[str]]:
     """Return those fields of a dataclass that a file has given and that are right, and what is wrong with the rest."""
-    return _sorted_out(kind, False, values)
+    known = _fields_of(kind, strict)
+    problems = [f"{name} is missing" for name, (_, needed) in known.items() if needed and name not in values]
+    right, wrong = _sorted_out((name, check, values[name]) for name, (check, _) in known.items() if name in values)
+    problems += wrong
+    if strict:
+        problems += islice((f"{brief(name, 40)} is unknown" for name in values if name not in known), _NAMED)
+    return right, problems
 
 
 def check_header(values: Any, form: str, versions: Collection[int]) -> dict[str, Any]:
@@ -120,28 +128,20 @@ def check_header(values: Any, form: str, versions: Collection[int]) -> dict[str,
     return values
 
 
-def _sorted_out(kind: type, strict: bool, values: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
+def _sorted_out(parts: Iterable[tuple[str, Check, Any]]) -> tuple[dict[str, Any], list[str]]:
+    """Check values by their places: return those that are right, and what is wrong, as in "flights[2].seed: ..."."""
     right: dict[str, Any] = {}
     problems: list[str] = []
-    known = _fields_of(kind, strict)
-    for name, (check, needed) in known.items():
-        if name in values:
-            try:
-                right[name] = check(values[name])
-            except ValueError as error:
-                problems += _placed(name, error)
-        elif needed:
-            problems.append(f"{name} is missing")
-    if strict:
-        problems += islice((f"{brief(name, 40)} is unknown" for name in values if name not in known), _NAMED)
+    for place, check, value in parts:
+        try:
+            right[place] = check(value)
+        except SchemaError as error:
+            problems += [f"{place}{'' if problem.startswith('[') else '.'}{problem}" for problem in error.problems]
+        except ValueError as error:
+            problems.append(f"{place}: {error}")
+        if len(problems) > _NAMED:  # a long list can be wrong throughout
+            break
     return right, problems
-
-
-def _placed(place: str, error: ValueError) -> list[str]:
-    """Return the problems of a value with its place before each, as in "flights[2].seed: ..."."""
-    if isinstance(error, SchemaError):
-        return [f"{place}{'' if problem.startswith('[') else '.'}{problem}" for problem in error.problems]
-    return [f"{place}: {error}"]
 
 
 @cache
@@ -165,7 +165,7 @@ def _check_of(hint: Any, strict: bool) -> Check:
         return partial(_tuple, [_check_of(kind, strict) for kind in inner if kind is not Ellipsis], Ellipsis in inner)
     if origin is dict:
         return partial(_table, _check_of(inner[1], strict))
-    return partial(_made, hint, strict) if is_dataclass(hint) else _PLAIN[hint]
+    return _PLAIN[hint] if hint in _PLAIN else partial(read_as, hint, strict=strict)
 
 
 def _ruled(check: Check, rules: tuple[Check, ...], value: Any) -> Any:
@@ -197,36 +197,16 @@ def _tuple(checks: list[Check], repeated: bool, value: Any) -> tuple[Any, ...]:
     try:
         return tuple([check(each) for check, each in zip(checks, value, strict=True)])
     except ValueError:  # rare, so only then is each place noted
-        _gathered((f"[{place}]", check, value[place]) for place, check in enumerate(checks))
-        raise
+        parts = ((f"[{place}]", check, each) for place, (check, each) in enumerate(zip(checks, value, strict=True)))
+        raise SchemaError(_sorted_out(parts)[1]) from None
 
 
 def _table(check: Check, value: Any) -> dict[str, Any]:
     """Check for a table, of which every value has to pass one check."""
-    return _gathered((brief(name, 40), check, each) for name, each in _named(value).items())
-
-
-def _gathered(parts: Iterable[tuple[str, Check, Any]]) -> dict[str, Any]:
-    """Check values by their places, and return them so; raises SchemaError for all that are wrong."""
-    found: dict[str, Any] = {}
-    problems: list[str] = []
-    for place, check, value in parts:
-        try:
-            found[place] = check(value)
-        except ValueError as error:
-            problems += _placed(place, error)
-            if len(problems) > _NAMED:  # a long list can be wrong throughout
-                break
+    right, problems = _sorted_out((brief(name, 40), check, each) for name, each in _named(value).items())
     if problems:
         raise SchemaError(problems)
-    return found
-
-
-def _made(kind: Any, strict: bool, value: Any) -> Any:
-    right, problems = _sorted_out(kind, strict, _named(value))
-    if problems:
-        raise SchemaError(problems)
-    return kind(**right)
+    return right
 
 
 def _of(kind: type, words: str) -> Check:

@@ -1,9 +1,9 @@
-"""Writing of files whole or not at all, and of lines at the end of one."""
+"""Writing of files: whole or not at all, of lines at the end of one, and by one writer at a time."""
 
 import json
 import os
 import secrets
-from contextlib import nullcontext, suppress
+from contextlib import ExitStack, nullcontext, suppress
 from pathlib import Path
 from typing import Any
 
@@ -43,8 +43,7 @@ def write_bytes(path: Path, content: bytes, *, flush: bool = True) -> None:
         if flush:
             synchronise(path.parent)  # which holds the name
     except BaseException:
-        with suppress(OSError):
-            temporary.unlink(missing_ok=True)
+        _remove(temporary)
         raise
 
 
@@ -64,3 +63,29 @@ def synchronise(path: Path) -> None:
             os.fsync(descriptor)
         finally:
             os.close(descriptor)
+
+
+def take(path: Path, seconds: float = 0.0) -> ExitStack | None:
+    """Return the lock of a file, to be closed; None if another holds it for more than so many seconds.
+
+    The system releases it however the holder's process ends. Where files can't be made or locked at all, such as on
+    some network drives, every caller gets it. A lock that was closed leaves no file behind, but for Windows.
+    """
+    from filelock import FileLock, Timeout  # so that what locks nothing does not wait for it
+
+    lock, held = FileLock(path, seconds, thread_local=False), ExitStack()
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        lock.acquire(poll_interval=0.01)
+    except Timeout:
+        return None
+    except OSError:
+        return held
+    held.callback(lock.release)
+    held.callback(_remove, path)  # first, while it is held, so that nobody else's is removed
+    return held
+
+
+def _remove(path: Path) -> None:
+    with suppress(OSError):
+        path.unlink()

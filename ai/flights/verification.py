@@ -57,7 +57,7 @@ def begun(start: Recording, seeds: Sequence[int] = ()) -> LanderEnv:
     ground = ground_of(seeds[0], start.pads, easing.pads)
     env = LanderEnv(len(seeds), 0, start.spawn, frame_skip=1, ground=ground, limits=limits)
     for slot, seed in enumerate(seeds):  # as each would draw alone
-        env.draw_from(slot, np.random.default_rng(seed).spawn(1)[0])
+        env.streams[slot] = np.random.default_rng(seed).spawn(1)[0]
     env.reset()
     return env
 

@@ -42,7 +42,7 @@ class GymLander(gymnasium.Env[Floats, np.int64]):
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Floats, dict[str, Any]]:
         """Begin a flight; the same seed gives the same flights."""
         super().reset(seed=seed, options=options)
-        self.landers.draw_from(0, self.np_random)
+        self.landers.streams[0] = self.np_random
         return self.landers.reset()[0], self._info()
 
     def step(self, action: np.int64) -> tuple[Floats, float, bool, bool, dict[str, Any]]:
@@ -88,7 +88,7 @@ class GymLanders(VectorEnv[Floats, Ints, Any]):
         seeds = [seed + slot for slot in range(self.num_envs)] if isinstance(seed, int) else seed or []
         for slot, own in enumerate(seeds):
             if own is not None and mask[slot]:
-                self.landers.draw_from(slot, seeding.np_random(own)[0])
+                self.landers.streams[slot] = seeding.np_random(own)[0]
         self._ended &= ~mask
         return self.landers.reset(mask), _marked(_told(self.landers), mask)
 

@@ -22,14 +22,9 @@ from ai.lander.rewards import REWARDS, TILT_ALLOWED, RewardWeights, Situation
 from ai.lander.rules import (
     ACTION_NAMES,
     ACTION_SHARES,
-    FEATURE_NAMES,
-    FOOT_CENTRE,
-    FOOT_SIZE,
-    HULL,
+    FLYING,
+    LATE,
     LIMITS,
-    MIRROR_ACTIONS,
-    MIRROR_FEATURES,
-    MIRROR_SIGNS,
     NUM_ACTIONS,
     NUM_FEATURES,
     OBSERVATION_SCALE,
@@ -38,29 +33,21 @@ from ai.lander.rules import (
     LanderParams,
     Limits,
     Outcome,
-    engines_switched,
 )
 from ai.lander.sensing import sensed, surroundings, terrain
 from ai.lander.spawns import SPAWNS, Curriculum
 from engine import DT
 
 __all__ = [
-    "ACTION_NAMES", "FEATURE_NAMES", "FOOT_CENTRE", "FOOT_SIZE", "HULL", "LIMITS", "MIRROR_ACTIONS",
-    "MIRROR_FEATURES", "MIRROR_SIGNS", "NUM_ACTIONS", "NUM_FEATURES", "OBSERVATION_SCALE", "PARAMS", "Cause",
-    "LanderEnv", "LanderParams", "Limits", "Outcome", "engines_switched",
+    "ACTION_NAMES", "LIMITS", "NUM_ACTIONS", "NUM_FEATURES", "OBSERVATION_SCALE", "PARAMS", "Cause", "LanderEnv",
+    "LanderParams", "Limits", "Outcome",
 ]  # fmt: skip
 
-# NumPy compares with plain numbers many times as fast as with members of an enumeration.
-_FLYING, _LATE = int(Outcome.FLYING), int(Outcome.TIMED_OUT)
-# What begins at zero with each flight, and the shape of one lander's.
-_COUNTERS: Final[dict[str, tuple[tuple[int, ...], type]]] = {
-    **dict.fromkeys(("actions", "outcome", "cause", "touched", "steps"), ((), np.intp)),
-    **dict.fromkeys(("still_steps", "feet_steps", "tilted_steps"), ((), np.intp)),
-    **dict.fromkeys(("main_steps", "side_steps"), ((), float)),
-    "shares": ((2,), float),
-    "contacts": ((2,), bool),
-    "impact": ((3,), float),
-}
+# What begins at zero with each flight.
+_BEGUN: Final = (
+    "actions", "shares", "outcome", "cause", "contacts", "touched", "impact", "steps", "main_steps", "side_steps",
+    "still_steps", "feet_steps", "tilted_steps",
+)  # fmt: skip
 
 
 class LanderEnv:
@@ -76,41 +63,17 @@ class LanderEnv:
 
     Attributes:
         params, ground, conditions, limits, weights: as given; numbers of all but ground and weights may be arrays (n,).
+        curriculum: which spawn is drawn from, by landings.
         strictness: share of the limits of a touch, as pilots are told, that holds.
-        target: number of the pad that observations and rewards are about, (n,).
-        actions: what each was last told to do, 0 to 5, (n,).
-        shares: with which shares of thrust, (n, 2): of the main engine, 0 to 1, and of the jets, -1, left, to 1, right.
-        steps: physics steps of 1/60 s flown, (n,).
-        main_steps, side_steps: the same with the main engine and with a jet, each step by its share of thrust, (n,).
-        outcome, cause: `Outcome` of each flight, and `Cause` of a crash, (n,).
-        contacts: whether the left and the right foot are on a pad, (n, 2).
-        touched: number of the pad that a foot was last on, (n,).
-        impact: greatest speed towards what was touched, along it, both m/s, and tilt in radians at any touch, (n, 3).
-        feet_steps, tilted_steps: physics steps with both feet down, and tilted by more than `TILT_ALLOWED`, (n,).
-        still_steps: physics steps at rest on both feet, up to now, (n,).
         landings: landings so far, in all flights.
-        streams: the Generator from which each slot's flights are drawn, n of them.
+        streams: the Generator from which each slot's flights are drawn, n of them; can be replaced at any time.
         world, lander, pad_bodies: the engine's worlds, the craft's body in them, and the pads' rows among bodies.
 
     """
 
     num_actions = NUM_ACTIONS
     num_features = NUM_FEATURES
-    kept: tuple[str, ...] = (*_COUNTERS, "target")  # arrays that a snapshot keeps
-
-    actions: Ints
-    outcome: Ints
-    cause: Ints
-    touched: Ints
-    steps: Ints
-    still_steps: Ints
-    feet_steps: Ints
-    tilted_steps: Ints
-    main_steps: Doubles
-    side_steps: Doubles
-    shares: Doubles
-    contacts: Bools
-    impact: Doubles
+    kept: tuple[str, ...] = (*_BEGUN, "target")  # arrays that a snapshot keeps
 
     def __init__(
         self,
@@ -129,26 +92,39 @@ class LanderEnv:
             raise ValueError(f"num_envs and frame_skip start from 1, not {num_envs} and {frame_skip}")
         if not (isinstance(spawn, Curriculum) or (isinstance(spawn, str) and spawn in SPAWNS)):
             raise ValueError(f"spawn is one of {', '.join(SPAWNS)}, or a Curriculum, not {spawn!r}")
-        self.num_envs, self.spawn, self.frame_skip = num_envs, spawn, frame_skip
-        self.params, self.ground, self.conditions, self.limits = (
-            params,
-            ground or Ground.flat(params),
-            conditions,
-            limits,
-        )
+        self.num_envs, self.frame_skip = num_envs, frame_skip
+        self.curriculum = spawn if isinstance(spawn, Curriculum) else Curriculum(((0, spawn),))
+        self.params, self.conditions, self.limits = params, conditions, limits
+        self.ground = ground or Ground.flat(params)
         self.weights, self.strictness, self.landings = weights or RewardWeights(), 1.0, 0
         self.streams = np.random.default_rng(seed).spawn(num_envs)
         self.world, self.lander, self.pad_bodies = craft.build(num_envs, params, self.ground)
-        for name, (shape, kind) in _COUNTERS.items():
-            setattr(self, name, np.zeros((num_envs, *shape), dtype=kind))
-        self.target: Ints = np.zeros(num_envs, dtype=np.intp)
+
+        def zeros(*shape: int, dtype: Any = np.intp) -> Any:
+            return np.zeros((num_envs, *shape), dtype)
+
+        self.target: Ints = zeros()  # number of the pad that observations and rewards are about
+        self.actions: Ints = zeros()  # what each was last told to do, 0 to 5
+        self.shares: Doubles = zeros(2, dtype=float)  # of thrust: main engine 0 to 1; jets -1, left, to 1, right
+        self.outcome: Ints = zeros()  # an `Outcome`
+        self.cause: Ints = zeros()  # of a crash, a `Cause`
+        self.contacts: Bools = zeros(2, dtype=bool)  # whether the left and the right foot are on a pad
+        self.touched: Ints = zeros()  # number of the pad that a foot was last on
+        # Greatest speed towards what was touched, along it, both m/s, and tilt in radians at any touch.
+        self.impact: Doubles = zeros(3, dtype=float)
+        self.steps: Ints = zeros()  # physics steps of 1/60 s flown
+        self.main_steps: Doubles = zeros(dtype=float)  # of these with the main engine, each by its share of thrust
+        self.side_steps: Doubles = zeros(dtype=float)  # the same with a jet
+        self.still_steps: Ints = zeros()  # of these at rest on both feet, up to now
+        self.feet_steps: Ints = zeros()  # of these with both feet down
+        self.tilted_steps: Ints = zeros()  # of these tilted by more than `TILT_ALLOWED`
         self._started = False
         self._free = FreeFlight(self) if num_envs == 1 else None
 
     @property
     def stage(self) -> int:
         """Stage of the curriculum, 0 without one."""
-        return self.spawn.stage(self.landings) if isinstance(self.spawn, Curriculum) else 0
+        return self.curriculum.stage(self.landings)
 
     @property
     def gravity(self) -> float:
@@ -207,10 +183,9 @@ class LanderEnv:
     @property
     def fired(self) -> Ints:
         """Actions (n,) that take effect: those for which there is fuel and the engines work."""
-        if not self.conditions.fails:
-            return self.actions
-        main = (self.actions >= 3) & self.conditions.main_works(self.time)
-        return np.where(self.fuel < self.conditions.tank, 3 * main + self.actions % 3, 0)
+        main, side = (self.thrust != 0).T
+        fired: Ints = 3 * (main & (self.actions >= 3)) + side * (self.actions % 3)
+        return fired
 
     @property
     def pad(self) -> Doubles:
@@ -256,8 +231,9 @@ class LanderEnv:
         Its outcome is CRASHED all the same: no landing, and no reward for one.
         """
         limits = self.limits.stricter(self.strictness)
-        kept = self.impact <= np.array([limits.touch_speed, limits.slide_speed, limits.touch_tilt])
-        whole: Bools = kept.all(axis=1) & (self.outcome == Outcome.CRASHED)
+        most = (limits.touch_speed, limits.slide_speed, limits.touch_tilt)
+        kept = [felt <= allowed for felt, allowed in zip(self.impact.T, most, strict=True)]
+        whole: Bools = np.all(kept, axis=0) & (self.outcome == Outcome.CRASHED)
         return whole
 
     def _top(self, pad: Any) -> Doubles:
@@ -272,7 +248,7 @@ class LanderEnv:
         mask = np.ones(self.num_envs, dtype=bool) if mask is None else np.asarray(mask, dtype=bool)
         if mask.shape != (self.num_envs,):
             raise ValueError(f"the mask must have one entry for each of {self.num_envs} slots, not {mask.shape}")
-        draw = SPAWNS[self.spawn.spawn(self.landings) if isinstance(self.spawn, Curriculum) else self.spawn]
+        draw = SPAWNS[self.curriculum.spawn(self.landings)]
         start = np.array([draw(self.streams[slot]) for slot in np.flatnonzero(mask)]).reshape(-1, 6)
         self.place(mask, start)
         return self.observe()
@@ -282,14 +258,10 @@ class LanderEnv:
         self.lander.set(
             position=start[:, :2], velocity=start[:, 2:4], angle=start[:, 4], angular_velocity=start[:, 5], mask=mask
         )
-        for name in _COUNTERS:
+        for name in _BEGUN:
             getattr(self, name)[mask] = 0
-        self.lander.active = self.outcome == Outcome.FLYING
+        self.lander.active = self.outcome == FLYING
         self._started = True
-
-    def draw_from(self, slot: int, rng: np.random.Generator) -> None:
-        """Let one slot draw its flights from a stream of its own."""
-        self.streams[slot] = rng
 
     def lowest(self, x: float, angle: float) -> float:
         """Return the least height, in metres, at which a lander at `x` that leans by `angle` clears the ground."""
@@ -316,11 +288,11 @@ class LanderEnv:
         self.fly(actions)
         after = Situation.of(self)
         parts = np.array([part(self.weights, before, after) for part in REWARDS.values()], np.float32)
-        truncated = self.outcome == _LATE
+        truncated = self.outcome == LATE
         return StepResult(
             observation=self.observe(),
             reward=np.add.accumulate(parts)[-1],  # one by one, in their order: NumPy's sum takes them in another
-            terminated=(self.outcome != _FLYING) & ~truncated,
+            terminated=(self.outcome != FLYING) & ~truncated,
             truncated=truncated,
             outcome=after.outcome,
             components=dict(zip(REWARDS, parts, strict=True)),
@@ -347,7 +319,7 @@ class LanderEnv:
         self.actions = actions.astype(np.intp)
         self.shares = ACTION_SHARES.take(self.actions, axis=0) if shares is None else shares
         left = self.frame_skip
-        while left and np.count_nonzero(flying := self.outcome == _FLYING):
+        while left and np.count_nonzero(flying := self.outcome == FLYING):
             if self._free and (flown := self._free.fly(left)):
                 left -= flown
                 continue
@@ -363,7 +335,7 @@ class LanderEnv:
         rewards, and `actions` (n,) are not checked.
         """
         self.actions, self.shares = actions, ACTION_SHARES.take(actions, axis=0)
-        flying = self.outcome == _FLYING
+        flying = self.outcome == FLYING
         if self._free and flying[0]:
             self._free.fly(self.frame_skip, solid=False)
             return self.observe()
@@ -381,18 +353,11 @@ class LanderEnv:
         self.side_steps += flying * np.abs(side)
 
     def snapshot(self) -> dict[str, Any]:
-        """Return everything a flight depends on but its random streams, to be put back by `restore`.
-
-        It is a nested dict of arrays, numbers and texts: bodies and contacts, counters, target, held actions, gravity,
-        air, params, limits, conditions, landings, and what the worlds are built of.
-        """
+        """Return everything flights depend on but their random streams, as a nested dict of arrays, numbers, texts."""
         return moment.snapshot(self)
 
     def restore(self, state: dict[str, Any]) -> None:
-        """Go back to a snapshot of this environment, or of one with as many slots over the same ground.
-
-        Raises ValueError for a snapshot of others.
-        """
+        """Go back to a snapshot, of as many landers of the same craft over the same ground; else raises ValueError."""
         moment.restore(self, state)
         self._started = True
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from ai.lander.craft import carry_pads, parts
 from ai.lander.rewards import TILT_ALLOWED
-from ai.lander.rules import Outcome
+from ai.lander.rules import FLYING, LATE, OUT
 from engine import DT
 from engine.contacts import MARGIN
 from engine.vector import dot
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 # A shape of the ground: its box (left, low, right, high), and its faces (nx, ny, far), before which it ends.
 Rock = tuple[list[float], list[list[float]]]
 _APART: Final = MARGIN + 1e-6  # metres between shapes that do not touch, and far more than rounding makes of them
-_FLYING, _OUT, _LATE = int(Outcome.FLYING), int(Outcome.OUT_OF_BOUNDS), int(Outcome.TIMED_OUT)
 
 
 class FreeFlight:
@@ -62,7 +61,7 @@ class FreeFlight:
         asked = main, side = env.shares[0].tolist()
         main_steps, side_steps = env.main_steps.item(), env.side_steps.item()
         start = now = env.steps.item()
-        tilted, outcome = 0, _FLYING
+        tilted, outcome = 0, FLYING
         while now - start < steps and not (outcome or (solid and self._near(x, y, cos, sin))):
             if conditions.fails:
                 main, side = asked
@@ -100,7 +99,7 @@ class FreeFlight:
         """Return the outcome of a flight in the air."""
         limits = self._env.limits
         gone = abs(x) > limits.half_width or y > limits.ceiling
-        return _OUT if gone else _LATE if time >= limits.time - 1e-9 else _FLYING
+        return OUT if gone else LATE if time >= limits.time - 1e-9 else FLYING
 
     def _leave(self, tilted: int, outcome: int) -> None:
         """Leave the judgements of the last steps in the environment: in so many of them it was tilted too far."""

@@ -18,13 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ai.common.environment import Doubles, Ints
-from ai.lander.rules import Outcome, engines_switched
+from ai.lander.rules import CRASHED, FLYING, LANDED, OUT, engines_switched
 
 if TYPE_CHECKING:
     from ai.lander.environment import LanderEnv
-
-# NumPy compares with plain numbers many times as fast as with members of an enumeration.
-_FLYING, _LANDED, _CRASHED, _OUT, _ = (int(outcome) for outcome in Outcome)
 
 
 @dataclass(frozen=True)
@@ -90,14 +87,14 @@ def _feet(before: Situation, after: Situation) -> Ints:
 
 
 def _switched(before: Situation, after: Situation) -> Ints:
-    switched: Ints = (before.outcome == _FLYING) * engines_switched(before.actions, after.actions)
+    switched: Ints = (before.outcome == FLYING) * engines_switched(before.actions, after.actions)
     return switched
 
 
 def _ending(before: Situation, after: Situation) -> Doubles:
     """Return 1 for a landing in this decision, -1 for a crash or leaving the area, else 0."""
-    flew, outcome = before.outcome == _FLYING, after.outcome
-    ending: Doubles = 1.0 * (flew & (outcome == _LANDED)) - (flew & ((outcome == _CRASHED) | (outcome == _OUT)))
+    flew, outcome = before.outcome == FLYING, after.outcome
+    ending: Doubles = 1.0 * (flew & (outcome == LANDED)) - (flew & ((outcome == CRASHED) | (outcome == OUT)))
     return ending
 
 

@@ -41,10 +41,8 @@ def sink_of(pilot: Pilot) -> float:
 
 def _over_flying_pad(env: LanderEnv, pad_velocity: Doubles) -> Floats:
     """Return the observations (n, 9) of a pad in the air just below each lander, moving at (2,) or (n, 2) m/s."""
-    state, body = env.world.state, env.lander.index
-    turned = state.sin[:, body], state.cos[:, body], env.angular_velocity
     below, nothing = np.tile([0.0, _BELOW], (env.num_envs, 1)), np.zeros((env.num_envs, 2), dtype=bool)
-    return sensed(below, env.velocity - pad_velocity, *turned, nothing)
+    return sensed(below, env.velocity - pad_velocity, *env.turned, nothing)
 
 
 class Route:

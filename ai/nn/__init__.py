@@ -1,15 +1,15 @@
 """A neural network library on NumPy: layers, costs, optimizers and a folder format, every gradient by hand.
 
-To read in this order: parameter, activations, costs, layers, dropout, optimizers, network; then storage, and images,
-which agents do without.
+To read in this order: parameter, activations, costs, layer, layers, optimizers, single, network; then limits and
+storage, and images, which agents do without.
 """
 
 from ai.files import atomic_folder, recover_folder
 from ai.nn.activations import Activation, ActivationFunctions
 from ai.nn.costs import Cost, CostFunctions, softmax
-from ai.nn.dropout import DropoutLayer
 from ai.nn.images import ConvolutionLayer, FlattenLayer, MaxPoolingLayer
-from ai.nn.layers import ActivationLayer, DuelingLayer, FullyConnectedLayer, Layer, LayerNormalisation
+from ai.nn.layer import Layer
+from ai.nn.layers import ActivationLayer, DropoutLayer, DuelingLayer, FullyConnectedLayer, LayerNormalisation
 from ai.nn.network import NeuralNetwork
 from ai.nn.optimizers import OPTIMIZERS, SGD, Adam, DivergenceError, Momentum, Optimizer
 from ai.nn.parameter import Array, Parameter

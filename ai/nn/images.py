@@ -6,113 +6,35 @@ and compares whole runs of examples at a time, however small the images are, and
 are gathered almost at the speed of memory (docs/adr/0009-images-batch-last-in-memory.md).
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import wraps
 from itertools import product
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
-import numpy.typing as npt
 from numpy.lib.stride_tricks import sliding_window_view
 
-from ai.nn.layers import FullyConnectedLayer, HalvedLayer, ImageShape, Layer, checked_size, ones
+from ai.nn.layer import HalvedLayer, Layer
+from ai.nn.layers import FullyConnectedLayer, ones
+from ai.nn.limits import ImageShape, checked_size
 from ai.nn.parameter import Array
+
+L = TypeVar("L", bound=Layer)
 
 BLOCK = 1 << 20  # numbers at work at a time: 4 MB, which stay in the cache between one pass and the next
 
 
-class Correlation:
-    """Windows of images times kernels, as matrix products.
+def _also_one_image(predict: Callable[[L, Array], Array]) -> Callable[[L, Array], Array]:
+    """Let a layer's `predict` take one image without the batch axis as well."""
 
-    Arrays are transposed: images (channels, width, height, batch), with `padding` zeros around each; kernels (kernel
-    column, kernel row, channel, filter). Windows lie `stride` pixels apart, `width` of them in a row. For each example,
-    with s the stride and a sum over i, j and c,
+    @wraps(predict)
+    def either(layer: L, input_data: Array) -> Array:
+        if input_data.ndim == 3:
+            one: Array = predict(layer, input_data[None])[0]
+            return one
+        return predict(layer, input_data)
 
-        output[f, x, y] = bias[f] + Σ kernels[i, j, c, f] · images[c, s·x + i, s·y + j]
-
-    Windows are copied into the columns of a matrix (Chellapilla, Puri & Simard 2006), in one of two ways. Whole: one
-    product with the kernels is the result. Or single columns of pixels, each once: column X meets all columns of the
-    kernels in one product, and what column i makes of it is added at x = X - i. For each pixel the first way moves
-    kernel² · channels numbers in and `filters` out, the second kernel · channels in and kernel · filters out; `whole`
-    says that the first moves less, or that the second can't be taken for the stride.
-    """
-
-    def __init__(
-        self, kernel: int, channels: int, filters: int, width: int, *, stride: int = 1, padding: int = 0
-    ) -> None:
-        self.kernel, self.filters, self.width, self.stride, self.padding = kernel, filters, width, stride, padding
-        self.whole = stride > 1 or kernel * channels < filters
-        self.scratch: dict[str, Array] = {}
-
-    def correlate(self, images: Array, kernels: Array, bias: Array, output: Array) -> None:
-        """Fill `output`, (filters, width, height, batch), with the correlation plus a bias of each filter."""
-        bias = bias[:, None, None, None]
-        if self.whole:
-            weights = kernels.reshape(-1, self.filters).T
-            for matrix, x, y in self._blocks(images, self.kernel):
-                part = output[:, x, y]
-                np.matmul(weights, matrix.reshape(len(matrix), -1), out=part.reshape(self.filters, -1))
-                part += bias
-            return
-        output[...] = bias
-        weights = kernels.reshape(self.kernel, -1, self.filters).swapaxes(1, 2).reshape(self.kernel * self.filters, -1)
-        for matrix, x, y in self._blocks(images, 1):
-            products = self._memory("products", (self.kernel, self.filters, *matrix.shape[1:]), output.dtype)
-            np.matmul(weights, matrix.reshape(len(matrix), -1), out=products.reshape(len(weights), -1))
-            for shift in range(self.kernel):
-                inside, place = self._shifted(x, shift)
-                part = output[:, place, y]
-                part += products[shift][:, inside]
-
-    def gradient(self, images: Array, error: Array) -> Array:
-        """Return the gradient of the kernels, flat, given that of the output: Σ windowᵀ · error over all windows."""
-        # The sums are small either way, so the way that copies least is best.
-        columns = 1 if self.stride == 1 else self.kernel
-        gradients = [np.zeros((0, 0), error.dtype)] * (self.kernel // columns)
-        for block, (matrix, x, y) in enumerate(self._blocks(images, columns)):
-            for shift, before in enumerate(gradients):
-                inside, place = self._shifted(x, shift)
-                part = error[:, place, y].reshape(self.filters, -1)
-                more = matrix[:, inside].reshape(len(matrix), -1) @ part.T
-                gradients[shift] = before + more if block else more
-        return np.concatenate(gradients, axis=None)
-
-    def _blocks(self, images: Array, columns: int) -> Iterator[tuple[Array, slice, slice]]:
-        """Yield blocks of windows, or of single columns of them: (rows, width, height, batch), and where they start.
-
-        A block is some columns of the images, or a part of one column: contiguous in the output, either way.
-        """
-        margin = self.padding if columns < self.kernel else 0  # columns of zeros, which add nothing when shifted
-        windows = sliding_window_view(images, (columns, self.kernel), (1, 2))
-        windows = windows[:, :: self.stride, :: self.stride].transpose(4, 5, 0, 1, 2, 3)
-        width, height, batch = windows.shape[3:]
-        rows = int(np.prod(windows.shape[:3]))
-        # Windows of one image that fit into a block, with what is made of them.
-        fit = max(1, BLOCK // (batch * (rows + self.kernel // columns * self.filters)))
-        for x, y in product(_parts(margin, width - margin, fit // height), _parts(0, height, fit)):
-            block = windows[..., x, y, :]
-            matrix = self._memory("matrix", block.shape, images.dtype)
-            matrix[...] = block
-            yield matrix.reshape(rows, *block.shape[3:]), x, y
-
-    def _shifted(self, x: slice, shift: int) -> tuple[slice, slice]:
-        """Return which columns of a block at `x` meet the output, column X at X - `shift`, and where they do."""
-        first = max(x.start, shift)
-        last = max(first, min(x.stop, self.width + shift))
-        return slice(first - x.start, last - x.start), slice(first - shift, last - shift)
-
-    def _memory(self, name: str, shape: tuple[int, ...], dtype: npt.DTypeLike) -> Array:
-        """Return scratch memory, the same at each call."""
-        size, kept = int(np.prod(shape)), self.scratch.get(name)
-        if kept is None or kept.size < size or kept.dtype != dtype:
-            kept = self.scratch[name] = np.empty(size, dtype)
-        return kept[:size].reshape(shape)
-
-
-def _parts(first: int, last: int, size: int) -> list[slice]:
-    """Cut a range into parts of about equal length, at most `size` (or 1) each."""
-    count = -(-(last - first) // max(1, size))
-    length = -(-(last - first) // count)
-    return [slice(start, min(start + length, last)) for start in range(first, last, length)]
+    return either
 
 
 class ConvolutionLayer(FullyConnectedLayer):
@@ -122,6 +44,10 @@ class ConvolutionLayer(FullyConnectedLayer):
     the image on each side; padding of kernel // 2 keeps the size. As in all such libraries the kernel is not
     flipped: this is a correlation. `options` are those of `FullyConnectedLayer`. Raises ValueError for sizes that make
     no sense.
+
+    Windows are copied into the columns of a matrix, and one product with the weights does the rest (Chellapilla, Puri &
+    Simard 2006). With W the weights, X such a matrix, E the errors of its outputs and ' for the transpose, the output
+    is W'X + bias, the gradient of W is XE', and WE are errors of the windows, which are added up where they overlap.
     """
 
     settings = ("inputs", "filters", "kernel", "stride", "padding")
@@ -150,11 +76,6 @@ class ConvolutionLayer(FullyConnectedLayer):
         super().__init__(self.kernel**2 * channels, self.filters, **options)
         rows, columns = ((size + 2 * self.padding - self.kernel) // self.stride + 1 for size in (height, width))
         self.inputs, self.outputs = shape, (rows, columns, self.filters)
-        self.overhang = self.kernel - 1 - self.padding  # the padding of the way back
-        self.forward = Correlation(
-            self.kernel, channels, self.filters, columns, stride=self.stride, padding=self.padding
-        )
-        self.backward = Correlation(self.kernel, self.filters, channels, width, padding=self.overhang)
 
     @property
     def weights(self) -> Array:
@@ -169,44 +90,85 @@ class ConvolutionLayer(FullyConnectedLayer):
     def forward_propagate(self, input_data: Array) -> Array:
         """Return each window times the weights, plus the bias: (batch, height, width, filters)."""
         _check_images(self, input_data)
-        frame = self.kept("framed", self._frame(len(input_data)), self.dtype)
-        return self._correlate(input_data, frame, self.kept("output", (len(input_data), *self.outputs), self.dtype))
+        self.framed = self.kept("framed", self._frame(len(input_data)), self.dtype)
+        output = self.kept("output", (len(input_data), *self.outputs), self.dtype)
+        return self._convolve(input_data, self.framed, output)
 
+    @_also_one_image
     def predict(self, input_data: Array) -> Array:
         """Return the same as a new array, also for one image without the batch axis."""
-        if input_data.ndim == 3:
-            one: Array = self.predict(input_data[None])[0]
-            return one
         _check_images(self, input_data)
-        frame = np.zeros(self._frame(len(input_data)), self.dtype, "F")
-        return self._correlate(input_data, frame, np.empty((len(input_data), *self.outputs), self.dtype, "F"))
+        framed = np.zeros(self._frame(len(input_data)), self.dtype, "F")
+        return self._convolve(input_data, framed, np.empty((len(input_data), *self.outputs), self.dtype, "F"))
 
     def fill_gradients(self, output_error: Array) -> None:
         """Set the gradients of weights, the sum of windowᵀ E over all windows, and of the bias."""
         weights, bias = self.parameters
-        error = np.asarray(output_error, self.dtype, order="F").T
-        error.reshape(self.filters, -1).dot(ones(error[0].size, error.dtype), bias.gradient)
-        weights.gradient[...] = self.forward.gradient(self.framed.T, error).reshape(weights.value.shape)
+        error = np.asarray(output_error, self.dtype, order="F")
+        bias.gradient[...] = error.T.reshape(self.filters, -1).dot(ones(error[..., 0].size, error.dtype))
+        weights.gradient.fill(0)
+        for x, y in self._blocks(len(error)):
+            weights.gradient += self._windows(self.framed, x, y) @ _columns(error, x, y).T
 
     def input_error(self, output_error: Array) -> Array:
-        """Return E correlated with the kernels turned by half: (batch, height, width, channels)."""
-        (height, width, channels), reach = self.inputs, self.kernel - 1
-        framed = self.kept("framed_error", (len(output_error), height + reach, width + reach, self.filters), self.dtype)
-        error = self.kept("error", (len(output_error), *self.inputs), self.dtype)
-        _place(output_error, framed, self.overhang, self.stride)
-        turned = self.kernels[::-1, ::-1].swapaxes(2, 3)
-        self.backward.correlate(framed.T, turned, np.zeros(channels, self.dtype), error.T)
-        return error
+        """Return the sum of what all windows that a pixel lies in send back: (batch, height, width, channels)."""
+        (height, width, channels), stride = self.inputs, self.stride
+        error = np.asarray(output_error, self.dtype, order="F")
+        framed = self.kept("framed_error", self._frame(len(error)), self.dtype)
+        framed.fill(0)
+        for x, y in self._blocks(len(error)):
+            part = _columns(error, x, y)
+            sent = (self.weights @ part).reshape(self.kernel, self.kernel, channels, x.stop - x.start, -1, len(error))
+            for i, j in np.ndindex(self.kernel, self.kernel):
+                columns, rows = _strided(x, i, stride), _strided(y, j, stride)
+                reached = framed.T[:, columns, rows]
+                reached += sent[i, j]
+        inside = slice(self.padding, self.padding + height), slice(self.padding, self.padding + width)
+        return np.asarray(framed[:, *inside], order="F")
 
-    def _correlate(self, images: Array, frame: Array, output: Array) -> Array:
-        _place(images, frame, self.padding)
-        self.forward.correlate(frame.T, self.kernels, self.bias, output.T)
+    def _convolve(self, images: Array, framed: Array, output: Array) -> Array:
+        inside = (slice(self.padding, self.padding + size) for size in self.inputs[:2])
+        framed[:, *inside] = images
+        weights, bias = self.weights.T, self.bias[:, None]
+        for x, y in self._blocks(len(images)):
+            matrix, part = self._windows(framed, x, y), _columns(output, x, y)
+            np.matmul(weights, matrix, out=part)
+            part += bias
         return output
 
     def _frame(self, batch: int) -> tuple[int, ...]:
         """Return the shape of images with zeros around them."""
         height, width, channels = self.inputs
         return batch, height + 2 * self.padding, width + 2 * self.padding, channels
+
+    def _windows(self, framed: Array, x: slice, y: slice) -> Array:
+        """Return windows as the columns of a matrix, (kernel · kernel · channels, windows · batch)."""
+        windows = sliding_window_view(framed.T, (self.kernel, self.kernel), (1, 2))
+        windows = windows[:, :: self.stride, :: self.stride][:, x, y].transpose(4, 5, 0, 1, 2, 3)
+        return windows.reshape(len(self.weights), -1)
+
+    def _blocks(self, batch: int) -> Iterator[tuple[slice, slice]]:
+        """Yield which columns and rows of outputs are worked at together: some whole columns, or a part of one."""
+        rows, columns, filters = self.outputs
+        fit = max(1, BLOCK // (batch * (len(self.weights) + filters)))
+        return product(_parts(columns, fit // rows), _parts(rows, fit))
+
+
+def _columns(outputs: Array, x: slice, y: slice) -> Array:
+    """Return some outputs, or their errors, as the columns of a matrix (filters, windows · batch), a view."""
+    return outputs.T[:, x, y].reshape(outputs.shape[-1], -1)
+
+
+def _strided(outputs: slice, shift: int, stride: int) -> slice:
+    """Return where the pixels lie that are `shift` pixels into the windows of some outputs."""
+    return slice(outputs.start * stride + shift, (outputs.stop - 1) * stride + shift + 1, stride)
+
+
+def _parts(size: int, most: int) -> list[slice]:
+    """Cut a range from 0 into parts of about equal length, at most `most` (or 1) each."""
+    count = -(-size // max(1, most))
+    length = -(-size // count)
+    return [slice(start, min(start + length, size)) for start in range(0, size, length)]
 
 
 class MaxPoolingLayer(HalvedLayer):
@@ -233,11 +195,9 @@ class MaxPoolingLayer(HalvedLayer):
         self.output = self.kept("output", (len(input_data), *self.outputs), input_data.dtype)
         return self._maximum(input_data, self.output)
 
+    @_also_one_image
     def predict(self, input_data: Array) -> Array:
         """Return the same as a new array, also for one image without the batch axis."""
-        if input_data.ndim == 3:
-            one: Array = self.predict(input_data[None])[0]
-            return one
         _check_images(self, input_data)
         return self._maximum(input_data, np.empty((len(input_data), *self.outputs), input_data.dtype, "F"))
 
@@ -291,11 +251,9 @@ class FlattenLayer(HalvedLayer):
         _check_images(self, input_data)
         return input_data.reshape(-1, self.outputs, order="F")
 
+    @_also_one_image
     def predict(self, input_data: Array) -> Array:
         """Return the same, also for one image without the batch axis."""
-        if input_data.ndim == 3:
-            one: Array = self.predict(input_data[None])[0]
-            return one
         return self.forward_propagate(input_data)
 
     def input_error(self, output_error: Array) -> Array:
@@ -303,12 +261,6 @@ class FlattenLayer(HalvedLayer):
         error = self.kept("error", (len(output_error), *self.inputs), output_error.dtype)
         error.reshape(output_error.shape, order="F")[...] = output_error
         return error
-
-
-def _place(images: Array, frame: Array, border: int, stride: int = 1) -> None:
-    """Copy images into the middle of frames, their pixels `stride` apart."""
-    rows, columns = (slice(border, border + stride * (size - 1) + 1, stride) for size in images.shape[1:3])
-    frame[:, rows, columns] = images
 
 
 def _checked_shape(inputs: ImageShape) -> ImageShape:

@@ -1,141 +1,16 @@
-"""Layers: each maps inputs to outputs on the forward pass, and output errors to input errors on the backward pass.
+"""Layers on vectors: fully connected, dueling, activation, normalisation, dropout."""
 
-An *error* is the derivative of the cost with respect to what it stands for: one number per element.
-"""
-
-import math
-from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
-from functools import cached_property, lru_cache, partial
+from collections.abc import Callable
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from ai.nn.activations import Activation, Function
-from ai.nn.parameter import INITIALISATIONS, Array, Parameter
-
-ImageShape = tuple[int, int, int]  # height, width, channels
-
-# A small file must not be able to ask for more than a machine has. An agent of so many parameters, two networks with
-# gradients and an optimizer, takes 430 MB to load.
-MAX_SIZE = 1 << 20  # of any one size
-MOST_LAYERS = 500
-MOST_PARAMETERS = 12_000_000
-WIDEST = 1 << 18  # values that a layer may make of one example
-MOST_WORK = 1_000_000_000  # multiplications for one example
-
-
-class Layer(ABC):
-    """One step of a network, on arrays of shape (batch, values), or images (batch, height, width, channels).
-
-    A custom layer has `forward_propagate`, `backward_propagate` and `predict`; if it learns, `shapes` and
-    `initial_value`; if it is to be saved and copied, `settings` and `ai.nn.register_layer`.
-
-    What `forward_propagate` and `backward_propagate` return lasts until their next call: they may write into
-    arrays that are kept while the batch size stays the same. `predict` returns a new array, or its input where
-    there is nothing to compute, and also takes one example without the batch axis.
-    """
-
-    settings: tuple[str, ...] = ()  # arguments of the constructor that are stored with the layer
-    inputs: int | ImageShape | None = None  # of an example; None: of any shape, and as many come out
-    outputs: int | ImageShape | None = None
-    shapes: Mapping[str, tuple[int, ...]] = {}  # of the parameters
-    initialisation: str | None = "constant"  # None: as suits the activation that follows
-    rng: np.random.Generator | None = None
-    dtype: npt.DTypeLike = np.float32
-    joined = False  # whether it belongs to a network
-    output: Array  # of the last forward pass, and the input error of the last way back, in layers that keep them
-    error: Array
-
-    @cached_property
-    def parameters(self) -> tuple[Parameter, ...]:
-        """Learned parameters, drawn when first asked for: by then the layer's network and neighbours are known."""
-        values = {name: np.asarray(self.initial_value(name), self.dtype) for name in self.shapes}
-        for name, value in values.items():
-            if value.shape != tuple(self.shapes[name]):
-                raise ValueError(f"{name} begins with shape {value.shape}, and is said to have {self.shapes[name]}")
-        return tuple(Parameter(name, value, np.zeros_like(value)) for name, value in values.items())
-
-    def initial_value(self, name: str) -> Array:
-        """Return the first value of a parameter, of the shape that `shapes` tells; draw it from `rng`."""
-        raise NotImplementedError(f"{type(self).__name__} does not say how {name} begins")
-
-    def join(self, rng: np.random.Generator, dtype: npt.DTypeLike) -> None:
-        """Become a part of one network, which computes in `dtype`; a layer without an `rng` gets one of the network's.
-
-        Raises ValueError if it is part of one already: a network's parameters lie in its own flat vector.
-        """
-        if self.joined:
-            raise ValueError(f"this {type(self).__name__} belongs to a network already; make another, or copy that one")
-        self.joined, self.rng, self.dtype = True, self.rng or rng.spawn(1)[0], np.dtype(dtype)
-        if "parameters" in vars(self):  # drawn before, perhaps in another precision
-            self.parameters = tuple(
-                Parameter(each.name, each.value.astype(dtype), each.gradient.astype(dtype)) for each in self.parameters
-            )
-
-    def arguments(self) -> dict[str, Any]:
-        """Return what the constructor needs to make such a layer again."""
-        return {name: getattr(self, name) for name in self.settings}
-
-    def kept(self, name: str, shape: tuple[int, ...], dtype: npt.DTypeLike) -> npt.NDArray[Any]:
-        """Return the attribute `name`, an array that begins as zeros, made anew where shape or dtype are others.
-
-        Images are in Fortran order, as in `ai.nn.images`.
-        """
-        array: npt.NDArray[Any] | None = self.__dict__.get(name)
-        if array is None or array.shape != shape or array.dtype != dtype:
-            array = self.__dict__[name] = np.zeros(shape, dtype, "F" if len(shape) == 4 else "C")
-        return array
-
-    @abstractmethod
-    def forward_propagate(self, input_data: Array) -> Array:
-        """Return the output and keep what the way back needs; `input_data` is to stay as it is until then."""
-
-    @abstractmethod
-    def predict(self, input_data: Array) -> Array:
-        """Return the output and keep nothing."""
-
-    def row_step(self, memory: Array, values: Array, output: Array) -> Callable[[], object]:  # noqa: ARG002
-        """Return a function that predicts the one example in `memory` into `output`, whenever it is called.
-
-        `memory` is (inputs + 1,): the example, and a 1 for a bias; `output` is (outputs,). `values` are the layer's
-        parameters, flat.
-        """
-        example = memory[:-1]  # NumPy handles a vector up to three times faster than a batch of one
-        return lambda: np.copyto(output, self.predict(example))
-
-    @abstractmethod
-    def backward_propagate(self, output_error: Array) -> Array:
-        """Fill the parameters' gradients and return the input error, both of the last forward pass."""
-
-    def fill_gradients(self, output_error: Array) -> None:
-        """Fill the gradients alone: all that is asked of the lowest layer."""
-        self.backward_propagate(output_error)
-
-    def input_error(self, output_error: Array) -> Array:
-        """Return the input error, and leave the gradients as they are."""
-        before = [parameter.gradient.copy() for parameter in self.parameters]
-        error = self.backward_propagate(output_error)
-        for parameter, gradient in zip(self.parameters, before, strict=True):
-            parameter.gradient[...] = gradient
-        return error
-
-
-class HalvedLayer(Layer):
-    """Layer whose backward pass has two separate halves, gradients and input error, so that either can be skipped."""
-
-    def backward_propagate(self, output_error: Array) -> Array:
-        """Fill the parameters' gradients and return the input error, both of the last forward pass."""
-        self.fill_gradients(output_error)
-        return self.input_error(output_error)
-
-    def fill_gradients(self, output_error: Array) -> None:
-        """Fill the gradients alone: nothing, where there are no parameters."""
-
-    @abstractmethod
-    def input_error(self, output_error: Array) -> Array:
-        """Return the input error alone."""
+from ai.nn.layer import HalvedLayer
+from ai.nn.limits import checked_size
+from ai.nn.parameter import INITIALISATIONS, Array
 
 
 class FullyConnectedLayer(HalvedLayer):
@@ -194,7 +69,7 @@ class FullyConnectedLayer(HalvedLayer):
         output += bias.value
         return output
 
-    def row_step(self, memory: Array, values: Array, output: Array) -> Callable[[], object]:
+    def single_step(self, memory: Array, values: Array, output: Array) -> Callable[[], object]:
         """Return the step x W + b of one example, as the one product [x 1] [W; b]: a sum apart takes a fifth longer."""
         return partial(memory.dot, values.reshape(-1, output.size), output)
 
@@ -225,6 +100,8 @@ class DuelingLayer(FullyConnectedLayer):
     the error E of Q is E·Mᵀ for the streams.
     """
 
+    single_step = HalvedLayer.single_step  # by `predict`, not as a fully connected layer
+
     def __init__(self, inputs: int, outputs: int, **options: Any) -> None:
         super().__init__(inputs, outputs, **options)
         self.shapes = {"weights": (inputs, outputs + 1), "bias": (outputs + 1,)}
@@ -243,17 +120,6 @@ class DuelingLayer(FullyConnectedLayer):
         """Return Q as a new array, (batch, outputs) or (outputs,)."""
         q: Array = super().predict(input_data).dot(self.mixture)
         return q
-
-    def row_step(self, memory: Array, values: Array, output: Array) -> Callable[[], object]:
-        """Return the step that fills in Q of one example."""
-        streams, mixture = np.empty(self.shapes["bias"], output.dtype), self.mixture
-        fill_streams = super().row_step(memory, values, streams)
-
-        def step() -> None:
-            fill_streams()
-            streams.dot(mixture, output)
-
-        return step
 
     def fill_gradients(self, output_error: Array) -> None:
         """Set the gradients of both streams' weights and biases."""
@@ -285,7 +151,7 @@ class ActivationLayer(HalvedLayer):
         """Return f(x) as a new array."""
         return self.activation.function(input_data)
 
-    def row_step(self, memory: Array, values: Array, output: Array) -> Callable[[], object]:  # noqa: ARG002
+    def single_step(self, memory: Array, values: Array, output: Array) -> Callable[[], object]:  # noqa: ARG002
         """Return the step that fills in f(x) of one example."""
         return partial(self.activation.function, memory[:-1], output)
 
@@ -338,7 +204,7 @@ class LayerNormalisation(HalvedLayer):
         output += bias.value
         return output
 
-    def row_step(self, memory: Array, values: Array, output: Array) -> Callable[[], object]:
+    def single_step(self, memory: Array, values: Array, output: Array) -> Callable[[], object]:
         """Return the step that normalises one example: `predict`, with plain numbers in place of columns of one."""
         example, average = memory[:-1], self._average
         gain, bias = values.reshape(2, self.size)
@@ -387,37 +253,41 @@ class LayerNormalisation(HalvedLayer):
         return (np.ones if name == "gain" else np.zeros)(self.shapes[name])
 
 
-def check_next(before: Sequence[Layer], layer: Layer) -> None:
-    """Raise ValueError if a layer does not take what those before it give, or makes the network too large."""
-    given = next((one.outputs for one in reversed(before) if one.outputs is not None), None)
-    if None not in (given, layer.inputs) and given != layer.inputs:
-        kind = type(layer).__name__
-        raise ValueError(f"{kind} takes {_said(layer.inputs)}, the layer before gives {_said(given)}")
-    layers = [*before, layer]
-    width = math.prod(layer.outputs) if isinstance(layer.outputs, tuple) else layer.outputs or 0
-    parameters = [sum(map(math.prod, one.shapes.values())) for one in layers]
-    # A convolution uses each of its parameters in every window.
-    windows = [math.prod(one.outputs[:2]) if isinstance(one.outputs, tuple) else 1 for one in layers]
-    work = sum(count * places for count, places in zip(parameters, windows, strict=True))
-    if len(layers) > MOST_LAYERS:
-        raise ValueError(f"a network has at most {MOST_LAYERS} layers")
-    if width > WIDEST:
-        raise ValueError(f"a layer makes at most {WIDEST:,} values of an example, not {width}")
-    if sum(parameters) > MOST_PARAMETERS:
-        raise ValueError(f"a network has at most {MOST_PARAMETERS:,} parameters, not {sum(parameters)}")
-    if work > MOST_WORK:
-        raise ValueError(f"a network takes at most {MOST_WORK:,} multiplications for an example, not {work}")
+class DropoutLayer(HalvedLayer):
+    """Sets each value to 0 with probability `rate` while training, and divides the others by 1 - rate.
 
+    After Srivastava et al. 2014, inverted: sums keep their mean, so that `predict` has nothing to do. What is
+    dropped comes from a generator of the network's, so the same program drops the same. Raises ValueError for
+    a rate outside 0 ≤ rate < 1.
+    """
 
-def _said(shape: int | ImageShape | None) -> str:
-    return "images of {} x {} x {}".format(*shape) if isinstance(shape, tuple) else f"{shape} values"
+    settings = ("rate",)
 
+    def __init__(self, rate: float = 0.5) -> None:
+        if isinstance(rate, bool) or not isinstance(rate, int | float) or not 0 <= rate < 1:
+            raise ValueError(f"the rate of dropout is at least 0 and less than 1, not {rate!r}")
+        self.rate = rate
 
-def checked_size(name: str, size: int) -> int:
-    """Return a size as a plain int; raises ValueError if it is none."""
-    if isinstance(size, bool) or not isinstance(size, int | np.integer) or not 1 <= size <= MAX_SIZE:
-        raise ValueError(f"{name} is a whole number from 1 to {MAX_SIZE}, not {size!r}")
-    return int(size)
+    def forward_propagate(self, input_data: Array) -> Array:
+        """Return what is kept, enlarged, and 0 elsewhere."""
+        self.rng = self.rng or np.random.default_rng(0)
+        # Drawn in the order that images have in memory; for small arrays the order does not matter.
+        drawn = self.rng.random(input_data.shape[::-1], np.float32).T
+        self.factors = self.kept("factors", input_data.shape, input_data.dtype)
+        self.output = self.kept("output", input_data.shape, input_data.dtype)
+        np.multiply(drawn >= self.rate, 1 / (1 - self.rate), out=self.factors, casting="same_kind")
+        np.multiply(input_data, self.factors, out=self.output)
+        return self.output
+
+    def predict(self, input_data: Array) -> Array:
+        """Return the input as it is."""
+        return input_data
+
+    def input_error(self, output_error: Array) -> Array:
+        """Return the error of what was kept, enlarged alike, and 0 elsewhere."""
+        self.error = self.kept("error", self.factors.shape, self.factors.dtype)
+        np.multiply(output_error, self.factors, out=self.error)
+        return self.error
 
 
 def ones(size: int, dtype: npt.DTypeLike) -> Array:

@@ -1,6 +1,6 @@
 """Neural network: a list of layers, the cost to minimise, and one flat vector of all parameters."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from functools import cached_property
 from pathlib import Path
 from typing import Literal, Self
@@ -10,10 +10,12 @@ import numpy.typing as npt
 
 from ai.files import atomic_folder
 from ai.nn.costs import Cost, CostFunction
-from ai.nn.dropout import DropoutLayer
-from ai.nn.layers import ActivationLayer, Layer, check_next
+from ai.nn.layer import Layer
+from ai.nn.layers import ActivationLayer, DropoutLayer
+from ai.nn.limits import check_next
 from ai.nn.optimizers import SGD, Optimizer
 from ai.nn.parameter import Array, pack
+from ai.nn.single import SingleExample
 from ai.nn.storage import read_network, write_network
 
 IMAGES = 250  # predicted at a time: each takes some 100 KB on its way
@@ -51,7 +53,7 @@ class NeuralNetwork:
             for before in self.layers:
                 before.initialisation = before.initialisation or layer.activation.initialisation
         self.layers.append(layer)
-        for name in ("_flat", "_row"):  # made anew when needed
+        for name in ("_flat", "_single"):  # made anew when needed
             self.__dict__.pop(name, None)
         return self
 
@@ -74,26 +76,8 @@ class NeuralNetwork:
         return pack((parameter for layer in self.layers for parameter in layer.parameters), self.dtype)
 
     @cached_property
-    def _row(self) -> tuple[Array, list[Callable[[], object]], Array]:
-        """Memory for one example (1, inputs), the steps that predict it, and memory for its answer (1, outputs).
-
-        Each step has its arrays at hand, so that a decision of a small network takes little more time than its
-        arithmetic; the layers' own `predict` does the same at length. Networks that take images have no steps. (The
-        memory is longer by a 1, which a bias is multiplied by.)
-        """
-        sizes = [size for layer in self.layers for size in (layer.inputs, layer.outputs) if isinstance(size, int)]
-        if not sizes or any(isinstance(layer.inputs, tuple) for layer in self.layers):
-            return np.empty((0, 0), self.dtype), [], np.empty((0, 0), self.dtype)
-        first = memory = np.ones(sizes[0] + 1, self.dtype)  # an example, and a 1 that a bias is multiplied by
-        values, steps = self.values, []
-        for layer in self.layers:
-            outputs = layer.outputs if isinstance(layer.outputs, int) else len(memory) - 1
-            following = np.ones(outputs + 1, self.dtype)
-            # Each layer's answer is written beside a 1, as the next one's example. Values are cut off as they are used.
-            size = sum(parameter.value.size for parameter in layer.parameters)
-            steps.append(layer.row_step(memory, values[:size], following[:-1]))
-            memory, values = following, values[size:]
-        return first[None, :-1], steps, memory[None, :-1]
+    def _single(self) -> SingleExample:
+        return SingleExample(self.layers, self.values)
 
     def predict(self, input_data: npt.ArrayLike) -> Array:
         """Return the output for a batch (batch, inputs), or one example (inputs,), as a new array.
@@ -103,13 +87,8 @@ class NeuralNetwork:
         is for one thread at a time.
         """
         data: Array = np.asarray(input_data, self.dtype)
-        example, steps, answer = self._row
-        if data.shape == example.shape:
-            example[...] = data
-            for step in steps:
-                step()
-            found: Array = answer.copy()
-            return found
+        if data.shape == self._single.shape:
+            return self._single.predict(data)
         if data.ndim == 4 and len(data) > IMAGES:
             return np.concatenate([self.predict(part) for part in np.split(data, range(IMAGES, len(data), IMAGES))])
         for layer in self.layers:

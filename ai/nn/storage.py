@@ -27,17 +27,10 @@ from ai.files import (
 )
 from ai.nn.activations import ACTIVATIONS, Activation
 from ai.nn.costs import COSTS, Cost
-from ai.nn.dropout import DropoutLayer
 from ai.nn.images import ConvolutionLayer, FlattenLayer, MaxPoolingLayer
-from ai.nn.layers import (
-    MOST_LAYERS,
-    ActivationLayer,
-    DuelingLayer,
-    FullyConnectedLayer,
-    Layer,
-    LayerNormalisation,
-    check_next,
-)
+from ai.nn.layer import Layer
+from ai.nn.layers import ActivationLayer, DropoutLayer, DuelingLayer, FullyConnectedLayer, LayerNormalisation
+from ai.nn.limits import MOST_LAYERS, check_next
 from ai.nn.parameter import Array, Parameter
 
 T = TypeVar("T")

@@ -50,7 +50,7 @@ def fly(files: Files, flights: range, seed: int, spawn: str) -> FlightSums:
     env = LanderEnv(len(flights), seed, spawn, Config.of(agent).frame_skip)
     for slot, number in enumerate(flights):
         # The generator that number `number` of a batch gets, which NumPy spawns from the seed.
-        env.draw_from(slot, np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(number,))))
+        env.streams[slot] = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(number,)))
     going = counted(agent, env)
     while True:
         try:
@@ -60,7 +60,7 @@ def fly(files: Files, flights: range, seed: int, spawn: str) -> FlightSums:
             return sums
 
 
-def shards(agent: DeepQAgent, episodes: int, seed: int, spawn: str) -> list[Callable[[], FlightSums]]:
+def shards(agent: DeepQAgent, episodes: int, seed: int, spawn: str) -> list[partial[FlightSums]]:
     """Return the shards of an evaluation of an agent, as `ai.sweep.cluster.each` takes them."""
     files, parts = packed(agent), [range(first, min(episodes, first + SHARD)) for first in range(0, episodes, SHARD)]
     return [partial(fly, files, flights, seed, spawn) for flights in parts]

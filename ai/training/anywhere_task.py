@@ -11,8 +11,9 @@ from ai.agent.symmetry import Symmetry
 from ai.common.environment import Env
 from ai.files import array_like
 from ai.lander.anywhere import SITES, AnywhereEnv
-from ai.lander.environment import MIRROR_ACTIONS, MIRROR_FEATURES, MIRROR_SIGNS, NUM_FEATURES
+from ai.lander.environment import NUM_FEATURES
 from ai.lander.pilots import Pilot
+from ai.lander.rules import MIRROR_ACTIONS, MIRROR_FEATURES, MIRROR_SIGNS
 from ai.lander.sensing import SURROUNDINGS, SURROUNDINGS_MIRROR
 from ai.lander.spawns import CURRICULA
 from ai.training.config import Config

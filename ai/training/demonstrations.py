@@ -94,7 +94,7 @@ def demonstrate(pilot: Pilot, count: int, seed: int = 0, spawn: str = "random") 
     seeds = range(seed, seed + 10 * count)
     env = LanderEnv(len(seeds), 0, spawn, frame_skip=4)
     for slot, own in enumerate(seeds):
-        env.draw_from(slot, _stream(own))
+        env.streams[slot] = _stream(own)
     observation, flown = env.reset(), []
     while (env.outcome == Outcome.FLYING).any():
         flown.append(pilot.act(observation, held=env.actions))
@@ -178,7 +178,7 @@ def _fly_together(
     lengths = np.array([len(demonstration.actions) for demonstration in demonstrations])
     actions = np.zeros((-(-lengths.max() // skip) * skip, count), np.intp)
     for slot, demonstration in enumerate(demonstrations):
-        env.draw_from(slot, _stream(demonstration.seed))
+        env.streams[slot] = _stream(demonstration.seed)
         actions[: lengths[slot], slot] = demonstration.actions
     pads = np.array([demonstration.pad for demonstration in demonstrations])
     env.target[:] = np.minimum(pads, len(env.ground.pads) - 1)

@@ -11,18 +11,9 @@ import numpy as np
 from ai.agent.symmetry import Symmetry
 from ai.common.environment import Doubles, Env, Ints
 from ai.files import MOST
-from ai.lander.environment import (
-    LIMITS,
-    MIRROR_ACTIONS,
-    MIRROR_FEATURES,
-    MIRROR_SIGNS,
-    NUM_ACTIONS,
-    NUM_FEATURES,
-    LanderEnv,
-    Outcome,
-    engines_switched,
-)
+from ai.lander.environment import LIMITS, NUM_ACTIONS, NUM_FEATURES, LanderEnv, Outcome
 from ai.lander.pilots import Pilot
+from ai.lander.rules import MIRROR_ACTIONS, MIRROR_FEATURES, MIRROR_SIGNS, engines_switched
 from ai.lander.spawns import CURRICULA, SPAWNS, TEACH_HARD
 from ai.training.config import Config
 from ai.training.schedule import touchdown_limits

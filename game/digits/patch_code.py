@@ -11,7 +11,6 @@ import pygame
 from ai.digits.classifier import DigitClassifier
 from ai.nn import ActivationLayer, ConvolutionLayer, FullyConnectedLayer, MaxPoolingLayer
 from ai.nn.costs import softmax
-from ai.nn.images import Correlation
 from game.core import texts
 from game.core.source import Source, source_of
 from game.digits.unit_walk import UnitWalk
@@ -38,8 +37,8 @@ def _function(walk: UnitWalk) -> tuple[Any, ...]:
     if walk.at_answer:
         return DigitClassifier.probabilities, softmax if walk.logits else np.sum
     match walk.stage.layer:
-        case ConvolutionLayer(forward=Correlation(whole=whole)):
-            return Correlation.correlate, np.matmul, int(not whole)
+        case ConvolutionLayer():
+            return ConvolutionLayer._convolve, np.matmul
         case MaxPoolingLayer():
             return MaxPoolingLayer._maximum, np.maximum, 1
         case FullyConnectedLayer():
@@ -67,12 +66,10 @@ def _said(walk: UnitWalk) -> str:
     match walk.stage.layer:
         case _ if walk.at_answer:
             return ""
-        case ConvolutionLayer(forward=Correlation(whole=True), filters=filters, outputs=outputs) as layer:
+        case ConvolutionLayer(filters=filters, outputs=outputs) as layer:
             return texts.PATCH_CODE["convolution"].format(
                 filters=filters, rows=len(layer.weights), windows=outputs[0] * outputs[1], number=walk.place[2] + 1
             )
-        case ConvolutionLayer(kernel=kernel) as layer:
-            return texts.PATCH_CODE["columns"].format(kernel=kernel, rows=len(layer.weights) // kernel)
         case FullyConnectedLayer() as layer:
             inputs, units = layer.weights.shape
             return texts.PATCH_CODE["connected"].format(inputs=inputs, units=units, number=walk.place[2] + 1)

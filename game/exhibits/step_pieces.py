@@ -12,8 +12,9 @@ from ai.explain.recorder import Call
 from engine import World
 from engine.broad_phase import BroadPhase
 from engine.collide import deepest_face
+from engine.constraints import Constraints
 from engine.integrate import integrate_position, integrate_velocity
-from engine.solver import Rows, Solver
+from engine.solver import Solver
 from game.exhibits.step_record import NARROW, Impulse, Pair, StepRecord
 
 # Local variables that are told beside the lines that set them, by function, and on which axis a pair has its row.
@@ -22,7 +23,7 @@ _TOLD: Final[dict[Callable[..., Any], tuple[int, tuple[str, ...]]]] = {
     NARROW[0]: (0, ("gap_a", "gap_b", "flip", "normal", "depth")),
     NARROW[1]: (0, ("face", "along", "distance", "normal", "gap")),
     NARROW[2]: (0, ("away", "distance", "normal", "depth")),
-    Rows.relax: (-1, ("speed", "pushes", "sliding", "cone", "rub", "total")),
+    Constraints.relax: (-1, ("speed", "pushes", "sliding", "cone", "friction", "total")),
 }
 _MOST: Final = 4  # numbers beside a line
 
@@ -87,8 +88,8 @@ def _meeting(record: StepRecord, pair: Pair) -> Iterator[Piece]:
 def _pushes(kind: str, impulses: list[Impulse], touching: dict[int, Pair]) -> Iterator[Piece]:
     for impulse in impulses:
         if pair := touching.get(impulse.contact):
-            notes = _notes(Rows.relax, impulse.call, impulse.column)
-            yield Piece(kind, Rows.relax, impulse.call.numbers["velocity"], notes, pair, impulse)
+            notes = _notes(Constraints.relax, impulse.call, impulse.column)
+            yield Piece(kind, Constraints.relax, impulse.call.numbers["velocity"], notes, pair, impulse)
 
 
 def _notes(function: Callable[..., Any], call: Call, row: int) -> dict[int, str]:

@@ -17,8 +17,9 @@ from ai.explain.recorder import RETURN, Call, Recorder
 from engine import Polygon
 from engine.broad_phase import BroadPhase
 from engine.collide import collide_circles, collide_polygon_circle, collide_polygons, deepest_face
+from engine.constraints import Constraints
 from engine.integrate import integrate_position, integrate_velocity
-from engine.solver import Rows, Solver
+from engine.solver import Solver
 from engine.vector import Array, Ints
 from game.exhibits.exhibit import Exhibit
 from game.world.grip import Grip
@@ -31,7 +32,7 @@ _RECORDED: Final = (
     collide_circles,
     integrate_velocity,
     Solver.solve_velocities,
-    Rows.relax,
+    Constraints.relax,
     integrate_position,
 )
 NARROW: Final = (collide_polygons, collide_polygon_circle, collide_circles)  # by the number of circles of a pair
@@ -91,7 +92,7 @@ class Impulse:
         iteration: from 1 on.
         contact: row of the contact in the solver.
         column: its place among those that were solved at once, in the arrays of `call`.
-        call: the call of `Rows.relax`.
+        call: the call of `Constraints.relax`.
         bodies: indices of both bodies, (2,).
 
     """
@@ -159,7 +160,7 @@ class StepRecord:
         self.fallen = self._of_movers(self.call(integrate_velocity).values["velocity"], self.before[1])
         self.steps = self._of_movers(self.call(integrate_position).values["step"], np.zeros_like(self.fallen))
         self.pairs = list(self._read_pairs())
-        relaxed, solved = recorder.calls(Rows.relax), recorder.calls(Solver.solve_velocities)
+        relaxed, solved = recorder.calls(Constraints.relax), recorder.calls(Solver.solve_velocities)
         self.warm: Array | None = relaxed[0].arguments["velocity"].reshape(-1, 3) if relaxed else None
         self.impulses = list(self._read_impulses([call for call in relaxed if call.caller in solved]))
         self.overlaps = list(self._read_impulses([call for call in relaxed if call.caller not in solved]))

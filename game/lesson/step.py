@@ -12,7 +12,7 @@ import numpy.typing as npt
 from ai.explain.inspection import Link, links
 from ai.explain.learning_step import Step
 from ai.nn import ActivationLayer, Array, DuelingLayer, FullyConnectedLayer, Layer, LayerNormalisation, NeuralNetwork
-from ai.nn.dropout import DropoutLayer
+from ai.nn.layers import DropoutLayer
 
 _SUM, _NORMALISED, _DROPPED = "sum", "normalised", "dropout"
 # What optimizers remember of the slopes so far, by its name in `Optimizer.remembers`.

@@ -9,7 +9,8 @@ import numpy as np
 import pygame
 
 from ai.common.environment import Doubles
-from ai.lander.environment import FOOT_CENTRE, FOOT_SIZE, PARAMS
+from ai.lander.environment import PARAMS
+from ai.lander.rules import FOOT_CENTRE, FOOT_SIZE
 from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
 from game.drawing.tokens import HUMAN, NET

@@ -15,7 +15,7 @@ import numpy as np
 import pygame
 
 from ai.common.environment import Doubles
-from ai.lander.environment import FOOT_CENTRE, FOOT_SIZE
+from ai.lander.rules import FOOT_CENTRE, FOOT_SIZE
 from engine import Sprite
 from game.drawing.tokens import Colour
 from game.world.landscape.sheet import fitted

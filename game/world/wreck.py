@@ -8,7 +8,8 @@ from typing import Any, Final
 import numpy as np
 
 from ai.common.environment import Doubles
-from ai.lander.environment import FOOT_CENTRE, FOOT_SIZE, HULL, LanderEnv
+from ai.lander.environment import LanderEnv
+from ai.lander.rules import FOOT_CENTRE, FOOT_SIZE, HULL
 from engine import DT, Polygon, Sprite, World
 from game.world.lander import LANDER, SIZE, WRECK
 

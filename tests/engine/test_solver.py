@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from engine import Polygon, World
-from engine.solver import Rows
+from engine.constraints import Constraints
 from tests.engine.test_batch import landers, throw, toys
 from tests.support.worlds import advance
 
@@ -22,8 +22,8 @@ def flight(make, seed, steps, batch=3):
 @pytest.mark.parametrize(("make", "steps"), [(toys, 100), (landers, 150)])
 def test_iterations_that_are_left_out_would_have_changed_no_bit(make, steps, monkeypatch):
     early = list(flight(make, 11, steps))
-    relax = Rows.relax
-    monkeypatch.setattr(Rows, "relax", lambda *given: relax(*given) or True)
+    relax = Constraints.relax
+    monkeypatch.setattr(Constraints, "relax", lambda *given: relax(*given) or True)
     for mine, theirs in zip(early, flight(make, 11, steps), strict=True):
         for a, b in zip(mine, theirs, strict=True):
             assert np.array_equal(a, b)
@@ -36,8 +36,8 @@ def test_the_solver_stops_when_nothing_changes_any_more(monkeypatch):
     world.add(Polygon.box(20.0, 1.0), (0.0, -0.5), static=True)
     world.add(Polygon.box(1.0, 1.0), (0.0, 0.5))
     advance(world, 120)
-    relax = Rows.relax
-    monkeypatch.setattr(Rows, "relax", lambda *given: calls.append(1) or relax(*given))
+    relax = Constraints.relax
+    monkeypatch.setattr(Constraints, "relax", lambda *given: calls.append(1) or relax(*given))
     world.step()
     assert 0 < len(calls) <= 2
 

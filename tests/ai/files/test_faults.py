@@ -42,7 +42,7 @@ from ai.nn import (
     NeuralNetwork,
     atomic_folder,
 )
-from ai.nn.layers import MOST_LAYERS
+from ai.nn.limits import MOST_LAYERS
 from ai.training.checkpoints import resume_run, save_run
 from ai.training.config import PRESETS, load_agent
 from ai.training.demonstrations import Demonstration

@@ -3,20 +3,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ai.lander.environment import (
-    LIMITS,
-    MIRROR_ACTIONS,
-    MIRROR_FEATURES,
-    MIRROR_SIGNS,
-    NUM_ACTIONS,
-    PARAMS,
-    Cause,
-    LanderEnv,
-    Outcome,
-)
+from ai.lander.environment import LIMITS, NUM_ACTIONS, PARAMS, Cause, LanderEnv, Outcome
 from ai.lander.missions import MISSIONS
 from ai.lander.rewards import RewardWeights, Situation
-from ai.lander.rules import ACTION_SHARES, nearest_action
+from ai.lander.rules import ACTION_SHARES, MIRROR_ACTIONS, MIRROR_FEATURES, MIRROR_SIGNS, nearest_action
 from ai.lander.spawns import SPAWNS, Curriculum
 from engine import DT
 

@@ -62,22 +62,6 @@ def test_gradients_do_not_depend_on_the_blocks(monkeypatch):
         np.testing.assert_allclose(gradient, one, atol=1e-12)
 
 
-@pytest.mark.parametrize("padding", [0, 2])
-@pytest.mark.parametrize("block", [1, 100, images.BLOCK])
-def test_a_convolution_does_not_depend_on_how_windows_are_copied(monkeypatch, block, padding):
-    monkeypatch.setattr(images, "BLOCK", block)
-    layer, x = ConvolutionLayer((7, 6, 2), 4, 3, padding=padding), np.random.default_rng(3).random((5, 7, 6, 2))
-    results = []
-    for layer.forward.whole in (True, False):
-        for layer.backward.whole in (True, False):
-            error = layer.predict(x)
-            np.testing.assert_array_equal(layer.forward_propagate(x), error)
-            results.append((error, layer.input_error(error).copy()))
-    for one in results[1:]:
-        for given, expected in zip(one, results[0], strict=True):
-            np.testing.assert_allclose(given, expected, rtol=1e-4, atol=1e-5)
-
-
 def test_the_largest_of_each_square_comes_through():
     image = np.arange(30.0).reshape(1, 5, 6, 1)
     pooled = MaxPoolingLayer((5, 6, 1)).predict(image)

@@ -155,7 +155,7 @@ def test_a_rebound_begins_with_nothing_and_ends_with_an_impulse():
     assert first.after[0] > 1
     code = dict(source_of(pieces["impulses"].function).lines)
     assert "velocity[self.index]" in code[pieces["impulses"].line or 0]
-    assert "rows.effect" in dict(source_of(pieces["memory"].function).lines)[pieces["memory"].line or 0]
+    assert "colour.effect" in dict(source_of(pieces["memory"].function).lines)[pieces["memory"].line or 0]
 
 
 def test_a_hand_that_pulls_is_part_of_the_step():

@@ -3,7 +3,8 @@ import pygame
 import pytest
 
 from ai.agent.network import build_network
-from ai.lander.environment import ACTION_NAMES, FEATURE_NAMES
+from ai.lander.environment import ACTION_NAMES
+from ai.lander.rules import FEATURE_NAMES
 from ai.nn import CostFunctions, FullyConnectedLayer, NeuralNetwork
 from ai.training.config import Config
 from game.core import texts

@@ -190,7 +190,7 @@ def test_the_code_beside_each_stage_is_that_of_its_layer(inside: Driver, monkeyp
         assert dict(listing.lines)[line].strip()
         inside.frames(2)
         inside.key(pygame.K_n)
-    assert found == ["correlate", "_maximum", "_relu", "correlate", "_maximum", "_relu", "predict", "_relu", "predict"]
+    assert found == ["_convolve", "_maximum", "_relu", "_convolve", "_maximum", "_relu", "predict", "_relu", "predict"]
     listing, line = code_of(walk) or pytest.fail("no code")
     assert "softmax" in dict(listing.lines)[line]
     words = words_written(monkeypatch)

@@ -2,8 +2,9 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.lander.environment import FOOT_CENTRE, FOOT_SIZE, HULL, PARAMS, LanderEnv, Outcome
+from ai.lander.environment import PARAMS, LanderEnv, Outcome
 from ai.lander.missions import MISSIONS
+from ai.lander.rules import FOOT_CENTRE, FOOT_SIZE, HULL
 from game.drawing.canvas import Canvas
 from game.drawing.sky import NightSky, beside
 from game.world import lander as art

@@ -1,0 +1,125 @@
+"""What a layer is: inputs to outputs on the forward pass, and output errors to input errors on the backward pass.
+
+An *error* is the derivative of the cost with respect to what it stands for: one number per element.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ai.nn.limits import ImageShape
+from ai.nn.parameter import Array, Parameter
+
+
+class Layer(ABC):
+    """One step of a network, on arrays of shape (batch, values), or images (batch, height, width, channels).
+
+    A custom layer has `forward_propagate`, `backward_propagate` and `predict`; if it learns, `shapes` and
+    `initial_value`; if it is to be saved and copied, `settings` and `ai.nn.register_layer`.
+
+    What `forward_propagate` and `backward_propagate` return lasts until their next call: they may write into
+    arrays that are kept while the batch size stays the same. `predict` returns a new array, or its input where
+    there is nothing to compute, and also takes one example without the batch axis.
+    """
+
+    settings: tuple[str, ...] = ()  # arguments of the constructor that are stored with the layer
+    inputs: int | ImageShape | None = None  # of an example; None: of any shape, and as many come out
+    outputs: int | ImageShape | None = None
+    shapes: Mapping[str, tuple[int, ...]] = {}  # of the parameters
+    initialisation: str | None = "constant"  # None: as suits the activation that follows
+    rng: np.random.Generator | None = None
+    dtype: npt.DTypeLike = np.float32
+    joined = False  # whether it belongs to a network
+    output: Array  # of the last forward pass, and the input error of the last way back, in layers that keep them
+    error: Array
+
+    @cached_property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """Learned parameters, drawn when first asked for: by then the layer's network and neighbours are known."""
+        values = {name: np.asarray(self.initial_value(name), self.dtype) for name in self.shapes}
+        for name, value in values.items():
+            if value.shape != tuple(self.shapes[name]):
+                raise ValueError(f"{name} begins with shape {value.shape}, and is said to have {self.shapes[name]}")
+        return tuple(Parameter(name, value, np.zeros_like(value)) for name, value in values.items())
+
+    def initial_value(self, name: str) -> Array:
+        """Return the first value of a parameter, of the shape that `shapes` tells; draw it from `rng`."""
+        raise NotImplementedError(f"{type(self).__name__} does not say how {name} begins")
+
+    def join(self, rng: np.random.Generator, dtype: npt.DTypeLike) -> None:
+        """Become a part of one network, which computes in `dtype`; a layer without an `rng` gets one of the network's.
+
+        Raises ValueError if it is part of one already: a network's parameters lie in its own flat vector.
+        """
+        if self.joined:
+            raise ValueError(f"this {type(self).__name__} belongs to a network already; make another, or copy that one")
+        self.joined, self.rng, self.dtype = True, self.rng or rng.spawn(1)[0], np.dtype(dtype)
+        for parameter in vars(self).get("parameters", ()):  # drawn before, perhaps in another precision
+            parameter.value, parameter.gradient = parameter.value.astype(dtype), parameter.gradient.astype(dtype)
+
+    def arguments(self) -> dict[str, Any]:
+        """Return what the constructor needs to make such a layer again."""
+        return {name: getattr(self, name) for name in self.settings}
+
+    def kept(self, name: str, shape: tuple[int, ...], dtype: npt.DTypeLike) -> npt.NDArray[Any]:
+        """Return the attribute `name`, an array that begins as zeros, made anew where shape or dtype are others.
+
+        Images are in Fortran order, as in `ai.nn.images`.
+        """
+        array: npt.NDArray[Any] | None = self.__dict__.get(name)
+        if array is None or array.shape != shape or array.dtype != dtype:
+            array = self.__dict__[name] = np.zeros(shape, dtype, "F" if len(shape) == 4 else "C")
+        return array
+
+    @abstractmethod
+    def forward_propagate(self, input_data: Array) -> Array:
+        """Return the output and keep what the way back needs; `input_data` is to stay as it is until then."""
+
+    @abstractmethod
+    def predict(self, input_data: Array) -> Array:
+        """Return the output and keep nothing."""
+
+    def single_step(self, memory: Array, values: Array, output: Array) -> Callable[[], object]:  # noqa: ARG002
+        """Return a function that predicts the one example in `memory` into `output`, for `ai.nn.single`.
+
+        `memory` is (inputs + 1,): the example, and a 1 for a bias; `output` is (outputs,). `values` are the layer's
+        parameters, flat. Layers whose `predict` is slow for one example have a quicker step.
+        """
+        example = memory[:-1]
+        return lambda: np.copyto(output, self.predict(example))
+
+    @abstractmethod
+    def backward_propagate(self, output_error: Array) -> Array:
+        """Fill the parameters' gradients and return the input error, both of the last forward pass."""
+
+    def fill_gradients(self, output_error: Array) -> None:
+        """Fill the gradients alone: all that is asked of the lowest layer."""
+        self.backward_propagate(output_error)
+
+    def input_error(self, output_error: Array) -> Array:
+        """Return the input error, and leave the gradients as they are."""
+        before = [parameter.gradient.copy() for parameter in self.parameters]
+        error = self.backward_propagate(output_error)
+        for parameter, gradient in zip(self.parameters, before, strict=True):
+            parameter.gradient[...] = gradient
+        return error
+
+
+class HalvedLayer(Layer):
+    """Layer whose backward pass has two separate halves, gradients and input error, so that either can be skipped."""
+
+    def backward_propagate(self, output_error: Array) -> Array:
+        """Fill the parameters' gradients and return the input error, both of the last forward pass."""
+        self.fill_gradients(output_error)
+        return self.input_error(output_error)
+
+    def fill_gradients(self, output_error: Array) -> None:
+        """Fill the gradients alone: nothing, where there are no parameters."""
+
+    @abstractmethod
+    def input_error(self, output_error: Array) -> Array:
+        """Return the input error alone."""

@@ -1,0 +1,155 @@
+"""Contacts as constraints: how fast each point parts, and what an impulse at it changes.
+
+A contact is three rows of a constraint: a normal impulse at each of two points, and one friction impulse at their
+midpoint, for in two dimensions both points slide alike. Friction stays within Coulomb's cone: at most the friction
+coefficient times the sum of the normal impulses.
+
+The two normal impulses of a contact are found together, exactly, as a linear complementarity problem (as in the block
+solver of Box2D): solved in turn, the first point would get more than the second, and a tall stack would slowly sway.
+docs/adr/0007-contacts-two-points-one-friction.md says why there is one friction.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine.contacts import Contacts
+from engine.state import BodyState
+from engine.vector import Array, Bools, Ints, cross, right_of
+
+# Two points nearly coincide if the determinant of K, their 2 × 2 matrix of speed per push, is less than this share of
+# the product of its diagonal.
+NARROWEST = 1e-3
+
+
+@dataclass
+class Constraints:
+    """Constraint rows of m contacts: normal at each point, and friction; every array ends with the contacts.
+
+    J is the Jacobian, M the masses and inertias of both bodies: rows respond to impulses p by speeds J·M⁻¹·Jᵀ·p. The
+    entries of that 3 × 3 matrix are called stiffness here; K is its part for the two pushes.
+
+    Scalar products are added up one after another by NumPy itself. The linear algebra library behind `@` adds in an
+    order of its own on each kind of processor, and fuses additions on some: flights would differ.
+    """
+
+    index: Ints  # (6, m): where x, y and turn of A, then of B, stand among all velocities, laid flat
+    jacobian: Array  # (3, 6, m): J; J · velocities is the speed along each row
+    response: Array  # (3, 6, m): velocity change per unit of impulse: M⁻¹·Jᵀ, laid out as J is
+    mass: Array  # (3, m): effective mass, impulse per unit of speed; 0 for a point that is not there
+    coupling: Array  # (m,): K's entry beside the diagonal: speed at one point per unit of push at the other
+    friction_coupling: Array  # (2, m): speed of sliding per unit of push at each point
+    inverse: Array  # (2, m): diagonal of K⁻¹
+    cross_inverse: Array  # (m,): K⁻¹'s entry beside the diagonal
+
+    @classmethod
+    def build(cls, state: BodyState, inverse_mass: Array, contacts: Contacts, impulse: Array) -> Constraints:
+        """Return the rows of these contacts; where two points nearly coincide, one's `impulse` (3, m) is set to 0."""
+        slots = contacts.world[:, None] * state.pose.shape[1] + contacts.body
+        index = (slots[:, :, None] * 3 + np.arange(3)).reshape(-1, 6).T.copy()
+        jacobian = _jacobian(state.pose.reshape(-1, 3)[slots, :2], contacts)
+        inverse_masses = inverse_mass.reshape(-1, 6).T.copy()
+        response = jacobian * inverse_masses
+        stiffness = _stiffness(jacobian, response)
+        spare = np.flatnonzero(_coincide(stiffness))
+        if len(spare):
+            # Points that nearly coincide can't share a push sensibly; the deeper one will do.
+            shallower = contacts.depth[spare].argmin(axis=1)
+            jacobian[shallower, :, spare] = impulse[shallower, spare] = 0.0
+            response = jacobian * inverse_masses
+            stiffness = _stiffness(jacobian, response)
+        first, second, _, coupling = stiffness[:4]  # K's diagonal, friction's own, K's entry beside the diagonal
+        mass = np.divide(1.0, stiffness[:3], out=np.zeros_like(stiffness[:3]), where=stiffness[:3] > 0)
+        alone = first * second == 0
+        # K⁻¹ is 1 / determinant times K with its diagonal swapped and the rest negated; a point alone has 1 / K.
+        determinant = np.where(alone, 1.0, first * second - coupling**2)
+        inverse = np.where(alone, mass[:2], stiffness[1::-1] / determinant)
+        cross_inverse = np.where(alone, 0.0, -coupling / determinant)
+        return cls(index, jacobian, response, mass, coupling, stiffness[4:], inverse, cross_inverse)
+
+    def part(self, span: slice) -> Constraints:
+        """Return the rows of some of the contacts."""
+        return Constraints(*(table[..., span] for table in vars(self).values()))
+
+    def speeds(self, velocity: Array) -> Array:
+        """Speed along each row, (3, m), given all velocities laid flat."""
+        speed: Array = (self.jacobian * velocity[self.index]).sum(axis=1)
+        return speed
+
+    def effect(self, impulse: Array) -> Array:
+        """Velocity change (6, m) of A and B by impulses (3, m)."""
+        change = self.response * impulse[:, None]
+        total: Array = change[0] + change[1] + change[2]
+        return total
+
+    def relax(self, velocity: Array, total: Array, wanted: Array, coefficient: Array | None) -> bool:
+        """Solve these contacts once, friction last, so that it ends within its cone; return whether that changed any.
+
+        Changes all velocities, laid flat, and the accumulated impulses `total` (3, m). Each point is to part at
+        `wanted` (2, m) m/s or more. Friction goes by `sliding`, as the new pushes leave it: the impulse that would stop
+        it is cut to the cone μ·(p₀ + p₁), with μ the `coefficient` (m,). Without one, there is no friction.
+        """
+        motion = velocity[self.index]
+        speed = (self.jacobian * motion).sum(axis=1)
+        pushes = self.push(wanted - speed[:2], total[:2])
+        change = np.zeros_like(total)
+        change[:2] = pushes - total[:2]
+        if coefficient is not None:
+            sliding = speed[2] + self.friction_coupling[0] * change[0] + self.friction_coupling[1] * change[1]
+            cone = coefficient * (pushes[0] + pushes[1])
+            friction = np.minimum(np.maximum(total[2] - self.mass[2] * sliding, -cone), cone)
+            change[2] = friction - total[2]
+        total += change
+        velocity[self.index] = motion + self.effect(change)
+        return bool(change.any())
+
+    def push(self, lacking: Array, total: Array) -> Array:
+        """Return impulses p (2, m) ≥ 0 in place of `total`, so that each point gains the speed it is `lacking`.
+
+        With K the 2 × 2 matrix of speed per push, that is p = total + K⁻¹·lacking. Where a point would be pulled, it
+        gets nothing, and may gain more than it lacked: the linear complementarity problem p ≥ 0, K·(p - total) ≥
+        lacking, with equality in one of the two at each point.
+        """
+        both = total + self.inverse * lacking + self.cross_inverse * lacking[::-1]
+        if both.min() >= 0:
+            return both
+        # The other point has to do alone, and without what the first has pushed at it until now.
+        alone = total + self.mass[:2] * (lacking + self.coupling * total[::-1])
+        return np.maximum(np.where(both[::-1] >= 0, both, alone), 0.0)
+
+
+def _stiffness(jacobian: Array, response: Array) -> Array:
+    """J·M⁻¹·Jᵀ, speed per unit of impulse, (6, m): of each row (3), both pushes on each other, friction on each."""
+    products: Array = (jacobian[[0, 1, 2, 0, 0, 1]] * response[[0, 1, 2, 1, 2, 2]]).sum(axis=1)
+    return products
+
+
+def _coincide(stiffness: Array) -> Bools:
+    """Whether a contact's two points are so near each other that no pair of pushes can tell them apart, (m,)."""
+    product = stiffness[0] * stiffness[1]
+    near: Bools = (product > 0) & (product - stiffness[3] ** 2 <= NARROWEST * product)
+    return near
+
+
+def _jacobian(positions: Array, contacts: Contacts) -> Array:
+    """Jacobian (3, 6, m) of contacts between bodies centred at `positions` (m, 2, 2).
+
+    A row along the unit vector u at the point q is (-u, -(q - A) × u, u, (q - B) × u). Times the velocities, it is the
+    speed along u of B's point as seen from A's, so parting is above 0. For friction, u lies a quarter right of the
+    normal, and q half-way between the points. Rows of points that are not there are 0.
+    """
+    valid = contacts.valid
+    both = (valid[:, 0] & valid[:, 1])[:, None]
+    first, second = contacts.points[:, 0], contacts.points[:, 1]
+    middle = np.where(both, (first + second) / 2, np.where(valid[:, :1], first, second))
+    points = np.stack([first, second, middle])
+    along = np.stack([contacts.normal, contacts.normal, right_of(contacts.normal)])
+    rows = np.empty((3, 6, len(valid)))
+    rows[:, 3:5] = along.swapaxes(1, 2)
+    rows[:, 0:2] = -rows[:, 3:5]
+    rows[:, 2] = -cross(points - positions[:, 0], along)
+    rows[:, 5] = cross(points - positions[:, 1], along)
+    rows[:2] *= valid.T[:, None]
+    return rows
