@@ -19,18 +19,11 @@ JUDGES: Final = ("median", "worst")
 
 @dataclass(frozen=True)
 class Point:
-    """Point of a learning curve.
+    """Point of a learning curve."""
 
-    Attributes:
-        at: decisions taken so far, or epochs.
-        success: share of episodes that ended well, or of digits read right, 0 to 1; None where that is not defined.
-        mean_return: mean sum of rewards; for digits the share again.
-
-    """
-
-    at: Count
-    success: Share | None
-    mean_return: float
+    at: Count  # decisions so far, or epochs
+    success: Share | None  # of episodes that ended well, or of digits read right; None where that is not defined
+    mean_return: float  # sum of rewards; for digits the share again
 
 
 @dataclass(frozen=True)

@@ -16,47 +16,27 @@ from ai.training.config import ANYWHERE, LANDER, Config
 
 AGENT, DIGITS = "agent", "digits"  # kinds of run
 TPE, RANDOM, POPULATION = "tpe", "random", "population"
-SEARCHES: Final = (TPE, RANDOM, POPULATION)
-TRIALS, SEEDS, BUDGET = (1, 100_000), (1, 1000), (1, 10**12)  # the fewest and the most
 _MEASURED: Final = 5  # times that a run is measured, unless told otherwise
 
 
 @dataclass(frozen=True)
 class Plan:
-    """Plan of a study.
+    """Plan of a study."""
 
-    Attributes:
-        kind: of its runs, "agent" or "digits".
-        settings: of every run, but for the knobs that are searched.
-        space: where each knob is searched, by its name.
-        seeds: of each trial's runs.
-        budget: decisions or epochs of each run; in a population, those of all generations together.
-        every: decisions or epochs between two measurements.
-        metric: what trials are compared by.
-        judge: how a trial's seeds are judged, by their median or by the worst.
-        search: how settings are proposed.
-        stop_early: whether trials that fall behind are ended.
-        trials: number of trials.
-        population: members of a generation; 0 without a population.
-        seed: of the search itself.
-        validation: episodes of a measurement of an agent; None for as many as suit its task.
-
-    """
-
-    kind: Annotated[str, OneOf((AGENT, DIGITS))]
-    settings: dict[str, Any]
-    space: dict[str, Dimension]
-    seeds: Annotated[tuple[Seed, ...], Sized(*SEEDS[::-1])]
-    budget: Annotated[int, Within(*BUDGET)]
-    every: Annotated[int, Within(*BUDGET)]
-    metric: str
-    judge: Annotated[str, OneOf(JUDGES)] = "median"
-    search: Annotated[str, OneOf(SEARCHES)] = TPE
-    stop_early: bool = False
-    trials: Annotated[int, Within(*TRIALS)] = 64
-    population: Count = 0
-    seed: Seed = 0
-    validation: Annotated[int, Within(1, 50_000)] | None = None
+    kind: Annotated[str, OneOf((AGENT, DIGITS))]  # of its runs
+    settings: dict[str, Any]  # of every run, but for the knobs that are searched
+    space: dict[str, Dimension]  # where each knob is searched, by its name
+    seeds: Annotated[tuple[Seed, ...], Sized(1000, 1)]  # of each trial's runs
+    budget: Annotated[int, Within(1, 10**12)]  # decisions or epochs of a run; in a population, of all generations
+    every: Annotated[int, Within(1, 10**12)]  # decisions or epochs between two measurements
+    metric: str  # what trials are compared by
+    judge: Annotated[str, OneOf(JUDGES)] = "median"  # of a trial's seeds, or the worst
+    search: Annotated[str, OneOf((TPE, RANDOM, POPULATION))] = TPE  # how settings are proposed
+    stop_early: bool = False  # whether trials that fall behind are ended
+    trials: Annotated[int, Within(1, 100_000)] = 64
+    population: Count = 0  # members of a generation; 0 without a population
+    seed: Seed = 0  # of the search itself
+    validation: Annotated[int, Within(1, 50_000)] | None = None  # episodes of a measurement; None: as suits the task
 
     @classmethod
     def of(

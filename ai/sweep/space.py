@@ -19,21 +19,13 @@ Space = dict[str, "Dimension"]
 
 @dataclass(frozen=True)
 class Dimension:
-    """Dimension of a search space: the range of a knob, or the values to choose from.
-
-    Attributes:
-        low, high: ends of the range, both included.
-        log: whether the range is searched by factors, not by differences.
-        whole: whether its values are whole numbers.
-        choices: values in place of a range, as JSON holds them.
-
-    """
+    """Dimension of a search space: the range of a knob, or the values to choose from."""
 
     low: float = 0.0
-    high: float = 0.0
-    log: bool = False
+    high: float = 0.0  # included
+    log: bool = False  # whether the range is searched by factors, not by differences
     whole: bool = False
-    choices: tuple[Any, ...] = ()
+    choices: tuple[Any, ...] = ()  # values in place of a range, as JSON holds them
 
     @property
     def ends(self) -> tuple[Any, Any]:

@@ -57,53 +57,30 @@ class StudyError(ValueError):
 
 @dataclass(frozen=True)
 class SeedResult:
-    """Result of one seed of a trial.
-
-    Attributes:
-        curve: what was measured on the way.
-        value: of the metric; None if there is none.
-        problem: why the run ended before its time; empty if it did not.
-        seconds: of training, by the clock.
-        figures: of the network that is kept, as its command tells them; empty for a run that was stopped early.
-
-    """
+    """Result of one seed of a trial."""
 
     seed: Seed
-    curve: Annotated[tuple[Point, ...], Sized(100_000)]
-    value: float | None
-    problem: _Words
-    seconds: Duration
-    figures: dict[str, Any]
+    curve: Annotated[tuple[Point, ...], Sized(100_000)]  # what was measured on the way
+    value: float | None  # of the metric; None if there is none
+    problem: _Words  # why the run ended before its time; empty if it did not
+    seconds: Duration  # of training, by the clock
+    figures: dict[str, Any]  # of the network kept, as its command tells them; empty for a run that was stopped early
 
 
 @dataclass(frozen=True)
 class FinishedTrial:
-    """Result of a trial.
+    """Result of a trial."""
 
-    Attributes:
-        number: of the trial in its study.
-        params: values of the knobs that were searched.
-        value: of the metric, as the seeds are judged; None if the settings made no sense or a seed has no value.
-        at: decisions or epochs that were trained.
-        stopped: whether it was stopped early, because others were better.
-        seconds: that it took, by the clock, with all measuring and saving.
-        seeds: the result of each seed; none if the settings made no sense.
-        parent: number of the trial whose runs it went on with; None without a population.
-        problem: why there is no result; empty if there is one.
-        restarts: times that it went on from its last checkpoint, as its worker had died.
-
-    """
-
-    number: Count
-    params: dict[str, Any]
-    value: float | None
-    at: Count
-    stopped: bool
-    seconds: Duration
-    seeds: Annotated[tuple[SeedResult, ...], Sized(1000)]
-    parent: Count | None = None
-    problem: _Words = ""
-    restarts: Count = 0
+    number: Count  # in its study
+    params: dict[str, Any]  # values of the knobs that were searched
+    value: float | None  # of the metric, as the seeds are judged; None if one has none, or the settings made no sense
+    at: Count  # decisions or epochs that were trained
+    stopped: bool  # early, because others were better
+    seconds: Duration  # that it took, by the clock, with all measuring and saving
+    seeds: Annotated[tuple[SeedResult, ...], Sized(1000)]  # none if the settings made no sense
+    parent: Count | None = None  # the trial whose runs it went on with, in a population
+    problem: _Words = ""  # why there is no result; empty if there is one
+    restarts: Count = 0  # times that it went on from its last checkpoint, as its worker had died
 
     @property
     def values(self) -> list[float]:

@@ -38,18 +38,11 @@ _MOST_SENT: Final = 100_000_000  # bytes of a checkpoint; a larger one goes with
 
 @dataclass(frozen=True)
 class Asked:
-    """What is asked of one trial.
+    """What is asked of one trial."""
 
-    Attributes:
-        number: of the trial in its study.
-        params: values of the knobs that are searched.
-        parent: the finished trial whose runs it goes on with, in a population; else None.
-
-    """
-
-    number: int
-    params: dict[str, Any]
-    parent: FinishedTrial | None = None
+    number: int  # in its study
+    params: dict[str, Any]  # values of the knobs that are searched
+    parent: FinishedTrial | None = None  # whose runs it goes on with, in a population
 
 
 class SeedRun:
@@ -95,14 +88,8 @@ class SeedRun:
 class Trial:
     """Trial that goes from mark to mark.
 
-    Args:
-        plan: of the study.
-        asked: of this trial.
-        runs: files of the runs to go on with, the parent's or its own; else empty.
-        so_far: what there was of this trial when `checkpoint` gave these runs; None for one that begins.
-
+    `runs` are files of runs to go on with: its parent's, or its own, as `checkpoint` gave them with what was `so_far`.
     Raises ValueError for settings that make no sense, ModelFormatError for runs that cannot be read.
-
     """
 
     def __init__(self, plan: Plan, asked: Asked, runs: Files, so_far: FinishedTrial | None = None) -> None:
