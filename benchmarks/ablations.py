@@ -27,7 +27,8 @@ import numpy as np
 from ai.lander.rewards import RewardWeights
 from ai.sweep.cluster import MISSING, each, installed
 from ai.training.config import PRESETS, Config
-from ai.training.loop import VALIDATION_SEED, Training, evaluate
+from ai.training.loop import Training
+from ai.training.tasks import VALIDATION_SEED, evaluate
 
 EVERY = 25_000
 FLIGHTS = 300

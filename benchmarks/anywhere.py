@@ -26,7 +26,7 @@ from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.ground import Ground, Pad
 from ai.lander.missions import MISSIONS
 from ai.lander.pilots import Pilot, ScriptedPilot
-from ai.training.task import TEST_SEED
+from ai.training.tasks import TEST_SEED
 from tests.support.missions import flown, fly
 
 LANDERS = Path(__file__).parents[1] / "models" / "lander"

@@ -31,10 +31,10 @@ from ai.agent.network import build_network
 from ai.explain.inspection import NetworkHealth
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.training.config import PRESETS, Config
+from ai.training.experiments import SABOTAGES, sabotaged
 from ai.training.history import Point
 from ai.training.lander_session import live
 from ai.training.messages import ChangeSetting, NetworkState
-from ai.training.sabotage import SABOTAGES, sabotaged
 
 COLUMNS: Final = (
     "seconds", "decisions", "episodes", "success", "mean_return", "loss", "mean_q", "epsilon", "stage",

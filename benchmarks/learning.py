@@ -39,8 +39,8 @@ from ai.lander.pilots import Pilot
 from ai.lander.spawns import CURRICULA
 from ai.sweep.cluster import MISSING, each, installed
 from ai.training.config import PRESETS, Config
-from ai.training.lander_task import Evaluation, LanderTask
-from ai.training.loop import TEST_SEED, VALIDATION_SEED, Training, evaluate
+from ai.training.loop import Training
+from ai.training.tasks import TEST_SEED, VALIDATION_SEED, Evaluation, LanderTask, evaluate
 
 VALIDATION_FLIGHTS = 500  # as a run flies them
 STOPPING_FLIGHTS = 2000  # more: of 500, a network that lands 98.5 % lands 99 % once in four looks

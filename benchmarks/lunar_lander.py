@@ -24,8 +24,10 @@ from importlib.util import find_spec
 
 import numpy as np
 
-from ai.training.gym_task import GymTask, gym_config
-from ai.training.loop import TEST_SEED, VALIDATION_SEED, Training
+from ai.training.config import gym_config
+from ai.training.gym_task import GymTask
+from ai.training.loop import Training
+from ai.training.tasks import TEST_SEED, VALIDATION_SEED
 from benchmarks.learning import Checkpoint, followed, sb3_dqn
 
 ENV = "LunarLander-v3"

@@ -19,8 +19,8 @@ from typing import Final
 
 from ai.common.intervals import mean_of_shares
 from ai.training.config import PRESETS
+from ai.training.experiments import MEASURED, SABOTAGES, sabotaged
 from ai.training.loop import Training
-from ai.training.sabotage import MEASURED, SABOTAGES, sabotaged
 
 AFTER: Final = (50_000, 100_000, 150_000)
 

@@ -9,9 +9,8 @@ import pytest
 
 from ai.agent import DeepQAgent
 from ai.digits.config import DigitConfig
-from ai.training.checkpoints import resume_run
+from ai.training.checkpoints import resume_digit_run, resume_run
 from ai.training.config import Config, load_agent
-from ai.training.digit_run import resume_digit_run
 from ai.training.history import History, SettingChange
 from ai.training.lander_session import live
 from ai.training.messages import ChangeSetting

@@ -44,7 +44,7 @@ def add_commands(commands: Any) -> None:
 
 def _train(arguments: argparse.Namespace) -> int:
     from ai.digits.training import DigitTraining
-    from ai.training.digit_run import DIGITS, resume_digit_run
+    from ai.training.checkpoints import DIGITS, resume_digit_run
     from ai.training.run import Limit
 
     if arguments.resume is None and arguments.output is None:

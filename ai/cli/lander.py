@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from ai.agent.agent import DeepQAgent
     from ai.training.config import Config
     from ai.training.loop import Progress
-    from ai.training.task import Score, Task
+    from ai.training.tasks import Score, Task
 
 DECISIONS: Final = (1, 10**12)
 FLIGHTS: Final = (1, 10**8)
@@ -152,10 +152,10 @@ def _evaluate(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _agent_and_task(arguments: argparse.Namespace) -> tuple[DeepQAgent, Task, str]:
+def _agent_and_task(arguments: argparse.Namespace) -> tuple[DeepQAgent, Task[Any], str]:
     """Read the network, what it is measured by, and its environment; raises ValueError where they do not fit."""
     from ai.training.config import load_agent
-    from ai.training.tasks import task_of
+    from ai.training.loop import task_of
 
     agent, config = load_agent(arguments.model, env=arguments.env)
     env = config.env
@@ -207,7 +207,7 @@ def config_of(arguments: argparse.Namespace, begun: Config | None = None) -> Con
     elif env == ANYWHERE:
         preset = LANDS_ANYWHERE
     elif env != LANDER:
-        from ai.training.gym_task import gym_config
+        from ai.training.config import gym_config
 
         preset = gym_config(env)
     else:

@@ -121,8 +121,6 @@ def _begun_or_resumed(arguments: argparse.Namespace, command: RunCommand[Trained
 
 
 def _train_and_keep(training: TrainedRun, output: Path, command: RunCommand[TrainedRun]) -> int:
-    from ai.training.keeping import save
-
     stopped, saved = "", False
     try:
         with stoppable() as stop:
@@ -132,10 +130,10 @@ def _train_and_keep(training: TrainedRun, output: Path, command: RunCommand[Trai
                 stopped = f"training stopped: {error}. "
                 training.restore_best()
             # Save before measuring, which takes seconds: the user may stop the program meanwhile.
-            output, described = keep(partial(save, training, command.kind), output)
+            output, described = keep(partial(command.kind.save, training), output)
             saved = True
         if not stopped:
-            output, described = keep(partial(save, training, command.kind, final=True), output)
+            output, described = keep(partial(command.kind.save, training, final=True), output)
     except OSError as error:
         return fail(f"{stopped}could not write to {output}: {error.strerror or error}")
     except ValueError as error:
@@ -152,7 +150,7 @@ def _advance(training: TrainedRun, output: Path, command: RunCommand[TrainedRun]
     That is a progress bar on a terminal, and elsewhere a line now and then. That the run could not be kept is told
     once: a disk that is full now may have room by the end.
     """
-    from ai.training.keeping import Keeper
+    from ai.training.run import Keeper
 
     keeper, line_at = Keeper(training, command.kind, output), time.monotonic() + _LINE_SECONDS
     with progress_bar(_PARTS, "training", bar_format=_BAR) as bar:

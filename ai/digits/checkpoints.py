@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import json
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Final
@@ -10,12 +10,12 @@ from typing import Annotated, Any, Final
 import numpy as np
 
 from ai.common.knobs import nearest_preset
-from ai.digits.classifier import KIND, DigitClassifier
+from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS, DigitConfig
 from ai.digits.mnist import TEST, load_part
 from ai.digits.training import DigitTraining, accuracy
 from ai.files import Count, Duration, OneOf, Seed, Share, Sized, inside, problem_in, read_arrays, read_as, read_json
-from ai.nn import ModelFormatError, atomic_folder
+from ai.nn import ModelFormatError
 
 TRAINING_FILE: Final = "training.json"
 LAST_FILE: Final = "last.npz"  # the state of runs that were kept before states were
@@ -54,30 +54,10 @@ def read_summary(folder: Path, file: str = TRAINING_FILE) -> DigitRunSummary:
     return read_as(DigitRunSummary, read_json(folder / file))
 
 
-@dataclass(frozen=True)
-class DigitSnapshot:
-    """Copy of what a run's folder holds, at one moment: it may be saved while training goes on.
+def snapshot(training: DigitTraining, final: bool = False) -> tuple[dict[str, Any], Callable[[Path], None]]:
+    """Return what a run's training file says now, and what writes its best network as it is now into a new folder.
 
-    `history` writes one more file into the folder; None for a run that is not watched.
-    """
-
-    described: dict[str, Any]
-    best: DigitClassifier
-    history: Any
-
-    def save(self, folder: str | Path) -> None:
-        """Write it, whole or not at all; raises OSError if it cannot be written."""
-        with atomic_folder(folder, KIND) as temporary:
-            self.best.write(temporary)
-            if self.history is not None:
-                self.history.write(temporary)
-            (temporary / TRAINING_FILE).write_text(json.dumps(self.described, indent=2) + "\n", encoding="utf-8")
-
-
-def snapshot(training: DigitTraining, history: Any = None, final: bool = False) -> DigitSnapshot:
-    """Copy what is to be kept of a run; a `final` one is measured on MNIST's test images.
-
-    Raises MnistError if there are none.
+    A `final` run is measured on MNIST's test images; raises MnistError if there are none.
     """
     best = training.best_classifier()
     described = {
@@ -92,7 +72,7 @@ def snapshot(training: DigitTraining, history: Any = None, final: bool = False) 
     }
     if final:
         described["test"] = accuracy(best, *load_part(TEST))
-    return DigitSnapshot(described, best, None if history is None else history.copy())
+    return described, best.write
 
 
 def read_settings(folder: Path) -> tuple[DigitConfig, int, int]:

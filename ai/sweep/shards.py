@@ -24,7 +24,7 @@ from ai.lander.pilots import Pilot, ScriptedPilot
 from ai.sweep.cluster import each
 from ai.sweep.study import Files, files_in, write_files
 from ai.training.config import Config
-from ai.training.lander_task import FlightSums, counted
+from ai.training.tasks import FlightSums, finished, flown
 
 SHARD: Final = 10_000  # flights at once, in 5 KB each
 PILOTS: Final = 8  # of a part of a table: the more fly at once, the less time each takes
@@ -51,13 +51,8 @@ def fly(files: Files, flights: range, seed: int, spawn: str) -> FlightSums:
     for slot, number in enumerate(flights):
         # The generator that number `number` of a batch gets, which NumPy spawns from the seed.
         env.streams[slot] = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(number,)))
-    going = counted(agent, env)
-    while True:
-        try:
-            next(going)
-        except StopIteration as done:
-            sums: FlightSums = done.value
-            return sums
+    env.reset()
+    return finished(flown(agent, env))
 
 
 def shards(agent: DeepQAgent, episodes: int, seed: int, spawn: str) -> list[partial[FlightSums]]:

@@ -24,13 +24,11 @@ from ai.digits.training import DigitTraining
 from ai.sweep.metric import Metric, Point
 from ai.sweep.plan import Plan
 from ai.sweep.study import Files, FinishedTrial, SeedResult, files_in, seed_folder, write_files
-from ai.training.checkpoints import AGENTS, resume_run
+from ai.training.checkpoints import AGENTS, DIGITS, resume_digit_run, resume_run
 from ai.training.config import Config
-from ai.training.digit_run import DIGITS, resume_digit_run
-from ai.training.keeping import save
-from ai.training.loop import VALIDATION_SEED, Training
+from ai.training.loop import Training, task_of
 from ai.training.run import Limit
-from ai.training.tasks import task_of
+from ai.training.tasks import VALIDATION_SEED
 
 _ROOT: Final = Path(__file__).parents[2]
 _MOST_SENT: Final = 100_000_000  # bytes of a checkpoint; a larger one goes without the memories, and so on with none
@@ -81,7 +79,7 @@ class SeedRun:
 
     def save(self, folder: Path, *, final: bool = False, state: bool = False) -> dict[str, Any]:
         """Save the run as its command does; return the figures of the network that is kept, of a `final` one."""
-        told = save(self.run, self.kind, folder, final=final, state=state)
+        told = self.kind.save(self.run, folder, final=final, state=state)
         return told.get("best") or {name: told[name] for name in ("held_out", "test") if name in told}
 
 

@@ -1,9 +1,9 @@
-"""Training runs on disk: the best network, the last one to go on from, and how they were made; checkpoints to fly."""
+"""Runs on disk, of agents and of digits: saved, and gone on with; checkpoints to fly."""
 
 from __future__ import annotations
 
-import json
-from dataclasses import dataclass
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
@@ -11,60 +11,35 @@ from ai.agent.agent import DeepQAgent
 from ai.agent.normalizer import Normalizer
 from ai.agent.storage import KIND, LAST, write_agent
 from ai.common.knobs import nearest_preset
+from ai.digits.checkpoints import read_last, read_settings
+from ai.digits.checkpoints import snapshot as digit_snapshot
+from ai.digits.classifier import KIND as DIGITS_KIND
+from ai.digits.training import DigitTraining
 from ai.files import count_of, inside, number_of, problem_in, read_json
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
-from ai.nn import ModelFormatError, atomic_folder
-from ai.training.config import ANYWHERE, LANDER, LANDS_ANYWHERE, PRESETS, Config, load_agent
-from ai.training.gym_task import gym_config
-from ai.training.history import Checkpoint, History
-from ai.training.keeping import save
+from ai.nn import ModelFormatError
+from ai.training.config import Config, load_agent, presets_of
+from ai.training.history import Checkpoint
 from ai.training.loop import Training
-from ai.training.run import RunKind
-from ai.training.state import read_state
-from ai.training.statistics import EpisodeStatistics
-from ai.training.task import TEST_SEED, Score
-
-TRAINING_FILE: Final = "training.json"
+from ai.training.run import TRAINING_FILE, RunKind
+from ai.training.state import StateWriter, going_on, read_state
+from ai.training.tasks import TEST_SEED
 
 
-@dataclass(frozen=True)
-class Snapshot:
-    """Copy of all that is kept of a run, at one moment: it may be saved while training goes on."""
+def snapshot(training: Training, final: bool = False) -> tuple[dict[str, Any], Callable[[Path], None]]:
+    """Return what a run's training file says now, and what writes its networks as they are now into a new folder.
 
-    described: dict[str, Any]
-    best: DeepQAgent
-    last: DeepQAgent
-    history: History | None
-
-    def save(self, folder: str | Path) -> None:
-        """Write it, whole or not at all; raises OSError if it cannot be written."""
-        with atomic_folder(folder, KIND) as temporary:
-            write_agent(self.best, temporary)
-            write_agent(self.last, temporary / LAST)
-            if self.history is not None:
-                self.history.write(temporary)
-            (temporary / TRAINING_FILE).write_text(json.dumps(self.described, indent=2) + "\n", encoding="utf-8")
-
-
-def snapshot(training: Training, history: History | None = None, final: bool = False) -> Snapshot:
-    """Copy what is to be kept of a run. One that has not been evaluated yet has its latest network for its best.
-
-    This measures nothing: the clock may decide when it is called, but never which network is best. But a `final` one
-    considers the latest network for the best too, and measures the best one on test spawns, which neither trained nor
-    chose it.
+    One that has not been evaluated yet has its latest network for its best. This measures nothing: the clock may
+    decide when it is called, but never which network is best. But a `final` one considers the latest network for the
+    best too, and measures the best one on test spawns, which neither trained nor chose it.
     """
     if final:
         training.conclude()
     agent, config = training.agent, training.config
-    if config.env == LANDER:
-        presets = PRESETS
-    elif config.env == ANYWHERE:
-        presets = {"anywhere": LANDS_ANYWHERE}
-    else:
-        presets = {"gym": gym_config(config.env)}
+    presets = {name: preset.to_json() for name, preset in presets_of(config.env).items()}
     described = {
         "env": config.env,
-        **nearest_preset(config.to_json(), {name: preset.to_json() for name, preset in presets.items()}),
+        **nearest_preset(config.to_json(), presets),
         "seed": training.seed,
         "decisions": agent.decisions,
         "updates": agent.gradient_steps,
@@ -74,18 +49,21 @@ def snapshot(training: Training, history: History | None = None, final: bool = F
         "best": training.best.to_json() if training.best else None,
         "flights": training.statistics.to_json(),
     }
-    best = training.best_agent()
+    best, last = training.best_agent(), training.last_agent()
+
+    def write(folder: Path) -> None:
+        write_agent(best, folder)
+        write_agent(last, folder / LAST)
+
     if final:
         described["evaluation"] = training.task.evaluate(best, training.task.test_episodes, TEST_SEED).to_json()
-    return Snapshot(described, best, training.last_agent(), None if history is None else history.copy())
+    return described, write
 
 
 AGENTS: Final = RunKind(KIND, snapshot)
-
-
-def save_run(training: Training, folder: str | Path, final: bool = False, *, state: bool = False) -> dict[str, Any]:
-    """Save a run of an agent as `ai.training.keeping.save` does, by default its networks alone."""
-    return save(training, AGENTS, folder, final=final, state=state)
+DIGITS: Final = RunKind(DIGITS_KIND, digit_snapshot)
+save_run: Final = partial(AGENTS.save, state=False)  # the networks alone
+save_digit_run: Final = DIGITS.save
 
 
 def resume_run(folder: str | Path, *, env: str | None = None) -> Training:
@@ -98,46 +76,58 @@ def resume_run(folder: str | Path, *, env: str | None = None) -> Training:
     best, _ = load_agent(folder, env=env)
     try:
         last, config = load_agent(inside(folder, LAST), env=env)
-        described = read_json(inside(folder, TRAINING_FILE))
+        training = _begun(config, best, last, read_json(inside(folder, TRAINING_FILE)))
     except OSError as error:
         raise ModelFormatError(folder, [f"{Path(error.filename or LAST).name}: {error.strerror or error}"]) from error
     except ModelFormatError:
         raise
-    except ValueError as error:
-        raise ModelFormatError(folder, [f"{TRAINING_FILE}: {error}"]) from error
-    try:
-        training = Training(config, count_of(described["seed"], most=10**40))
-        for agent in (best, last):
-            if (agent.num_features, agent.num_actions) != (training.task.num_features, training.task.num_actions):
-                raise ValueError(f"its network is not made for {config.env}")
-        if described["best"] is not None:
-            if best.network.values.shape != training.agent.network.values.shape:
-                raise ValueError("the best network and the last one are of different sizes")
-            training.best = _read_score(training, described["best"])
-            training.best_values, training.best_normalizer = best.network.values.copy(), best.normalizer
-        training.episodes, training.env.landings = count_of(described["episodes"]), count_of(described["landings"])
-        training.seconds = float(number_of(described["seconds"], 0))
-        training.statistics.load(
-            described.get("flights", EpisodeStatistics(0).to_json())
-        )  # older runs do not have them
     except (KeyError, TypeError, ValueError, ArithmeticError) as error:
         raise ModelFormatError(folder, [f"{TRAINING_FILE}: {problem_in(error)}"]) from error
-    training.agent.copy_from(last)
     state = read_state(folder, last.decisions)
-    if state is None or not training.load_state(state, folder):
-        training.lost = "its state is not there, so it goes on with an empty memory"
+    with going_on(folder):
+        if state is None or not training.load_state(state, folder):
+            training.lost = "its state is not there, so it goes on with an empty memory"
+            return training
+    training.states = StateWriter(folder, state)
     return training
 
 
-def _read_score(training: Training, described: Any) -> Score:
-    """Read a score, and make sure that it can be compared and shown; raises ValueError or TypeError if not."""
-    score = training.task.read_score(described)
-    for value in score.to_json().values():
-        if value is not None:
-            number_of(value)
-    score.better_than(score)
-    str(score)
-    return score
+def _begun(config: Config, best: DeepQAgent, last: DeepQAgent, described: Any) -> Training:
+    """Return a run as its folder describes it; raises KeyError, TypeError or ValueError where it makes no sense."""
+    training = Training(config, count_of(described["seed"], most=10**40))
+    for agent in (best, last):
+        if (agent.num_features, agent.num_actions) != (training.task.num_features, training.task.num_actions):
+            raise ValueError(f"its network is not made for {config.env}")
+    if described["best"] is not None:
+        if best.network.values.shape != training.agent.network.values.shape:
+            raise ValueError("the best network and the last one are of different sizes")
+        training.best = training.task.read_score(described["best"])
+        training.best_values, training.best_normalizer = best.network.values.copy(), best.normalizer
+    training.episodes, training.env.landings = count_of(described["episodes"]), count_of(described["landings"])
+    training.seconds = float(number_of(described["seconds"], 0))
+    if "flights" in described:  # older runs do not have them
+        training.statistics.load(described["flights"])
+    training.agent.copy_from(last)
+    return training
+
+
+def resume_digit_run(folder: str | Path, **options: Any) -> DigitTraining:
+    """Resume an unfinished run that was kept, the very same; raises ModelFormatError for anything else."""
+    folder = Path(folder)
+    config, seed, step = read_settings(folder)
+    try:
+        training = DigitTraining(config, seed, **options)
+    except (ValueError, OverflowError) as error:
+        raise ModelFormatError(folder, [str(error)]) from error
+    kept = read_state(folder, step)
+    state = kept or read_last(folder, training)
+    if state is None:
+        raise ModelFormatError(folder, ["there is nothing to go on with: the run is finished, or its state is gone"])
+    with going_on(folder):
+        training.load_state(state)
+    if kept:
+        training.around, training.states = kept.get("around", {}), StateWriter(folder, kept)
+    return training
 
 
 def agent_of(config: Config, checkpoint: Checkpoint) -> DeepQAgent:

@@ -1,14 +1,16 @@
-"""Settings of a training run, as one dataclass, the presets, and agents as they were saved with theirs."""
+"""Settings of a training run as one dataclass, the presets, what is in force of them, and agents saved with theirs."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from functools import lru_cache
 from pathlib import Path
-from typing import Any, Final, Self
+from typing import Any, ClassVar, Final, Self
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.config import AgentConfig
+from ai.agent.schedule import exploration, exploration_of_each, importance, learning_rate, linear, target_rate
 from ai.agent.storage import AGENT_FILE
 from ai.common.knobs import is_number, knob
 from ai.files import brief, problem_in, shown
@@ -126,3 +128,104 @@ PRESETS: Final[dict[str, Config]] = {
         final_touchdown_limits=1.0, spawn="curriculum", reward_scale=0.1, reward_weights=RewardWeights(time=-0.1),
     ),
 }  # fmt: skip
+# Found by trial on CartPole-v1 and LunarLander-v3, before that got its own; docs/environments.md has measurements.
+GYM: Final = Config(
+    env="CartPole-v1", num_envs=16, frame_skip=1, normalise_inputs=True, mirror=False, steadiness=0.0,
+    learning_rate=2e-3, final_learning_rate=3e-4, schedule_decisions=700_000, discount=0.995, n_step=3,
+    batch_size=128, gradient_steps=4, replay_size=1_000_000, learning_starts=5_000, epsilon_decisions=40_000,
+    epsilon_end=0.05, epsilon_spread=0.7, hidden=(64, 64), tau=0.005, reward_scale=0.01,
+)  # fmt: skip
+
+# Found by trial on LunarLander-v3 alone: docs/environments.md says what each did. A slow descent burns fuel, so a small
+# discount pays. Written out, so that no change of our lander's own settings changes these.
+LUNAR_LANDER: Final = Config(
+    env="LunarLander-v3", num_envs=16, frame_skip=3, normalise_inputs=True, mirror=True, steadiness=0.0,
+    learning_rate=2e-3, final_learning_rate=1e-5, schedule_decisions=300_000, discount=0.975, n_step=3,
+    batch_size=128, gradient_steps=4, replay_size=1_000_000, learning_starts=5_000, epsilon_decisions=40_000,
+    epsilon_end=0.02, epsilon_spread=0.6, hidden=(64, 64), dueling=True, tau=0.005, reward_scale=0.01,
+    optimizer="adam", cost="huber", gradient_clip=10.0, activation="relu", layer_normalisation=True, output_scale=0.1,
+    double=True, target_update_interval=1, fly_target=True, epsilon_start=1.0, epsilon_decay=1.0,
+    prioritised=False, success_pass=False, replay_prune=1,
+)  # fmt: skip
+
+
+def gym_config(env: str) -> Config:
+    """Return the settings to learn an environment of Gymnasium with."""
+    return LUNAR_LANDER if env == LUNAR_LANDER.env else GYM.changed(env=env)
+
+
+def presets_of(env: str) -> Mapping[str, Config]:
+    """Return what is offered to learn an environment with, by name."""
+    if env == ANYWHERE:
+        return {"anywhere": LANDS_ANYWHERE}
+    return PRESETS if env == LANDER else {"gym": gym_config(env)}
+
+
+# Settings that define schedules, each with the one that acts in its place once it has no effect.
+_SCHEDULED: Final = {
+    "learning_rate": "final_learning_rate",
+    "final_learning_rate": "learning_rate",
+    "schedule_decisions": "final_learning_rate",
+    "final_touchdown_limits": "schedule_decisions",
+    "epsilon_start": "epsilon_end",
+    "epsilon_end": "epsilon_start",
+    "epsilon_decay": "epsilon_end",
+    "epsilon_decisions": "epsilon_end",
+    "epsilon_spread": "num_envs",
+}
+
+
+@dataclass(frozen=True)
+class InForce:
+    """Values of the scheduled settings in force at one moment of a run.
+
+    Attributes:
+        values: the values in force, by the name of the setting that each began as.
+        idle: settings that change nothing any more, each with the one that acts, or decides, in its place.
+
+    """
+
+    newest_only: ClassVar = True
+
+    values: Mapping[str, float]
+    idle: Mapping[str, str]
+
+
+def touchdown_limits(config: Config, decisions: int) -> float:
+    """Return the limits of a touchdown after so many decisions, as a share of the real ones."""
+    return linear(1.0, config.final_touchdown_limits, decisions, config.schedule_decisions)
+
+
+def in_force(config: Config, decisions: int, episodes: int) -> InForce:
+    """Return the scheduled values in force after so many decisions and episodes."""
+    values = {
+        "learning_rate": learning_rate(config, decisions),
+        "tau": target_rate(config, decisions),
+        "epsilon_start": exploration(config, decisions, episodes),
+    }
+    return InForce(values, idle(config, decisions, episodes))
+
+
+@lru_cache(maxsize=8)
+def idle(config: Config, decisions: int = 0, episodes: int = 0) -> Mapping[str, str]:
+    """Return the settings that change nothing now or later, each with the one that acts, or decides, in its place."""
+    found = config.unused()
+    moments = ((decisions, episodes), (decisions + 1, episodes + 1))
+    for name, instead in _SCHEDULED.items():
+        described = type(config).__dataclass_fields__[name].metadata
+        extremes = [config.changed(**{name: described[end]}) for end in ("low", "high")]
+        if all(_scheduled(extremes[0], *moment) == _scheduled(extremes[1], *moment) for moment in moments):
+            found[name] = instead
+    if not any(exploration_of_each(config, exploration(config, *moment), config.num_envs).any() for moment in moments):
+        found["random_main"] = "epsilon_end"
+    return found
+
+
+def _scheduled(config: Config, decisions: int, episodes: int) -> tuple[float, ...]:
+    """Return all scheduled values at one moment, rounded so that they can be compared."""
+    each = exploration_of_each(config, exploration(config, decisions, episodes), config.num_envs)
+    corrected = importance(config, decisions) if config.prioritised else 0.0
+    limits = touchdown_limits(config, decisions)
+    rates = (learning_rate(config, decisions), target_rate(config, decisions))
+    decided = (*rates, limits, corrected, float(each[0]), float(each[-1]))
+    return tuple(round(value, 12) for value in decided)

@@ -10,16 +10,16 @@ import numpy as np
 
 from ai.digits.config import DigitConfig
 from ai.digits.filters import FilterMoment, first_filters, next_moment
-from ai.digits.training import DigitTraining
+from ai.digits.training import DigitProgress, DigitTraining
 from ai.digits.validation import ValidationReading
 from ai.explain.digit_lesson import explain_digit
 from ai.files import array_like, number_of
 from ai.nn import Array
-from ai.training.digit_run import DIGITS, resume_digit_run
-from ai.training.history import DIGIT_COLUMNS, REVERTED, DigitPoint, History, Validation
+from ai.training.checkpoints import DIGITS, resume_digit_run
+from ai.training.history import DIGIT_COLUMNS, REVERTED, DigitPoint, Validation
 from ai.training.messages import Explain, RestoreBest
-from ai.training.session import Session, conduct
-from ai.training.state import State, broken
+from ai.training.session import Session
+from ai.training.state import State
 
 POINT_SECONDS: Final = 0.1  # of learning, at least, between two points
 _LARGEST: Final = float(np.finfo(np.float16).max)
@@ -29,46 +29,41 @@ _SHARE: Final = 0.25  # of the time that goes into reading the images held out
 def live_digits(
     config: DigitConfig, seed: int = 0, *, keep: Path | None = None, resume: Path | None = None, data: Any = None
 ) -> Generator[tuple[Any, ...], Any, None]:
-    """Train to the last epoch, as `conduct` does; every turn is a learning step of `ai.digits.training.run_digits`.
+    """Train to the last epoch, as `Session.lead` does; every turn is a learning step.
 
     The run is kept in `keep`. With `resume`, it goes on from the run kept there, with its settings. Raises what
     `DigitTraining` and `resume_digit_run` raise.
     """
     early = yield ()  # unpacking the images takes a while: show the caller first that the run is alive
     training = resume_digit_run(resume, data=data) if resume else DigitTraining(config, seed, data)
-    history = History.read(resume, DIGIT_COLUMNS) if resume else History(DIGIT_COLUMNS)
-    session = DigitSession(training, history, keep)
-    try:
-        session.go_on(training.around)
-    except (KeyError, TypeError, ValueError) as error:
-        raise broken(resume or "", error) from error
-    yield from conduct(session, early)
+    session = DigitSession(training, keep, resume)
+    yield from session.lead(early)
 
 
 class DigitSession(Session[DigitTraining]):
     """Session of digits. Some of the images held out are read between two steps."""
 
     kind = DIGITS
+    columns = DIGIT_COLUMNS
 
-    def __init__(self, training: DigitTraining, history: History, keep: Path | None) -> None:
-        super().__init__(training, history, keep)
+    def __init__(self, training: DigitTraining, keep: Path | None, resume: Path | None) -> None:
+        super().__init__(training, keep, resume)
         self._own = keep
         self._batches: list[tuple[float, float]] = []  # loss and accuracy
-        self._point_at = self._filters_at = training.seconds
+        self._began = self._point_at = self._filters_at = training.seconds
         self._reading: ValidationReading | None = None
         self._best: tuple[float, Array] | None = None  # of all that was read, the accuracy and the values
-        self._learning = self._looking = 0.0  # seconds
+        self._looking = 0.0  # seconds
 
     def state(self) -> State:
         """Return what this goes on from, besides the run."""
         best = self._best
         return {} if best is None else {"accuracy": best[0], "values": best[1].copy()}
 
-    def go_on(self, state: State) -> None:
-        """Go on from what `state` gave, if anything; raises KeyError, TypeError or ValueError for anything else."""
-        if state:
-            values = array_like(self.training.average, state["values"], "the best network")
-            self._best = float(number_of(state["accuracy"], 0)), values
+    def load_state(self, state: State) -> None:
+        """Go on from what `state` gave; raises KeyError, TypeError or ValueError for anything else."""
+        values = array_like(self.training.average, state["values"], "the best network")
+        self._best = float(number_of(state["accuracy"], 0)), values
 
     def show(self) -> None:
         """Tell the filters of the first layer as they are now, of the weights that learn."""
@@ -77,14 +72,9 @@ class DigitSession(Session[DigitTraining]):
         images = np.clip(first_filters(training.classifier.network), -_LARGEST, _LARGEST).astype(np.float16)
         self.messages.append(FilterMoment(training.seconds, training.step, images))
 
-    def step(self) -> None:
-        """Learn from one batch."""
+    def tell(self, progress: DigitProgress) -> None:
+        """Tell of the batch that was learnt from, and read some of the images held out."""
         training = self.training
-        began = training.clock()
-        progress = training.advance()
-        stepped = training.clock()
-        training.seconds += stepped - began
-        self._learning += stepped - began
         self._batches.append((progress.loss, progress.accuracy))
         if training.seconds >= self._point_at:
             self._point_at = training.seconds + POINT_SECONDS
@@ -94,14 +84,15 @@ class DigitSession(Session[DigitTraining]):
                                    progress.learning_rate, progress.images_per_second))  # fmt: skip
         if training.seconds >= self._filters_at:
             self.show()
-        if self._looking <= _SHARE * self._learning and len(training.held_images):
+        if self._looking <= _SHARE * (training.seconds - self._began) and len(training.held_images):
+            began = training.clock()
             self._reading = self._reading or ValidationReading(training)
             if self._reading.go_on():
                 reading, self._reading = self._reading, None
-                self._tell(reading)
-            self._looking += training.clock() - stepped
+                self._tell_reading(reading)
+            self._looking += training.clock() - began
 
-    def _tell(self, reading: ValidationReading) -> None:
+    def _tell_reading(self, reading: ValidationReading) -> None:
         """Tell what came of a reading, and keep its network if it is the best so far."""
         training = self.training
         accuracy, confusion = reading.told()
@@ -121,7 +112,7 @@ class DigitSession(Session[DigitTraining]):
             reading = ValidationReading(training)
             while not reading.go_on():
                 yield
-            self._tell(reading)
+            self._tell_reading(reading)
             yield
             if training.best_epoch is not None:  # another network is kept: its misread images are shown
                 reading = ValidationReading(training, training.best_classifier())

@@ -3,45 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from ai.agent.symmetry import Symmetry
-from ai.common.environment import SUCCESS, Bools, Doubles, Env, Floats, Ints, StepResult
+from ai.common.environment import SUCCESS, Bools, Doubles, Floats, Ints, StepResult
 from ai.files import count_of
 from ai.lander.pilots import Pilot
 from ai.training.config import Config
 from ai.training.state import State
-from ai.training.task import checked_score
+from ai.training.tasks import Score, Task, Trial
 
 if TYPE_CHECKING:
     import gymnasium
 
 GOING_ON: Final = 0
 FAILED: Final = 2
-# Found by trial on CartPole-v1 and LunarLander-v3, before that got its own; docs/environments.md has measurements.
-GYM: Final = Config(
-    env="CartPole-v1", num_envs=16, frame_skip=1, normalise_inputs=True, mirror=False, steadiness=0.0,
-    learning_rate=2e-3, final_learning_rate=3e-4, schedule_decisions=700_000, discount=0.995, n_step=3,
-    batch_size=128, gradient_steps=4, replay_size=1_000_000, learning_starts=5_000, epsilon_decisions=40_000,
-    epsilon_end=0.05, epsilon_spread=0.7, hidden=(64, 64), tau=0.005, reward_scale=0.01,
-)  # fmt: skip
-
-# Found by trial on LunarLander-v3 alone: docs/environments.md says what each did. A slow descent burns fuel, so a small
-# discount pays. Written out, so that no change of our lander's own settings changes these.
-LUNAR_LANDER: Final = Config(
-    env="LunarLander-v3", num_envs=16, frame_skip=3, normalise_inputs=True, mirror=True, steadiness=0.0,
-    learning_rate=2e-3, final_learning_rate=1e-5, schedule_decisions=300_000, discount=0.975, n_step=3,
-    batch_size=128, gradient_steps=4, replay_size=1_000_000, learning_starts=5_000, epsilon_decisions=40_000,
-    epsilon_end=0.02, epsilon_spread=0.6, hidden=(64, 64), dueling=True, tau=0.005, reward_scale=0.01,
-    optimizer="adam", cost="huber", gradient_clip=10.0, activation="relu", layer_normalisation=True, output_scale=0.1,
-    double=True, target_update_interval=1, fly_target=True, epsilon_start=1.0, epsilon_decay=1.0,
-    prioritised=False, success_pass=False, replay_prune=1,
-)  # fmt: skip
-_OWN: Final = {LUNAR_LANDER.env: LUNAR_LANDER}
 # Steps after which an episode of training is cut short: a lander that hovers teaches nothing new. Measuring cuts none.
 PATIENCE: Final = {"LunarLander-v3": 400}
 MIRRORS: Final = {  # of environments that look the same in a mirror
@@ -51,13 +31,8 @@ MIRRORS: Final = {  # of environments that look the same in a mirror
 }
 
 
-def gym_config(env: str) -> Config:
-    """Return the settings to learn an environment of Gymnasium with."""
-    return _OWN.get(env) or GYM.changed(env=env)
-
-
 @dataclass(frozen=True)
-class GymScore:
+class GymScore(Score):
     """Score of a number of episodes without random actions."""
 
     episodes: int
@@ -65,10 +40,6 @@ class GymScore:
     mean_return: float
     return_spread: float  # standard deviation
     mean_length: float  # decisions
-
-    def to_json(self) -> dict[str, float | None]:
-        """Return the values as JSON can hold them."""
-        return asdict(self)
 
     def better_than(self, other: GymScore | None) -> bool:
         """Whether the mean return is higher."""
@@ -192,18 +163,22 @@ class GymEnv:
         return total
 
 
-class GymTask:
+class GymTask(Task[GymScore]):
     """Task of learning the environment of Gymnasium that `config.env` names."""
 
-    action_chances: Doubles | None = None
     evaluate_every, validation_episodes, test_episodes = 40_000, 100, 100
+    score = GymScore
 
     def __init__(self, config: Config) -> None:
-        self.config = config
+        super().__init__(config)
+        try:
+            import gymnasium
+        except ImportError as error:
+            raise ImportError('this needs Gymnasium: pip install -e ".[gym]"') from error
         self.symmetry = MIRRORS.get(config.env)
-        self._gymnasium = _gymnasium()
+        self._gymnasium = gymnasium
         env = self._make()
-        observations, actions, spaces = env.observation_space, env.action_space, self._gymnasium.spaces
+        observations, actions, spaces = env.observation_space, env.action_space, gymnasium.spaces
         if not isinstance(observations, spaces.Box) or not isinstance(actions, spaces.Discrete):
             raise ValueError(
                 f"{config.env} observes {observations} and acts in {actions}; "
@@ -231,26 +206,17 @@ class GymTask:
         make = partial(self._make, PATIENCE.get(self.config.env))
         return GymEnv(make, self.config.num_envs, rng, self.threshold, self.config.frame_skip)
 
-    def apply_live(self, config: Config, env: Env) -> None:  # noqa: ARG002 - nothing of an environment is live
-        """Take over the live knobs of another configuration."""
-        self.config = config
-
-    def update_env(self, decisions: int, env: Env) -> None:
-        """Do nothing: an environment of Gymnasium does not change with experience."""
-
-    def env_state(self, env: Env) -> State:
+    def env_state(self, env: GymEnv) -> State:
         """Return all that the environments go on from."""
-        assert isinstance(env, GymEnv)
         return env.state()
 
-    def restore_env(self, env: Env, state: State) -> str:
+    def restore_env(self, env: GymEnv, state: State) -> str:
         """Let new environments go on from what `env_state` gave, as far as they can be restored."""
-        assert isinstance(env, GymEnv)
         if env.restore(state):
             return ""
         return f"{self.config.env} cannot be brought back to a moment, so its episodes begin anew"
 
-    def evaluate(self, pilot: Pilot, episodes: int, seed: int) -> GymScore:
+    def trial(self, pilot: Pilot, episodes: int, seed: int) -> Trial[GymScore]:
         """Play so many episodes side by side, without exploration.
 
         The pilot decides at every step of the environment: to hold an action for `frame_skip` of them makes learning
@@ -261,19 +227,8 @@ class GymTask:
         while (going_on := env.outcome == GOING_ON).any():
             actions = np.where(going_on, pilot.act(observation, held=actions), actions)
             observation = env.step(actions).observation
+            yield
         success = None if self.threshold is None else float((env.outcome == SUCCESS).mean())
         return GymScore(
             episodes, success, float(env.returns.mean()), float(env.returns.std()), float(env.lengths.mean())
         )
-
-    def read_score(self, values: dict[str, Any]) -> GymScore:
-        """Read what `GymScore.to_json` gave; raises ValueError for anything else."""
-        return GymScore(**checked_score(values, ("success",)))
-
-
-def _gymnasium() -> Any:
-    try:
-        import gymnasium
-    except ImportError as error:
-        raise ImportError('this needs Gymnasium: pip install -e ".[gym]"') from error
-    return gymnasium

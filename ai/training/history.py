@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from copy import copy
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Final, NamedTuple
+from typing import Annotated, Any, ClassVar, Final
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from ai.files import (
     Sized,
     Within,
     inside,
+    number_of,
     parse_json,
     problem_in,
     read_arrays,
@@ -33,53 +34,7 @@ from ai.nn import ModelFormatError
 from ai.training.config import Config
 
 PARTS: Final = tuple(REWARDS)
-
-
-class Column(NamedTuple):
-    """What a run measures at each of its points.
-
-    Attributes:
-        name: as `History` has it.
-        unit: of its numbers; empty for a plain number.
-        help: what it is, in a few words.
-
-    """
-
-    name: str
-    unit: str
-    help: str
-
-
-_SECONDS: Final = Column("seconds", "s", "training so far, pauses left out")
-_LOSS: Final = Column("loss", "", "error of the last learning step")
-COLUMNS: Final = (
-    _SECONDS,
-    Column("decisions", "", "decisions so far, of single landers"),
-    Column("episodes", "", "flights that have ended"),
-    Column("success", "share", "of the last hundred flights that landed, chance moves included"),
-    Column("mean_return", "points", "earned by each of them, on average"),
-    _LOSS,
-    Column("mean_q", "scaled points", "what the network expects, on average"),
-    Column("epsilon", "share", "of actions that are random"),
-    Column("stage", "", "of the curriculum"),
-    Column("steps_per_second", "1/s", "physics steps, of all landers"),
-    Column("landed", "share", "of the last hundred flights"),  # the next ones too, in the order of Outcome
-    Column("crashed", "share", "of the last hundred flights"),
-    Column("out_of_bounds", "share", "of the last hundred flights"),
-    Column("timed_out", "share", "of the last hundred flights"),
-    *(Column(part, "points", "paid by this part of the reward per flight") for part in PARTS),
-)
-DIGIT_COLUMNS: Final = (
-    _SECONDS,
-    Column("step", "", "learning steps so far"),
-    Column("epoch", "", "how often every image was seen"),
-    _LOSS,
-    Column("accuracy", "share", "of images read right as they were learnt from: bent, and with dropout"),
-    Column("learning_rate", "", "how far a step moves the weights"),
-    Column("images_per_second", "1/s", "learnt from"),
-)
 REVERTED: Final = "checkpoint"  # the name of the change that goes back to one
-TURNING_SECONDS: Final = 1.0  # between two changes of a knob that is still being turned
 HISTORY_FILE: Final = "history.npz"
 CAPACITY: Final = 4000  # points
 MOST_CHECKPOINTS: Final = 200
@@ -91,29 +46,29 @@ _MOST_COLUMNS: Final = 1000
 
 @dataclass(frozen=True)
 class Point:
-    """Point of an agent's curves after one decision, with the numbers of `COLUMNS`.
+    """Point of an agent's curves after one decision.
 
     Unknown values are NaN: before the first flight has ended, and before the first learning step, which after a
-    resumption waits for new memories.
+    resumption waits for new memories. Shares and means are of the last hundred flights, random actions included.
     """
 
     may_thin: ClassVar = True  # of those not fetched yet, every other may be dropped
 
-    seconds: float
-    decisions: float
-    episodes: float
-    success: float
-    mean_return: float
-    loss: float
-    mean_q: float
-    epsilon: float
-    stage: float
-    steps_per_second: float
-    landed: float = 0.0
+    seconds: float  # of training so far, pauses left out
+    decisions: float  # so far, of single landers
+    episodes: float  # that have ended
+    success: float  # share that landed
+    mean_return: float  # points of reward
+    loss: float  # error of the last learning step
+    mean_q: float  # what the network expects, in scaled points
+    epsilon: float  # share of random actions
+    stage: float  # of the curriculum
+    steps_per_second: float  # of physics, of all landers
+    landed: float = 0.0  # share; the next ones too, in the order of Outcome
     crashed: float = 0.0
     out_of_bounds: float = 0.0
     timed_out: float = 0.0
-    parts: tuple[float, ...] = (0.0,) * len(PARTS)
+    parts: tuple[float, ...] = (0.0,) * len(PARTS)  # points that each part of the reward has paid per flight
 
     @property
     def values(self) -> tuple[float, ...]:
@@ -128,11 +83,11 @@ class DigitPoint:
 
     may_thin: ClassVar = True
 
-    seconds: float
-    step: int
-    epoch: float
+    seconds: float  # of training so far, pauses left out
+    step: int  # learning steps so far
+    epoch: float  # how often every image was seen
     loss: float
-    accuracy: float
+    accuracy: float  # share of images read right as they were learnt from: bent, and with dropout
     learning_rate: float
     images_per_second: float
 
@@ -140,6 +95,11 @@ class DigitPoint:
     def values(self) -> tuple[float, ...]:
         """The numbers of `DIGIT_COLUMNS`."""
         return tuple(vars(self).values())
+
+
+# What a run measures at each of its points, by name.
+COLUMNS: Final = (*(item.name for item in fields(Point)[:-1]), *PARTS)
+DIGIT_COLUMNS: Final = tuple(item.name for item in fields(DigitPoint))
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,7 +124,7 @@ class SettingChange:
     decisions: Count
     name: str
     before: Any
-    after: Any
+    after: bool | int | float | str
     amends: bool = False
     seconds: float = field(default=0.0, compare=False)  # of training
 
@@ -183,7 +143,7 @@ class Validation:
     seconds: float = field(default=0.0, compare=False)  # of training
 
 
-# What a file holds of it
+Entry = Point | DigitPoint | Checkpoint | SettingChange | Validation
 
 
 @dataclass(frozen=True)
@@ -195,37 +155,15 @@ class _CheckpointFile:
 
 
 @dataclass(frozen=True)
-class _SettingChangeFile:
-    decisions: Count
-    name: str
-    before: Any
-    after: bool | int | float | str
-    seconds: float = 0.0
-
-
-@dataclass(frozen=True)
 class _HistoryFile:
     version: Annotated[int, OneOf((_VERSION,))]
     columns: Annotated[tuple[str, ...], Sized(_MOST_COLUMNS)]
     stride: Annotated[int, Within(1, MOST)]
     told: Count
     checkpoints: Annotated[tuple[_CheckpointFile, ...], Sized(MOST_CHECKPOINTS)]
-    alterations: tuple[_SettingChangeFile, ...]
+    alterations: tuple[SettingChange, ...]
     validations: tuple[Validation, ...]
     reward_scale: Annotated[float, Above(0)] | None = None  # None in files from before it was kept here
-
-
-@dataclass(frozen=True)
-class _RewardFile:
-    reward_scale: Annotated[float, Above(0)]
-
-
-@dataclass(frozen=True)
-class _AgentFile:
-    config: _RewardFile
-
-
-Entry = Point | DigitPoint | Checkpoint | SettingChange | Validation
 
 
 class History:
@@ -235,14 +173,14 @@ class History:
     are as the run was when asked for, until the next `append`.
 
     Attributes:
-        columns: what the points measure, of one kind of run.
+        columns: names of what the points measure, of one kind of run.
         reward_scale: size of one point of reward in the unit of `history["mean_q"]`, which is the network's own.
 
     """
 
-    def __init__(self, columns: Sequence[Column] = COLUMNS) -> None:
+    def __init__(self, columns: Sequence[str] = COLUMNS) -> None:
         self.columns = tuple(columns)
-        self._column = {each.name: number for number, each in enumerate(columns)}
+        self._number = {name: number for number, name in enumerate(columns)}
         self.checkpoints: list[Checkpoint] = []
         self.setting_changes: list[SettingChange] = []
         self.validations: list[Validation] = []
@@ -267,7 +205,7 @@ class History:
 
     def __getitem__(self, name: str) -> Doubles:
         """Return one column, (n,), by its name."""
-        return self.points[:, self._column[name]]
+        return self.points[:, self._number[name]]
 
     def append(self, entry: Entry) -> None:
         """Record an entry of any kind."""
@@ -285,7 +223,9 @@ class History:
         # The latest point is always the last row; the next takes its place, unless its number is on the stride.
         if self._length == 0 or (self._told - 1) % self._stride == 0:
             if self._length == CAPACITY:
-                self._thin()
+                kept = self._table[::2].copy()
+                self._length, self._stride = len(kept), 2 * self._stride
+                self.points[...] = kept
             self._length += 1
         self._table[self._length - 1] = point.values
         self._told += 1
@@ -304,12 +244,6 @@ class History:
             moments = np.array([each.decisions for each in self.checkpoints])
             # The one whose neighbours are closest together is the least missed.
             del self.checkpoints[1 + int((moments[2:] - moments[:-2]).argmin())]
-
-    def _thin(self) -> None:
-        kept = self._table[: self._length : 2].copy()
-        self._table[: len(kept)] = kept
-        self._length = len(kept)
-        self._stride *= 2
 
     def row_at(self, decisions: float) -> int:
         """Return the number of the point nearest to a moment, the earlier of two; there must be one."""
@@ -331,9 +265,9 @@ class History:
     def write(self, folder: Path) -> None:
         """Write the history into a run's folder; raises OSError if it cannot be written."""
         described = {
-            "version": _VERSION, "columns": list(self._column), "reward_scale": self.reward_scale,
+            "version": _VERSION, "columns": self.columns, "reward_scale": self.reward_scale,
             "stride": self._stride, "told": self._told,
-            "alterations": [_written(change) for change in self.setting_changes],
+            "alterations": [asdict(change) for change in self.setting_changes],
             "validations": [asdict(validation) for validation in self.validations],
             "checkpoints": [
                 {"seconds": each.seconds, "decisions": each.decisions, "success": each.success,
@@ -351,7 +285,7 @@ class History:
         )
 
     @classmethod
-    def read(cls, folder: str | Path, columns: Sequence[Column] = COLUMNS) -> History:
+    def read(cls, folder: str | Path, columns: Sequence[str] = COLUMNS) -> History:
         """Read what `write` wrote; a run saved without a history has an empty one. Raises ModelFormatError."""
         history = cls(columns)
         try:
@@ -377,14 +311,16 @@ class History:
         # By name, so that a run from before a part was added can still be looked at.
         self.points[...] = 0.0
         for column, name in enumerate(described.columns):
-            if name in self._column:
-                self.points[:, self._column[name]] = points[:, column]
+            if name in self.columns:
+                self[name][...] = points[:, column]
         if not np.isfinite(values).all():
             raise ValueError("checkpoints that are not finite")
-        self.checkpoints = [
-            _checkpoint(told, row.astype(np.float32)) for told, row in zip(described.checkpoints, values, strict=True)
-        ]
-        self.setting_changes = [_setting_change(told) for told in described.alterations]
+        for told, row in zip(described.checkpoints, values, strict=True):
+            if told.scale is not None:
+                Normalizer(len(told.scale["mean"])).load(told.scale)  # raises for one that makes no sense
+            self.checkpoints.append(Checkpoint(told.seconds, told.decisions, told.success, row, told.scale))
+        # An older run has the names of its day.
+        self.setting_changes = [replace(each, name=Config.name_now(each.name)) for each in described.alterations]
         self.validations = list(described.validations)
 
 
@@ -403,27 +339,10 @@ def _expect(name: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
         raise ValueError(f"{name} is not what a history has: {array_said(shape, dtype)}")
 
 
-def _checkpoint(told: _CheckpointFile, values: Floats) -> Checkpoint:
-    """Return a checkpoint of a file; raises KeyError, TypeError or ValueError for a scale that is none."""
-    if told.scale is not None:
-        Normalizer(len(told.scale["mean"])).load(told.scale)
-    return Checkpoint(told.seconds, told.decisions, told.success, values, told.scale)
-
-
-def _setting_change(told: _SettingChangeFile) -> SettingChange:
-    """Return a setting change of a file; an older run has the names of its day."""
-    name = Config.name_now(told.name)
-    return SettingChange(told.decisions, name, told.before, told.after, seconds=told.seconds)
-
-
 def _scale_beside(folder: str | Path) -> float:
     """Return the reward scale of the network beside a history from before it told its own; 1 if there is none."""
     try:
-        return read_as(_AgentFile, read_json(inside(folder, "config.json"))).config.reward_scale
-    except (OSError, ValueError):
+        scale = number_of(read_json(inside(folder, "config.json"))["config"]["reward_scale"], 0)
+    except (OSError, ValueError, TypeError, KeyError):
         return 1.0
-
-
-def _written(change: SettingChange) -> dict[str, Any]:
-    """Return a setting change as a file holds it: `amends` only matters before it is in a history."""
-    return {name: value for name, value in asdict(change).items() if name != "amends"}
+    return scale or 1.0

@@ -13,11 +13,11 @@ from ai.common.environment import Ints, StepResult
 from ai.files import count_of
 from ai.lander.environment import LanderEnv
 from ai.training.checkpoints import AGENTS, restore_checkpoint, resume_run
-from ai.training.config import Config
+from ai.training.config import Config, InForce, in_force
 from ai.training.demonstrations import read, taught, teach
 from ai.training.edits import EDITED, EditNetwork, LearnOn, NetworkEditor, UndoEdit
 from ai.training.explanations import Explanations
-from ai.training.history import PARTS, REVERTED, Checkpoint, History, Point
+from ai.training.history import COLUMNS, PARTS, REVERTED, Checkpoint, Point, Validation
 from ai.training.loop import Progress, Training
 from ai.training.messages import (
     AddDemonstrations,
@@ -28,10 +28,9 @@ from ai.training.messages import (
     SwarmState,
     problem_of,
 )
-from ai.training.schedule import InForce, in_force
-from ai.training.session import Session, conduct
-from ai.training.state import State, broken
-from ai.training.validation_flights import ValidationFlights
+from ai.training.session import Session
+from ai.training.state import State
+from ai.training.tasks import Score
 
 POINT_DECISIONS: Final = 256  # at least so many between two points
 NETWORK_SECONDS: Final = 0.25
@@ -48,7 +47,7 @@ def live(
     resume: Path | None = None,
     clock: Callable[[], float] = time.monotonic,
 ) -> Generator[tuple[Any, ...], Any, None]:
-    """Train landers without end, as `conduct` does; every turn is one decision of all landers.
+    """Train landers without end, as `Session.lead` does; every turn is one decision of all landers.
 
     The run is kept in `keep`. With `resume`, it goes on from a saved run, with the settings, seed and history of that.
     `clock` counts seconds. Raises ModelFormatError if there is nothing to resume from, and ValueError for settings
@@ -58,28 +57,23 @@ def live(
     if not isinstance(training.env, LanderEnv):
         raise ValueError(f"only landers can be looked into, not {training.config.env}")
     training.clock = clock
-    history = History() if resume is None else History.read(resume)
-    session = LanderSession(training, history, keep)
-    try:
-        session.go_on(training.around)
-    except (KeyError, TypeError, ValueError) as error:
-        raise broken(resume or "", error) from error
-    yield from conduct(session)
+    session = LanderSession(training, keep, resume)
+    yield from session.lead()
 
 
 class LanderSession(Session[Training]):
     """Session of landers. They never stand still for a validation: that is flown bit by bit."""
 
     kind = AGENTS
+    columns = COLUMNS
 
-    def __init__(self, training: Training, history: History, keep: Path | None) -> None:
-        super().__init__(training, history, keep)
+    def __init__(self, training: Training, keep: Path | None, resume: Path | None) -> None:
+        super().__init__(training, keep, resume)
         assert isinstance(training.env, LanderEnv)
         self.env = training.env
-        history.reward_scale = training.config.reward_scale
+        self.history.reward_scale = training.config.reward_scale
         training.on_step = self._on_step
-        training.evaluate_every = 0  # that is done here
-        self._validation = ValidationFlights(training)
+        training.validation_pace = 1 + self.env.num_envs // 256
         self._explanations = Explanations(training)
         self._editor = NetworkEditor(training.agent)
         self._swarm_state = self._swarm_state_of(self.env.outcome)
@@ -103,16 +97,14 @@ class LanderSession(Session[Training]):
         """Return what this goes on from, besides the run."""
         return {
             "point_at": self._point_at, "checkpoint_at": self._checkpoint_at, "began_learning": self._began_learning,
-            "learned_from": sorted(self._learned_from), "validation": self._validation.state(),
+            "learned_from": sorted(self._learned_from),
         }  # fmt: skip
 
-    def go_on(self, state: State) -> None:
-        """Go on from what `state` gave, if anything; raises KeyError, TypeError or ValueError for anything else."""
-        if state:
-            self._point_at, self._checkpoint_at = count_of(state["point_at"]), count_of(state["checkpoint_at"])
-            self._began_learning = count_of(state["began_learning"])
-            self._learned_from = set(state["learned_from"])
-            self._validation.load_state(state["validation"])
+    def load_state(self, state: State) -> None:
+        """Go on from what `state` gave; raises KeyError, TypeError or ValueError for anything else."""
+        self._point_at, self._checkpoint_at = count_of(state["point_at"]), count_of(state["checkpoint_at"])
+        self._began_learning = count_of(state["began_learning"])
+        self._learned_from = set(state["learned_from"])
 
     def show(self) -> None:
         """Tell how the landers and the network stand."""
@@ -124,15 +116,10 @@ class LanderSession(Session[Training]):
         """Tell the settings in force."""
         self.messages.append(self._state_messages()[1])
 
-    def step(self) -> None:
-        """Let every lander take one decision."""
-        training = self.training
-        began, before = training.clock(), training.agent.decisions
-        progress = training.advance()
-        if validation := self._validation.go_on(before, 1 + self.env.num_envs // 256):
-            self.record(validation)
-        now = training.clock()
-        training.seconds += now - began
+    def tell(self, progress: Progress) -> None:
+        """Tell of the decision that all landers took."""
+        training, now = self.training, self.training.clock()
+        self._tell_validation(progress.evaluation)
         self.messages.append(self._swarm_state)
         if now >= self._network_state_at:
             self._network_state_at = now + NETWORK_SECONDS
@@ -145,10 +132,17 @@ class LanderSession(Session[Training]):
             self._checkpoint_at = progress.decisions + self._checkpoint_every
         self._explanations.keep()
 
+    def _tell_validation(self, score: Score | None) -> None:
+        """Tell what came of validation flights, if they are over."""
+        training = self.training
+        if score is not None and score.success is not None:
+            best = score is training.best
+            evaluated = training.evaluated or 0
+            self.record(Validation(evaluated, score.success, score.mean_return, best, training.seconds))
+
     def finish_measuring(self) -> None:
         """Fly what is left of a validation."""
-        if validation := self._validation.finish():
-            self.record(validation)
+        self._tell_validation(self.training.validate())
 
     def go_back(self) -> None:
         """Restore the networks from the last checkpoint, when training has diverged since."""
@@ -246,7 +240,7 @@ class LanderSession(Session[Training]):
             self.refuse(command, error)
             return
         if editor.count != before:
-            self.record_change(EDITED, before, editor.count, self.amends(EDITED, editor.count))
+            self.record_change(EDITED, before, editor.count)
         self.messages += (editor.edits, *self._state_messages())
 
     def _restore_checkpoint(self, command: RestoreCheckpoint) -> None:

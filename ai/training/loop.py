@@ -1,4 +1,4 @@
-"""Training loop as a generator, with evaluation and the choice of the best checkpoint.
+"""Training loop: what goes on around an agent's decisions, with validation and the choice of the best network.
 
 What happens in one decision, from the observation to the update of the target network, is on one page of
 `ai.agent.agent`: `DeepQAgent.train_step`, with the list of all that differs from the papers. Here is what goes on
@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Mapping
 from copy import deepcopy
 from dataclasses import dataclass, field
+from itertools import repeat
 from pathlib import Path
 from typing import Any
 
@@ -24,16 +25,11 @@ from ai.agent.replay import ReplayBuffer, make_replay
 from ai.agent.schedule import exploration, exploration_of_each
 from ai.common.environment import Env, Floats, StepResult
 from ai.files import array_like, count_of, number_of
-from ai.training.config import LANDER, Config
-from ai.training.lander_task import LANDER_SYMMETRY, Evaluation, evaluate
-from ai.training.state import State, StateWriter, broken, restore_buffer
+from ai.training.config import ANYWHERE, LANDER, Config
+from ai.training.gym_task import GymTask
+from ai.training.state import State, StateWriter, restore_buffer
 from ai.training.statistics import EpisodeStatistics
-from ai.training.task import TEST_SEED, VALIDATION_SEED, Score, Task
-from ai.training.tasks import task_of
-
-__all__ = [
-    "LANDER_SYMMETRY", "TEST_SEED", "VALIDATION_SEED", "Evaluation", "Progress", "Training", "evaluate", "run",
-]  # fmt: skip
+from ai.training.tasks import VALIDATION_SEED, AnywhereTask, LanderTask, Score, Task, Trial
 
 
 @dataclass
@@ -53,7 +49,7 @@ class Progress:
     steps_per_second: float  # over the last second or so, by the clock
     shares: tuple[float, ...]  # of the same that ended in outcome 1, 2, 3 and 4
     parts: tuple[float, ...]  # of the mean return, what each part of the reward brought
-    evaluation: Score | None = None  # when one was due
+    evaluation: Score | None = None  # when one is finished
     best: Score | None = None
     env: str = LANDER
 
@@ -66,12 +62,14 @@ class Training:
     seed: int = 0
     evaluate_every: int | None = None  # decisions; 0 for never, None for as often as suits the task
     validation_episodes: int | None = None  # None for as many as suit the task
-    task: Task = field(init=False)
+    task: Task[Any] = field(init=False)
     agent: DeepQAgent = field(init=False)
     env: Env = field(init=False)
     best: Score | None = None
     best_values: Floats | None = None
     best_normalizer: Normalizer | None = None
+    evaluated: int | None = None  # how many decisions the network had taken that was measured last
+    validation_pace: int | None = None  # decisions of its flights after one of the run's; None for all at once
     seconds: float = 0.0  # spent, as the caller counts them
     clock: Callable[[], float] = time.monotonic
     on_step: Callable[[StepResult], None] | None = None  # is shown every step, before ended slots begin anew
@@ -92,10 +90,11 @@ class Training:
         self.env = self.task.make_env(env_rng)
         self.observation = self.env.reset()
         self.episodes = 0
-        self._evaluated: int | None = None  # how many decisions the network had taken that was measured last
-        self._moments: deque[float] = deque(maxlen=100)
         self.statistics = EpisodeStatistics(self.env.num_envs)
+        self._moments: deque[float] = deque(maxlen=100)
         self._held = np.zeros(self.env.num_envs, dtype=np.intp)
+        self._validated: DeepQAgent | None = None  # while its flights are under way
+        self._flights: Trial[Score] | None = None
 
     def _new_agent(self, config: Config, rng: np.random.Generator | None = None, **parts: Any) -> DeepQAgent:
         task = self.task
@@ -133,7 +132,7 @@ class Training:
             statistics.finish(result)
             self.observation = self.env.reset(result.ended)
         self._held = np.where(result.ended, 0, actions)
-        evaluation = self.evaluate() if passed(before, agent.decisions, self.evaluate_every or 0) else None
+        evaluation = self._measure(before)
         return Progress(
             agent.decisions, agent.decisions * self.config.frame_skip, agent.gradient_steps, self.episodes,
             statistics.success, statistics.mean_return, agent.loss, agent.mean_q, epsilon, self.env.stage, self._pace(),
@@ -154,29 +153,52 @@ class Training:
         self.agent.apply_live(config)
         self.agent.action_chances = self.task.action_chances
 
+    # Validation
+
+    def _measure(self, before: int) -> Score | None:
+        """Begin the validation that is due, and go on with it; return the score once there is one."""
+        if not passed(before, self.agent.decisions, self.evaluate_every or 0):
+            return self.validate(self.validation_pace)
+        score = self.validate()  # of the one before, if it is still under way
+        self._begin_validation(self.last_agent())
+        return score if self.validation_pace else self.validate()
+
+    def _begin_validation(self, agent: DeepQAgent) -> None:
+        assert self.validation_episodes is not None
+        self._validated = agent
+        self._flights = self.task.trial(agent, self.validation_episodes, VALIDATION_SEED)
+
+    def validate(self, decisions: int | None = None) -> Score | None:
+        """Go on with the validation that is under way, for so many decisions of its flights, or to its end.
+
+        Returns the score once there is one; the network is kept if it is the best so far.
+        """
+        if self._flights is None or self._validated is None:
+            return None
+        try:
+            for _ in range(decisions) if decisions else repeat(None):
+                next(self._flights)
+        except StopIteration as done:
+            score: Score = done.value
+            agent, self._flights, self._validated = self._validated, None, None
+            self.evaluated = agent.decisions
+            if score.better_than(self.best):
+                self.best, self.best_values = score, agent.network.values.copy()
+                self.best_normalizer = agent.normalizer
+            return score
+        return None
+
     def evaluate(self) -> Score:
         """Try the validation episodes, and keep the network if it is the best so far."""
-        assert self.validation_episodes is not None
-        self._evaluated = self.agent.decisions
-        score = self.task.evaluate(self.agent, self.validation_episodes, VALIDATION_SEED)
-        self.keep_if_best(score, self.agent)
+        self._begin_validation(self.last_agent())
+        score = self.validate()
+        assert score is not None
         return score
 
     def conclude(self) -> None:
         """Measure the network as it is at the end of a run, unless that has just been done."""
-        if self._evaluated != self.agent.decisions:
+        if self.evaluated != self.agent.decisions:
             self.evaluate()
-
-    def keep_if_best(self, score: Score, agent: DeepQAgent) -> bool:
-        """Keep an agent's network if its score is the best so far, and say whether it is."""
-        best = score.better_than(self.best)
-        if best:
-            self.best, self.best_values, self.best_normalizer = (
-                score,
-                agent.network.values.copy(),
-                deepcopy(agent.normalizer),
-            )
-        return best
 
     def best_agent(self) -> DeepQAgent:
         """Return an agent that flies with the best network found so far."""
@@ -187,6 +209,18 @@ class Training:
             agent.restore(self.best_values, deepcopy(self.best_normalizer))
         agent.decisions, agent.gradient_steps = self.agent.decisions, self.agent.gradient_steps
         return agent
+
+    def last_agent(self) -> DeepQAgent:
+        """Return a copy of the agent that learns, with an empty replay buffer."""
+        agent = self._new_agent(self.config)
+        agent.copy_from(self.agent)
+        return agent
+
+    def restore_best(self) -> None:
+        """Restore the best networks so far, if there are any: training cannot go on from diverged ones."""
+        self.diverged = True
+        if self.best_values is not None:
+            self.agent.restore(self.best_values, deepcopy(self.best_normalizer))
 
     # What it goes on from
 
@@ -212,69 +246,83 @@ class Training:
 
     def state(self) -> State:
         """Return copies of all that the run goes on from, besides its settings and replay buffers."""
-        best = None
+        best, validated = None, self._validated
         if self.best is not None and self.best_values is not None:
-            scale = self.best_normalizer.to_json() if self.best_normalizer else None
-            best = {"score": self.best.to_json(), "values": self.best_values.copy(), "normalizer": scale}
+            best = {"score": self.best.to_json(), **_network(self.best_values, self.best_normalizer)}
         return {
-            "episodes": self.episodes, "evaluated": self._evaluated, "seconds": self.seconds, "best": best,
+            "episodes": self.episodes, "evaluated": self.evaluated, "seconds": self.seconds, "best": best,
             "observation": self.observation.copy(), "held": self._held.copy(), "agent": self.agent.state(),
             "env": self.task.env_state(self.env), "statistics": self.statistics.state(),
+            "validation": validated and {
+                "decisions": validated.decisions, **_network(validated.network.values, validated.normalizer)
+            },
         }  # fmt: skip
 
     def load_state(self, state: State, folder: Path) -> bool:
         """Go on from a state that lies beside `folder`; `lost` says what of it could not be restored.
 
-        Returns whether that was done: a state of other networks is that of another run. Raises ModelFormatError for
-        what no such run can have been.
+        Returns whether that was done: a state of other networks is that of another run. Raises OSError, KeyError,
+        TypeError, AttributeError, ArithmeticError or ValueError for what no such run can have been.
         """
         agent, env = self.agent, self.env
-        try:
-            if not np.array_equal(state["agent"]["online"], agent.online.values):
-                return False
-            if lost := self.task.restore_env(env, state["env"]):
-                state = state | {"agent": state["agent"] | {"n_step": {}, "episodes": {}}}
-                self.observation = env.reset(np.zeros(env.num_envs, dtype=bool))
-            else:
-                self.observation = array_like(self.observation, state["observation"], "observation")
-                self._held = array_like(self._held, state["held"], "held")
-                if (self._held < 0).any() or (self._held >= self.task.num_actions).any():
-                    raise ValueError("actions are none of the environment's")
-                self.statistics.load_state(state["statistics"])
-            agent.load_state(state["agent"], env.num_envs)
-            whole = [
-                restore_buffer(folder, getattr(agent, name), state["buffers"][name], self.task.num_actions)
-                for name in ("replay", "successes") if name in state["buffers"]
-            ]  # fmt: skip
-            self.lost = lost if all(whole) else "its memory is too large to be kept whole, so the oldest of it is gone"
-            self.episodes, self.seconds = count_of(state["episodes"]), float(number_of(state["seconds"], 0))
-            self._evaluated = None if state["evaluated"] is None else count_of(state["evaluated"])
-            self._load_best(state["best"])
-        except (OSError, KeyError, TypeError, AttributeError, ValueError, ArithmeticError) as error:
-            raise broken(folder, error) from error
-        self.around, self.states = state.get("around", {}), StateWriter(folder, state)
+        if not np.array_equal(state["agent"]["online"], agent.online.values):
+            return False
+        if lost := self.task.restore_env(env, state["env"]):
+            state = state | {"agent": state["agent"] | {"n_step": {}, "episodes": {}}}
+            self.observation = env.reset(np.zeros(env.num_envs, dtype=bool))
+        else:
+            self.observation = array_like(self.observation, state["observation"], "observation")
+            self._held = array_like(self._held, state["held"], "held")
+            if (self._held < 0).any() or (self._held >= self.task.num_actions).any():
+                raise ValueError("actions are none of the environment's")
+            self.statistics.load_state(state["statistics"])
+        agent.load_state(state["agent"], env.num_envs)
+        whole = [
+            restore_buffer(folder, getattr(agent, name), told, self.task.num_actions)
+            for name, told in state["buffers"].items() if name in ("replay", "successes")
+        ]  # fmt: skip
+        self.lost = lost if all(whole) else "its memory is too large to be kept whole, so the oldest of it is gone"
+        self.episodes, self.seconds = count_of(state["episodes"]), float(number_of(state["seconds"], 0))
+        self.evaluated = None if state["evaluated"] is None else count_of(state["evaluated"])
+        self._load_best(state["best"])
+        self.around = state.get("around", {})
+        self._load_validation(state["validation"] if "validation" in state else self.around.get("validation"))
         return True
 
     def _load_best(self, told: Any) -> None:
         self.best = self.best_values = self.best_normalizer = None
         if told is not None:
             self.best = self.task.read_score(told["score"])
-            self.best_values = array_like(self.agent.network.values, told["values"], "best")
-            if self.agent.normalizer:
-                self.best_normalizer = Normalizer(self.task.num_features)
-                self.best_normalizer.load(told["normalizer"])
+            self.best_values, self.best_normalizer = self._read_network(told, "best")
 
-    def restore_best(self) -> None:
-        """Restore the best networks so far, if there are any: training cannot go on from diverged ones."""
-        self.diverged = True
-        if self.best_values is not None:
-            self.agent.restore(self.best_values, deepcopy(self.best_normalizer))
+    def _load_validation(self, told: Any) -> None:
+        """Begin the flights anew that were under way; of runs from before, they were among what was `around`."""
+        if told is not None:
+            agent = self.last_agent()
+            agent.restore(*self._read_network(told, "validated network"))
+            agent.decisions = count_of(told["decisions"])
+            self._begin_validation(agent)
 
-    def last_agent(self) -> DeepQAgent:
-        """Return a copy of the agent that learns, with an empty replay buffer."""
-        agent = self._new_agent(self.config)
-        agent.copy_from(self.agent)
-        return agent
+    def _read_network(self, told: Mapping[str, Any], name: str) -> tuple[Floats, Normalizer | None]:
+        normalizer = Normalizer(self.task.num_features) if self.agent.normalizer else None
+        if normalizer:
+            normalizer.load(told["normalizer"])
+        return array_like(self.agent.network.values, told["values"], name), normalizer
+
+
+def _network(values: Floats, normalizer: Normalizer | None) -> State:
+    return {"values": values.copy(), "normalizer": normalizer.to_json() if normalizer else None}
+
+
+def task_of(config: Config) -> Task[Any]:
+    """Make the task that a configuration names.
+
+    Raises ValueError for an environment that does not exist or cannot be learnt by Q-learning, and ImportError
+    where Gymnasium is needed and not installed.
+    """
+    if config.env in (LANDER, ANYWHERE):
+        return LanderTask(config) if config.env == LANDER else AnywhereTask(config)
+    return GymTask(config)
 
 
 def passed(before: int, now: int, every: int) -> bool:

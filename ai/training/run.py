@@ -1,22 +1,33 @@
-"""A run: what learns, of any kind, as everything around it knows it.
+"""A run: what learns, of any kind, as everything around it knows it; when it ends, and how it is kept.
 
 Landers and environments of Gymnasium are trained by `ai.training.loop.Training`, digits by
 `ai.digits.training.DigitTraining`. Each says how it steps and what it goes on from. What is around a run is there
-once: files (`ai.training.keeping`), history, and a session that is watched and steered (`ai.training.session`).
+once: here, in `ai.training.history`, and in a session that is watched and steered (`ai.training.session`).
 """
 
 from __future__ import annotations
 
+import json
+import time
 from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Final, Protocol
 
 from ai.files import FolderKind
+from ai.nn import atomic_folder
+from ai.training.messages import Saved, problem_of
+from ai.training.state import State, StateWriter
 
 if TYPE_CHECKING:
     from ai.agent.replay import ReplayBuffer
     from ai.training.history import History
+
+TRAINING_FILE: Final = "training.json"
+FIRST_SECONDS: Final = 1.5  # after which a run is kept for the first time
+KEEP_SECONDS: Final = 10.0  # between two times
+SHARE: Final = 0.01  # of a run's time that it may stand still for it, at most
 
 
 class Run(Protocol):
@@ -77,29 +88,36 @@ class Run(Protocol):
         """Return copies of all that the run goes on from, besides its settings and replay buffers."""
 
 
-class Snapshot(Protocol):
-    """Copy of what a run's folder holds, at one moment: it may be saved while training goes on."""
-
-    @property
-    def described(self) -> dict[str, Any]:
-        """What the training file says."""
-
-    def save(self, folder: Path) -> None:
-        """Write it, whole or not at all; raises OSError if it cannot be written."""
-
-
 @dataclass(frozen=True)
 class RunKind:
     """Kind of run.
 
     Attributes:
         folder: what its folder may hold.
-        snapshot: copies what a run's folder is to hold; a final one is measured on what neither trained nor chose it.
+        snapshot: returns what a run's training file says now, and what writes its networks as they are now into a new
+            folder. A final one is measured on what neither trained nor chose it.
 
     """
 
     folder: FolderKind
-    snapshot: Callable[[Any, History | None, bool], Snapshot]
+    snapshot: Callable[[Any, bool], tuple[dict[str, Any], Callable[[Path], None]]]
+
+    def save(self, run: Run, folder: str | Path, final: bool = False, *, state: bool = True) -> dict[str, Any]:
+        """Save a run, whole or not at all; return its description. Without `state`, another will not go on from it.
+
+        `final` lets the latest network stand for the best too, and measures the best one; the state is that of before.
+        Raises OSError if it cannot be written, and ValueError, with the disk left as it was, if the numbers of the
+        network are not finite.
+        """
+        return _copied(self, run, Path(folder), run.around if state else None, final)()
+
+
+def step(run: Run) -> Any:
+    """Take one step of a run, and count the time that it took; return the progress."""
+    began = run.clock()
+    progress = run.advance()
+    run.seconds += run.clock() - began
+    return progress
 
 
 class Limit:
@@ -120,7 +138,107 @@ class Limit:
     def run(self, run: Run) -> Iterator[Any]:
         """Advance until the time or the steps are used up."""
         while self.share(run) < 1.0:
-            began = run.clock()
-            progress = run.advance()
-            run.seconds += run.clock() - began
-            yield progress
+            yield step(run)
+
+
+class Keeper:
+    """Keeps a run in its own folder now and then, and in any other when asked.
+
+    A thread writes, while training goes on; the run stands still for what is copied, for a hundredth of its time at
+    most. Without a folder of its own (None), a run is kept only where that is asked for. `around` gives what whoever
+    leads the run keeps in its state, for `Run.around`.
+    """
+
+    def __init__(
+        self, run: Run, kind: RunKind, folder: Path | None, history: History | None = None,
+        around: Callable[[], State] | None = None,
+    ) -> None:  # fmt: skip
+        self._run, self._kind, self._folder, self._history = run, kind, folder, history
+        self._around = around or (lambda: run.around)
+        self._saved_at = run.moment  # as on the disk
+        self._due = run.clock() + FIRST_SECONDS
+        self._problem = ""
+        self._thread = ThreadPoolExecutor(max_workers=1)
+        self._writing: Future[dict[str, Any]] | None = None
+
+    def move_to(self, folder: Path) -> None:
+        """Keep it in another folder from now on, the first time as soon as possible."""
+        self.wait()
+        self._folder, self._saved_at, self._due = folder, -1, self._run.clock()
+
+    def go_on(self, now: float) -> list[Saved]:
+        """Start to write when it is time, by the clock; return a message when that did not succeed, once."""
+        if self._folder is None or (self._writing is not None and not self._writing.done()):
+            return []
+        saved, self._writing = self._writing and _outcome(self._folder, self._writing), None
+        told = [saved] if saved and saved.problem not in ("", self._problem) else []
+        if saved:
+            self._problem = saved.problem
+        if now >= self._due:
+            began = time.monotonic()
+            self._writing = self._write(self._folder)
+            self._due = now + max(KEEP_SECONDS, (time.monotonic() - began) / SHARE)
+        return told
+
+    def save(self, folder: Path, final: bool = False) -> Saved:
+        """Keep it in a folder, and wait until it is done; `final` measures it as well."""
+        self.wait()
+        return _outcome(folder, self._write(folder, final))
+
+    def wait(self) -> None:
+        """Wait until what is being written is on the disk."""
+        if self._writing is not None:
+            wait([self._writing])
+
+    def end(self) -> None:
+        """Keep what has not been kept, and wait until it is on the disk."""
+        if self._folder is not None and self._saved_at != self._run.moment:
+            self.save(self._folder)
+        self._thread.shutdown()
+
+    def _write(self, folder: Path, final: bool = False) -> Future[dict[str, Any]]:
+        if folder == self._folder:
+            self._saved_at = self._run.moment
+        return self._thread.submit(_copied(self._kind, self._run, folder, self._around(), final, self._history))
+
+
+def _copied(
+    kind: RunKind, run: Run, folder: Path, around: State | None, final: bool, history: History | None = None
+) -> Callable[[], dict[str, Any]]:
+    """Copy what is to be kept of a run, and of what is `around` it; return what writes that, while training goes on.
+
+    That writes the state first, then the network's folder, whole or not at all, and at last deletes the state before;
+    it returns what the training file says. Where there is nothing to go on from (None), no state is left.
+    """
+    states, prepared = run.states, None
+    if states is None or states.folder != folder:
+        states = StateWriter(folder)
+        if run.states and around is not None:
+            states.take_over(run.states)
+        run.states = states if around is not None else run.states
+    if around is not None and not run.diverged and not run.done:
+        prepared = states.prepare(run.moment, run.state() | {"around": around}, run.buffers)
+    described, write_networks = kind.snapshot(run, final)
+    history = None if history is None else history.copy()
+
+    def write() -> dict[str, Any]:
+        if prepared:
+            states.write(prepared)
+        with atomic_folder(folder, kind.folder) as temporary:
+            write_networks(temporary)
+            if history is not None:
+                history.write(temporary)
+            (temporary / TRAINING_FILE).write_text(json.dumps(described, indent=2) + "\n", encoding="utf-8")
+        states.clear(prepared)
+        return described
+
+    return write
+
+
+def _outcome(folder: Path, writing: Future[dict[str, Any]]) -> Saved:
+    """Wait for what is written, and return what came of it."""
+    try:
+        described = writing.result()
+    except (OSError, ValueError) as error:
+        return Saved(folder, problem_of(error))
+    return Saved(folder, "", described.get("test"), described.get("kept_epoch"))

@@ -1,23 +1,22 @@
 """A run that is watched and steered while it goes on, of any kind.
 
-A session is pulled as a generator (`conduct`): each turn takes one step of the run, and yields its messages. What is
-around every run is here: how it begins and ends, knobs, history, files. `lander_session` and `digit_session` say what
-is shown of each kind, and which further commands it knows.
+A session is pulled as a generator (`Session.lead`): each turn takes one step of the run, and yields its messages. What
+is around every run is here: how it begins and ends, knobs, history, files. `lander_session` and `digit_session` say
+what is shown of each kind, and which further commands it knows.
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator, Iterator, Sequence
 from operator import attrgetter
 from pathlib import Path
 from typing import Any, ClassVar, Final, Generic, TypeVar
 
 from ai.training.history import Entry, History, SettingChange
-from ai.training.keeping import Keeper
 from ai.training.messages import AutosaveTo, ChangeSetting, Finish, Refused, RunStarted, Save
-from ai.training.run import Run, RunKind
-from ai.training.state import State
+from ai.training.run import Keeper, Run, RunKind, step
+from ai.training.state import State, going_on
 
 TURNING_SECONDS: Final = 1.0  # between two changes of a knob that is still being turned
 
@@ -26,44 +25,53 @@ Messages = tuple[Any, ...]
 
 
 class Session(ABC, Generic[Training]):
-    """Session of one run: the run, its history, its messages, and the folder that it is kept in.
+    """Session of one run, which is kept in the folder `keep`; one that goes on has its history in `resume`.
 
     Attributes:
         kind: the kind of run.
+        columns: what its history measures.
         commands: the method that carries out each command, by its class; a subclass adds its own.
+        messages: to be yielded with the next turn.
 
     """
 
     kind: ClassVar[RunKind]
+    columns: ClassVar[Sequence[str]]
     commands: ClassVar[dict[type, Callable[..., None]]]
 
-    def __init__(self, training: Training, history: History, keep: Path | None) -> None:
-        self.training, self.history = training, history
-        self.keeper = Keeper(training, self.kind, keep, history, self.state)
-        self._turned_at: dict[str, float] = {}  # by the clock, when each knob was turned last
+    def __init__(self, training: Training, keep: Path | None, resume: Path | None) -> None:
+        self.training = training
+        self.history = History.read(resume, self.columns) if resume else History(self.columns)
+        self.keeper = Keeper(training, self.kind, keep, self.history, self.state)
         self.messages: list[Any] = []
+        self._resumed = resume or Path()
+        self._turned_at: dict[str, float] = {}  # by the clock, when each knob was turned last
 
     # What a kind says
+
+    @abstractmethod
+    def show(self) -> None:
+        """Tell how it stands, at the beginning."""
+
+    @abstractmethod
+    def tell(self, progress: Any) -> None:
+        """Tell of a step that was taken."""
+
+    @abstractmethod
+    def state(self) -> State:
+        """Return what the session goes on from, besides the run."""
+
+    @abstractmethod
+    def load_state(self, state: State) -> None:
+        """Go on from what `state` gave; raises KeyError, TypeError or ValueError for anything else."""
 
     @property
     def keeps_still(self) -> bool:
         """Whether the run is not to be kept as it is now."""
         return False
 
-    @abstractmethod
-    def show(self) -> None:
-        """Tell how it stands, at the beginning."""
-
     def turned(self) -> None:
         """Tell what else has changed with a knob that was turned."""
-
-    @abstractmethod
-    def step(self) -> None:
-        """Take one step of the run, and tell of it."""
-
-    @abstractmethod
-    def state(self) -> State:
-        """Return what the session goes on from, besides the run."""
 
     def finish_measuring(self) -> None:
         """Bring a measurement that is under way to its end, before a save that was asked for."""
@@ -76,34 +84,53 @@ class Session(ABC, Generic[Training]):
         """Put the networks back to the last good ones, when training has diverged."""
         self.training.restore_best()
 
-    # What is around it
-
-    def begin(self) -> Messages:
-        """Say how the run begins."""
-        training = self.training
-        self.messages.append(RunStarted(training.config, training.seed, training.moment, training.lost, training.steps))
-        self.show()
-        return self._flush()
-
-    def advance(self) -> Messages:
-        """Take one step of the run; return the messages about it."""
-        self.step()
-        if not self.keeps_still:
-            self.messages += self.keeper.go_on(self.training.clock())
-        return self._flush()
-
-    def carry_out(self, command: Any) -> Messages:
-        """Carry out a command, without a step; return the answer."""
-        self.commands[type(command)](self, command)
-        return self._flush()
-
-    def over(self, command: Any) -> bool:
-        """Whether no more steps are to be taken."""
-        return self.training.done or isinstance(command, Finish)
-
     def end(self) -> None:
         """Keep what has not been kept, and wait until it is on the disk."""
         self.keeper.end()
+
+    # What is around it
+
+    def lead(self, command: Any = None) -> Generator[Messages, Any, None]:
+        """Take the run to its end, or without end; every turn yields the messages of one step.
+
+        The first turn only says how the run begins. A turn that is sent a command carries that out, at once and
+        without a step, and yields the answer; `command` is one that came before. The run is kept now and then, when it
+        is over, and when the generator is closed. Raises FloatingPointError, which names the learning step and the
+        likely cause, when training diverges.
+        """
+        training = self.training
+        with going_on(self._resumed):
+            if training.around:
+                self.load_state(training.around)
+        try:
+            self.messages.append(
+                RunStarted(training.config, training.seed, training.moment, training.lost, training.steps)
+            )
+            self.show()
+            command = (yield self._flush()) or command
+            while not (training.done or isinstance(command, Finish)):
+                if command is None:
+                    self.tell(step(training))
+                    if not self.keeps_still:
+                        self.messages += self.keeper.go_on(training.clock())
+                command = yield self._answer(command)
+            for _ in self.last_words():
+                while command is not None:
+                    command = yield self._answer(command)
+                command = yield self._flush()
+            while command is not None:
+                command = yield self._answer(command)
+        except FloatingPointError:
+            self.go_back()
+            raise
+        finally:
+            self.end()
+
+    def _answer(self, command: Any) -> Messages:
+        """Carry out a command, if there is one; return all messages."""
+        if command is not None:
+            self.commands[type(command)](self, command)
+        return self._flush()
 
     def _flush(self) -> Messages:
         told, self.messages = tuple(self.messages), []
@@ -114,22 +141,21 @@ class Session(ABC, Generic[Training]):
         self.history.append(entry)
         self.messages.append(entry)
 
-    def record_change(self, name: str, before: Any, after: Any, amends: bool = False) -> None:
-        """Record that a knob was turned, or what else was changed from outside."""
-        training = self.training
-        self.record(SettingChange(training.moment, name, before, after, amends, training.seconds))
+    def record_change(self, name: str, before: Any, after: Any) -> None:
+        """Record that a knob was turned, or what else was changed from outside.
 
-    def amends(self, name: str, after: Any) -> bool:
-        """Whether a knob is still being turned: a moment after the last time, or without a step in between."""
-        now, last = self.training.clock(), self._turned_at.get(name)
+        One that is still being turned, a moment after the last time or without a step in between, amends that change.
+        """
+        training = self.training
+        now, last = training.clock(), self._turned_at.get(name)
         self._turned_at[name] = now
         earlier = next((each for each in reversed(self.history.setting_changes) if each.name == name), None)
-        if last is None or earlier is None:
-            return False
-        amends = now - last < TURNING_SECONDS or earlier.decisions == self.training.moment
-        if amends and earlier.before == after:  # back where it was: the mark will be gone
-            del self._turned_at[name]
-        return amends
+        amends = False
+        if before is not None and last is not None and earlier is not None:
+            amends = now - last < TURNING_SECONDS or earlier.decisions == training.moment
+            if amends and earlier.before == after:  # back where it was: the mark will be gone
+                del self._turned_at[name]
+        self.record(SettingChange(training.moment, name, before, after, amends, training.seconds))
 
     def change(self, command: ChangeSetting) -> None:
         """Turn a live knob."""
@@ -143,7 +169,7 @@ class Session(ABC, Generic[Training]):
         value = attrgetter(name)
         after = value(self.training.config)
         if after != value(before):
-            self.record_change(name, value(before), after, self.amends(name, after))
+            self.record_change(name, value(before), after)
         self.turned()
 
     def refuse(self, command: Any, problem: object) -> None:
@@ -161,28 +187,3 @@ class Session(ABC, Generic[Training]):
 Session.commands = {
     ChangeSetting: Session.change, Save: Session._save, AutosaveTo: Session._autosave_to, Finish: lambda *_: None
 }  # fmt: skip
-
-
-def conduct(session: Session[Any], command: Any = None) -> Generator[Messages, Any, None]:
-    """Take a run to its end, or without end; every turn yields the messages of one step.
-
-    The first turn only says how the run begins. A turn that is sent a command carries that out, at once and without a
-    step, and yields the answer; `command` is one that came before. The run is kept now and then, when it is over, and
-    when the generator is closed. Raises FloatingPointError, which names the learning step and the likely cause, when
-    training diverges.
-    """
-    try:
-        command = (yield session.begin()) or command
-        while not session.over(command):
-            command = yield (session.advance() if command is None else session.carry_out(command))
-        for _ in session.last_words():
-            while command is not None:
-                command = yield session.carry_out(command)
-            command = yield session._flush()
-        while command is not None:
-            command = yield session.carry_out(command)
-    except FloatingPointError:
-        session.go_back()
-        raise
-    finally:
-        session.end()

@@ -13,9 +13,9 @@ import json
 import os
 import secrets
 import shutil
-from collections.abc import Mapping
-from contextlib import suppress
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
@@ -59,22 +59,13 @@ def rebuilt(template: Any, value: Any) -> Any:
     return number_of(value)
 
 
-@dataclass
-class _Block:
-    """Transitions of a buffer that are to be written: numbers `number` · BLOCK to the next, and its file's name."""
-
-    number: int
-    name: str
-    content: NDArray[np.uint8]
-
-
-@dataclass
+@dataclass(frozen=True)
 class PreparedState:
     """Copy of a state that can be written while training goes on."""
 
-    name: str
+    name: str  # of its archive
     state: State
-    blocks: list[_Block] = field(default_factory=list)
+    blocks: dict[str, NDArray[np.uint8]]  # transitions that are not on the disk yet, by the names of their files
 
 
 class StateWriter:
@@ -86,52 +77,43 @@ class StateWriter:
     def __init__(self, folder: Path, state: State | None = None) -> None:
         self.folder, self._folder = folder, state_folder(folder)
         self._token = secrets.token_hex(4)  # no two processes ever write blocks of one name
-        self._written: dict[str, dict[int, str]] = {}  # of each buffer, blocks on the disk
+        self._written: dict[tuple[str, int], str] = {}  # files of blocks, by their buffers and numbers
         for name, told in state["buffers"].items() if state else ():
-            self._written[name] = dict(enumerate(told["blocks"], (told["added"] - told["kept"]) // BLOCK))
+            numbers = range((told["added"] - told["kept"]) // BLOCK, told["added"] // BLOCK)
+            self._written |= {(name, number): file for number, file in zip(numbers, told["blocks"], strict=False)}
 
     def take_over(self, other: StateWriter) -> None:
         """Take over the blocks that another run's state has on the disk, without writing them again if it can be."""
-        for name, blocks in other._written.items():
-            taken = self._written.setdefault(name, {})
-            for number, block in blocks.items():
-                if other._folder != self._folder:
-                    self._folder.mkdir(parents=True, exist_ok=True)
-                    try:
-                        os.link(other._folder / block, self._folder / block)
-                    except FileExistsError:
-                        pass
-                    except OSError:  # not every disk has hard links
-                        continue
-                taken[number] = block
+        for key, block in other._written.items():
+            with suppress(OSError):  # not every disk has hard links
+                self._folder.mkdir(parents=True, exist_ok=True)
+                with suppress(FileExistsError):
+                    os.link(other._folder / block, self._folder / block)
+                self._written[key] = block
 
     def prepare(self, moment: int, state: State, buffers: Mapping[str, ReplayBuffer]) -> PreparedState:
         """Copy what is to be written of a state and of replay buffers, which may change from now on."""
-        prepared = PreparedState(_name(moment), dict(state))
         priorities = 16 * sum(len(each) for each in buffers.values() if isinstance(each, PrioritisedReplayBuffer))
         room = MOST - (MOST >> 5) - priorities
-        prepared.state["buffers"] = {}
+        told, blocks = {}, dict[str, NDArray[np.uint8]]()
         for name, buffer in buffers.items():
-            most = max(0, room // (_packed(buffer).itemsize) - BLOCK)
-            kept = min(len(buffer), most)
-            room -= kept * _packed(buffer).itemsize
-            prepared.state["buffers"][name] = self._prepared(name, buffer, kept, prepared.blocks)
-        return prepared
+            size = _packed(buffer).itemsize
+            kept = min(len(buffer), max(0, room // size - BLOCK))
+            room -= kept * size
+            told[name] = self._told(name, buffer, kept, blocks)
+        return PreparedState(_name(moment), state | {"buffers": told}, blocks)
 
-    def _prepared(self, name: str, buffer: ReplayBuffer, kept: int, blocks: list[_Block]) -> State:
+    def _told(self, name: str, buffer: ReplayBuffer, kept: int, blocks: dict[str, NDArray[np.uint8]]) -> State:
         """Return the state of a buffer's newest transitions; add those blocks that are not on the disk yet."""
         oldest, whole = buffer.added - kept, buffer.added // BLOCK
         numbers = range(oldest // BLOCK, whole) if kept else range(0)
-        written = self._written.setdefault(name, {})
         for number in numbers:
-            if number not in written:
-                written[number] = f"{name}-{self._token}-{number}.npy"
-                blocks.append(_Block(number, written[number], _records(buffer, number * BLOCK, (number + 1) * BLOCK)))
-        for number in [number for number in written if number not in numbers]:
-            del written[number]
+            if (name, number) not in self._written:
+                self._written[name, number] = file = f"{name}-{self._token}-{number}.npy"
+                blocks[file] = _records(buffer, number * BLOCK, (number + 1) * BLOCK)
         told: State = {
             "start": buffer.start, "size": len(buffer), "added": buffer.added, "kept": kept,
-            "blocks": [written[number] for number in numbers],
+            "blocks": [self._written[name, number] for number in numbers],
             "rest": _records(buffer, max(oldest, whole * BLOCK), buffer.added),
         }  # fmt: skip
         if isinstance(buffer, PrioritisedReplayBuffer):
@@ -142,8 +124,8 @@ class StateWriter:
     def write(self, prepared: PreparedState) -> None:
         """Write a state; raises OSError if it cannot be."""
         try:
-            for block in prepared.blocks:
-                write_bytes(self._folder / block.name, _npy(block.content))
+            for file, content in prepared.blocks.items():
+                write_bytes(self._folder / file, _npy(content))
             write_bytes(self._folder / prepared.name, _archive(prepared.state))
         except OSError:
             self._written.clear()  # next time, all of them are written
@@ -153,8 +135,9 @@ class StateWriter:
         """Delete all files but those of a state, or all of them, once the run's folder is of its moment."""
         if prepared is None:
             shutil.rmtree(self._folder, ignore_errors=True)
+            self._written.clear()
             return
-        names = {prepared.name, *(name for told in prepared.state["buffers"].values() for name in told["blocks"])}
+        names = {prepared.name, *(file for told in prepared.state["buffers"].values() for file in told["blocks"])}
         with suppress(OSError):
             for path in self._folder.iterdir():
                 if path.name not in names:
@@ -163,31 +146,36 @@ class StateWriter:
 
 def read_state(folder: str | Path, moment: int) -> State | None:
     """Read the state of a moment that lies beside a run's folder; None if there is none. Raises ModelFormatError."""
-    try:
-        left = [MOST]
+    left = MOST
 
-        def expect(array: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
-            left[0] -= dtype.itemsize * int(np.prod(shape, dtype=object))
-            if left[0] < 0 or dtype.kind not in "biuf":
-                raise ValueError(f"{array} is not what a state has")
+    def expect(array: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
+        nonlocal left
+        left -= dtype.itemsize * int(np.prod(shape, dtype=object))
+        if left < 0 or dtype.kind not in "biuf":
+            raise ValueError(f"{array} is not what a state has")
 
-        arrays = read_arrays(inside(state_folder(folder), _name(moment)), MOST, expect)
-        text = arrays.pop(_TEXT).tobytes().decode()
-        state = _tree(parse_json(text), arrays)
+    with going_on(folder):
+        try:
+            arrays = read_arrays(inside(state_folder(folder), _name(moment)), MOST, expect)
+        except FileNotFoundError:
+            return None
+        state = _tree(parse_json(arrays.pop(_TEXT).tobytes().decode()), arrays)
         if not isinstance(state, dict):
             raise ValueError("is no state")
         return state
-    except FileNotFoundError:
-        return None
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise broken(folder, error) from error
 
 
-def broken(folder: str | Path, error: Exception) -> ModelFormatError:
-    """Return the error of a state that cannot be gone on from, and what can be done."""
-    file = f"{Path(error.filename).name}: " if isinstance(error, OSError) and error.filename else ""
-    said = f"{file}{brief(problem_in(error), 100)}; without this folder, the run goes on with an empty memory"
-    return ModelFormatError(state_folder(folder), [said])
+@contextmanager
+def going_on(folder: str | Path) -> Iterator[None]:
+    """Raise ModelFormatError, with the way out, for errors of what goes on from the state beside a run's folder."""
+    try:
+        yield
+    except ModelFormatError:
+        raise
+    except (OSError, KeyError, TypeError, AttributeError, ValueError, ArithmeticError) as error:
+        file = f"{Path(error.filename).name}: " if isinstance(error, OSError) and error.filename else ""
+        said = f"{file}{brief(problem_in(error), 100)}; without this folder, the run goes on with an empty memory"
+        raise ModelFormatError(state_folder(folder), [said]) from error
 
 
 def restore_buffer(folder: str | Path, buffer: ReplayBuffer, told: Any, num_actions: int) -> bool:

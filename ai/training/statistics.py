@@ -3,38 +3,50 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 
 from ai.common.environment import SUCCESS, Doubles, StepResult
-from ai.files import array_like
+from ai.files import array_like, read_as
 
 RECENT: Final = 100
 OUTCOMES: Final = 4  # an environment has that many at the most; 0, going on, is not counted
+
+
+@dataclass(frozen=True)
+class _RecentFile:
+    outcomes: tuple[int, ...]
+    returns: tuple[float, ...]
+    parts: tuple[tuple[float, ...], ...]
 
 
 class EpisodeStatistics:
     """Episode statistics: sums over every slot's current episode, and the last hundred that ended.
 
     Returns and parts of the reward are in points, exploration included.
+
+    Attributes:
+        earned: (num_envs,) in each slot's episode so far.
+        shares: of the last hundred, by outcome from 1 on; zeros before any has ended.
+        mean_return, parts: of the same, and what each part of the reward brought of it.
+
     """
 
     def __init__(self, num_envs: int) -> None:
-        self.earned: Doubles = np.zeros(num_envs)  # in each slot's episode so far
-        self.shares: tuple[float, ...] = (0.0,) * OUTCOMES  # of the last hundred, by outcome from 1 on
-        self.mean_return = 0.0  # of the same
-        self.parts: tuple[float, ...] = ()  # of that, what each part of the reward brought
+        self.earned: Doubles = np.zeros(num_envs)
+        self.shares: tuple[float, ...] = (0.0,) * OUTCOMES
+        self.mean_return = 0.0
+        self.parts: tuple[float, ...] = ()
         self._paid: Doubles | None = None  # what `earned` is the sum of, (parts, num_envs)
-        self._outcomes: deque[int] = deque(maxlen=RECENT)
-        self._returns: deque[float] = deque(maxlen=RECENT)
-        self._parts: deque[list[float]] = deque(maxlen=RECENT)
+        self._recent: deque[tuple[int, float, Sequence[float]]] = deque(maxlen=RECENT)  # outcomes, returns, parts
 
     @property
     def known(self) -> bool:
         """Whether any episode has ended."""
-        return bool(self._outcomes)
+        return bool(self._recent)
 
     @property
     def success(self) -> float:
@@ -50,31 +62,27 @@ class EpisodeStatistics:
 
     def finish(self, result: StepResult) -> None:
         """Close the episodes that ended in this step."""
-        ended = result.ended
-        self._outcomes.extend(result.outcome[ended].tolist())
-        self._returns.extend(self.earned[ended].tolist())
-        self.earned[ended] = 0.0
+        for slot in np.flatnonzero(result.ended).tolist():
+            parts = () if self._paid is None else tuple(self._paid[:, slot].tolist())
+            self._recent.append((int(result.outcome[slot]), float(self.earned[slot]), parts))
+        self.earned[result.ended] = 0.0
         if self._paid is not None:
-            self._parts.extend(self._paid[:, ended].T.tolist())
-            self._paid[:, ended] = 0.0
+            self._paid[:, result.ended] = 0.0
         self._sum_up()
 
     def to_json(self) -> dict[str, list[Any]]:
         """Return the last hundred episodes' results for a file, so that a resumed run goes on counting from them."""
-        return {"outcomes": [*self._outcomes], "returns": [*self._returns], "parts": [*self._parts]}
+        outcomes, returns, parts = zip(*self._recent, strict=True) if self._recent else ((), (), ())
+        return {"outcomes": [*outcomes], "returns": [*returns], "parts": [part for part in parts if part]}
 
     def load(self, told: Mapping[str, Any]) -> None:
-        """Take over what `to_json` gave; raises KeyError, TypeError or ValueError where it makes no sense."""
-        outcomes = [int(outcome) for outcome in told["outcomes"]]
-        returns = [float(earned) for earned in told["returns"]]
-        parts = [[float(part) for part in parts] for parts in told["parts"]]
-        if len(returns) != len(outcomes) or len(parts) not in (0, len(outcomes)) or len({*map(len, parts)}) > 1:
+        """Take over what `to_json` gave; raises ValueError where it makes no sense."""
+        recent = read_as(_RecentFile, told)
+        count, parts = len(recent.outcomes), recent.parts
+        if len(recent.returns) != count or len(parts) not in (0, count) or len({*map(len, parts)}) > 1:
             raise ValueError("the last flights have outcomes, returns and parts of different numbers")
-        if not np.isfinite([*returns, *(part for each in parts for part in each)]).all():
-            raise ValueError("the last flights have returns that are no numbers")
-        self._outcomes, self._returns = deque(outcomes, maxlen=RECENT), deque(returns, maxlen=RECENT)
-        self._parts = deque(parts, maxlen=RECENT)
-        if outcomes:
+        self._recent.extend(zip(recent.outcomes, recent.returns, parts or ((),) * count, strict=True))
+        if count:
             self._sum_up()
 
     def state(self) -> dict[str, Any]:
@@ -84,14 +92,14 @@ class EpisodeStatistics:
 
     def load_state(self, state: Mapping[str, Any]) -> None:
         """Go on from what `state` returned; raises KeyError, TypeError or ValueError for anything else."""
+        self._recent.clear()
         self.load(state["recent"])
         self.earned = array_like(self.earned, state["earned"], "earned")
         if (paid := state["paid"]) is not None:
             self._paid = array_like(np.empty((len(paid), len(self.earned))), paid, "paid")
 
     def _sum_up(self) -> None:
-        count = len(self._outcomes)
-        self.shares = tuple(self._outcomes.count(outcome + 1) / count for outcome in range(OUTCOMES))
-        self.mean_return = sum(self._returns) / count
-        if self._parts:
-            self.parts = tuple(np.mean(self._parts, axis=0).tolist())
+        outcomes, returns, parts = zip(*self._recent, strict=True)
+        self.shares = tuple(outcomes.count(outcome + 1) / len(outcomes) for outcome in range(OUTCOMES))
+        self.mean_return = sum(returns) / len(returns)
+        self.parts = tuple(np.mean(parts, axis=0).tolist())

@@ -1,25 +1,360 @@
-"""Choice of the task by the name of its environment."""
+"""Tasks: what training must know of an environment to learn it, and how its pilots are measured. Our lander is here.
+
+Environments of Gymnasium are in `ai.training.gym_task`.
+"""
 
 from __future__ import annotations
 
-from ai.training.config import ANYWHERE, LANDER, Config
-from ai.training.task import Task
+from abc import ABC, abstractmethod
+from collections.abc import Generator
+from dataclasses import asdict, dataclass, replace
+from typing import Any, Final, Generic, TypeVar
+
+import numpy as np
+
+from ai.agent.symmetry import Symmetry
+from ai.common.environment import Doubles, Env, Ints
+from ai.files import MOST, array_like, read_as
+from ai.lander.anywhere import SITES, AnywhereEnv
+from ai.lander.environment import LIMITS, NUM_ACTIONS, NUM_FEATURES, LanderEnv, Outcome
+from ai.lander.pilots import Pilot
+from ai.lander.rules import MIRROR_ACTIONS, MIRROR_FEATURES, MIRROR_SIGNS, engines_switched
+from ai.lander.sensing import SURROUNDINGS, SURROUNDINGS_MIRROR
+from ai.lander.spawns import CURRICULA, SPAWNS, TEACH_HARD
+from ai.training.config import Config, touchdown_limits
+from ai.training.state import State, rebuilt
+
+VALIDATION_SEED: Final = 1_000_003  # episodes that choose the best checkpoint
+TEST_SEED: Final = 2_000_003  # episodes that have no say in anything, to measure a finished network by
+LANDER_SYMMETRY: Final = Symmetry(MIRROR_SIGNS, MIRROR_FEATURES, MIRROR_ACTIONS)
+ANYWHERE_SYMMETRY: Final = Symmetry(
+    np.concatenate([MIRROR_SIGNS, SURROUNDINGS_MIRROR]),
+    np.concatenate([MIRROR_FEATURES, NUM_FEATURES + np.arange(len(SURROUNDINGS))]),
+    MIRROR_ACTIONS,
+)
+# What changes of landers as they fly; the rest of their snapshot follows from the settings, and from their sites.
+_CHANGED: Final = ("landers", "bodies", "contacts", "gravity", "strictness", "landings")
+# Shapes of what is known of each contact (`engine.contacts.Contacts`).
+_CONTACTS: Final = {
+    "normal": (2,), "points": (2, 2), "depth": (2,), "feature": (2,), "valid": (2,), "world": (), "pair": (),
+    "body": (2,), "friction": (), "restitution": (), "impulse": (3,), "approach": (3,), "age": (), "colour": (),
+}  # fmt: skip
+
+S = TypeVar("S", bound="Score")
+T = TypeVar("T")
+Trial = Generator[None, None, T]  # takes one decision a turn, and returns what came of them
 
 
-def task_of(config: Config) -> Task:
-    """Make the task that a configuration names.
+class Score(ABC):
+    """Score of a pilot over a number of episodes without random actions; a dataclass that a file can hold.
 
-    Raises ValueError for an environment that does not exist or cannot be learnt by Q-learning, and ImportError
-    where Gymnasium is needed and not installed.
+    `success` is the share that ended well, None where the environment does not define that; `mean_return` the mean sum
+    of rewards.
     """
-    if config.env == LANDER:
-        from ai.training.lander_task import LanderTask
 
-        return LanderTask(config)
-    if config.env == ANYWHERE:
-        from ai.training.anywhere_task import AnywhereTask
+    episodes: int
+    success: float | None
+    mean_return: float
 
-        return AnywhereTask(config)
-    from ai.training.gym_task import GymTask
+    @property
+    @abstractmethod
+    def figure(self) -> str:
+        """Most important figure of the score, as a short text."""
 
-    return GymTask(config)
+    @abstractmethod
+    def better_than(self, other: Any) -> bool:
+        """Whether this beats another score of its kind, or None."""
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the values as JSON can hold them."""
+        return asdict(self)  # type: ignore[call-overload,no-any-return]
+
+
+class Task(ABC, Generic[S]):
+    """Environment as an agent is to learn it.
+
+    Attributes:
+        num_features, num_actions: numbers that an observation has, and actions to choose from.
+        symmetry: how a mirror image looks; None if it looks different.
+        action_chances: (actions,) odds of random actions; None for uniform.
+        evaluate_every: decisions between two validations.
+        validation_episodes, test_episodes: how many suit it.
+        score: what its pilots are measured by.
+
+    """
+
+    num_features: int
+    num_actions: int
+    symmetry: Symmetry | None = None
+    action_chances: Doubles | None = None
+    evaluate_every: int
+    validation_episodes: int
+    test_episodes: int
+    score: type[S]
+
+    def __init__(self, config: Config) -> None:
+        self.config = config
+
+    @abstractmethod
+    def make_env(self, rng: np.random.Generator) -> Env:
+        """Make the environment to train in."""
+
+    def apply_live(self, config: Config, env: Any) -> None:  # noqa: ARG002 - of most, nothing is live
+        """Take over the live knobs of another configuration, here and in an environment that `make_env` made."""
+        self.config = config
+
+    def update_env(self, decisions: int, env: Any) -> None:
+        """Bring what changes with experience up to date in an environment that `make_env` made."""
+
+    @abstractmethod
+    def env_state(self, env: Any) -> State:
+        """Return all that an environment of `make_env` goes on from."""
+
+    @abstractmethod
+    def restore_env(self, env: Any, state: State) -> str:
+        """Let a new environment go on from what `env_state` gave; return what of it could not be restored, or "".
+
+        Raises KeyError, TypeError, OverflowError or ValueError for what no environment can have been.
+        """
+
+    @abstractmethod
+    def trial(self, pilot: Pilot, episodes: int, seed: int) -> Trial[S]:
+        """Measure a pilot over so many episodes at once, which follow from `seed`, one decision at a time."""
+
+    def evaluate(self, pilot: Pilot, episodes: int, seed: int) -> S:
+        """Return the score of a whole `trial`."""
+        return finished(self.trial(pilot, episodes, seed))
+
+    def read_score(self, values: Any) -> S:
+        """Read what a score's `to_json` gave; raises ValueError for anything else."""
+        return read_as(self.score, values)
+
+
+@dataclass(frozen=True)
+class Evaluation(Score):
+    """Evaluation of a pilot over a number of flights without random actions."""
+
+    episodes: int
+    success: float  # shares of the flights
+    crash: float
+    out_of_bounds: float
+    time_out: float
+    mean_return: float
+    mean_time: float | None  # seconds, of the landings; None without any
+    mean_fuel: float | None  # seconds of main engine, of the landings
+    switches: float  # times a second that an engine goes on or off, of all flights
+    hard: float | None = None  # share of further flights, from hard starts, that landed; None where none were flown
+
+    def better_than(self, other: Evaluation | None) -> bool:
+        """Whether more flights landed, random and hard starts together, or as many and the mean return is higher.
+
+        Where hard starts were not flown, the mean return decides, and each flight that did not land counts a thousand
+        points less. Then a tenth of a second outweighs one landing in 500, too much where nearly all land.
+        """
+        if other is None:
+            return True
+        if self.hard is None or other.hard is None:
+            return self.mean_return + 1000 * self.success > other.mean_return + 1000 * other.success
+        return (self.success + self.hard, self.mean_return) > (other.success + other.hard, other.mean_return)
+
+    @property
+    def figure(self) -> str:
+        """Share that landed, as text."""
+        return f"{self.success:.1%}"
+
+    def __str__(self) -> str:
+        took = "" if self.mean_time is None else f", in {self.mean_time:.1f} s on average"
+        return f"{self.figure} of {self.episodes} validation flights landed{took}"
+
+
+@dataclass(frozen=True)
+class FlightSums:
+    """Counts and sums of a number of flights; those of two parts of all flights add up."""
+
+    outcomes: tuple[int, ...]  # flights by outcome
+    returns: float
+    landing_seconds: float
+    landing_fuel: float  # seconds of main engine, of the landings
+    switches: int  # engines that went on or off
+    seconds: float  # of all flights
+
+    def plus(self, other: FlightSums) -> FlightSums:
+        """Return the sums of both."""
+        outcomes = tuple(map(sum, zip(self.outcomes, other.outcomes, strict=True)))
+        return FlightSums(
+            outcomes, self.returns + other.returns, self.landing_seconds + other.landing_seconds,
+            self.landing_fuel + other.landing_fuel, self.switches + other.switches, self.seconds + other.seconds,
+        )  # fmt: skip
+
+    def evaluation(self) -> Evaluation:
+        """Return the means."""
+        episodes, landed = sum(self.outcomes), self.outcomes[Outcome.LANDED]
+        success, crash, out_of_bounds, time_out = (count / episodes for count in self.outcomes[Outcome.LANDED :])
+        return Evaluation(
+            episodes,
+            success,
+            crash,
+            out_of_bounds,
+            time_out,
+            self.returns / episodes,
+            self.landing_seconds / landed if landed else None,
+            self.landing_fuel / landed if landed else None,
+            self.switches / self.seconds,
+        )
+
+
+def finished(trial: Trial[T]) -> T:
+    """Take a trial to its end, and return what came of it."""
+    while True:
+        try:
+            next(trial)
+        except StopIteration as done:
+            return done.value  # type: ignore[no-any-return]
+
+
+def flown(pilot: Pilot, env: LanderEnv, told: slice = slice(None)) -> Trial[FlightSums]:
+    """Fly all slots of `env`, which has just been reset, to the end; return what came of the slots `told`."""
+    observation = env.observe()
+    returns: Doubles = np.zeros(env.num_envs)
+    switches: Ints = np.zeros(env.num_envs, dtype=np.intp)
+    while (flying := env.outcome == Outcome.FLYING).any():
+        held = env.actions
+        # Asked for every slot, whether it still flies or not: each keeps its row, as a pilot with a memory needs.
+        actions = np.where(flying, pilot.act(observation, held=held), held)
+        switches += engines_switched(held, actions)
+        result = env.step(actions)
+        observation = result.observation
+        returns += result.reward
+        yield
+    outcomes, seconds, fuel = env.outcome[told], env.time[told], env.fuel[told]
+    landed = outcomes == Outcome.LANDED
+    return FlightSums(
+        tuple(int((outcomes == outcome).sum()) for outcome in Outcome),
+        float(returns[told].sum()),
+        float(seconds[landed].sum()),
+        float(fuel[landed].sum()),
+        int(switches[told].sum()),
+        float(seconds.sum()),
+    )
+
+
+def evaluate(pilot: Pilot, episodes: int, seed: int, spawn: str = "random", frame_skip: int = 4) -> Evaluation:
+    """Fly `episodes` flights at once, without exploration, from spawns that follow from `seed`."""
+    env = LanderEnv(episodes, seed, spawn, frame_skip)
+    env.reset()
+    return finished(flown(pilot, env)).evaluation()
+
+
+class LanderTask(Task[Evaluation]):
+    """Task of learning to land."""
+
+    num_features, num_actions = NUM_FEATURES, NUM_ACTIONS
+    evaluate_every, validation_episodes, test_episodes = 100_000, 500, 1000
+    score = Evaluation
+    symmetry = LANDER_SYMMETRY
+    landers: type[LanderEnv] = LanderEnv
+
+    def __init__(self, config: Config) -> None:
+        super().__init__(config)
+        self.action_chances = _action_chances(config)
+
+    def make_env(self, rng: np.random.Generator) -> LanderEnv:
+        """Make the landers to train with."""
+        config = self.config
+        spawn = CURRICULA.get(config.spawn, config.spawn)
+        return self.landers(config.num_envs, rng, spawn, config.frame_skip, weights=config.reward_weights)
+
+    def apply_live(self, config: Config, env: LanderEnv) -> None:
+        """Take over the live knobs of another configuration, here and in the landers."""
+        self.config, self.action_chances = config, _action_chances(config)
+        env.weights = config.reward_weights
+
+    def update_env(self, decisions: int, env: LanderEnv) -> None:
+        """Tighten the limits of a touchdown over the schedule, from the real ones to a share of them."""
+        env.limits = LIMITS.stricter(touchdown_limits(self.config, decisions))
+
+    def env_state(self, env: LanderEnv) -> State:
+        """Return all that the landers go on from."""
+        snapshot = env.snapshot()
+        return {
+            "flights": {name: snapshot[name] for name in _CHANGED},
+            "streams": [stream.bit_generator.state for stream in env.streams],
+        }
+
+    def restore_env(self, env: LanderEnv, state: State) -> str:
+        """Let new landers go on from what `env_state` gave; they can be restored whole."""
+        new = env.snapshot()
+        told, flying = state["flights"], {name: new[name] for name in _CHANGED if name != "contacts"}
+        flights = {name: rebuilt(template, told[name]) for name, template in flying.items()}
+        flights["contacts"] = _contacts(env, new["contacts"], told["contacts"])
+        landers = flights["landers"]
+        outside = not np.isin(landers["target"], range(len(env.ground.pads))).all()
+        if outside or not np.isin(landers["outcome"], tuple(Outcome)).all() or not 0 <= flights["landings"] <= MOST:
+            raise ValueError("flights are of other landers, or of none")
+        env.restore(new | flights)
+        for stream, told in zip(env.streams, state["streams"], strict=True):
+            stream.bit_generator.state = told
+        return ""
+
+    def trial(self, pilot: Pilot, episodes: int, seed: int) -> Trial[Evaluation]:
+        """Fly so many flights at once from random spawns, one decision at a time.
+
+        Where hard starts are taught, half as many from such ones fly beside them: much cheaper than after them.
+        """
+        beside = (episodes + 1) // 2 if self.config.spawn in TEACH_HARD else 0
+        env = LanderEnv(episodes + beside, seed, "random", self.config.frame_skip)
+        env.reset()
+        if beside:
+            rng, hard = np.random.default_rng(seed), np.arange(env.num_envs) >= episodes
+            env.place(hard, np.array([SPAWNS["hard"](rng) for _ in range(beside)]))
+        score = (yield from flown(pilot, env, slice(episodes))).evaluation()
+        return replace(score, hard=float((env.outcome[hard] == Outcome.LANDED).mean())) if beside else score
+
+
+class AnywhereTask(LanderTask):
+    """Task of learning to land at random sites, with what is around the lander as further inputs.
+
+    It is measured at sites of each kind equally often.
+    """
+
+    num_features = AnywhereEnv.num_features
+    evaluate_every, validation_episodes, test_episodes = 250_000, 720, 1800
+    symmetry = ANYWHERE_SYMMETRY
+    landers = AnywhereEnv
+
+    def update_env(self, decisions: int, env: Any) -> None:
+        """Tighten the limits of a touchdown over the schedule, from those that are told to a share of them."""
+        env.strictness = touchdown_limits(self.config, decisions)
+
+    def restore_env(self, env: Any, state: State) -> str:
+        """Let new landers go on from what `env_state` gave, at the same sites."""
+        env.settle(array_like(env.settled, state["flights"]["landers"]["settled"], "sites", finite=False))
+        return super().restore_env(env, state)
+
+    def trial(self, pilot: Pilot, episodes: int, seed: int) -> Trial[Evaluation]:
+        """Fly so many flights at once from random spawns, one decision at a time."""
+        env = AnywhereEnv(episodes, seed, "random", self.config.frame_skip, sites=tuple(SITES))
+        env.reset()
+        return (yield from flown(pilot, env)).evaluation()
+
+
+def _contacts(env: LanderEnv, new: State, told: Any) -> State:
+    """Return what a snapshot remembers of contacts, from a file; raises KeyError, TypeError or ValueError."""
+    gravity, kept = rebuilt(new["gravity"], told["gravity"]), told["contacts"]
+    if not kept:
+        return {"gravity": gravity, "contacts": {}}
+    count, worlds = len(kept["world"]), env.world
+    integers = ("world", "pair", "body", "feature", "age", "colour")
+    contacts = {}
+    for name, shape in _CONTACTS.items():
+        kind = bool if name == "valid" else np.intp if name in integers else float
+        contacts[name] = rebuilt(np.empty((count, *shape), kind), kept[name])
+    most = {"world": env.num_envs, "pair": len(worlds.pairs), "body": len(worlds.bodies)}
+    if any((contacts[name] < 0).any() or (contacts[name] >= limit).any() for name, limit in most.items()):
+        raise ValueError("contacts are of none of the landers")
+    return {"gravity": gravity, "contacts": contacts}
+
+
+def _action_chances(config: Config) -> Doubles:
+    main = config.random_main
+    return np.array([1 - main] * 3 + [main] * 3) / 3

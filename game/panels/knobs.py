@@ -8,8 +8,8 @@ from typing import Any, Final, Literal
 
 import pygame
 
-from ai.training.sabotage import MEASURED
-from ai.training.schedule import InForce
+from ai.training.config import InForce
+from ai.training.experiments import MEASURED
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, LABEL, LINE, MUTE, SMALL, TEXT, TITLE

@@ -10,9 +10,7 @@ from typing import Final, NamedTuple
 import pygame
 
 from ai.training.config import PRESETS, Config
-from ai.training.experiments import Experiment, differences
-from ai.training.sabotage import MEASURED
-from ai.training.verdict import KINDS, Flown, Kind, judged_at, verdict
+from ai.training.experiments import MEASURED, VERDICTS, Experiment, Flown, Verdict, differences, judged_at, verdict
 from game.core import texts
 from game.core.scene import Transition
 from game.drawing import typeface
@@ -40,7 +38,7 @@ class Chosen(NamedTuple):
 
     experiment: Experiment
     name: str
-    guess: Kind | None = None
+    guess: Verdict | None = None
 
 
 class Laboratory:
@@ -62,7 +60,7 @@ class Laboratory:
     def __init__(self, split: TrainingRun, start: Start, leave: Callable[[bool], None]) -> None:
         self.split, self._start, self._leave = split, start, leave
         self.chosen: Chosen | None = None
-        self.came: Kind | None = None
+        self.came: Verdict | None = None
         self.so_far, self.too_early, self.differs = texts.TRAIN_BEGINS, texts.LAB_TOO_EARLY, ""
 
     @property
@@ -74,7 +72,7 @@ class Laboratory:
         """Choose an experiment, before the guess."""
         self.chosen = Chosen(experiment, name)
 
-    def fly(self, guess: Kind | None) -> Transition | None:
+    def fly(self, guess: Verdict | None) -> Transition | None:
         """Start the chosen experiment, with a guess or without one."""
         if self.chosen is None:
             return None
@@ -140,7 +138,7 @@ def guess_widgets(laboratory: Laboratory, manager: PointsManager, box: pygame.Re
     found: list[Widget] = [
         TextButton(manager, (box.left, top + _PITCH * row, box.width - 20, 26), texts.LAB_GUESSES[kind],
                    partial(laboratory.fly, kind), colour=HUMAN)
-        for row, kind in enumerate(KINDS)
+        for row, kind in enumerate(VERDICTS)
     ]  # fmt: skip
     return found + words_of(manager, box, [(texts.LAB_SKIP, partial(laboratory.fly, None)), (texts.LAB_ALONE, alone)])
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from ai.training.verdict import Flown
+from ai.training.experiments import Flown
 from game.core import texts
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas

@@ -40,7 +40,7 @@ def digit_status(digit_run: TrainingRun) -> TrainingStatus:
     history, tested = digit_run.history, digit_run.test is not None
     line = texts.DIGIT_RUN_LOADING if digit_run.alive else texts.DIGIT_RUN_LINE
     if len(history):
-        last = {column.name: value for column, value in zip(history.columns, history.points[-1].tolist(), strict=True)}
+        last = dict(zip(history.columns, history.points[-1].tolist(), strict=True))
         line = texts.DIGIT_RUN_FIGURES.format(
             epoch=last["epoch"], epochs=digit_run.config.epochs, seconds=last["seconds"],
             rate=last["images_per_second"],

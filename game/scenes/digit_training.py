@@ -8,7 +8,7 @@ import numpy as np
 import pygame
 
 from ai.digits.config import DIGIT_PRESETS, DigitConfig
-from ai.training.schedule import InForce
+from ai.training.config import InForce
 from game.core import texts
 from game.core.scene import Push, Transition, push
 from game.digits.filter_film import FilterFilm

@@ -10,7 +10,7 @@ from ai.common.knobs import Knobs
 from ai.digits.config import DigitConfig
 from ai.training.config import Config
 from ai.training.digit_session import live_digits
-from ai.training.history import COLUMNS, DIGIT_COLUMNS, Column
+from ai.training.history import COLUMNS, DIGIT_COLUMNS
 from ai.training.lander_session import live
 from game.core.worker import PATIENCE
 
@@ -30,7 +30,7 @@ class WorkedRun:
 
     live: Callable[..., Any]
     config: Knobs
-    columns: Sequence[Column]
+    columns: Sequence[str]
     grace: float
     patience: float = PATIENCE
 

@@ -14,15 +14,9 @@ from ai.explain.agent_lesson import Lesson
 from ai.explain.digit_lesson import DigitLesson
 from ai.files import CONFIG, state_folder
 from ai.nn import ModelFormatError
+from ai.training.config import InForce
 from ai.training.edits import EditCommand, NetworkEdits
-from ai.training.history import (
-    Checkpoint,
-    DigitPoint,
-    History,
-    Point,
-    SettingChange,
-    Validation,
-)
+from ai.training.history import Checkpoint, DigitPoint, History, Point, SettingChange, Validation
 from ai.training.lander_session import TAUGHT
 from ai.training.messages import (
     AddDemonstrations,
@@ -39,7 +33,6 @@ from ai.training.messages import (
     Saved,
     SwarmState,
 )
-from ai.training.schedule import InForce
 from game.core import texts
 from game.core.collection import Collection
 from game.core.names import LibraryError

@@ -11,9 +11,8 @@ from dataclasses import dataclass, field
 from typing import Any, Final
 
 from ai.common.knobs import Knobs
-from ai.training.config import PRESETS
-from ai.training.sabotage import SABOTAGES, sabotaged
-from ai.training.schedule import InForce, idle
+from ai.training.config import PRESETS, InForce, idle
+from ai.training.experiments import SABOTAGES, sabotaged
 from game.core import texts
 from game.training.knob_descriptions import Configuration, KnobDescription, figure, knob_descriptions, label
 

@@ -132,7 +132,7 @@ def looking_around():
 
 def eager(config, seed, keep):
     """A live run that saves itself all the time."""
-    from ai.training import keeping
+    from ai.training import run as keeping
     from ai.training.lander_session import live
 
     vars(keeping).update(FIRST_SECONDS=0.0, KEEP_SECONDS=0.0, SHARE=float("inf"))

@@ -17,10 +17,9 @@ from ai.digits.training import DigitTraining
 from ai.nn import FullyConnectedLayer, ModelFormatError, NeuralNetwork
 from ai.nn.costs import CostFunctions
 from ai.training import demonstrations
-from ai.training.checkpoints import resume_run, snapshot
+from ai.training.checkpoints import resume_digit_run, resume_run, save_digit_run, save_run
 from ai.training.config import PRESETS
 from ai.training.demonstrations import Demonstration
-from ai.training.digit_run import resume_digit_run, save_digit_run
 from ai.training.history import Checkpoint, History, Point, SettingChange, Validation
 from ai.training.loop import Training
 from game.core.settings import Settings, SettingsFile
@@ -81,7 +80,8 @@ def _run(folder: Path, version: int) -> None:
     history.append(Checkpoint(0.0, 0, 0.0, training.agent.network.values.copy(), None))
     history.append(Validation(0, 0.5, 1.0, best=True))
     history.append(SettingChange(0, "discount", 0.9, 0.99))
-    snapshot(training, history).save(folder / "models" / "run")
+    save_run(training, folder / "models" / "run")
+    history.write(folder / "models" / "run")
 
 
 def _read_run(folder: Path) -> Any:

@@ -9,8 +9,7 @@ from ai.sweep.plan import Plan
 from ai.sweep.space import knob_space
 from ai.sweep.study import FinishedTrial, SeedResult, Study, files_in
 from ai.sweep.trial import Asked, Trial
-from ai.training.config import PRESETS
-from ai.training.gym_task import gym_config
+from ai.training.config import PRESETS, gym_config
 from game.core.assets import MODELS_DIR
 
 TINY = {"num_envs": 4, "learning_starts": 64, "gradient_steps": 1, "hidden": (16,), "replay_size": 2000}

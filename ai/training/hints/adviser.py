@@ -10,11 +10,10 @@ from dataclasses import dataclass, field
 from operator import attrgetter
 from typing import Any, Final
 
-from ai.training.config import Config
+from ai.training.config import Config, idle
 from ai.training.hints.curves import RecentCurves
 from ai.training.hints.rules import RULES, HintRule
 from ai.training.history import History
-from ai.training.schedule import idle
 
 HOLD: Final = 2.0  # seconds of training for which a rule must hold before its hint appears
 STAY: Final = 6.0  # seconds for which a hint stays at least

@@ -10,7 +10,7 @@ from ai.common.environment import StepResult
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES, LanderEnv
 from ai.nn import SGD, ModelFormatError
 from ai.training.config import PRESETS, Config, load_agent
-from ai.training.loop import LANDER_SYMMETRY
+from ai.training.tasks import LANDER_SYMMETRY
 
 SMALL = Config(
     hidden=(16,), batch_size=8, gradient_steps=2, learning_starts=8, replay_size=200, n_step=1, num_envs=4, mirror=False

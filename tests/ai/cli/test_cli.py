@@ -12,14 +12,14 @@ import numpy as np
 import pytest
 
 import ai.training.checkpoints
-import ai.training.keeping
+import ai.training.run
 from ai.agent.agent import DeepQAgent
+from ai.agent.storage import write_agent
 from ai.cli.command_line import configured
 from ai.training.config import PRESETS
-from ai.training.lander_task import Evaluation, LanderTask
 from ai.training.loop import Training
 from ai.training.state import StateWriter
-from ai.training.task import VALIDATION_SEED
+from ai.training.tasks import VALIDATION_SEED, Evaluation, LanderTask
 from main import main
 
 ROOT = Path(__file__).parents[3]
@@ -200,9 +200,10 @@ def test_the_network_of_the_last_moment_stands_for_election_too(tmp_path, monkey
 
     def score(task, pilot, episodes, seed):
         measured.append((pilot.decisions, seed))
+        yield
         return Evaluation(episodes, 0.0, 1.0, 0.0, 0.0, float(pilot.decisions), None, None, 0.0)
 
-    monkeypatch.setattr(LanderTask, "evaluate", score)
+    monkeypatch.setattr(LanderTask, "trial", score)
     monkeypatch.setattr(LanderTask, "evaluate_every", 320)
     assert main(["train", "--decisions", "800", "--output", str(tmp_path / "run"), *SMALL]) == 0
     assert [decisions for decisions, seed in measured if seed == VALIDATION_SEED] == [320, 640, 800]
@@ -255,16 +256,16 @@ def full(*_, **__):
 
 
 def test_a_disk_that_is_full_for_a_while_ends_no_training(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(ai.training.keeping, "FIRST_SECONDS", 0.0)
-    monkeypatch.setattr(ai.training.keeping, "KEEP_SECONDS", 0.0)
+    monkeypatch.setattr(ai.training.run, "FIRST_SECONDS", 0.0)
+    monkeypatch.setattr(ai.training.run, "KEEP_SECONDS", 0.0)
     advance = Training.advance
 
     def filling(training):
         progress = advance(training)
-        monkeypatch.setattr(ai.training.checkpoints.Snapshot, "save", full if progress.decisions < 160 else save)
+        monkeypatch.setattr(ai.training.checkpoints, "write_agent", full if progress.decisions < 160 else save)
         return progress
 
-    save = ai.training.checkpoints.Snapshot.save
+    save = write_agent
     monkeypatch.setattr(Training, "advance", filling)
     assert main(["train", "--decisions", "240", "--output", str(tmp_path / "run"), "--validation", "4", *SMALL]) == 0
     assert capsys.readouterr().err.count("No space left on device; training goes on") == 1
@@ -286,7 +287,7 @@ def test_numbers_that_run_away_on_a_bad_day_end_in_a_sentence(tmp_path, capsys, 
 
     monkeypatch.setattr(Training, "advance", diverging)
     if trouble == "full":
-        monkeypatch.setattr(ai.training.checkpoints.Snapshot, "save", full)
+        monkeypatch.setattr(ai.training.checkpoints, "write_agent", full)
     if trouble == "best":
         monkeypatch.setattr(LanderTask, "evaluate_every", 320)
     run = tmp_path / "run"

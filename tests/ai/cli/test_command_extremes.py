@@ -21,11 +21,11 @@ from ai.digits.config import DIGIT_PRESETS
 from ai.digits.training import DigitTraining
 from ai.lander.environment import LanderEnv
 from ai.nn import ModelFormatError
-from ai.training.checkpoints import TRAINING_FILE, save_run
+from ai.training.checkpoints import save_digit_run, save_run
 from ai.training.config import PRESETS
-from ai.training.digit_run import save_digit_run
 from ai.training.history import HISTORY_FILE, Checkpoint, History, SettingChange, Validation
 from ai.training.loop import Training
+from ai.training.run import TRAINING_FILE
 from main import main
 
 ROOT = Path(__file__).parents[3]

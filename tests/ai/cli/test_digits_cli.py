@@ -18,7 +18,7 @@ from ai.nn import (
     FullyConnectedLayer,
     NeuralNetwork,
 )
-from ai.training.digit_run import resume_digit_run
+from ai.training.checkpoints import resume_digit_run
 from main import main
 
 ROOT = Path(__file__).parents[3]

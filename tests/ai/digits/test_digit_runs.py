@@ -11,7 +11,7 @@ from ai.digits.mnist import load_part
 from ai.digits.training import LIVE, DigitTraining, run_digits
 from ai.files import state_folder
 from ai.nn import ModelFormatError
-from ai.training.digit_run import resume_digit_run, save_digit_run
+from ai.training.checkpoints import resume_digit_run, save_digit_run
 
 SMALL = DIGIT_PRESETS["classic"].changed(hidden=(16,), epochs=3, held_out=100, batch_size=50, ema_decay=0.9)
 

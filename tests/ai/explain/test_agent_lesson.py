@@ -13,8 +13,8 @@ from ai.explain import learning_step
 from ai.explain.agent_lesson import Before, explain
 from ai.nn import Optimizer
 from ai.training.config import PRESETS
-from ai.training.lander_task import LANDER_SYMMETRY
 from ai.training.loop import Training
+from ai.training.tasks import LANDER_SYMMETRY
 
 SMALL = {
     "modern": replace(PRESETS["modern"], num_envs=8, batch_size=16, gradient_steps=2, learning_starts=32, n_step=3,

@@ -44,12 +44,11 @@ from ai.nn import (
 )
 from ai.nn.limits import MOST_LAYERS
 from ai.training.checkpoints import resume_run, save_run
-from ai.training.config import PRESETS, load_agent
+from ai.training.config import PRESETS, gym_config, load_agent
 from ai.training.demonstrations import Demonstration
-from ai.training.gym_task import gym_config
 from ai.training.history import History
-from ai.training.lander_task import LanderTask
 from ai.training.loop import Training
+from ai.training.tasks import LanderTask
 from main import main
 from tests.support.damage import DAMAGES, HOLES, mutate, repack
 from tests.support.faults import damaged, killed, limited

@@ -5,7 +5,7 @@ import pytest
 
 from ai.lander.environment import OBSERVATION_SCALE, LanderEnv, Outcome
 from ai.lander.pilots import LaggyPilot, NoisyPilot, NoPilot, ScriptedPilot, SensorPilot
-from ai.training.loop import evaluate
+from ai.training.tasks import evaluate
 
 
 class Always:

@@ -154,6 +154,22 @@ def test_a_population_on_two_nodes_is_what_it_is_alone(nodes, tmp_path):
     assert any(trial.parent is not None for trial in Study.load(folder).trials.values())
 
 
+def test_a_study_goes_on_where_fewer_cores_are_left_than_trials_were_begun(tmp_path):
+    """As after the loss of a node: a trial waits for the core that another one has, and gets it."""
+    program = f"""
+from pathlib import Path
+from ai.sweep.cluster import joined
+from ai.sweep.driver import Driver
+from ai.sweep.study import Study
+from tests.support.studies import tiny_plan
+study = Study.create(Path({str(tmp_path / "study")!r}), tiny_plan(trials=3))
+with joined(None, 1):
+    Driver(study, 2, print, lambda: None).run([])
+"""
+    subprocess.run([sys.executable, "-c", program], cwd=ROOT, check=True, timeout=LONG)
+    assert len(finished(tmp_path / "study")) == 3
+
+
 def test_any_function_is_called_for_many_items_and_each_answer_finds_its_place(nodes):
     program = f"""
 from functools import partial
@@ -207,7 +223,7 @@ def test_a_trial_goes_on_from_its_last_checkpoint_when_its_worker_is_killed(tmp_
         (worker,) = wait_for(lambda: training_workers(driver.pid), driver)
         from ai.sweep.driver import CHECKPOINT_SECONDS
 
-        time.sleep(CHECKPOINT_SECONDS + 8)
+        time.sleep(CHECKPOINT_SECONDS + 20)
         os.kill(worker, signal.SIGKILL)
         out = ended(driver)
     assert "raylet" not in out, "Ray tells it elsewhere than among the results"

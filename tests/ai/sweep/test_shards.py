@@ -14,7 +14,7 @@ from ai.lander.environment import LanderEnv
 from ai.sweep import shards as module
 from ai.sweep.cluster import each
 from ai.sweep.shards import flown_shards, packed, parts_of, received, shards
-from ai.training.lander_task import FlightSums, evaluate
+from ai.training.tasks import FlightSums, evaluate
 from game.core.assets import MODELS_DIR
 from main import main
 

@@ -19,8 +19,8 @@ from ai.sweep.report import report, told
 from ai.sweep.space import Dimension, knob_space
 from ai.sweep.study import FinishedTrial, Study, StudyError, files_in, find, write_files
 from ai.sweep.trial import Asked, SeedRun, Trial
+from ai.training.checkpoints import save_digit_run
 from ai.training.config import PRESETS
-from ai.training.digit_run import save_digit_run
 from main import main
 from tests.support.studies import TINY, finished_study, networks_in, run_alone, tiny_plan
 

@@ -9,10 +9,9 @@ from ai.agent.agent import DeepQAgent
 from ai.lander.anywhere import SITES, AnywhereEnv, Site
 from ai.lander.environment import NUM_FEATURES
 from ai.lander.sensing import SURROUNDINGS, SURROUNDINGS_SCALE
-from ai.training.anywhere_task import ANYWHERE_SYMMETRY, AnywhereTask
 from ai.training.config import ANYWHERE, LANDS_ANYWHERE
-from ai.training.loop import Training
-from ai.training.tasks import task_of
+from ai.training.loop import Training, task_of
+from ai.training.tasks import ANYWHERE_SYMMETRY, AnywhereTask
 from main import main
 
 SMALL = LANDS_ANYWHERE.changed(

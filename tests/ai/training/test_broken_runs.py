@@ -12,10 +12,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ai.training.config import PRESETS, Config
+from ai.training.config import PRESETS, Config, idle
 from ai.training.hints import Adviser, Hint, RecentCurves
 from ai.training.history import REVERTED, Checkpoint, History, Point, SettingChange
-from ai.training.schedule import idle
 
 FILE = Path(__file__).with_name("broken_runs.npz")
 MADE_WITH = PRESETS | {"modern": Config()}  # recorded before modern learned as it does now

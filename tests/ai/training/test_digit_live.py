@@ -4,15 +4,15 @@ from itertools import count
 import numpy as np
 import pytest
 
-from ai.digits.checkpoints import DigitSnapshot
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS
 from ai.digits.filters import FilterMoment, first_filters, next_moment
 from ai.digits.mnist import load_part
 from ai.digits.training import DigitTraining, confusion
 from ai.digits.validation import EXAMPLES, Confusion
-from ai.training import digit_session, keeping
-from ai.training.digit_run import resume_digit_run
+from ai.training import digit_session
+from ai.training import run as keeping
+from ai.training.checkpoints import resume_digit_run
 from ai.training.digit_session import live_digits
 from ai.training.history import REVERTED, DigitPoint, SettingChange, Validation
 from ai.training.messages import ChangeSetting, Finish, Refused, RestoreBest, RunStarted, Save, Saved
@@ -125,7 +125,7 @@ def test_a_full_disk_is_told_of_once_and_the_run_goes_on(data, tmp_path, monkeyp
     def full(*_, **__):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(DigitSnapshot, "save", full)
+    monkeypatch.setattr(DigitClassifier, "write", full)
     told = [each for turn in live_digits(SMALL, keep=tmp_path / "run", data=data) for each in turn]
     assert [each.problem for each in kinds(told, Saved)] == ["No space left on device"] * 2  # at first, and at the end
     assert kinds(told, DigitPoint)[-1].step > 1

@@ -7,10 +7,8 @@ import pytest
 
 from ai.lander.environment import LanderEnv
 from ai.training.config import PRESETS, Config
-from ai.training.experiments import differences, experiment_of, experiments
+from ai.training.experiments import SABOTAGES, Flown, differences, experiment_of, experiments, sabotaged, verdict
 from ai.training.loop import Training
-from ai.training.sabotage import SABOTAGES, sabotaged
-from ai.training.verdict import Flown, verdict
 from tests.support.recordings import recorded
 from tests.support.small import LANDERS
 

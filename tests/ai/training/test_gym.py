@@ -9,7 +9,8 @@ from ai.agent.agent import DeepQAgent
 from ai.agent.normalizer import Normalizer
 from ai.nn import ModelFormatError
 from ai.training.checkpoints import resume_run
-from ai.training.gym_task import PATIENCE, GymTask, gym_config
+from ai.training.config import gym_config
+from ai.training.gym_task import PATIENCE, GymTask
 from ai.training.loop import Training
 from main import main
 

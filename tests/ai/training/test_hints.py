@@ -10,10 +10,10 @@ import pytest
 
 from ai.lander.rewards import RewardWeights
 from ai.training.config import PRESETS, Config
+from ai.training.experiments import sabotaged
 from ai.training.hints import HOLD, REST, RULES, STAY, Adviser, Hint, RecentCurves, returns
 from ai.training.history import Checkpoint, History, Point, SettingChange
 from ai.training.loop import Training
-from ai.training.sabotage import sabotaged
 
 MODERN = PRESETS["modern"]
 NAN = float("nan")

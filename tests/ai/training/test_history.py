@@ -18,7 +18,7 @@ from ai.training.history import (
     Validation,
 )
 
-NUMBERS = [column.name for column in COLUMNS[:10]]
+NUMBERS = list(COLUMNS[:10])
 
 
 def point(number):
@@ -194,7 +194,7 @@ def test_a_damaged_file_is_named_wherever_the_damage_is(tmp_path):
 def test_parts_of_a_reward_that_came_later_or_are_gone_do_no_harm(tmp_path):
     history = full_history()
     history.write(tmp_path)
-    columns = [*(column.name for column in COLUMNS[:-1]), "gone"]
+    columns = [*COLUMNS[:-1], "gone"]
     rewritten(tmp_path, columns=columns)
     again = History.read(tmp_path)
     assert np.array_equal(again["success"], history["success"])

@@ -12,12 +12,11 @@ from ai.files import remove_state
 from ai.lander.environment import Outcome
 from ai.lander.rewards import RewardWeights
 from ai.nn import ModelFormatError
-from ai.training import keeping
+from ai.training import run as keeping
 from ai.training.checkpoints import AGENTS, agent_of, resume_run
 from ai.training.config import Config
 from ai.training.history import PARTS, REVERTED, Checkpoint, History, Point, SettingChange, Validation
 from ai.training.lander_session import CAREFUL, live
-from ai.training.lander_task import LanderTask
 from ai.training.loop import Training
 from ai.training.messages import (
     ChangeSetting,
@@ -29,6 +28,7 @@ from ai.training.messages import (
     Saved,
     SwarmState,
 )
+from ai.training.tasks import LanderTask
 
 TINY = Config(
     hidden=(8,), num_envs=32, learning_starts=64, batch_size=16, gradient_steps=1, replay_size=2000, spawn="near"
@@ -383,7 +383,7 @@ def test_there_must_be_a_run_to_go_on_with(begin, tmp_path):
 
 def test_only_landers_can_be_looked_into(begin):
     pytest.importorskip("gymnasium")
-    from ai.training.gym_task import gym_config
+    from ai.training.config import gym_config
 
     with pytest.raises(ValueError, match="CartPole"):
         next(begin(gym_config("CartPole-v1")))
@@ -399,7 +399,8 @@ def test_a_save_that_was_cut_between_its_two_renames_is_put_back(begin, tmp_path
 
 def told_of(entries):
     """Entries of a history by kind, without what the clock says."""
-    alike = [replace(each, seconds=0.0, steps_per_second=0.0) if isinstance(each, Point) else each for each in entries]
+    alike = [replace(each, steps_per_second=0.0) if isinstance(each, Point) else each for each in entries]
+    alike = [replace(each, seconds=0.0) if isinstance(each, Point | Validation) else each for each in alike]
     return [[repr(each) for each in alike if isinstance(each, kind)] for kind in (Point, Validation, SettingChange)]
 
 

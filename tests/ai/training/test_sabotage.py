@@ -5,8 +5,8 @@ import pytest
 
 from ai.agent.schedule import exploration_of_each
 from ai.training.config import PRESETS, Config
+from ai.training.experiments import SABOTAGES, sabotaged
 from ai.training.loop import Training
-from ai.training.sabotage import SABOTAGES, sabotaged
 
 CASES = [(base, name) for base in PRESETS for name in SABOTAGES]
 

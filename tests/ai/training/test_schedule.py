@@ -8,11 +8,10 @@ import pytest
 
 from ai.agent.schedule import target_rate
 from ai.digits.config import DIGIT_PRESETS
-from ai.training.config import PRESETS, Config
+from ai.training.config import PRESETS, Config, InForce, idle, in_force
 from ai.training.lander_session import live
 from ai.training.loop import Training
 from ai.training.messages import ChangeSetting, SwarmState
-from ai.training.schedule import InForce, idle, in_force
 
 TINY = Config(
     hidden=(8,), num_envs=16, learning_starts=32, batch_size=16, gradient_steps=1, replay_size=2000, spawn="near",

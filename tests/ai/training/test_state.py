@@ -9,10 +9,9 @@ from ai.files import move_state, remove_state, state_folder
 from ai.nn import ModelFormatError
 from ai.training import state as states
 from ai.training.checkpoints import AGENTS, resume_run, save_run
-from ai.training.config import ANYWHERE, PRESETS, Config
-from ai.training.gym_task import gym_config
-from ai.training.keeping import Keeper
+from ai.training.config import ANYWHERE, PRESETS, Config, gym_config
 from ai.training.loop import Training
+from ai.training.run import Keeper
 
 SMALL = PRESETS["modern"].changed(
     hidden=(8,), batch_size=16, gradient_steps=1, learning_starts=32, replay_size=500, num_envs=8, spawn="near"

@@ -10,9 +10,9 @@ from ai.lander.pilots import NoPilot, ScriptedPilot
 from ai.nn import ModelFormatError
 from ai.training.checkpoints import resume_run, save_run
 from ai.training.config import PRESETS, Config
-from ai.training.lander_task import LanderTask
-from ai.training.loop import Evaluation, Training, evaluate, run
+from ai.training.loop import Training, run
 from ai.training.run import Limit
+from ai.training.tasks import Evaluation, LanderTask, evaluate
 
 SMALL = PRESETS["modern"].changed(
     hidden=(16,), batch_size=16, gradient_steps=1, learning_starts=32, replay_size=2000, num_envs=8, spawn="near"

@@ -5,8 +5,7 @@ from typing import Any
 import pygame
 import pytest
 
-from ai.training.config import PRESETS
-from ai.training.schedule import in_force
+from ai.training.config import PRESETS, in_force
 from game.core import texts
 from game.core.scene import Transition
 from game.drawing.canvas import Canvas

@@ -16,7 +16,7 @@ from game.training.library import Library
 from game.training.run import TrainingRun
 from game.ui.chart import Chart, Series
 
-NUMBERS = [column.name for column in COLUMNS[:10]]
+NUMBERS = list(COLUMNS[:10])
 
 
 def run(config: Config, points: float) -> History:

@@ -17,7 +17,7 @@ from ai.digits.config import DIGIT_PRESETS, DigitConfig, build_digit_network
 from ai.digits.filters import FilterMoment
 from ai.digits.training import DigitTraining
 from ai.digits.validation import Confusion
-from ai.training.digit_run import save_digit_run
+from ai.training.checkpoints import save_digit_run
 from ai.training.history import DigitPoint, Validation
 from game.core import texts
 from game.core.names import LibraryError

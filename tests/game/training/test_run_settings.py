@@ -6,7 +6,7 @@ import pytest
 from ai.digits.config import DigitConfig
 from ai.lander.rewards import RewardWeights
 from ai.training.config import PRESETS, Config
-from ai.training.sabotage import SABOTAGES, sabotaged
+from ai.training.experiments import SABOTAGES, sabotaged
 from game.core import texts
 from game.training.knob_descriptions import figure, knob_descriptions, pages
 from game.training.run_settings import LANDER, RunSettings
