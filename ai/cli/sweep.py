@@ -190,7 +190,7 @@ def _resumed(arguments: argparse.Namespace, place: Path) -> Study:
 
 def _plan(arguments: argparse.Namespace) -> Plan:
     """Return the plan of a new study; raises ValueError or OSError for what makes no sense."""
-    from ai.cli import digits, lander
+    from ai.cli.train import digit_config, lander_config
     from ai.sweep.plan import Plan
     from ai.sweep.space import knob_space, read_space
     from ai.sweep.trial import check_ready
@@ -202,7 +202,7 @@ def _plan(arguments: argparse.Namespace) -> Plan:
         raise ValueError("--epochs is for --digits: agents train for --decisions")
     if arguments.knobs is not None and arguments.space is not None:
         raise ValueError("say what to search with --knobs or with --space, not with both")
-    config: Any = (digits if arguments.digits else lander).config_of(arguments)
+    config: Any = (digit_config if arguments.digits else lander_config)(arguments)
     check_ready(config)
     if arguments.space is not None:
         space = read_space(config, arguments.space)

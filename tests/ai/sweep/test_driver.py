@@ -159,11 +159,11 @@ def test_a_study_goes_on_where_fewer_cores_are_left_than_trials_were_begun(tmp_p
     program = f"""
 from pathlib import Path
 from ai.sweep.cluster import joined
-from ai.sweep.driver import Driver
 from ai.sweep.study import Study
 from tests.support.studies import tiny_plan
 study = Study.create(Path({str(tmp_path / "study")!r}), tiny_plan(trials=3))
 with joined(None, 1):
+    from ai.sweep.driver import Driver
     Driver(study, 2, print, lambda: None).run([])
 """
     subprocess.run([sys.executable, "-c", program], cwd=ROOT, check=True, timeout=LONG)
