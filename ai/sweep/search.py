@@ -116,8 +116,10 @@ class Search:
             self.tell(done)
             return False
         try:
+            for name, distribution in _distributions(self._study).items():  # it may have been cut off amid these
+                self._trial(row.number)._suggest(name, distribution)
             self._study.check_params(self.params(row.number))
-        except (ValueError, TypeError, KeyError):  # as of a trial that was cut off before all knobs were drawn
+        except (ValueError, TypeError, KeyError):
             self._optuna.tell(row.number, state=TrialState.FAIL)
             return False
         return True

@@ -55,6 +55,18 @@ def test_a_study_that_goes_on_proposes_nothing_twice(study):
     assert len({json.dumps(params) for params in asked}) == 7
 
 
+def test_a_trial_cut_off_before_all_its_knobs_were_drawn_is_run_all_the_same(study):
+    file, settings = study.folder / JOURNAL, again(study).params(2)
+    lines = file.read_text().splitlines()
+    last = max(index for index, line in enumerate(lines) if json.loads(line)["op_code"] == 5)
+    file.write_text("".join(f"{line}\n" for line in lines[:last]))
+    search = again(study)
+    cut = search.params(2)
+    assert search.left == [1, 2]
+    assert [cut[name] == value for name, value in settings.items()].count(True) == 1
+    assert again(study).params(2) == cut
+
+
 def test_a_line_cut_off_by_a_kill_is_left_out(study):
     file = study.folder / JOURNAL
     whole = file.read_text()
