@@ -28,6 +28,7 @@ from game.flight.handicap import OWN
 from game.flight.outcomes import OutcomeCard, outcome_card
 from game.flight.rescues import Rescues
 from game.input.controls import Command, translate
+from game.panels.landings import Landings
 from game.world.camera import ClearArea, View
 
 MODES: Final = ("tolerance", "guardian")
@@ -125,6 +126,12 @@ class Cockpit:
         """The part of the whole view for words beside the craft."""
         right = PANEL.left - 16.0 + moved(self._view, 1, -1)[0] if self._explains else self._view.right
         return ClearArea(self._view.left, right, self._view.top + ClearArea.head)
+
+    @property
+    def coasting(self) -> tuple[float, bool] | None:
+        """A guardian's future of coasting, for the mark on the path; None without one, or if nothing is explained."""
+        values = self.copilot_panel.values
+        return values.coasting if self._explains and isinstance(values, Landings) else None
 
     @property
     def _explains(self) -> bool:

@@ -252,7 +252,7 @@ class FlownFlight:
             self.ghost.draw_way(canvas, view)
         if flight.over:
             self.cockpit.track.draw(canvas, view)
-        self.path_preview.draw(canvas, view, self.scenery.clear.head)
+        self.path_preview.draw(canvas, view, self.scenery.clear.head, self.cockpit.coasting)
         if self.ghost:
             self.ghost.draw(canvas, view, alpha)
         self.scenery.draw_craft(canvas, alpha, words=self.ending.shown == 0)

@@ -8,6 +8,7 @@ import pytest
 
 from ai.lander.environment import Outcome
 from game.cockpit.copilot_panel import PANEL
+from game.core import texts
 from game.drawing.canvas import Canvas
 from game.flight import networks
 from game.scenes.play import PlayScene
@@ -79,6 +80,25 @@ def test_no_dotted_way_leads_through_what_is_said_before_a_flight(open_game: Ope
     )
     assert places
     assert min(row for _, row in places) > scene.flown.scenery.clear.head
+
+
+def test_a_mark_on_the_way_of_coasting_says_whether_the_network_still_lands_from_there(open_game: Open, monkeypatch):
+    driver = open_game(PlayScene, 4)
+    place(driver, 0.0, 12.0, 1.0, 0.0, 0, 0)
+    flown, canvas = play(driver).flown, driver.app.canvas
+    flown.path_preview.drift.path = np.linspace((0.0, 12.0), (9.0, 3.0), 55)  # a metre a second either way
+    view, shapes = flown.scenery.view(canvas.scale), []
+    monkeypatch.setattr(Canvas, "marker", lambda self, shape, at, *_: shapes.append((shape, at)))
+    for coasting, shape, key in (((0.8, True), "circle", "lands"), ((0.5, False), "cross", "lost")):
+        shapes.clear()
+        canvas.explained.clear()
+        flown.path_preview.draw(canvas, view, 0.0, coasting)
+        x, y = view.metres(dict(shapes)[shape]).tolist()
+        assert (x, 12.0 - y) == pytest.approx((coasting[0], coasting[0]), abs=0.05)
+        (mark,) = canvas.explained
+        assert mark.now() == texts.EXPLAIN_COASTING_NOW[key].format(seconds=coasting[0])
+    flown.path_preview.draw(canvas, view, 0.0)
+    assert len(canvas.explained) == 1
 
 
 @pytest.mark.parametrize("state", [(29.9, 3.0, 6.0, 0.0, 0, 0), (0, 28.9, 0, 6.0, 0, 0), (-29.9, 12, -6.0, 0, 0, 0)])

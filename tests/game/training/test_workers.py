@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from game.core.worker import Worker, WorkerState
-from game.training.one_after_another import OneAfterAnother
+from game.training.workers import OneAfterAnother
 from tests.support.chores import keep
 
 
