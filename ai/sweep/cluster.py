@@ -24,9 +24,7 @@ MISSING: Final = 'this needs Ray and Optuna: pip install -e ".[sweep]"'
 LOOPBACK: Final = "127.0.0.1"
 _ROOT: Final = Path(__file__).parents[2]
 _STORE: Final = 256 << 20  # bytes of Ray's object store on one machine; results are some hundred KB each
-_QUIET: Final = {
-    "RAY_USAGE_STATS_ENABLED": "0",  # Ray reports its use by default
-}
+_QUIET: Final = {"RAY_USAGE_STATS_ENABLED": "0"}  # Ray reports its use by default
 # Ray binds its ports to the loopback interface alone only if it takes itself to be on a system without clusters; by
 # itself, "127.0.0.1" is replaced by the machine's address on the network, and the ports are open to all.
 _LOCAL: Final = {"RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER": "0"}
@@ -60,57 +58,42 @@ def worker_environment() -> dict[str, str]:
 def joined(address: str | None = None, workers: int | None = None) -> Iterator[int]:
     """Start Ray on this machine, or join the cluster at an address; yield the number of cores there are for workers.
 
-    Raises ImportError without the extra, ConnectionError where no cluster answers, ValueError for an address that is
-    none.
+    Raises ImportError without the extra, ConnectionError where no cluster answers or its token is another, ValueError
+    for an address that is none.
     """
     if not installed():
         raise ImportError(MISSING)
-    if address is not None:
-        address = answering(address)
+    if address is None:
+        os.environ.update(_LOCAL | _QUIET | _TOKEN | worker_environment())
+        options: dict[str, Any] = {
+            "address": "local", "num_cpus": workers or cores(), "include_dashboard": False,
+            "_node_ip_address": LOOPBACK, "object_store_memory": _STORE,
+        }  # fmt: skip
     else:
-        _set_environment(None)
+        options = {"address": answering(address), "runtime_env": {"env_vars": worker_environment()}}
     import ray
     from ray._private import worker
 
     worker.print_to_stdstream = _tell
-    quiet: dict[str, Any] = {"log_to_driver": False, "logging_level": "ERROR"}
     try:
-        with _own_signals():
-            if address is not None:
-                _join(address, runtime_env={"env_vars": worker_environment()}, **quiet)
-            else:
-                os.environ.update(worker_environment())
-                ray.init(address="local", num_cpus=workers or cores(), include_dashboard=False,
-                         _node_ip_address=LOOPBACK, object_store_memory=_STORE, **quiet)  # fmt: skip
+        try:
+            with _own_signals():
+                ray.init(log_to_driver=False, logging_level="ERROR", **options)
+        except (ConnectionError, ray.exceptions.AuthenticationError) as error:
+            named = "the token in RAY_AUTH_TOKEN or ~/.ray/auth_token may be missing or another cluster's"
+            raise ConnectionError(f"could not join the cluster at {options['address']}: {named}") from error
         if address is None and (opened := ray.util.get_node_ip_address()) != LOOPBACK:
             raise ConnectionError(f"Ray would listen on {opened}, and not on this machine alone; nothing was started")
-        count = int(ray.cluster_resources().get("CPU", 1))
-        yield count
+        yield int(ray.cluster_resources().get("CPU", 1))
     finally:
         ray.shutdown()
 
 
-def _join(address: str, **options: Any) -> None:
-    """Join a cluster; raises ConnectionError, which says what may be missing."""
-    import ray
-
-    try:
-        ray.init(address=address, **options)
-    except (ConnectionError, ray.exceptions.AuthenticationError) as error:
-        named = "the token in RAY_AUTH_TOKEN or ~/.ray/auth_token may be missing or another cluster's"
-        raise ConnectionError(f"could not join the cluster at {address}: {named}") from error
-
-
-def _set_environment(address: str | None) -> None:
-    """Set what Ray reads of the environment when it is imported, or begins."""
-    if "ray" not in sys.modules and (address is None or _is_local(address)):
-        os.environ.update(_LOCAL)
-    os.environ.update(_QUIET if address is not None else _QUIET | _TOKEN)
-
-
 def answering(address: str) -> str:
     """Return an address, looked up if it is "auto"; raises ConnectionError unless a server like Ray's answers there."""
-    _set_environment(address)
+    if address.removeprefix("ray://").startswith(("127.", "localhost", "[::1]")):
+        os.environ.update(_LOCAL)
+    os.environ.update(_QUIET)
     if address == "auto":
         from ray._private.services import canonicalize_bootstrap_address_or_die
 
@@ -163,11 +146,6 @@ def _tell(news: Mapping[str, Any], ignore_prefix: bool = False) -> None:  # noqa
     """Tell what Ray has to tell of workers and nodes that die, a line each: it would print pages among our results."""
     for text in news["lines"]:
         print(f"Ray: {brief(text.strip().partition('. ')[0].replace(chr(10), ' '))}", file=sys.stderr)
-
-
-def _is_local(address: str) -> bool:
-    """Whether an address leads to this machine by its loopback interface."""
-    return address.removeprefix("ray://").startswith(("127.", "localhost", "[::1]"))
 
 
 def each(

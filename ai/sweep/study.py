@@ -162,16 +162,13 @@ class Study:
         file = StudyFile.read(folder)
         study = cls(folder, file.plan)
         study.importance = {name: share for name, share in (file.importance or {}).items() if name in file.plan.space}
-        trials = folder / "trials"
-        with suppress(OSError):
-            for path in sorted(path for path in trials.iterdir() if re.fullmatch(r"\d{4,6}", path.name)):
-                number = int(path.name)
-                try:
-                    trial = read_as(FinishedTrial, read_json(path / TRIAL_FILE, _MOST))
-                    study._check(number, trial)
-                    study.trials[number] = trial
-                except _UNREADABLE:
-                    study.damaged.append(number)
+        for number in _numbers(folder / "trials"):
+            try:
+                trial = read_as(FinishedTrial, read_json(study.trial_folder(number) / TRIAL_FILE, _MOST))
+                study._check(number, trial)
+                study.trials[number] = trial
+            except _UNREADABLE:
+                study.damaged.append(number)
         return study
 
     def _check(self, number: int, trial: FinishedTrial) -> None:
@@ -275,6 +272,13 @@ class Study:
     def shown(self, value: float | None) -> str:
         """Return a value of the metric as a table shows it."""
         return self.metric.shown(value, self.plan.budget)
+
+
+def _numbers(folder: Path) -> list[int]:
+    """Return the numbers that name something in the folder of a study's trials, sorted."""
+    with suppress(OSError):
+        return sorted({int(path.name) for path in folder.iterdir() if re.fullmatch(r"[0-9]{4,6}", path.name)})
+    return []
 
 
 def files_in(folder: Path) -> Files:
