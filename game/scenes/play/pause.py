@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from game.ui.widget import OnPress
 
 _WORD: Final = 22.0
+_COVER: Final = 0.94  # opacity: the Earth does not shine through the words
 _AHEAD: Final = 3  # decisions of six futures that are flown in a frame
 
 
@@ -136,7 +137,7 @@ class FlightPauseScene(PauseScene):
         """Draw the flight below, and the ground of the entries."""
         self._flight.draw_whole(canvas)
         low = max(row.position[1] for row in self.hint_rows(canvas)) + 12
-        canvas.panel((self.panel.box.left - 24, 12, self.panel.box.width + 48, low - 12))
+        canvas.panel((self.panel.box.left - 24, 12, self.panel.box.width + 48, low - 12), _COVER)
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the entries over the flight, and what is explained."""
