@@ -1,4 +1,4 @@
-"""The seven frames of a lesson of the agent that learns to land."""
+"""The frames of a lesson of the agent that learns to land: its memory alone, then the seven of the run's own step."""
 
 from __future__ import annotations
 
@@ -16,6 +16,8 @@ from ai.lander.environment import ACTION_NAMES
 from ai.nn import NeuralNetwork, Optimizer
 from game.core import texts
 from game.lesson.after_frame import AfterFrame
+from game.lesson.alone_frame import AloneFrame
+from game.lesson.code import in_points_of_reward
 from game.lesson.error_frame import ErrorFrame
 from game.lesson.figures import number, points
 from game.lesson.frame import Frame
@@ -40,7 +42,7 @@ def learning_step(lesson: Lesson) -> LearningStep:
 
 
 def agent_frames(lesson: Lesson) -> list[Part]:
-    """Return the seven frames of a lesson of the agent."""
+    """Return the frames of a lesson of the agent."""
     step, scale = learning_step(lesson), lesson.config.reward_scale
     action, words, network = int(lesson.cell.action), texts.LESSON_FRAMES, step.network
     forward, backward = forward_functions(network), backward_functions(network, make_optimizer(lesson.config))
@@ -48,13 +50,17 @@ def agent_frames(lesson: Lesson) -> list[Part]:
     derivative = lesson.derivative
     name, sentence = words["values"]
     sentence = sentence.format(action=said_action(action), value=points(predicted / scale))
+    if (best := int(lesson.predicted.argmax())) != action:
+        higher = points(float(lesson.predicted[best]) / scale)
+        sentence = f"{sentence} {texts.LESSON_NOT_THE_BEST.format(action=said_action(best), value=higher)}"
     figure = texts.LESSON_POINTS.format(points=points(predicted / scale))
     values = NetworkFrame(name, figure, sentence, forward, step, _NETWORK, "activations", step.taken.gradient)
     name, sentence = words["gradient"]
     length = texts.LESSON_LENGTH.format(length=number(step.taken.gradient_length))
-    gradient = GradientFrame(name, length, sentence, backward, step)
+    gradient = GradientFrame(name, length, f"{sentence} {texts.LESSON_DOWNHILL[step.carries_on]}", backward, step)
     places = step.strongest(step.taken.taken, 8)
     frames: list[Frame] = [
+        AloneFrame(lesson, words["alone"], (NeuralNetwork.correct,), step),
         MomentFrame(lesson, words["moment"], (DeepQAgent.learn, DeepQAgent._learn_from, Normalizer.__call__)),
         values,
         HappenedFrame(lesson, words["happened"], (NStep.add,)),
@@ -66,4 +72,5 @@ def agent_frames(lesson: Lesson) -> list[Part]:
                     (predicted, after, lesson.target), derivative, texts.LESSON_NEARER),
     ]  # fmt: skip
     lines = (*(lesson.flown.lines if lesson.flown else ()), *lesson.step.lines)
+    lines = tuple(in_points_of_reward(line, scale) for line in lines)
     return [Part.of(frame, lines) for frame in frames]

@@ -10,7 +10,7 @@ import pygame
 import pytest
 
 from ai.files import read_json
-from ai.training.config import Config
+from ai.training.config import Config, in_force
 from ai.training.history import History
 from ai.training.loop import Training
 from game.core import texts
@@ -40,6 +40,19 @@ def split(driver: Driver) -> None:
 
 
 # Knobs
+
+
+def test_a_knob_without_effect_gives_way_to_the_one_that_acts(train: Driver) -> None:
+    scene = train.top
+    config = scene.knobs.config.changed(schedule_decisions=10_000)
+    scene.knobs.set_config(config, 0)
+    scene.knobs.show_in_force(in_force(config, 20_000, 300))
+    shown = knobs(train)
+    assert shown == ["final_learning_rate", "epsilon_end", "discount"]
+    spent = in_force(config, 20_000, 300).idle
+    assert not set(shown) & set(spent)
+    scene.knobs.show_in_force(in_force(config, 5_000, 100))
+    assert knobs(train)[0] == "learning_rate"
 
 
 def test_three_knobs_come_first_and_all_on_demand_which_is_remembered(
@@ -264,9 +277,16 @@ def test_captions_follow_the_run(train: Driver, monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr(inline_worker, "TURNS", 1)  # so that no flight ends before the captions are read
     train.press_on(texts.TRAIN_START)
     scene = train.top
-    train.wait(lambda: scene.captions.shown)
-    assert scene.captions.text("success") == texts.CHART_CAPTIONS["success"]["unknown"]
-    assert scene.captions.text("stage") == texts.CHART_CAPTIONS["stage"]["grows"].format(stage=0, last=1)
+    painted = {chart.label: chart for chart in scene.training_charts.charts.charts}
+    success, epsilon, stage = (painted[texts.TRAIN_CHARTS[name]] for name in ("success", "epsilon", "stage"))
+    train.wait(lambda: success.painted_caption and epsilon.painted_caption and stage.painted_caption)
+    assert success.painted_caption == texts.CHART_CAPTIONS["success"]["unknown"]
+    assert stage.painted_caption == texts.CHART_CAPTIONS["stage"]["grows"].format(stage=0, last=1)
+    for _ in range(40):  # in each frame, the number that is written is the caption's
+        train.frames(1)
+        words = texts.CHART_CAPTIONS["epsilon"]
+        told = {words[name].format(percent=100 * float(epsilon.latest)) for name in ("falls", "spread", "steady")}
+        assert epsilon.painted_caption in told | {words["all"]} or epsilon.caption != epsilon.painted_caption
 
 
 def test_an_earlier_moment_shows_both_swarms_of_it(train: Driver) -> None:
