@@ -1,12 +1,15 @@
 """What the guardian promises, and what it costs.
 
-    python -m benchmarks.guardian [--flights 20] [--dials 0.04 0.27 1]     hands of all families, alone and guarded
+    python -m benchmarks.guardian [--flights 300] [--dials 0.04 0.27 1] [--into FILE]   hands of all families
     python -m benchmarks.guardian --costs [--rounds 100]                   how long futures take
     python -m benchmarks.guardian --live [--flights 4]                     decisions of flights in real time
 
 With the dial at 0.04, 0.27 and 1, there must be a landing after 1, 4 and 12 decisions of an action. Starts are fresh:
-no network was trained with them. The costs are of moments of flights by random keys, with the network that comes with
-the game; processor time is that of this process alone, so that others lengthen it little.
+no network was trained with them. All hands fly from the same; "good" among them is the network alone. Flights are flown
+in rounds, all of some families at once, and noted in the file, so that they can be broken off.
+
+The costs are of moments of flights by random keys, with the network that comes with the game; processor time is that of
+this process alone, so that others lengthen it little.
 
 Live flights take as long as in the game, with futures from a process of their own, and a machine that does nothing
 else is needed for figures that say something. Of the decisions, those are *late* in which the plan was flown on only
@@ -21,10 +24,11 @@ import os
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is imported, or it has no effect
 
 import argparse
+import json
 import platform
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -36,6 +40,7 @@ from ai.copilot import futures
 from ai.copilot.copilot import Mode
 from ai.copilot.futures import DECISION_STEPS, KEYS, Future, Lookahead, Push
 from ai.copilot.guardian import decisions_of
+from ai.copilot.hands import FAMILIES, STUBBORN, UNSEEN
 from ai.copilot.measurement import ALONE, PILOTS, rows
 from ai.flights.recording import STEPS, Shares
 from ai.lander.environment import LanderEnv, Outcome
@@ -47,6 +52,8 @@ from game.flight.guard import Guard
 
 MODEL = Path(__file__).parent.parent / "models" / "lander" / "modern"
 BATCHES = (1, 6, 12, 18, 42)
+KINDS = STUBBORN, FAMILIES, UNSEEN  # of hands, which are flown at once: futures of many take hardly longer
+ROUND = 25  # flights of each family in a round
 LIVE_STEPS = 480  # of a flight in real time at most: hands that crash are kept in the air for long
 
 
@@ -187,19 +194,43 @@ def live(agent: DeepQAgent, dials: list[float], flights: int, seed: int) -> None
         print("| " + " | ".join(map(str, told)) + " |", flush=True)
 
 
-def promises(agent: DeepQAgent, names: list[str], dials: list[float], flights: int, seed: int) -> None:
-    """Print how many flights of each family land, alone and guarded, and what that takes."""
-    helps = [(ALONE, 0.0), *((str(Mode.GUARDIAN), dial) for dial in dials)]
-    print(
-        "| hands | decisions | landed | crashed | overridden | held | lost though held |\n|---|---|---|---|---|---|---|"
-    )
-    (network,) = rows(agent, agent, "one_pad", ["good"], helps[:1], flights, seed)
-    print(f"| the network alone | | {network.success:.1%} | {network.crash:.1%} | | | |")
-    for help_ in helps:  # all hands at once: futures of many flights take little longer than those of a few
-        for row in rows(agent, agent, "one_pad", names, [help_], flights, seed):
-            dial = "" if row.mode == ALONE else decisions_of(row.assist)
-            print(f"| {row.pilot} | {dial} | {row.success:.1%} | {row.crash:.1%} | {row.overridden:.1%} |"
-                  f" {row.held:.1%} | {row.lost_held:.1%} |", flush=True)  # fmt: skip
+def promises(agent: DeepQAgent, names: list[str], dials: list[float], flights: int, seed: int, into: Path) -> None:
+    """Fly each family alone and guarded, in rounds of other starts, add each round to a file, and print all in it.
+
+    A round that is in the file already is left out, so one that was broken off goes on.
+    """
+    done = [json.loads(line) for line in into.read_text().splitlines()] if into.exists() else []
+    for number in range(flights // ROUND):
+        for kind in KINDS:
+            mine = [name for name in kind if name in names]
+            for dial in (None, *dials):
+                help_ = (ALONE, 0.0) if dial is None else (str(Mode.GUARDIAN), dial)
+                made = {row["pilot"] for row in done if (row["seed"], row["assist"]) == (seed + number, help_[1])}
+                if missing := [name for name in mine if name not in made]:
+                    begun = time.process_time()
+                    flown = rows(agent, agent, "one_pad", missing, [help_], ROUND, seed + number)
+                    took = (time.process_time() - begun) / len(missing)
+                    new = [asdict(row) | {"seed": seed + number, "seconds": took} for row in flown]
+                    with into.open("a") as file:
+                        file.writelines(json.dumps(row) + "\n" for row in new)
+                    done += new
+    table(done, names)
+
+
+def table(done: list[dict[str, Any]], names: list[str]) -> None:
+    """Print what came of all rounds: of each family and each dial, the flights of all rounds together."""
+    print("| hands | decisions | flights | landed | crashed | overridden | held | lost though held |")
+    print("|---|---|---|---|---|---|---|---|")
+    for name in names:
+        for dial in sorted({row["assist"] for row in done if row["pilot"] == name}):
+            same = [row for row in done if (row["pilot"], row["assist"]) == (name, dial)]
+            flights = sum(row["episodes"] for row in same)
+            shares = [
+                sum(row[part] * row["episodes"] for row in same) / flights
+                for part in ("success", "crash", "overridden", "held", "lost_held")
+            ]
+            told = [name, decisions_of(dial) if dial else "alone", flights, *(f"{share:.1%}" for share in shares)]
+            print("| " + " | ".join(map(str, told)) + " |")
 
 
 def main() -> None:
@@ -208,7 +239,8 @@ def main() -> None:
     parser.add_argument("--costs", action="store_true", help="measure how long futures take")
     parser.add_argument("--live", action="store_true", help="fly in real time, with futures from another process")
     parser.add_argument("--rounds", type=int, default=100, help="moments from which futures are flown")
-    parser.add_argument("--flights", type=int, default=20, help="of each family with each dial")
+    parser.add_argument("--flights", type=int, default=300, help="of each family with each dial; live, at most 4")
+    parser.add_argument("--into", type=Path, default=Path("guardian.jsonl"), help="file of the rounds that were flown")
     parser.add_argument("--hands", nargs="*", default=list(PILOTS), choices=list(PILOTS), metavar="NAME")
     parser.add_argument("--dials", type=float, nargs="*", default=[0.04, 0.27, 1.0])
     parser.add_argument("--seed", type=int, default=0)
@@ -217,9 +249,9 @@ def main() -> None:
     if arguments.costs:
         costs(agent, arguments.rounds)
     elif arguments.live:
-        live(agent, arguments.dials, arguments.flights, arguments.seed)
+        live(agent, arguments.dials, min(4, arguments.flights), arguments.seed)
     else:
-        promises(agent, arguments.hands, arguments.dials, arguments.flights, arguments.seed)
+        promises(agent, arguments.hands, arguments.dials, arguments.flights, arguments.seed, arguments.into)
 
 
 if __name__ == "__main__":

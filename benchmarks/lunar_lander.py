@@ -2,7 +2,7 @@
 
     python -m benchmarks.lunar_lander [--seeds 3] [--decisions 300000] [--rival-seeds 3] [--rival-seconds 300]
 
-Ours has the settings `ai.training.gym_task.LUNAR_LANDER`; the rival those its authors tuned for this. Every 20,000
+Ours has the settings `ai.training.config.LUNAR_LANDER`; the rival those its authors tuned for this. Every 20,000
 decisions (the rival: every ten seconds) the network flies 100 validation episodes without random actions, and the best
 so far is kept; in the end that one flies 100 others, which had no say in the choice. No clock chooses ours: the same
 seed and decisions give the same figures. Seconds are processor time on one thread, of training alone.

@@ -45,6 +45,18 @@ def test_what_a_document_names_exists(subtests: pytest.Subtests):
             assert not names | files | links
 
 
+def test_every_picture_is_shown_and_has_a_way_to_be_made():
+    kept = {path.stem for path in (ROOT / "docs" / "images").iterdir()}
+    shown = {name for path in DOCUMENTS for name in re.findall(r"images/(\w+)\.webp", path.read_text(encoding="utf-8"))}
+    script = (ROOT / "docs" / "pictures.py").read_text(encoding="utf-8")
+    assert kept == shown
+    assert not [name for name in kept if f'"{name}"' not in script]
+
+
+def test_the_readme_is_short():
+    assert len((ROOT / "README.md").read_text(encoding="utf-8").split()) <= 900
+
+
 def test_what_a_source_names_exists():
     named = {(path, name) for path in SOURCES for name in _DOTTED.findall(path.read_text(encoding="utf-8"))}
     assert not {(str(path.relative_to(ROOT)), name) for path, name in named if not exists(name)}

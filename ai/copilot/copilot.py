@@ -99,6 +99,7 @@ class _Asked:
     shares: Doubles  # (n, 2)
     env: LanderEnv | None
     known: Sequence[Mapping[Push, Future]] | None = None
+    looks: bool = True  # whether futures are flown that are not known
     whole: bool = False  # whether what is corrected is flown with all thrust
 
     @classmethod
@@ -235,14 +236,17 @@ class CoPilot:
         shares: Doubles | None = None,
         env: LanderEnv | None = None,
         known: Sequence[Mapping[Push, Future]] | None = None,
+        *,
+        looks: bool | None = None,
     ) -> SharedDecision:
         """Decide as `share` does, and return all that explains it; raises as `share` does.
 
         Here, what is corrected keeps the pilot's share of thrust, so fly `SharedDecision.shares`. Futures that are
-        `known` (n) were flown beforehand: then none is flown now, and what is missing counts as lost.
+        `known` (n) were flown beforehand: then none is flown now, unless it `looks`, and what is missing counts as
+        lost.
         """
         asked = _Asked.of(observation, pilot_action, surroundings, shares, env)
-        return self._decide(replace(asked, known=known))
+        return self._decide(replace(asked, known=known, looks=known is None if looks is None else looks))
 
     def _decide(self, asked: _Asked) -> SharedDecision:
         observation, pilot = asked.observation, asked.pilot
@@ -318,13 +322,12 @@ class CoPilot:
     def _choose(
         self, asked: _Asked, env: LanderEnv, target: Ints, best: Ints, known: list[dict[Push, Future]]
     ) -> list[Choice]:
-        """Return every guardian's choice, after all futures that it needs were flown, unless they are known already."""
+        """Return every guardian's choice, after all futures that it needs were flown, if they are to be flown now."""
         asks, whole = asked.pushes, asked.whole
+        here = Here.all(env)
         flying = np.flatnonzero(env.outcome == Outcome.FLYING).tolist()
-        here = {slot: Here.of(env, slot) for slot in flying}
         wishes = [KEYS[action] for action in best]
-        moment: Moment | None = None
-        while asked.known is None:
+        while asked.looks:
             needed = [
                 (slot, push)
                 for slot in flying
@@ -332,18 +335,44 @@ class CoPilot:
             ]
             if not needed:
                 break
-            if moment is None:
-                moment = Moment.of(env)
-                moment.target[:] = target
-            found = self.lookahead.futures(moment, needed, decisions_of(self.assist))
-            for (slot, push), future in zip(needed, found, strict=True):
+            self._look(env, target, needed, known)
+        choices = [Choice(push, ActionSource.PILOT, held=False) for push in asks]
+        for slot in flying:
+            guardian = self.guardians[slot]
+            choices[slot] = guardian.choose(here[slot], asks[slot], wishes[slot], known[slot], whole=whole)
+        return choices
+
+    def _look(
+        self, env: LanderEnv, target: Ints, asked: Sequence[tuple[int, Push]], known: Sequence[dict[Push, Future]]
+    ) -> None:
+        """Fly the futures of slots and pushes, and note them as `known` (n)."""
+        moment = Moment.of(env)
+        moment.target[:] = target
+        for held in (True, False):  # where a plan is held, only what passes can take its place
+            mine = [(slot, push) for slot, push in asked if (self.guardians[slot].plan is not None) == held]
+            found = self.lookahead.futures(moment, mine, decisions_of(self.assist), lasting=held)
+            for (slot, push), future in zip(mine, found, strict=True):
                 known[slot][push] = future
-        return [
-            self.guardians[slot].choose(here[slot], push, wishes[slot], known[slot], whole=whole)
-            if slot in here
-            else Choice(push, ActionSource.PILOT, held=False)
-            for slot, push in enumerate(asks)
-        ]
+
+    def first_passing(
+        self, env: LanderEnv, wishes: Mapping[int, Sequence[Push]], known: Sequence[dict[Push, Future]]
+    ) -> dict[int, Push]:
+        """Return for each slot the first of its wishes that passes, or the first of all; note futures as `known` (n).
+
+        One wish after another is flown ahead: for who knows what they want, that is less than all six.
+        """
+        self._void(env)
+        here, left = Here.all(env), dict(wishes)
+        first = {slot: order[0] for slot, order in wishes.items()}
+        for turn in range(max(map(len, wishes.values()), default=0)):
+            new = [(slot, order[turn]) for slot, order in left.items()
+                   if not self.guardians[slot].knows(here[slot], order[turn], known[slot])]  # fmt: skip
+            self._look(env, env.target, new, known)
+            passed = {slot: order[turn] for slot, order in left.items()
+                      if order[turn] not in known[slot] or known[slot][order[turn]].passes}  # fmt: skip
+            first |= passed
+            left = {slot: order for slot, order in left.items() if slot not in passed}
+        return first
 
     def _void(self, env: LanderEnv) -> None:
         """Drop all plans of another environment, or of one whose rules have changed since."""

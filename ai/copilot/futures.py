@@ -29,6 +29,7 @@ SPARE: Final = 1.5  # seconds before time is out, from which on a landing does n
 _MOST: Final = round(LONGEST / DT) // DECISION_STEPS  # decisions
 _TOGETHER: Final = 4  # futures from which on a batch takes less time than one lander alone after another
 _AT_ONCE: Final = 64  # futures of several pads that are flown in one batch; of more, those to other pads come later
+_BATCH: Final = 4096  # futures at most in one batch: more take no less time each
 
 
 class Push(NamedTuple):
@@ -88,9 +89,14 @@ class Here(NamedTuple):
     @classmethod
     def of(cls, env: LanderEnv, slot: int = 0) -> Here:
         """Return where a lander of an environment is."""
-        gravity = env.world.gravity
-        fall = gravity[1] if gravity.ndim == 1 else gravity[slot, 1]
-        return cls(int(env.steps[slot]), -float(fall), tuple(_states(env)[slot].tolist()))
+        return cls.all(env)[slot]
+
+    @classmethod
+    def all(cls, env: LanderEnv) -> list[Here]:
+        """Return where every lander of an environment is."""
+        falls = np.broadcast_to(-env.world.gravity[..., 1], env.num_envs)
+        rows = zip(env.steps.tolist(), falls.tolist(), _states(env).tolist(), strict=True)
+        return [cls(steps, fall, tuple(state)) for steps, fall, state in rows]
 
 
 def _states(env: LanderEnv) -> Doubles:
@@ -186,21 +192,28 @@ class Lookahead:
         self._built = ""  # what these are built of
 
     def futures(
-        self, moment: Moment, asked: Sequence[tuple[int, Push]], decisions: int = 1, before: Opening = ()
+        self,
+        moment: Moment,
+        asked: Sequence[tuple[int, Push]],
+        decisions: int = 1,
+        before: Opening = (),
+        *,
+        lasting: bool = False,
     ) -> list[Future]:
         """Return what comes of pushing something, for each lander (its row of `moment`) and push in `asked`.
 
         It `lasts` if the network lands after so many `decisions` of it as well. What is pushed `before` comes first:
-        so futures of decisions to come are flown ahead.
+        so futures of decisions to come are flown ahead. If only those that are `lasting` can be of use, the plans after
+        one decision are left out of all others.
         """
         once: list[tuple[int, Opening]] = [(row, (*before, push)) for row, push in asked]
         if decisions == 1:
             return [Future(plan) for plan in self.plans(moment, once)]
         longer: list[tuple[int, Opening]] = [(row, (*before, *(push,) * decisions)) for row, push in asked]
-        plans = self.plans(moment, once + longer)
-        return [
-            Future(plan, last is not None) for plan, last in zip(plans[: len(once)], plans[len(once) :], strict=True)
-        ]
+        lasts = [plan is not None for plan in self.plans(moment, longer)]
+        wanted = [opening for opening, last in zip(once, lasts, strict=True) if last or not lasting]
+        plans = iter(self.plans(moment, wanted))
+        return [Future(next(plans) if last or not lasting else None, last) for last in lasts]
 
     def look(
         self, moment: Moment, push: Push, decisions: int = 1, before: Opening = ()
@@ -240,9 +253,11 @@ class Lookahead:
         for tried in [range(each)] if each * len(asked) <= _AT_ONCE else [range(1), range(1, each)]:
             left = [(index, pads[row][pad])
                     for index, (row, _) in enumerate(asked) if plans[index] is None for pad in tried]  # fmt: skip
-            found = yield from self._fly(moment, [(*asked[index], pad) for index, pad in left])
-            for (index, _), plan in zip(left, found, strict=True):
-                plans[index] = plans[index] or plan
+            for first in range(0, len(left), _BATCH):
+                batch = left[first : first + _BATCH]
+                found = yield from self._fly(moment, [(*asked[index], pad) for index, pad in batch])
+                for (index, _), plan in zip(batch, found, strict=True):
+                    plans[index] = plans[index] or plan
         return plans
 
     def _fly(self, moment: Moment, asked: Sequence[tuple[int, Opening, int]]) -> Flying[Plan | None]:
@@ -308,7 +323,7 @@ class Lookahead:
         if self._built != moment.built:
             self._built, self._envs = moment.built, {}
         if size not in self._envs:
-            self._envs[size] = _roomy(size, moment)
+            self._envs[size] = roomy(size, moment)
         env = self._envs[size]
         moment.take(np.minimum(np.arange(size), count - 1)).put(env)
         env.outcome[count:] = Outcome.TIMED_OUT
@@ -316,7 +331,7 @@ class Lookahead:
         return env, future
 
 
-def _roomy(slots: int, moment: Moment) -> LanderEnv:
+def roomy(slots: int, moment: Moment) -> LanderEnv:
     """Return an environment into which any moment over the same ground can be put, with an air for each slot."""
     # Where each lander has a craft of its own, the usual one is built.
     params = LanderParams(**{name: value for name, value in moment.state["params"].items() if not np.ndim(value)})

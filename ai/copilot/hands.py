@@ -249,16 +249,15 @@ class Adversary:
     def __init__(self, agent: Any, rng: np.random.Generator, *, least: bool) -> None:
         self.agent, self.rng, self.least = agent, rng, least
 
-    def pick(self, observation: Floats, passes: Bools) -> Ints:
-        """Return actions (n,) for observations (n, features), of those that pass (n, 6); of all where none does."""
-        passes = passes | ~passes.any(axis=1, keepdims=True)
-        rank = self.agent.q_values(observation) if self.least else self.rng.random(passes.shape)
-        action: Ints = np.where(passes, rank, np.inf).argmin(axis=1)
-        return action
+    def order(self, observation: Floats) -> Ints:
+        """Return the six actions for observations (n, features), (n, 6), what they want most first."""
+        rank = self.agent.q_values(observation) if self.least else self.rng.random((len(observation), NUM_ACTIONS))
+        order: Ints = rank.argsort(axis=1)
+        return order
 
     def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:  # noqa: ARG002
         """Actions (n,) for observations (n, features), where everything passes."""
-        return self.pick(observation, np.ones((len(observation), NUM_ACTIONS), dtype=bool))
+        return self.order(observation)[:, 0]
 
 
 def _holding(action: int | None) -> MakePilot:

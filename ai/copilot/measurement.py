@@ -13,8 +13,7 @@ from ai.agent.agent import DeepQAgent
 from ai.common.environment import Bools, Doubles
 from ai.common.intervals import wilson
 from ai.copilot.copilot import CoPilot, Mode
-from ai.copilot.futures import KEYS, Lookahead
-from ai.copilot.guardian import decisions_of
+from ai.copilot.futures import KEYS, Future, Lookahead, Push
 from ai.copilot.hands import FAMILIES, STUBBORN, UNSEEN, Adversary, MakePilot
 from ai.lander.anywhere import AnywhereEnv
 from ai.lander.environment import LanderEnv, Outcome
@@ -141,33 +140,27 @@ def fly(
     foresees = copilot is not None and copilot.mode is Mode.GUARDIAN and not by_values
     while (flying := env.outcome == Outcome.FLYING).any():
         wished, action, shares = env.observe(), env.actions.copy(), env.shares.copy()
+        known: list[dict[Push, Future]] = [{} for _ in range(env.num_envs)]
         for number, pilot in enumerate(pilots):
             mine = slice(number * each, (number + 1) * each)
             if not flying[mine].any():
                 continue
             if copilot and foresees and isinstance(pilot, Adversary):
-                action[mine] = pilot.pick(wished[mine], _passing(env, copilot, mine))
+                order = pilot.order(wished[mine]).tolist()
+                wishes = {slot: [KEYS[key] for key in order[slot - mine.start]]
+                          for slot in range(mine.start, mine.stop) if flying[slot]}  # fmt: skip
+                for slot, push in copilot.first_passing(env, wishes, known).items():
+                    action[slot] = push.action
             else:
                 action[mine] = pilot.act(wished[mine], held=env.actions[mine])
             pushes = getattr(pilot, "shares", ACTION_SHARES.__getitem__)
             shares[mine] = pushes(action[mine])
         if copilot:
             seen = env.observe_pads(agent) if env.ground.at_once > 1 else env.observe_for(agent)
-            decision = copilot.decide(seen, action, shares=shares, env=env if foresees else None)
+            decision = copilot.decide(seen, action, None, shares, env if foresees else None, known, looks=foresees)
             action, shares = decision.action, decision.shares
             overridden += flying & decision.overridden
             held |= flying & (decision.held if decision.held is not None else False)
         decisions += flying
         env.fly(action, shares)
     return overridden, decisions, held
-
-
-def _passing(env: LanderEnv, copilot: CoPilot, mine: slice) -> Bools:
-    """Return which actions of some slots a guardian lets pass, (m, 6)."""
-    slots = np.arange(env.num_envs)[mine]
-    asked = [(int(slot), push) for slot in slots[env.outcome[mine] == Outcome.FLYING] for push in KEYS]
-    found = copilot.lookahead.futures(Moment.of(env), asked, decisions_of(copilot.assist))
-    passes = np.zeros((env.num_envs, len(KEYS)), dtype=bool)
-    for (slot, push), future in zip(asked, found, strict=True):
-        passes[slot, push.action] = future.passes
-    return passes[mine]

@@ -50,6 +50,11 @@ class Drift:
             self.path = _down_to_ground(self._env.ground, self._places)
             self._ahead, self._places = drift(self._env), []
 
+    def after(self, seconds: float) -> Doubles:
+        """Return the position (2,) on the path so many seconds from its beginning."""
+        times = np.arange(len(self.path)) * (_STRIDE * DT)
+        return np.array([np.interp(seconds, times, along) for along in self.path.T])
+
 
 class Forecast:
     """Predicted path of a flight under a network, in a separate environment that does not disturb the flight.

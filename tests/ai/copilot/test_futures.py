@@ -6,6 +6,7 @@ import pytest
 
 from ai.agent.agent import DeepQAgent
 from ai.cli.copilot import ANYWHERE_MODEL, MODEL
+from ai.copilot import futures
 from ai.copilot.futures import DECISION_STEPS, KEYS, Here, Lookahead, Push
 from ai.lander.anywhere import AnywhereEnv
 from ai.lander.conditions import Conditions
@@ -53,9 +54,9 @@ def test_a_plan_flies_again_bit_for_bit_wherever_it_was_made(agent):
         moment = pickle.loads(pickle.dumps(Moment.of(env)))  # as it gets to another process
         before = env.snapshot()
         stick = Push.of(0.4, -0.3)
-        futures = Lookahead(pilot).futures(moment, [(0, push) for push in (*KEYS, stick)])
-        assert any(future.plan for future in futures), name
-        for push, future in zip((*KEYS, stick), futures, strict=True):
+        found = Lookahead(pilot).futures(moment, [(0, push) for push in (*KEYS, stick)])
+        assert any(future.plan for future in found), name
+        for push, future in zip((*KEYS, stick), found, strict=True):
             if future.plan:
                 env.restore(before)
                 assert future.plan.push(Here.of(env)) == push, name
@@ -133,6 +134,21 @@ def test_what_comes_first_can_be_several_pushes(agent):
     assert once.passes
     assert not long.passes
     assert long.plan
+    (spared,) = lookahead.futures(Moment.of(falling), [(0, KEYS[0])], 12, lasting=True)
+    assert (spared.plan, spared.lasts) == (None, False)
+
+
+def test_very_many_are_flown_in_several_batches(agent, monkeypatch):
+    env = LanderEnv(7, 3, "rung_1")
+    env.reset()
+    asked = [(slot, (KEYS[slot % 6],)) for slot in range(7)]
+    scripted = Lookahead(ScriptedPilot())
+    together = scripted.plans(Moment.of(env), asked)
+    monkeypatch.setattr(futures, "_BATCH", 3)
+    for plan, again in zip(together, scripted.plans(Moment.of(env), asked), strict=True):
+        assert (plan is None) == (again is None)
+        if plan:
+            np.testing.assert_array_equal(plan.states, again.states)
 
 
 def test_a_leg_of_a_descent_is_flown_along_its_route(agent):

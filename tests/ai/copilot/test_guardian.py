@@ -133,6 +133,26 @@ def test_no_hand_can_crash_a_flight_while_a_plan_is_held(agent):
         assert (env.outcome == Outcome.LANDED).all(), what
 
 
+def test_the_first_wish_that_passes_is_found_without_flying_the_rest(agent, monkeypatch):
+    env, copilot = flights(4), CoPilot(agent, GUIDE, Mode.GUARDIAN)
+    every = copilot.futures(env)
+    order = [KEYS[action] for action in (2, 4, 1, 5, 3, 0)]
+    known = [{} for _ in range(4)]
+    first = copilot.first_passing(env, dict.fromkeys(range(4), order), known)
+    for slot in range(4):
+        passing = [push for push in order if every.lasts[slot, push.action]]
+        assert first[slot] == (passing or order)[0], slot
+        assert list(known[slot]) == order[: order.index(first[slot]) + 1] if passing else order, slot
+    decision = copilot.decide(env.observe(), [first[slot].action for slot in range(4)], None, None, env, known)
+    assert not (decision.overridden & every.lasts.any(axis=1)).any()
+    monkeypatch.setattr(Lookahead, "futures", lambda *_, **__: [])
+    plan_held = copilot.guardians[0].plan
+    assert plan_held
+    head = plan_held.push(Here.of(env))
+    assert head
+    assert copilot.first_passing(env, {0: [head]}, [{}]) == {0: head}  # the held plan begins with it
+
+
 def test_whoever_flies_by_share_alone_is_as_safe(agent):
     env, copilot = flights(1), CoPilot(agent, GUARD, "guardian")
     weak = np.tile([0.4, -1.0], (1, 1))

@@ -79,14 +79,14 @@ def test_keys_are_held_and_a_weak_stick_pushes_less(agent):
     assert weak.shares(np.array([0, 1, 5])).tolist() == [[0, 0], [0, -1], [0.3, 1]]
 
 
-def test_an_adversary_asks_for_the_worst_that_passes(agent):
+def test_an_adversary_asks_for_the_worst_first(agent):
     seen = np.random.default_rng(0).normal(size=(4, 9)).astype(np.float32)
-    passes = np.array([[1, 0, 1, 0, 1, 0], [0, 0, 0, 0, 0, 1], [0] * 6, [1] * 6], dtype=bool)
     values = agent.q_values(seen)
-    least = Adversary(agent, np.random.default_rng(0), least=True).pick(seen, passes)
-    expected = [
-        np.where(row, of, np.inf).argmin() if row.any() else of.argmin() for row, of in zip(passes, values, strict=True)
-    ]
-    assert least.tolist() == expected
+    least = Adversary(agent, np.random.default_rng(0), least=True)
+    order = least.order(seen)
+    assert (np.diff(np.take_along_axis(values, order, axis=1), axis=1) >= 0).all()
+    assert least.act(seen).tolist() == order[:, 0].tolist()
     random = Adversary(agent, np.random.default_rng(0), least=False)
-    assert {int(random.pick(seen, passes)[0]) for _ in range(40)} == {0, 2, 4}
+    orders = np.concatenate([random.order(seen) for _ in range(40)])
+    assert (np.sort(orders, axis=1) == np.arange(6)).all()
+    assert {*orders[:, 0].tolist()} == set(range(6))

@@ -1,4 +1,4 @@
-"""What README says of the shipped networks, beside what their files say."""
+"""What docs/figures.md says of the shipped networks, beside what their files say."""
 
 import json
 from pathlib import Path
@@ -8,7 +8,7 @@ from ai.training.config import PRESETS, Config
 # The settings that differ are told beside those that the presets had when the networks were trained.
 THEN = PRESETS | {"modern": Config()}
 ROOT = Path(__file__).resolve().parents[3]
-README = (ROOT / "README.md").read_text(encoding="utf-8")
+FIGURES = (ROOT / "docs" / "figures.md").read_text(encoding="utf-8")
 
 
 def differences(name):
@@ -22,7 +22,7 @@ def differences(name):
     return differ
 
 
-def test_readme_names_every_setting_in_which_the_shipped_modern_network_differs():
+def test_the_figures_name_every_setting_in_which_the_shipped_modern_network_differs():
     differ = differences("modern")
     assert len(differ) == 7
     usual = vars(THEN["modern"].reward_weights)
@@ -37,7 +37,7 @@ def test_readme_names_every_setting_in_which_the_shipped_modern_network_differs(
         f"steadiness {differ['steadiness']}",
         f"time −{-weights['time']}, switch −{-weights['switch']}",
     ]
-    assert [words for words in said if words not in README] == []
+    assert [words for words in said if words not in FIGURES] == []
 
 
 def test_the_shipped_classic_network_has_the_settings_of_its_preset():

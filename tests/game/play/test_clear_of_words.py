@@ -7,11 +7,12 @@ import pygame
 import pytest
 
 from ai.lander.environment import Outcome
-from game.cockpit.copilot_panel import PANEL
+from game.core import texts
 from game.drawing.canvas import Canvas
+from game.drawing.tokens import VIEW_SIZE
 from game.flight import networks
-from game.scenes.play import PlayScene
-from game.scenes.watch import WatchScene
+from game.scenes.play.scene import PlayScene
+from game.scenes.watch.scene import WatchScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import play
@@ -25,6 +26,7 @@ READ_OUTS = 640
 def shared(open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch) -> Driver:
     monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", Weighs()))
     context.settings.assist, context.settings.reduced_motion = 0.5, True
+    context.settings.show_thinking = True
     context.settings_file.save(context.settings)
     driver = open_game(PlayScene, 4)
     driver.frames(2)
@@ -59,7 +61,8 @@ def test_the_panel_gives_way_to_a_craft_that_the_camera_can_not_keep_clear(share
     place(shared, 0, 12, 0, 0, 0, 0)
     shared.frames(4)
     assert panels
-    x, y = play(shared).flown.scenery.view(1.0).metres(PANEL.center).tolist()
+    box = play(shared).flown.cockpit.panel_box(shared.app.canvas.reading)
+    x, y = play(shared).flown.scenery.view(1.0).metres(box.center).tolist()
     place(shared, x, y, 0, 0, 0, 0)
     shared.frames(2)  # it leaps there between two steps
     panels.clear()
@@ -79,6 +82,25 @@ def test_no_dotted_way_leads_through_what_is_said_before_a_flight(open_game: Ope
     )
     assert places
     assert min(row for _, row in places) > scene.flown.scenery.clear.head
+
+
+def test_a_mark_on_the_way_of_coasting_says_whether_the_network_still_lands_from_there(open_game: Open, monkeypatch):
+    driver = open_game(PlayScene, 4)
+    place(driver, 0.0, 12.0, 1.0, 0.0, 0, 0)
+    flown, canvas = play(driver).flown, driver.app.canvas
+    flown.path_preview.drift.path = np.linspace((0.0, 12.0), (9.0, 3.0), 55)  # a metre a second either way
+    view, shapes = flown.scenery.view(canvas.scale), []
+    monkeypatch.setattr(Canvas, "marker", lambda self, shape, at, *_: shapes.append((shape, at)))
+    for coasting, shape, key in (((0.8, True), "circle", "lands"), ((0.5, False), "cross", "lost")):
+        shapes.clear()
+        canvas.explained.clear()
+        flown.path_preview.draw(canvas, view, 0.0, coasting)
+        x, y = view.metres(dict(shapes)[shape]).tolist()
+        assert (x, 12.0 - y) == pytest.approx((coasting[0], coasting[0]), abs=0.05)
+        (mark,) = canvas.explained
+        assert mark.now() == texts.EXPLAIN_COASTING_NOW[key].format(seconds=coasting[0])
+    flown.path_preview.draw(canvas, view, 0.0)
+    assert len(canvas.explained) == 1
 
 
 @pytest.mark.parametrize("state", [(29.9, 3.0, 6.0, 0.0, 0, 0), (0, 28.9, 0, 6.0, 0, 0), (-29.9, 12, -6.0, 0, 0, 0)])
@@ -103,22 +125,15 @@ def test_a_craft_that_is_lost_lies_on_no_words(open_game: Open, context: Context
     assert 80 < y < READ_OUTS
 
 
-def test_the_word_beside_a_craft_keeps_off_the_panel(shared: Driver, monkeypatch):
-    left = play(shared).flown.cockpit.clear.right
+def test_the_flight_keeps_off_the_panel(shared: Driver):
     place(shared, 0, 12, 0, 0, 0, 0)
-    shared.post(pygame.KEYDOWN, key=pygame.K_UP, mod=0, unicode="", scancode=0)
     shared.frames(6)
-    overrides, view = play(shared).flown.cockpit.overrides, play(shared).flown.scenery.view(1.0)
-    assert overrides.strength > 0
-    clear = play(shared).flown.cockpit.clear
-    assert clear.right < PANEL.left < left
-    boxes: list[pygame.FRect] = []
-    write = Canvas.text
-    monkeypatch.setattr(Canvas, "text", lambda *args, **more: boxes.append(write(*args, **more)) or boxes[-1])
-    for x in np.linspace(300, clear.right - 20, 12):
-        pose = np.array([*view.metres((x, 200.0)), 0.0])
-        overrides.draw_word(shared.app.canvas, view, pose, clear)
-        assert boxes[-1].right <= clear.right
+    flown = play(shared).flown
+    assert flown.clear.right < flown.cockpit.panel_box(shared.app.canvas.reading).left
+    shared.key(pygame.K_F1)
+    shared.frames(2)
+    assert not flown.thinks
+    assert flown.clear.right == VIEW_SIZE[0]
 
 
 @pytest.mark.parametrize("count", [1, 16])

@@ -53,21 +53,22 @@ def press(driver: Driver, kind: int, points: tuple[float, float]) -> None:
 
 
 def test_exhibits_are_chosen_by_keys_mouse_and_pad(gallery: Driver):
+    names = list(EXHIBITS)
     gallery.key(pygame.K_RIGHT)
-    assert name(gallery) == "heap"
+    assert name(gallery) == names[1]
     gallery.key(pygame.K_n)
-    assert name(gallery) == "slopes"
+    assert name(gallery) == names[2]
     gallery.keys(pygame.K_b, pygame.K_b, pygame.K_b)
-    assert name(gallery) == "spin"
+    assert name(gallery) == names[-1]
     gallery.key(pygame.K_n)
-    assert name(gallery) == "stack"
-    tabs = gallery.choice(texts.EXHIBITS["stack"][0])
+    assert name(gallery) == names[0]
+    tabs = gallery.choice(texts.EXHIBITS[names[0]][0])
     gallery.click((tabs.row.lefts[3] + 4, tabs.box.centery))
-    assert name(gallery) == "bounce"
+    assert name(gallery) == names[3]
     gallery.button(pygame.CONTROLLER_BUTTON_RIGHTSHOULDER)
-    assert name(gallery) == "impacts"
+    assert name(gallery) == names[4]
     gallery.button(pygame.CONTROLLER_BUTTON_DPAD_LEFT)
-    assert name(gallery) == "bounce"
+    assert name(gallery) == names[3]
 
 
 def test_gravity_is_chosen_and_the_exhibit_begins_anew(gallery: Driver):
@@ -122,7 +123,7 @@ def test_pausing_lets_go(gallery: Driver):
     physics = scene(gallery)
     press(gallery, pygame.MOUSEBUTTONDOWN, seen(gallery, exhibit.ball))
     gallery.key(pygame.K_ESCAPE)
-    assert gallery.top_name == "PauseScene"
+    assert "PauseScene" in gallery.top_name
     assert physics.grip is None
     gallery.frames(3)
     gallery.key(pygame.K_ESCAPE)
