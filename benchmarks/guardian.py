@@ -52,8 +52,10 @@ from game.flight.guard import Guard
 
 MODEL = Path(__file__).parent.parent / "models" / "lander" / "modern"
 BATCHES = (1, 6, 12, 18, 42)
-KINDS = STUBBORN, FAMILIES, UNSEEN  # of hands, which are flown at once: futures of many take hardly longer
-ROUND = 25  # flights of each family in a round
+# Hands that are flown at once: futures of many take hardly longer.
+HOSTILE = "adversary, random", "adversary, least"
+KINDS = [name for name in STUBBORN if name not in HOSTILE], HOSTILE, [*FAMILIES, *UNSEEN]
+ROUND = 10  # flights of each family in a round
 LIVE_STEPS = 480  # of a flight in real time at most: hands that crash are kept in the air for long
 
 
