@@ -13,7 +13,7 @@ from ai.training.config import Config
 from ai.training.small_run import SMALL_RUN, Plan, SmallRun, SmallState
 from game.learn.daring import DARING, PAY
 from game.learn.memory import LATEST, TODAY, YESTERDAY, MemoryChapter
-from game.learn.target import BOUND, EVERY
+from game.learn.target import BOUND, EVERY, NORMALISED, config_of
 
 DECISIONS = 600
 
@@ -26,10 +26,13 @@ def run(config: Config, seed: int, plan: Plan | None = None, decisions: int = DE
 
 def target(seeds: Sequence[int]) -> None:
     """Print how often values ran away, and how often landing was learned, for each interval of copies."""
-    for every in EVERY:
-        states = [run(SMALL_RUN.changed(target_update_interval=every), seed) for seed in seeds]
+    for choice, every in enumerate(EVERY):
+        states = [run(config_of(choice), seed) for seed in seeds]
         beyond = sum(max(state.value for state in each) > BOUND for each in states)
-        print(f"target copied every {every}: values beyond {BOUND:g} in {beyond}, {_landed(states)}", flush=True)
+        layers = ", layers normalised" if choice == NORMALISED else ""
+        print(
+            f"target copied every {every}{layers}: values beyond {BOUND:g} in {beyond}, {_landed(states)}", flush=True
+        )
 
 
 def memory(seeds: Sequence[int]) -> None:

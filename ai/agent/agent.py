@@ -36,7 +36,6 @@ In no paper: half of each minibatch is mirrored (`mirror`); `classic` has a seco
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from copy import deepcopy
 from functools import cached_property, partial
 from pathlib import Path
@@ -54,7 +53,6 @@ from ai.agent.storage import read_agent, save_agent
 from ai.agent.symmetry import Symmetry
 from ai.common.decision import Decision, decide
 from ai.common.environment import Bools, Doubles, Env, Floats, Ints, StepResult
-from ai.files import array_like, count_of, number_of
 from ai.nn import NeuralNetwork, Optimizer
 
 TOGETHER: Final = 1024  # states that are judged at a time: fewer calls, and what layers make of them stays in the cache
@@ -107,8 +105,8 @@ class DeepQAgent:
         self.paused = False
         self.folder: Path | None = None
         self.run_settings: dict[str, Any] = {}
-        self._n_step = NStep(self.config.n_step, self.config.discount)
-        self._episodes = Episodes()
+        self.n_step = NStep(self.config.n_step, self.config.discount)
+        self.episodes = Episodes(num_features)
 
     # One decision of training, in the order in which it happens
 
@@ -140,7 +138,7 @@ class DeepQAgent:
 
     def store(self, observation: Floats, actions: Ints, result: StepResult, success: Bools | None = None) -> None:
         """Store the result of `actions` (n,) at `observation` (n, features); `success` (n,) marks good endings."""
-        transitions, slots = self._n_step.add(
+        transitions, slots = self.n_step.add(
             observation,
             actions,
             result.reward * np.float32(self.config.reward_scale),
@@ -155,7 +153,7 @@ class DeepQAgent:
             return
         self.replay.add(transitions)
         if self.config.success_pass and success is not None:
-            for episode in self._episodes.add(transitions, slots, result.ended, success):
+            for episode in self.episodes.add(transitions, slots, result.ended, success):
                 self.successes.add(episode)
 
     @np.errstate(over="ignore", invalid="ignore")  # what overflows is found by the optimizer
@@ -295,7 +293,7 @@ class DeepQAgent:
     def apply_live(self, config: AgentConfig) -> None:
         """Use the live knobs of another configuration, which must not differ in others."""
         self.config = config
-        self._n_step.discount = config.discount
+        self.n_step.discount = config.discount
 
     def restore(self, values: Floats, normalizer: Normalizer | None) -> None:
         """Restore both networks to the parameters `values` (parameters,) and their normalizer; reset the optimizer."""
@@ -309,33 +307,6 @@ class DeepQAgent:
         self.optimizer.load_state(other.optimizer.state(), self.online.values)
         self.decisions, self.gradient_steps = other.decisions, other.gradient_steps
         self.normalizer = deepcopy(other.normalizer)
-
-    def state(self) -> dict[str, Any]:
-        """Return copies of all that its learning goes on from, besides its settings and replay buffers."""
-        return {
-            "decisions": self.decisions, "gradient_steps": self.gradient_steps, "loss": self.loss,
-            "mean_q": self.mean_q, "rng": self.rng.bit_generator.state, "online": self.online.values.copy(),
-            "target": self.target.values.copy(), "optimizer": self.optimizer.state(),
-            "normalizer": self.normalizer.to_json() if self.normalizer else None,
-            "n_step": self._n_step.state(), "episodes": self._episodes.state(),
-        }  # fmt: skip
-
-    def load_state(self, state: Mapping[str, Any], num_envs: int) -> None:
-        """Go on from what `state` returned, in an environment of so many slots.
-
-        Raises KeyError, TypeError, OverflowError or ValueError for what no such agent can have been.
-        """
-        self.rng.bit_generator.state = state["rng"]
-        for name in ("online", "target"):
-            network: NeuralNetwork = getattr(self, name)
-            network.values = array_like(network.values, state[name], name)
-        self.optimizer.load_state(state["optimizer"], self.online.values)
-        if self.normalizer:
-            self.normalizer.load(state["normalizer"])
-        self._n_step.load_state(state["n_step"], np.zeros((num_envs, self.num_features), np.float32))
-        self._episodes.load_state(state["episodes"], self.num_features)
-        self.decisions, self.gradient_steps = count_of(state["decisions"]), count_of(state["gradient_steps"])
-        self.loss, self.mean_q = float(number_of(state["loss"])), float(number_of(state["mean_q"]))
 
     # Files: ai.agent.storage has their format
 

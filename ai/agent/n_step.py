@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -93,54 +93,53 @@ class NStep:
 
 
 class Episodes:
-    """Collects each slot's transitions until its episode ends, and passes on those that ended well."""
+    """Transitions of episodes that go on, until those that end well are passed on whole."""
 
-    def __init__(self) -> None:
-        self._parts: dict[int, list[Transition]] = {}
+    def __init__(self, num_features: int) -> None:
+        self._transitions, self._slots = _zeros(0, num_features), np.zeros(0, dtype=np.intp)
 
-    def add(self, cells: Transition, slots: Ints, ended: Bools, success: Bools) -> Iterator[Transition]:
-        """Take m new transitions with their slots (m,); yield every successful episode that is now whole.
+    def add(self, transitions: Transition, slots: Ints, ended: Bools, success: Bools) -> list[Transition]:
+        """Take m new transitions with their slots (m,); return every successful episode that is now whole.
 
         `ended` and `success` are of all slots, (slots,).
         """
-        for slot in np.unique(slots).tolist():
-            mine = slots == slot
-            self._parts.setdefault(slot, []).append(Transition(*(part[mine] for part in cells)))
-            if ended[slot]:
-                parts = self._parts.pop(slot)
-                if success[slot]:
-                    yield joined(parts)
+        self._transitions = joined([self._transitions, transitions])
+        self._slots = np.concatenate([self._slots, slots])
+        whole = [_taken(self._transitions, self._slots == slot) for slot in np.flatnonzero(ended & success)]
+        goes_on = ~ended[self._slots]
+        self._transitions, self._slots = _taken(self._transitions, goes_on), self._slots[goes_on]
+        return whole
 
     def state(self) -> dict[str, Any]:
-        """Return copies of all that was collected of episodes that go on: transitions by field, and their slots."""
-        slots = [np.full(len(part.action), slot) for slot, parts in self._parts.items() for part in parts]
-        cells = joined([part for parts in self._parts.values() for part in parts]) if slots else None
-        return {"slots": np.concatenate(slots), **cells._asdict()} if cells else {}
+        """Return copies of all that was collected: transitions by field, and their slots."""
+        if not len(self._slots):
+            return {}
+        return {"slots": self._slots.copy()} | {name: part.copy() for name, part in self._transitions._asdict().items()}
 
-    def load_state(self, state: Mapping[str, Any], num_features: int) -> None:
-        """Go on from what `state` returned, for observations of so many features.
+    def load_state(self, state: Mapping[str, Any], observation: Floats) -> None:
+        """Go on from what `state` returned, or from nothing, for observations like this one (slots, features).
 
         Raises KeyError, TypeError or ValueError for anything else.
         """
-        self._parts = {}
-        if not state:
-            return
-        slots = state["slots"]
-        kinds = (
-            (num_features, np.float32),
-            (num_features, np.float32),
-            (0, np.intp),
-            (0, np.float32),
-            (0, bool),
-            (0, np.intp),
-        )
-        like = (np.empty((len(slots), size) if size else len(slots), dtype) for size, dtype in kinds)
-        names = zip(Transition._fields, like, strict=True)
-        cells = Transition(*(array_like(template, state[name], name) for name, template in names))
-        for slot in dict.fromkeys(slots.tolist()):
-            self._parts[count_of(slot)] = [Transition(*(part[slots == slot] for part in cells))]
+        like = _zeros(len(state["slots"]) if state else 0, observation.shape[1])
+        slots = array_like(like.steps, state["slots"], "slots") if state else like.steps
+        if (slots < 0).any() or (slots >= len(observation)).any():
+            raise ValueError("transitions are of no slot of the environment")
+        parts = like._asdict().items() if state else ()
+        self._transitions = like._replace(**{name: array_like(part, state[name], name) for name, part in parts})
+        self._slots = slots
 
 
 def joined(parts: Sequence[Transition]) -> Transition:
     """Return batches of transitions as one."""
     return Transition(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+
+
+def _taken(transitions: Transition, rows: Bools) -> Transition:
+    return Transition(*(part[rows] for part in transitions))
+
+
+def _zeros(count: int, num_features: int) -> Transition:
+    """Return so many transitions in which all is 0."""
+    states, numbers = np.zeros((count, num_features), dtype=np.float32), np.zeros(count, dtype=np.intp)
+    return Transition(states, states, numbers, np.zeros(count, dtype=np.float32), np.zeros(count, dtype=bool), numbers)

@@ -35,7 +35,7 @@ class ReplayBuffer:
     Drawing is uniform, with replacement (Lin 1992). Raises ValueError for a `prune` outside 1 to `capacity`.
 
     Attributes:
-        cells: the transitions as views, each (capacity, ...), in no particular order.
+        transitions: as views, each (capacity, ...), in no particular order.
         importance: exponent of the importance-sampling weights, without effect where drawing is uniform.
 
     """
@@ -54,7 +54,7 @@ class ReplayBuffer:
             ("steps", np.int32),
         ]
         self.records = np.zeros(capacity, np.dtype(fields, align=True))
-        self.cells = _fields(self.records)
+        self.transitions = _fields(self.records)
         self.start = 0  # where the oldest lies
         self.size = 0
         self.added = 0  # ever, dropped ones included
@@ -63,11 +63,11 @@ class ReplayBuffer:
     def __len__(self) -> int:
         return self.size
 
-    def add(self, cells: Transition) -> Ints:
+    def add(self, transitions: Transition) -> Ints:
         """Keep a batch of n transitions, oldest first, and return where they lie, (n,)."""
-        self.added += len(cells.action)
-        new = np.empty(len(cells.action), self.records.dtype)
-        for name, part in zip(Transition._fields, cells, strict=True):
+        self.added += len(transitions.action)
+        new = np.empty(len(transitions.action), self.records.dtype)
+        for name, part in zip(Transition._fields, transitions, strict=True):
             new[name] = part
         new = new[-self.capacity :]
         count = len(new)
@@ -117,9 +117,9 @@ class PrioritisedReplayBuffer(ReplayBuffer):
         self.tree = SumTree(capacity)
         self.largest = 1.0
 
-    def add(self, cells: Transition) -> Ints:
+    def add(self, transitions: Transition) -> Ints:
         """Keep a batch of n transitions, oldest first, and return where they lie, (n,)."""
-        rows = super().add(cells)
+        rows = super().add(transitions)
         self.tree.set(rows, np.full(len(rows), self.largest))
         return rows
 

@@ -30,16 +30,17 @@ class Symmetry:
         matrix[self.features, np.arange(size)] = self.signs
         return matrix
 
-    def apply(self, cells: Transition, batch_size: int, count: int) -> Transition:
+    def apply(self, transitions: Transition, batch_size: int, count: int) -> Transition:
         """Return minibatches, one after another (batches · batch_size), with the first `count` of each mirrored.
 
         All arrays are new. States are in the units of the environment: scaled by different means for left and right,
         they have no mirror image of this form.
         """
-        state, next_state, action = (part.copy() for part in (cells.state, cells.next_state, cells.action))
+        state, next_state = transitions.state.copy(), transitions.next_state.copy()
+        action = transitions.action.copy()
         for states in (state, next_state):
             batches = states.reshape(-1, batch_size, states.shape[-1])
             batches[:, :count] = batches[:, :count] @ self.matrix
         batches = action.reshape(-1, batch_size)
         batches[:, :count] = self.actions[batches[:, :count]]
-        return cells._replace(state=state, next_state=next_state, action=action)
+        return transitions._replace(state=state, next_state=next_state, action=action)

@@ -338,7 +338,7 @@ class Lookahead:
         if self._built != moment.built:
             self._built, self._envs = moment.built, {}
         if size not in self._envs:
-            self._envs[size] = _roomy(size, moment)
+            self._envs[size] = roomy(size, moment)
         env = self._envs[size]
         moment.take(np.minimum(np.arange(size), count - 1)).put(env)
         env.outcome[count:] = Outcome.TIMED_OUT
@@ -373,7 +373,7 @@ def _gather(env: LanderEnv, flies: Bools, waits: Bools, down: Bools) -> tuple[Bo
     return waits, down
 
 
-def _roomy(slots: int, moment: Moment) -> LanderEnv:
+def roomy(slots: int, moment: Moment) -> LanderEnv:
     """Return an environment into which any moment over the same ground can be put, with an air for each slot."""
     # Where each lander has a craft of its own, the usual one is built.
     params = LanderParams(**{name: value for name, value in moment.state["params"].items() if not np.ndim(value)})

@@ -51,7 +51,6 @@ class Lesson:
     state: Floats  # (features,) of it as the networks are given them
     next_state: Floats
     weight: float  # its weight in the cost, by importance sampling; 1 in uniform replay
-    target_values: Floats  # (parameters,) of the target network
     predicted: Floats  # (actions,) values of the state by the online network, before the step
     next_online: Floats | None  # (actions,) values of the next state by the online network, if it picks
     next_judged: Floats  # (actions,) the same by the network that judges
@@ -111,7 +110,6 @@ def explain(before: Before, cell: Transition, agent: DeepQAgent, flown: Flown | 
         state=taken["states"][row],
         next_state=judged["states"][row],
         weight=float(before.weights[row]),
-        target_values=before.target,
         predicted=taken["predicted"][row],
         next_online=said[id(twin.online)][row] if twin.double else None,
         next_judged=judged["values"][row],

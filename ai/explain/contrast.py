@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import product
 from typing import Final
 
 import numpy as np
@@ -34,8 +35,6 @@ class InkChange:
     ink: int  # what the square holds afterwards, 0 or 1
     before: float  # the asked digit's score
     after: float
-    answer_before: float  # the score of the digit that was answered
-    answer_after: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,9 +117,8 @@ class Contrast:
         row, column = map(int, np.unravel_index(int(gained.argmax()), gained.shape))
         if not math.isfinite(gained[row, column]):
             return None
-        before, answer = float(self.scores[asked]), float(self.scores[self.answer])
-        return InkChange(row, column, ink, before, before + float(changes[row, column, asked]), answer,
-                         answer + float(changes[row, column, self.answer]))  # fmt: skip
+        before = float(self.scores[asked])
+        return InkChange(row, column, ink, before, before + float(raised[row, column]))
 
     def units(self, asked: int) -> UnitEvidence:
         """Return how each unit before the last layer tells the asked digit from the answer."""
@@ -140,15 +138,11 @@ class Contrast:
 
         Ink that is there comes before ink that is not.
         """
-        found = []
-        for ink in (0, 1):
-            room = [
-                (float(np.abs(ink - self.image[_around(row), _around(column)]).sum()), row, column)
-                for row in range(SIDE)
-                for column in range(SIDE)
-            ]
-            room.sort(key=lambda each: (-each[0], each[1:]))
-            found += [(ink, row, column) for change, row, column in room if change >= _LEAST_CHANGE]
+        room = [
+            (ink, -float(np.abs(ink - self.image[_around(row), _around(column)]).sum()), row, column)
+            for ink, row, column in product((0, 1), range(SIDE), range(SIDE))
+        ]
+        found = [(ink, row, column) for ink, change, row, column in sorted(room) if -change >= _LEAST_CHANGE]
         return found if self.image.any() else []
 
 

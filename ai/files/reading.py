@@ -264,8 +264,6 @@ def _read_member(file: IO[bytes], name: str, expect: Expect) -> npt.NDArray[Any]
     except Exception as error:  # a header is Python's own notation, and damage to it can surface as anything
         raise ValueError(f"{name} begins as no array does: {brief(error, 100)}") from error
     expect(name, shape, dtype)
-    if dtype.hasobject:
-        raise ValueError(f"{name} holds objects, not numbers")
     size = math.prod(shape) * dtype.itemsize
     held = file.read(size + 1)
     if len(held) != size:

@@ -18,7 +18,7 @@ from ai.lander.conditions import CALM, Conditions
 from ai.lander.free_flight import FreeFlight
 from ai.lander.ground import Ground
 from ai.lander.judging import judge
-from ai.lander.rewards import REWARDS, TILT_ALLOWED, RewardWeights, Situation
+from ai.lander.rewards import REWARDS, RewardWeights, Situation
 from ai.lander.rules import (
     ACTION_NAMES,
     ACTION_SHARES,
@@ -35,7 +35,7 @@ from ai.lander.rules import (
     Outcome,
 )
 from ai.lander.sensing import sensed, surroundings, terrain
-from ai.lander.spawns import SPAWNS, Curriculum
+from ai.lander.spawns import SPAWNS, Curriculum, checked_start
 from engine import DT
 
 __all__ = [
@@ -94,7 +94,7 @@ class LanderEnv:
             raise ValueError(f"spawn is one of {', '.join(SPAWNS)}, or a Curriculum, not {spawn!r}")
         self.num_envs, self.frame_skip = num_envs, frame_skip
         self.curriculum = spawn if isinstance(spawn, Curriculum) else Curriculum(((0, spawn),))
-        self.params, self.conditions, self.limits = params, conditions, limits
+        self.params, self.limits, self.conditions = params, limits, conditions
         self.ground = ground or Ground.flat(params)
         self.weights, self.strictness, self.landings = weights or RewardWeights(), 1.0, 0
         self.streams = np.random.default_rng(seed).spawn(num_envs)
@@ -239,9 +239,14 @@ class LanderEnv:
     def _top(self, pad: Any) -> Doubles:
         """Return the middle of the top of one pad, or of one for each slot, where it is now: (2,) or (n, 2)."""
         middle: Doubles = self.ground.middles[pad]
-        if not self.conditions.moves:
-            return middle
-        return np.broadcast_to(middle, (self.num_envs, 2)) + np.stack([self.pad_shift, np.zeros(self.num_envs)], axis=1)
+        if self.conditions.moves:
+            middle = middle + np.stack([self.pad_shift, np.zeros(self.num_envs)], axis=1)
+        return middle
+
+    def _standing(self, pad: Any) -> Doubles:
+        """Return where the centre of mass of a lander is that stands there, of that shape."""
+        place: Doubles = self._top(pad) + np.array([0.0, self.params.stand])
+        return place
 
     def reset(self, mask: Bools | None = None) -> Floats:
         """Begin a new flight in the slots of `mask` (n,), or in all; return every slot's observation."""
@@ -272,15 +277,7 @@ class LanderEnv:
 
         Raises ValueError for any other start.
         """
-        start = np.asarray(start, dtype=float)
-        if start.shape != (6,) or not np.isfinite(start).all():
-            raise ValueError(f"a start is six finite numbers, not {start}")
-        x, y, angle = start[[0, 1, 4]].tolist()
-        if abs(x) > self.limits.half_width or y > self.limits.ceiling:
-            raise ValueError(f"a flight begins inside the area, not at ({x:.2f}, {y:.2f})")
-        if y < self.lowest(x, angle):
-            raise ValueError(f"a flight begins above the ground, not at ({x:.2f}, {y:.2f})")
-        self.place(np.arange(self.num_envs) == slot, start[None])
+        self.place(np.arange(self.num_envs) == slot, checked_start(start, self.ground, self.limits)[None])
 
     def step(self, actions: Any) -> StepResult:
         """Fly one decision; `actions` (n,) are 0 to 5. Raises ValueError for others, RuntimeError before a reset."""
@@ -301,9 +298,8 @@ class LanderEnv:
     def fly(self, actions: Any, shares: Doubles | None = None) -> None:
         """Fly one decision as `step` does, without computing rewards; raises as that does.
 
-        Engines give these `shares` of thrust, (n, 2), instead of all that the actions ask for: of the main engine
-        0 to 1, of the jets -1, left, to 1, right. The actions then only say what was meant. Raises ValueError for
-        shares outside.
+        Engines give these `shares` of thrust, (n, 2), main 0 to 1 and side -1, left, to 1, right, instead of all that
+        the actions ask for, which then only say what was meant. Raises ValueError for shares outside.
         """
         actions = np.asarray(actions)
         if actions.shape != (self.num_envs,) or actions.dtype.kind not in "iu":
@@ -325,7 +321,6 @@ class LanderEnv:
                 continue
             self._move(flying)
             judge(self, flying)
-            self.tilted_steps += flying & (self.tilt > TILT_ALLOWED)
             left -= 1
 
     def glide(self, actions: Ints) -> Floats:
@@ -363,16 +358,16 @@ class LanderEnv:
 
     def observe(self, pad: Any = None) -> Floats:
         """Return every lander's observation (n, 9) of its target, or of another `pad`, one number or (n,)."""
-        pad = self.target if pad is None else np.asarray(pad)
+        pad = self.target if pad is None else pad
         pads = self.ground.at_once
-        contacts = self.contacts if pads == 1 else self.contacts * (self.touched == pad)[:, None]
-        offset = self.position - (self._top(pad) + np.array([0.0, self.params.stand]))
+        contacts = self.contacts if pads == 1 else self.contacts * np.equal(self.touched, pad)[:, None]
+        offset = self.position - self._standing(pad)
         return sensed(offset, self.relative_velocity, *self.turned, contacts, pads=pads)
 
     def observe_at(self, slot: int, places: Doubles) -> Floats:
         """Return what lander `slot` would observe at other places (m, 2) in the air, moving as it does now: (m, 9)."""
         at = np.full(len(places), slot)
-        offset = places - (self._top(self.target)[at] + np.array([0.0, self.params.stand]))
+        offset = places - self._standing(self.target)[at]
         sin, cos, spin = (part[at] for part in self.turned)
         nothing = np.zeros((len(places), 2), dtype=bool)
         return sensed(offset, self.relative_velocity[at], sin, cos, spin, nothing, pads=self.ground.at_once)
@@ -383,10 +378,6 @@ class LanderEnv:
         state, body = self.world.state, self.lander.index
         return state.sin[:, body], state.cos[:, body], self.angular_velocity
 
-    def observe_pads(self, pilot: Any = None) -> Floats:
-        """Return every lander's observation of each pad, (n, pads, 9), or what `pilot` reads, (n, pads, features)."""
-        return np.stack([self.observe_for(pilot, pad) for pad in range(len(self.ground.pads))], axis=1)
-
     def observe_for(self, pilot: Any, pad: Any = None) -> Floats:
         """Return what a pilot reads: `observe_wide` if its network has inputs for that, else `observe`."""
         wide = getattr(pilot, "num_features", NUM_FEATURES) > NUM_FEATURES
@@ -396,17 +387,17 @@ class LanderEnv:
         """Return every lander's observation and what is around it, side by side, (n, 9 + k)."""
         return np.concatenate([LanderEnv.observe(self, pad), self.surroundings(pad)], axis=1)
 
-    def surroundings(self, pad: Any = None) -> Floats:
-        """Return what is around every lander (n, k) that `observe` leaves out, for the target or another `pad`.
+    def observe_pads(self, pilot: Any = None) -> Floats:
+        """Return every lander's observation of each pad, (n, pads, 9), or what `pilot` reads, (n, pads, features)."""
+        return np.stack([self.observe_for(pilot, pad) for pad in range(len(self.ground.pads))], axis=1)
 
-        `ai.lander.sensing.SURROUNDINGS` names the k numbers.
-        """
-        return surroundings(self, self.target if pad is None else np.asarray(pad))
+    def surroundings(self, pad: Any = None) -> Floats:
+        """Return the `ai.lander.sensing.SURROUNDINGS` of every lander, (n, k), for the target or another `pad`."""
+        return surroundings(self, self.target if pad is None else pad)
 
     def around(self, pad: Any = None) -> Floats:
         """Return the surroundings and the ground beside every lander, (n, k): `ai.lander.sensing.AROUND` names them."""
-        pad = self.target if pad is None else np.asarray(pad)
-        return np.concatenate([self.surroundings(pad), terrain(self, pad)], axis=1)
+        return np.concatenate([self.surroundings(pad), terrain(self, self.target if pad is None else pad)], axis=1)
 
     def around_pads(self) -> Floats:
         """Return what is around every lander on its way to each pad, (n, pads, k)."""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ai.common.environment import Bools
+from ai.lander.rewards import TILT_ALLOWED
 from ai.lander.rules import Cause, Outcome
 from engine import DT
 
@@ -22,6 +23,7 @@ def judge(env: LanderEnv, flying: Bools) -> None:
     gone |= position[:, 1] > limits.ceiling
     late = env.steps * DT >= limits.time - 1e-9
     landed = _rest(env, flying)
+    env.tilted_steps += flying & (env.tilt > TILT_ALLOWED)
     if not (flying & (gone | late | crashed | landed)).any():
         return
     verdict = np.where(late, Outcome.TIMED_OUT, Outcome.FLYING)

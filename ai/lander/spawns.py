@@ -13,6 +13,9 @@ from typing import Final
 import numpy as np
 
 from ai.common.environment import Doubles
+from ai.lander.craft import lowest
+from ai.lander.ground import Ground
+from ai.lander.rules import Limits
 
 Spawn = Callable[[np.random.Generator], Doubles]
 
@@ -104,6 +107,19 @@ SPAWNS: Final[dict[str, Spawn]] = {
     "far": _far,
     **RUNGS,
 }
+
+
+def checked_start(start: Doubles, ground: Ground, limits: Limits) -> Doubles:
+    """Return a start above the ground and inside the area, as an array; raises ValueError for any other."""
+    start = np.asarray(start, dtype=float)
+    if start.shape != (6,) or not np.isfinite(start).all():
+        raise ValueError(f"a start is six finite numbers, not {start}")
+    x, y, angle = start[[0, 1, 4]].tolist()
+    if abs(x) > limits.half_width or y > limits.ceiling:
+        raise ValueError(f"a flight begins inside the area, not at ({x:.2f}, {y:.2f})")
+    if y < lowest(ground, x, angle):
+        raise ValueError(f"a flight begins above the ground, not at ({x:.2f}, {y:.2f})")
+    return start
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,9 @@
 """Captions of a run's charts: what each curve means now, by rules on its recent past.
 
-They share the readings of the hints, and never speak against one: while a hint is shown, no caption of a chart that
-it is about praises the curve. The words that a player reads belong to the game.
+A caption stands below a number, the latest of its curve, and every rule asks that number: none speaks of a curve that
+its latest number contradicts, and where no rule is sure there is no caption. They share the readings of the hints, and
+never speak against one: while a hint is shown, no caption of a chart that it is about praises the curve. The words that
+a player reads belong to the game.
 """
 
 from __future__ import annotations
@@ -13,7 +15,9 @@ import numpy as np
 
 from ai.common.decision import in_points
 from ai.lander.spawns import CURRICULA
-from ai.training.hints import RULES, RecentCurves
+from ai.training.edits import EDITED
+from ai.training.hints import RULES, RecentCurves, returns
+from ai.training.history import PARTS
 
 CHARTS: Final = ("success", "mean_return", "loss", "mean_q", "epsilon", "stage")
 # Charts that a hint is about, by its name.
@@ -23,6 +27,8 @@ ABOUT: Final[Mapping[str, tuple[str, ...]]] = {
     "loss_explodes": ("loss",),
     "q_runs_away": ("mean_q", "loss"),
     "dead_units": ("success", "mean_return", "loss"),
+    "changed": ("success", "mean_return"),
+    "edited": ("success", "mean_return"),
     "collapsed": ("success", "mean_return"),
     "target_stands": ("success", "mean_return", "mean_q", "loss"),
     "short_sight": ("success", "mean_return"),
@@ -40,6 +46,7 @@ _CHANGE: Final = 0.05  # of a share, from which it rises or falls
 _RETURN_CHANGE: Final = 10.0  # points of reward
 _Q_CHANGE: Final = 4.0
 _LOSS_CHANGE: Final = 1.2  # times
+_ROUNDED: Final = 0.5  # points of reward that are written as 0
 _HOPE: Final = 60.0  # points of reward by which a mean value is too high to be chance
 _SIGHT: Final = 0.96  # discount below which a value does not reach to the end of a flight
 _HALF: Final = 0.5
@@ -61,16 +68,17 @@ class CaptionRule(NamedTuple):
     values: Callable[[RecentCurves], Mapping[str, float | str]] = lambda _: {}
 
 
-def captions(run: RecentCurves, hint: str = "") -> dict[str, Caption]:
-    """Return the caption of every chart of a run; `hint` is the name of the hint that is shown with them, if any."""
+def caption(chart: str, run: RecentCurves, hint: str = "", shown: str = "") -> Caption | None:
+    """Return the caption of a run's chart now, or None; `hint` is the name of the hint that is shown with it, if any.
+
+    The rule whose caption is `shown` goes before the others as long as it holds, so that it can be read.
+    """
     if not run.count:
-        return {}
-    hushed = ABOUT.get(hint, ())
-    found = {}
-    for chart, rules in CAPTION_RULES.items():
-        rule = next(rule for rule in rules if not (rule.praises and chart in hushed) and rule.holds(run))
-        found[chart] = Caption(rule.name, rule.values(run))
-    return found
+        return None
+    quiet = chart in ABOUT.get(hint, ())
+    rules = sorted(CAPTION_RULES[chart], key=lambda rule: rule.name != shown)
+    found = next((rule for rule in rules if not (rule.praises and quiet) and rule.holds(run)), None)
+    return Caption(found.name, found.values(run)) if found else None
 
 
 def expected_value(run: RecentCurves) -> float:
@@ -78,9 +86,12 @@ def expected_value(run: RecentCurves) -> float:
 
     On average over a flight, half of what it is paid on the way still lies ahead, and its end, which is discounted.
     """
-    end = run.config.reward_weights.terminal * (2.0 * run.last("success") - 1.0)
-    ahead = _HALF * (run.last("mean_return") + end)
+    end = run.config.reward_weights.terminal * (2.0 * run.now("success") - 1.0)
+    ahead = _HALF * (run.now("mean_return") + end)
     return _HALF * ahead if ahead < 0 else ahead
+
+
+# Readings: those of a curve's latest number, and of what it was a while ago
 
 
 def _hint(name: str) -> Callable[[RecentCurves], bool]:
@@ -89,108 +100,158 @@ def _hint(name: str) -> Callable[[RecentCurves], bool]:
 
 
 def _unknown(column: str) -> Callable[[RecentCurves], bool]:
-    return lambda run: bool(np.isnan(run.last(column)))
+    return lambda run: bool(np.isnan(run.now(column)))
 
 
-def _points(run: RecentCurves) -> float:
-    return float(in_points(np.array(run.last("mean_q")), run.history.reward_scale))
+def _stands(run: RecentCurves) -> bool:
+    """Whether it has learnt, and does not now."""
+    return bool(np.isnan(run.history["loss"][-1])) and not np.isnan(run.now("loss"))
+
+
+def _held(run: RecentCurves) -> bool:
+    """Whether it does not learn because it was edited by hand."""
+    edits = [each for each in run.history.setting_changes if each.name == EDITED]
+    return _stands(run) and bool(edits) and bool(edits[-1].after)
+
+
+def _rises(column: str, by: float) -> Callable[[RecentCurves], bool]:
+    return lambda run: min(run.gained(column), run.now(column) - run.before(column)) > by
+
+
+def _falls(column: str, by: float) -> Callable[[RecentCurves], bool]:
+    return lambda run: max(run.gained(column), run.now(column) - run.before(column)) < -by
+
+
+def _steady(run: RecentCurves) -> bool:
+    now, before = run.now("success"), run.before("success")
+    return max(abs(run.gained("success")), abs(now - before)) <= _CHANGE
+
+
+def _points(run: RecentCurves, scaled: float) -> float:
+    return float(in_points(np.array(scaled), run.history.reward_scale))
 
 
 def _stages(run: RecentCurves) -> dict[str, float]:
-    return {"stage": run.last("stage", 1), "last": _last_stage(run)}
+    return {"stage": run.now("stage"), "last": _last_stage(run)}
 
 
 def _last_stage(run: RecentCurves) -> float:
     return float(len(CURRICULA[run.config.spawn].stages) - 1)
 
 
-def _q_gained(run: RecentCurves) -> float:
-    return float(in_points(np.array(run.gained("mean_q")), run.history.reward_scale))
-
-
 def _loss_times(run: RecentCurves) -> float:
-    """Return how many times its size the loss has become over the last share of the run."""
-    now, gained = run.last("loss"), run.gained("loss")
-    return now / (now - gained) if now > gained else float("inf")
-
-
-def _none_lands(run: RecentCurves) -> bool:
-    return run.last("success") < 0.02
+    """Return how many times its size the loss has become over the last share of the run, and in its latest number."""
+    before, gained = run.before("loss"), run.gained("loss")
+    if not before > 0:
+        return float("nan")
+    times, latest = 1.0 + gained / before, run.now("loss") / before
+    return min(times, latest) if times > 1.0 else max(times, latest)
 
 
 def _most(column: str) -> Callable[[RecentCurves], bool]:
-    return lambda run: _none_lands(run) and run.last(column) >= _MOST
+    return lambda run: run.now("success") == 0.0 and run.now(column) >= _MOST
 
 
 def _percent(run: RecentCurves) -> Mapping[str, float]:
-    gained = run.gained("success")
-    now = run.last("success")
-    return {"percent": 100 * now, "before": 100 * min(max(now - gained, 0.0), 1.0), "best": 100 * run.best()}
+    return {
+        "percent": 100 * run.now("success"),
+        "before": 100 * run.before("success"),
+        "best": 100 * run.best(),
+    }
 
 
 def _paid(run: RecentCurves) -> Mapping[str, float]:
-    return {"points": abs(run.last("mean_return")), "terminal": abs(run.config.reward_weights.terminal)}
+    return {"points": abs(run.now("mean_return"))}
+
+
+def _split(run: RecentCurves) -> Mapping[str, float]:
+    """Return what the end of a flight brings on average, and what came on the way."""
+    end = float(run.history.parts[-1, PARTS.index("terminal")])
+    return {"end": end, "way": run.now("mean_return") - end}
+
+
+def _lands_for_little(run: RecentCurves) -> bool:
+    """Whether most flights land, and what is paid on the way takes most of that away."""
+    parts = run.history.parts[-1]
+    known = abs(float(parts.sum()) - run.now("mean_return")) < _ROUNDED
+    return known and run.now("success") >= _MOST and run.now("mean_return") < _HALF * _split(run)["end"]
 
 
 def _random(run: RecentCurves) -> Mapping[str, float]:
-    return {"percent": 100 * run.last("epsilon", 1)}
+    return {"percent": 100 * run.now("epsilon")}
 
 
 def _hopes(run: RecentCurves) -> bool:
-    return run.config.discount >= _SIGHT and _points(run) > expected_value(run) + _HOPE
+    hoped = _points(run, run.now("mean_q"))
+    return run.config.discount >= _SIGHT and hoped > expected_value(run) + _HOPE
+
+
+def _runs_away(run: RecentCurves) -> bool:
+    least, most = returns(run.config)
+    return _hint("q_runs_away")(run) and not 2 * least <= run.now("mean_q") <= 2 * most
+
+
+def _q_gained(run: RecentCurves) -> float:
+    return _points(run, run.gained("mean_q"))
 
 
 def _always(_: RecentCurves) -> bool:
     return True
 
 
-# The first that holds is the caption; the last of each chart always does.
+# The first that holds is the caption.
 CAPTION_RULES: Final[Mapping[str, tuple[CaptionRule, ...]]] = {
     "success": (
         CaptionRule("unknown", _unknown("success")),
-        CaptionRule("collapsed", _hint("collapsed"), values=_percent),
+        CaptionRule("collapsed", lambda run: run.now("success") <= run.best() - 0.4, values=_percent),
         CaptionRule("crashes", _most("crashed")),
         CaptionRule("hovers", _most("timed_out")),
         CaptionRule("leaves", _most("out_of_bounds")),
-        CaptionRule("none", _none_lands),
-        CaptionRule("rises", lambda run: run.gained("success") > _CHANGE, True, _percent),
-        CaptionRule("falls", lambda run: run.gained("success") < -_CHANGE, values=_percent),
-        CaptionRule("high", lambda run: run.last("success") >= 0.9, True),
-        CaptionRule("steady", _always, values=_percent),
+        CaptionRule("none", lambda run: run.now("success") == 0.0),
+        CaptionRule("high", lambda run: run.now("success") >= 0.9 and run.last("success") >= 0.9, True),
+        CaptionRule("rises", _rises("success", _CHANGE), True, _percent),
+        CaptionRule("falls", _falls("success", _CHANGE), values=_percent),
+        CaptionRule("steady", _steady, values=_percent),
     ),
     "mean_return": (
         CaptionRule("unknown", _unknown("mean_return")),
-        CaptionRule("rises", lambda run: run.gained("mean_return") > _RETURN_CHANGE, True, _paid),
-        CaptionRule("falls", lambda run: run.gained("mean_return") < -_RETURN_CHANGE, values=_paid),
-        CaptionRule("costs", lambda run: run.last("mean_return") < 0, values=_paid),
-        CaptionRule("earns", _always, values=_paid),
+        CaptionRule("nothing", lambda run: abs(run.now("mean_return")) < _ROUNDED and not _lands_for_little(run)),
+        CaptionRule("little", _lands_for_little, values=_split),
+        CaptionRule("rises", _rises("mean_return", _RETURN_CHANGE), True),
+        CaptionRule("falls", _falls("mean_return", _RETURN_CHANGE)),
+        CaptionRule("costs", lambda run: run.now("mean_return") <= -_ROUNDED, values=_paid),
+        CaptionRule("earns", lambda run: run.now("mean_return") >= _ROUNDED, values=_paid),
     ),
     "loss": (
         CaptionRule("unknown", _unknown("loss")),
+        CaptionRule("held", _held),
+        CaptionRule("waits", _stands),
         CaptionRule("explodes", _hint("loss_explodes")),
-        CaptionRule("news", lambda run: _loss_times(run) > _LOSS_CHANGE and run.gained("success") > _CHANGE, True),
+        CaptionRule("news", lambda run: _loss_times(run) > _LOSS_CHANGE and _rises("success", _CHANGE)(run), True),
         CaptionRule("rises", lambda run: _loss_times(run) > _LOSS_CHANGE),
         CaptionRule("falls", lambda run: _loss_times(run) < 1 / _LOSS_CHANGE, True),
-        CaptionRule("steady", _always),
+        CaptionRule("steady", lambda run: 1 / _LOSS_CHANGE <= run.now("loss") / run.before("loss") <= _LOSS_CHANGE),
     ),
     "mean_q": (
         CaptionRule("unknown", _unknown("mean_q")),
-        CaptionRule("runs_away", _hint("q_runs_away")),
+        CaptionRule("held", _held),
+        CaptionRule("waits", _stands),
+        CaptionRule("runs_away", _runs_away),
         CaptionRule("hopes", _hopes),
-        CaptionRule("rises", lambda run: _q_gained(run) > _Q_CHANGE and run.gained("success") > _CHANGE, True),
-        CaptionRule("crashes", lambda run: _q_gained(run) < -_Q_CHANGE and run.last("crashed") >= _MOST),
+        CaptionRule("rises", lambda run: _q_gained(run) > _Q_CHANGE and _rises("success", _CHANGE)(run), True),
+        CaptionRule("crashes", lambda run: _q_gained(run) < -_Q_CHANGE and run.now("crashed") >= _MOST),
         CaptionRule("steady", _always),
     ),
     "epsilon": (
-        CaptionRule("all", lambda run: run.last("epsilon", 1) > 0.99),
-        CaptionRule("none", lambda run: run.last("epsilon", 1) == 0),
-        CaptionRule("falls", lambda run: run.gained("epsilon") < -0.01, values=_random),
+        CaptionRule("all", lambda run: run.now("epsilon") == 1.0),
+        CaptionRule("none", lambda run: run.now("epsilon") == 0.0),
+        CaptionRule("falls", lambda run: run.now("epsilon") < run.history["epsilon"][-8:].max(), values=_random),
         CaptionRule("spread", lambda run: run.config.epsilon_spread > 0 and run.config.num_envs > 1, values=_random),
         CaptionRule("steady", _always, values=_random),
     ),
     "stage": (
         CaptionRule("same", lambda run: run.config.spawn not in CURRICULA),
-        CaptionRule("last", lambda run: run.last("stage", 1) >= _last_stage(run), values=_stages),
+        CaptionRule("last", lambda run: run.now("stage") >= _last_stage(run), values=_stages),
         CaptionRule("grows", _always, values=_stages),
     ),
 }

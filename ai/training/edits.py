@@ -15,7 +15,6 @@ from ai.nn import DuelingLayer, FullyConnectedLayer, NeuralNetwork
 
 EDITED: Final = "network"  # the name of the setting change that an edit is
 MOST_WEIGHT: Final = 100.0  # largest size of a weight that is set by hand
-MOST_STEPS: Final = 1000  # that can be undone one by one; all of them are undone together in any case
 
 
 @dataclass(frozen=True)
@@ -84,14 +83,6 @@ class NetworkEdits:
     way_back: bool = False
 
 
-@dataclass(frozen=True, eq=False)
-class _Step:
-    """One edit, with the weights that it replaced in the online and the target network."""
-
-    edit: Edit
-    before: tuple[Floats, Floats]
-
-
 class NetworkEditor:
     """Editor of an agent's networks. The agent does not learn from the first edit until it is told to.
 
@@ -100,16 +91,16 @@ class NetworkEditor:
 
     def __init__(self, agent: DeepQAgent) -> None:
         self._agent = agent
-        self._steps: list[_Step] = []
-        self._before: tuple[Floats, Floats] | None = None  # all parameters, before the first edit
-        self._edits: list[Edit] = []  # in force, also those that can no longer be undone one by one
+        self._steps: list[Edit] = []  # those in force since it has learnt last
+        self._before: tuple[Floats, Floats] | None = None  # all parameters, before the first edit of all
+        self._learnt: tuple[Floats, Floats] | None = None  # and as it had learnt, before the first of the steps
         self._learnt_on = 0  # edits from which it has learnt on
 
     @property
     def edits(self) -> NetworkEdits:
         """What is in force."""
-        silenced = ((each.layer, each.unit) for each in self._edits if isinstance(each, SilenceUnit))
-        weights = ((each.layer, each.start, each.end) for each in self._edits if isinstance(each, SetWeight))
+        silenced = ((each.layer, each.unit) for each in self._steps if isinstance(each, SilenceUnit))
+        weights = ((each.layer, each.start, each.end) for each in self._steps if isinstance(each, SetWeight))
         return NetworkEdits(
             tuple(dict.fromkeys(silenced)),
             tuple(dict.fromkeys(weights)),
@@ -137,36 +128,31 @@ class NetworkEditor:
     def apply(self, edit: Edit, *, amends: bool = False) -> None:
         """Carry out an edit in both networks, and hold learning.
 
-        With `amends`, it belongs to the step before if that set the same weight, as while it is dragged. Raises
+        With `amends`, it takes the place of the step before if that set the same weight, as while it is dragged. Raises
         ValueError, with nothing changed, for an edit that cannot be made.
         """
-        check(self._agent.online, edit)
-        if self._before is None:
-            self._before = self._agent.online.values.copy(), self._agent.target.values.copy()
-        networks = self._agent.online, self._agent.target
-        last = self._steps[-1] if self._steps else None
-        if amends and last is not None and _same_place(last.edit, edit):
-            self._steps[-1] = _Step(edit, last.before)
-            self._edits[-1] = edit
-        else:
-            self._steps = [*self._steps, _Step(edit, _both(networks, edit))][-MOST_STEPS:]
-            self._edits.append(edit)
-        for network in networks:
-            _place(network, edit)[...] = edit.value if isinstance(edit, SetWeight) else 0.0
-        self._agent.paused = True
+        agent = self._agent
+        check(agent.online, edit)
+        if not self._steps:
+            self._learnt = agent.online.values.copy(), agent.target.values.copy()
+            self._before = self._before or self._learnt
+        if amends and self._steps and _same_place(self._steps[-1], edit):
+            self._steps.pop()
+        self._steps.append(edit)
+        self._set(edit)
+        agent.paused = True
 
     def undo(self) -> None:
         """Undo the last step; after the last one, the agent learns again."""
-        if not self._steps:
+        if not self._steps or self._learnt is None:
             return
-        step = self._steps.pop()
-        self._edits.pop()
-        for network, values in zip((self._agent.online, self._agent.target), step.before, strict=True):
-            _place(network, step.edit)[...] = values
-        if not self._edits and not self._learnt_on:
+        self._steps.pop()
+        self._agent.online.values, self._agent.target.values = self._learnt
+        for edit in self._steps:
+            self._set(edit)
+        if not self._steps and not self._learnt_on:
             self.forget()
-        elif not self._edits:
-            self._agent.paused = False
+        self._agent.paused = bool(self._steps)
 
     def restore(self) -> None:
         """Restore all parameters from before the first edit, bit for bit; the agent learns again.
@@ -185,14 +171,21 @@ class NetworkEditor:
         self._learnt_on = self.count
         self._agent.paused = False
         self._steps.clear()
-        self._edits.clear()
 
     def forget(self) -> None:
         """Let the agent learn, and keep no way back: its networks have been replaced, or are as they were."""
         self._agent.paused = False
         self._before, self._learnt_on = None, 0
         self._steps.clear()
-        self._edits.clear()
+
+    def _set(self, edit: Edit) -> None:
+        for network in (self._agent.online, self._agent.target):
+            network.values  # noqa: B018 - packs the parameters, so that the weights are views of them
+            weights: Floats = _layers(network)[edit.layer].weights
+            if isinstance(edit, SilenceUnit):
+                weights[edit.unit] = 0.0
+            else:
+                weights[edit.start, edit.end] = edit.value
 
 
 def check(network: NeuralNetwork, edit: Edit) -> None:
@@ -218,18 +211,6 @@ def check(network: NeuralNetwork, edit: Edit) -> None:
 
 def _layers(network: NeuralNetwork) -> list[FullyConnectedLayer]:
     return [layer for layer in network.layers if isinstance(layer, FullyConnectedLayer)]
-
-
-def _place(network: NeuralNetwork, edit: Edit) -> Floats:
-    """Return the view of the weights that an edit sets."""
-    network.values  # noqa: B018 - packs the parameters, so that the weights are views of them
-    weights: Floats = _layers(network)[edit.layer].weights
-    return weights[edit.unit] if isinstance(edit, SilenceUnit) else weights[edit.start, edit.end : edit.end + 1]
-
-
-def _both(networks: tuple[NeuralNetwork, NeuralNetwork], edit: Edit) -> tuple[Floats, Floats]:
-    online, target = networks
-    return _place(online, edit).copy(), _place(target, edit).copy()
 
 
 def _same_place(one: Edit, other: Edit) -> bool:

@@ -23,6 +23,7 @@ from ai.agent.network import make_optimizer
 from ai.agent.normalizer import Normalizer
 from ai.agent.replay import ReplayBuffer, make_replay
 from ai.agent.schedule import exploration, exploration_of_each
+from ai.agent.storage import agent_state, load_agent_state
 from ai.common.environment import Env, Floats, StepResult
 from ai.files import array_like, count_of, number_of
 from ai.training.config import ANYWHERE, LANDER, Config
@@ -251,7 +252,7 @@ class Training:
             best = {"score": self.best.to_json(), **_network(self.best_values, self.best_normalizer)}
         return {
             "episodes": self.episodes, "evaluated": self.evaluated, "seconds": self.seconds, "best": best,
-            "observation": self.observation.copy(), "held": self._held.copy(), "agent": self.agent.state(),
+            "observation": self.observation.copy(), "held": self._held.copy(), "agent": agent_state(self.agent),
             "env": self.task.env_state(self.env), "statistics": self.statistics.state(),
             "validation": validated and {
                 "decisions": validated.decisions, **_network(validated.network.values, validated.normalizer)
@@ -276,7 +277,7 @@ class Training:
             if (self._held < 0).any() or (self._held >= self.task.num_actions).any():
                 raise ValueError("actions are none of the environment's")
             self.statistics.load_state(state["statistics"])
-        agent.load_state(state["agent"], env.num_envs)
+        load_agent_state(agent, state["agent"], env.num_envs)
         whole = [
             restore_buffer(folder, getattr(agent, name), told, self.task.num_actions)
             for name, told in state["buffers"].items() if name in ("replay", "successes")

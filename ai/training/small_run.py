@@ -33,65 +33,38 @@ RECENT_TESTS: Final = 24
 
 @dataclass(frozen=True)
 class Flown:
-    """Landers of a small run after a decision, all (n,).
+    """Landers of a small run after a decision, all (n,)."""
 
-    Attributes:
-        height, speed: of the feet above the pad, and upwards; metres and m/s.
-        main: whether the main engine burns.
-        outcome: an `Outcome` each.
-
-    """
-
-    height: Doubles
-    speed: Doubles
-    main: Bools
-    outcome: Ints
+    height: Doubles  # of the feet above the pad, metres
+    speed: Doubles  # upwards, m/s
+    main: Bools  # whether the main engine burns
+    outcome: Ints  # an `Outcome` each
 
 
 @dataclass(frozen=True)
 class Memory:
-    """Replay buffer of a small run after a decision. Memories are counted from 0 as they come, for ever.
+    """Replay buffer of a small run after a decision. Memories are counted from 0 as they come, for ever."""
 
-    Attributes:
-        cells: the newest memories, as the buffer holds them.
-        first: number of the first of them.
-        oldest: number of the oldest memory that is still held.
-        drawn: numbers of those drawn in this decision's learning step; empty before the first.
-
-    """
-
-    cells: Transition
-    first: int
-    oldest: int
-    drawn: Ints
+    cells: Transition  # the newest, as the buffer holds them
+    first: int  # number of the first of them
+    oldest: int  # number of the oldest that is still held
+    drawn: Ints  # numbers of those drawn in this decision's learning step; empty before the first
 
 
 @dataclass(frozen=True)
 class SmallState:
-    """State of a small run after one decision.
+    """State of a small run after one decision."""
 
-    Attributes:
-        decisions: decisions so far, of all landers together as one.
-        flights: flights that have ended.
-        landed: share that landed of the latest `RECENT` flights; None before the first has ended.
-        value: what the network expects of its landers' present moments, in points; the mean of all.
-        epsilon: share of random actions.
-        tested: landers that fly the present network without random actions, and teach it nothing; None without tests.
-        passed: share that landed of the latest `RECENT_TESTS` tests; None before the first has ended.
-        problem: why it cannot go on; empty while it can.
-
-    """
-
-    decisions: int
-    flights: int
-    landed: float | None
-    value: float
-    epsilon: float
+    decisions: int  # so far, of all landers together as one
+    flights: int  # that have ended
+    landed: float | None  # share of the latest `RECENT` flights; None before the first has ended
+    value: float  # what the network expects of its landers' present moments, in points; the mean of all
+    epsilon: float  # share of random actions
     flown: Flown
     memory: Memory
-    tested: Flown | None = None
-    passed: float | None = None
-    problem: str = ""
+    tested: Flown | None = None  # who fly the present network without random actions, and teach it nothing
+    passed: float | None = None  # share of the latest `RECENT_TESTS` of those that landed
+    problem: str = ""  # why it cannot go on; empty while it can
 
 
 class Plan(NamedTuple):

@@ -218,7 +218,7 @@ def _name(moment: int) -> str:
 
 def _packed(buffer: ReplayBuffer) -> np.dtype[Any]:
     """Return the type of a transition on disk: nothing between its fields, and small numbers in few bytes."""
-    features = buffer.cells.state.shape[1]
+    features = buffer.transitions.state.shape[1]
     return np.dtype([("state", "<f4", features), ("next_state", "<f4", features), ("action", "<u2"),
                      ("reward", "<f4"), ("terminal", "u1"), ("steps", "u1")])  # fmt: skip
 
@@ -243,7 +243,7 @@ def _fill(buffer: ReplayBuffer, rows: NDArray[np.intp], content: NDArray[np.uint
         raise ValueError("transitions hold numbers that are not finite")
     if (records["action"] >= num_actions).any() or (records["terminal"] > 1).any() or (records["steps"] < 1).any():
         raise ValueError("transitions hold what no decision is")
-    for name, part in zip(Transition._fields, buffer.cells, strict=True):
+    for name, part in zip(Transition._fields, buffer.transitions, strict=True):
         part[rows] = records[name]
 
 

@@ -48,8 +48,9 @@ class Settings:
     check_flights: bool = False  # check flights: now and then a flight is flown without help
     fade: bool = False  # whether help fades as the player improves, with check flights
     faded_to: float = 0.0  # assist at which fading has left the dial; at another one, it was turned by hand
+    more_flights: bool = False  # whether all choices of flights are shown, and not four
     teach: bool = False  # whether good landings are kept for a network to learn from
-    explain: bool = True  # whether the co-pilot's panel is shown
+    show_thinking: bool = False  # whether what the network thinks is shown in flight
     gravity: Annotated[float, Within(*GRAVITY_SHARES)] = 1.0  # share of normal gravity in free flights
     pace: Annotated[float, Within(*PACES)] = 1.0  # time scale of a flight
     analogue: bool = True  # whether sticks and triggers give a share of thrust, and not all or none

@@ -19,7 +19,7 @@ TOGETHER: Final = ("helped", "handed_over")  # reasons not to count that a landi
 
 
 class CreditRules(Protocol):
-    """Challenge of a flight, as far as it decides what counts; implemented in `game.play.challenge`."""
+    """Challenge of a flight, as far as it decides what counts; implemented in `game.scenes.play.challenge`."""
 
     @property
     def kept(self) -> bool:
@@ -105,17 +105,12 @@ class Credit:
         flight, stick = self._flight, self.stick
         if flight.over:
             return who_flew(flight.share)
-        words = {FlownBy.PERSON: texts.YOU_FLY, FlownBy.BOTH: texts.YOU_SHARE, FlownBy.NETWORK: texts.NETWORK_FLIES}[
-            stick
-        ]
+        words = texts.NETWORK_FLIES if stick is FlownBy.NETWORK else texts.YOU_FLY
         if stick is FlownBy.BOTH and flight.copilot:
-            assist = round(100 * flight.copilot.assist)
-            return texts.DIAL_JOIN.join((words, texts.DIAL_ASSISTS[flight.copilot.mode].format(percent=assist)))
+            return texts.YOU_SHARE[flight.copilot.mode]
         if not self.alone:
             return words
-        if not self._check:
-            return texts.DIAL_JOIN.join((words, texts.WITHOUT_HELP))
-        return texts.DIAL_JOIN.join((texts.CHECK_FLIGHT, texts.CHECK_ALONE if self.counts else texts.WITHOUT_HELP))
+        return texts.JOINED.format(words=texts.CHECK_FLIGHT if self._check else words, more=texts.WITHOUT_HELP)
 
     # What it counts for
 

@@ -1,6 +1,6 @@
 """Help that fades: the dial follows the estimate of how often the player would land alone, in small steps.
 
-It changes between flights only, and rests once the player has turned the dial by hand.
+It changes between flights only, and is switched off once the player has turned the dial by hand.
 """
 
 from __future__ import annotations
@@ -36,14 +36,17 @@ def switch(settings: Settings, *, on: bool) -> None:
     settings.fade, settings.faded_to = on, settings.assist
 
 
-def active(settings: Settings) -> bool:
-    """Whether help fades: switched on, and the dial is where fading has left it."""
-    return settings.fade and settings.assist == settings.faded_to
+def follow_hand(settings: Settings) -> bool:
+    """Switch fading off if the dial is no longer where it was left, as the player has turned it; return whether so."""
+    turned = settings.fade and settings.assist != settings.faded_to
+    if turned:
+        settings.fade = False
+    return turned
 
 
 def fade(settings: Settings, estimate: Estimate) -> bool:
     """Turn the dial for the next flight; return whether it has changed."""
-    if not active(settings):
+    if follow_hand(settings) or not settings.fade:
         return False
     before = settings.assist
     settings.assist = settings.faded_to = faded(before, estimate)

@@ -224,3 +224,9 @@ def totals(entries: Sequence[Entry]) -> Totals:
         sum(entry.fuel for entry in entries),
         longest,
     )
+
+
+def best_descent(entries: Iterable[Entry]) -> tuple[int, int]:
+    """Return the most legs landed in one descent by the player alone, and its points; (0, 0) without any."""
+    own = ((e.leg, e.total) for e in entries if e.course == DESCENT and e.landed and not e.bar)
+    return max(own, default=(0, 0))

@@ -13,6 +13,7 @@ from ai.lander.rules import tenths
 from game.core import texts
 
 _LEVEL: Final = math.cos(math.radians(30))  # upward part of the unit normal of ground that still counts as level
+_GOOD: Final = 0.4  # of a limit, up to which a landing is a good one
 TIPPED: Final = math.radians(45)  # tilt from which on no engine can brake the fall: that came first
 
 
@@ -22,11 +23,12 @@ class OutcomeCard:
 
     For a shared flight, `stepped_in` is how often the co-pilot intervened, and `saved` how often it saved the
     person; None for a flight without a guardian that could tell, or without a landing. `medal` is 3 for gold, 2, 1,
-    0 for none. `assists` says what made the flight easier, and `bare` from when on a guardian held no plan, and
-    why. `left` is the card's left edge. `growth` are lines on what the flight has shown of the person's own skill.
-    `intact` is whether the craft came down whole beside the pad. `rung` is the place on the ladder of starts, None
-    off it, and `climb` what the flight has changed there. `ring` is whether it was landed together with the
-    network.
+    0 for none. `assists` says what made the flight easier, and `bare` why help did not save a lost one, and what
+    would have. `place` is where the card stands across the window, 0 to 1. `growth` are lines on what the flight has
+    shown of the person's own skill. `intact` is whether the craft came down whole beside the pad. `rung` is the place
+    on the ladder of starts, None off it, and `climb` what the flight has changed there. `ring` is whether it was
+    landed together with the network. `quality` says how well it was landed, and `compared` are other scores from the
+    same start, in words and a figure.
     """
 
     good: bool
@@ -42,11 +44,13 @@ class OutcomeCard:
     ring: bool = False
     stepped_in: int | None = None
     saved: int | None = None
-    left: float = 400.0
+    place: float = 0.5
     growth: tuple[str, ...] = ()
     intact: bool = False
     rung: int | None = None
     climb: str = ""
+    quality: str = ""
+    compared: tuple[tuple[str, str], ...] = ()
 
     @property
     def told(self) -> str:
@@ -81,7 +85,25 @@ def outcome_card(env: LanderEnv, human: float, slot: int = 0) -> OutcomeCard:
         reason = reason.format(limit=f"{env.limits.time:.0f}")
     advice = texts.ADVICE.get(cause_of(env, slot).name, "")
     figures = flight_figures(env, slot)
-    return OutcomeCard(outcome is Outcome.LANDED, title, reason, figures, human, advice, intact=intact)
+    landed, quality = outcome is Outcome.LANDED, ""
+    if landed:
+        met = qualities(env, slot)
+        title = texts.PERFECT if len(met) == len(texts.QUALITIES) else title
+        quality = texts.AND.join(texts.QUALITIES[name] for name in met).capitalize()
+    return OutcomeCard(landed, title, reason, figures, human, advice, intact=intact, quality=quality)
+
+
+def qualities(env: LanderEnv, slot: int = 0) -> list[str]:
+    """Return what was good about a landing: it was soft, centred, upright, keys of `texts.QUALITIES`."""
+    speed, _, tilt = env.impact[slot].tolist()
+    pad = env.ground.pads[int(env.landed_on[slot])]
+    aside = abs(float(env.position[slot, 0] - env.pad_shift[slot]) - pad.x)
+    met = {
+        "soft": speed <= _GOOD * env.limits.touch_speed,
+        "centred": aside <= _GOOD * pad.width / 2,
+        "upright": tilt <= _GOOD * env.limits.touch_tilt,
+    }
+    return [name for name, good in met.items() if good]
 
 
 def _where_left(env: LanderEnv, slot: int) -> str:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Final
 
+from ai.copilot.alone import Estimate
+from game.core import texts
 from game.flight.becoming import Becoming, Change, kind_of
 from game.flight.flight_file import Entry
 
@@ -64,3 +66,19 @@ class Skill:
 
 def _counts(entry: Entry) -> bool:
     return not (entry.course or entry.practice or entry.on_ladder)
+
+
+def said(estimate: Estimate) -> str:
+    """Return an estimate in words, with its uncertainty."""
+    if not estimate.known:
+        return texts.BECOMING_TOO_FEW.format(count=estimate.alone)
+    low, high = tenths_of(estimate.low), tenths_of(estimate.high)
+    mean = tenths_of(estimate.mean)
+    if low == high:
+        return texts.BECOMING_SURE.format(share=mean)
+    return texts.BECOMING_ESTIMATE.format(share=mean, low=low, high=high)
+
+
+def tenths_of(share: float) -> int:
+    """Return of how many flights out of ten a share tells."""
+    return round(10 * share)

@@ -138,7 +138,9 @@ class BackwardsChapter(Chapter):
         network.backward_propagate(error)
         layers = [layer for layer in network.layers if isinstance(layer, FullyConnectedLayer)]
         hidden = [layer.error[0].copy() for layer in layers[1:]]  # what each sent back to the units before it
-        self.blames: list[Array] = [network.input_gradient(shaped, error)[0], *hidden, error[0]]
+        # A pixel without ink sends nothing on: whatever its weights are, it has no part in the mistake.
+        pixels = np.where(shaped.ravel() > 0, network.input_gradient(shaped, error)[0], 0.0)
+        self.blames: list[Array] = [pixels, *hidden, error[0]]
 
     def _right(self) -> int:
         """Return how many of 500 other digits it reads right."""

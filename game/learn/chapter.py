@@ -48,7 +48,7 @@ class Chapter(ABC):
 
     Attributes:
         key: key of its texts in `texts.LEARN` and `texts.LEARN_ANSWERS`.
-        answer: number of the answer that is true of what a try shows; None if that depends on the try.
+        answer: number of the answer that every try shows; None if that depends on the try.
         door: where the same can be done freely.
         tried: whether the player has done what the chapter is about, so that `why` has something to tell.
         changed: set when other widgets are to be offered; the scene asks for them again.
@@ -84,6 +84,10 @@ class Chapter(ABC):
     @abstractmethod
     def restart(self) -> None:
         """Begin anew, as when the chapter was opened."""
+
+    def verdict(self) -> int | None:
+        """Return the number of the answer that the player's own try has shown; None if it does not decide that."""
+        return self.answer
 
     @abstractmethod
     def why(self, guess: int | None) -> str:

@@ -28,6 +28,7 @@ PAY: Final = RewardWeights(distance=0.0, speed=0.0, alignment=0.0, tilt=0.0)
 _GAP: Final = 40.0
 _HALF: Final = (STAGE.width - _GAP) / 2
 _CHART: Final = 120.0
+_LEARNED: Final = 0.5  # share of flights that land, from which an agent has learned it
 
 
 class DaringChapter(RunsChapter):
@@ -81,6 +82,13 @@ class DaringChapter(RunsChapter):
         """Start both, with the choice as it is now."""
         self._flown = self.choice
         super().start()
+
+    def verdict(self) -> int | None:
+        """Return which of both lands at least half its flights; None for another share than that of the question."""
+        if self._flown != 1:
+            return None
+        never, other = ((state.landed or 0.0) >= _LEARNED for state in self.states[-1])
+        return 2 if never and other else 0 if never else 1 if other else 3
 
     def why(self, guess: int | None) -> str:  # noqa: ARG002
         """Return how both landed in the end."""

@@ -38,6 +38,7 @@ _WALL: Final = pygame.FRect(STAGE.left, STAGE.top + 26, STAGE.width, _ROWS * _CE
 _HALF: Final = (STAGE.width - 40) / 2
 _HIGHEST: Final = 9.0  # metres, of a cell's picture
 _PAID: Final = 20.0  # points beyond which a cell is lit as a landing or a crash
+_FORGOTTEN: Final = 0.25  # share of the tests that landed before and do not now
 _FADE: Final = 0.5  # light of a drawn cell that is left after a decision
 
 
@@ -124,6 +125,13 @@ class MemoryChapter(RunsChapter):
             float(np.nan_to_num(passed[changed])),
             float(np.nan_to_num(passed[changed:]).min()),
         )
+
+    def verdict(self) -> int | None:
+        """Return which memory forgot most, or that none did, once all were tried."""
+        if len(self.results) < len(KINDS):
+            return None
+        lost = [before - after for before, after in (self.results[kind] for kind in KINDS)]
+        return int(np.argmax(lost)) if max(lost) >= _FORGOTTEN else len(KINDS)
 
     def why(self, guess: int | None) -> str:  # noqa: ARG002
         """Return for each memory that was tried how it flew from high up before and after."""

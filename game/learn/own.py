@@ -106,7 +106,7 @@ class OwnChapter(Chapter):
         own = self._own_names()
         self.steps = {
             "train": self._trained(rescued),
-            "land": self._landed(),
+            "land": self._landed(rescued),
             "choose": self._chosen(own),
             "hand": self._handed(own, flown),
             "race": self._raced(raced_at, flown),
@@ -116,7 +116,7 @@ class OwnChapter(Chapter):
     def _changed(self) -> tuple[float, ...]:
         """Return what tells whether the player's files have changed: dates, and the logbook's size."""
         found: list[float] = []
-        for path in (self.context.user_dir / networks.PLAYERS, self._records.logbook):
+        for path in (self.context.user_dir / networks.PLAYERS, self._library.unsaved, self._records.logbook):
             with suppress(OSError):
                 stat = path.stat()
                 found += [stat.st_mtime, stat.st_size]
@@ -136,12 +136,13 @@ class OwnChapter(Chapter):
             return Step(True, texts.LEARN_OWN_TOLD["unnamed"].format(decisions=f"{rescued.decisions:,}"))
         return Step(False, texts.LEARN_OWN_TOLD["untrained"])
 
-    def _landed(self) -> Step:
-        measured = [run for run in self._runs if run.success is not None]
+    def _landed(self, rescued: SavedRun | None) -> Step:
+        measured = [run for run in (*self._runs, *([rescued] if rescued else [])) if run.success is not None]
         if not measured:
             return Step(False, texts.LEARN_OWN_TOLD["unmeasured"])
         best = max(measured, key=lambda run: run.success or 0.0)
-        told = texts.LEARN_OWN_TOLD["landed"].format(name=best.name, share=best.success)
+        key = "landed_unnamed" if best is rescued else "landed"
+        told = texts.LEARN_OWN_TOLD[key].format(name=best.name, share=best.success)
         return Step(bool(best.success), told)
 
     def _chosen(self, own: set[str]) -> Step:

@@ -24,7 +24,8 @@ from game.ui.context import Context
 from game.ui.widget import PointsManager, Widget
 from game.ui.widgets import Choice, TextButton
 
-EVERY: Final = (1, 10, 100, 1000)  # gradient steps between two copies, to choose from
+EVERY: Final = (1, 10, 100, 1)  # gradient steps between two copies, to choose from; the last with normalised layers
+NORMALISED: Final = len(EVERY) - 1
 # No flight from any height below the ceiling can score more points than this: what is paid for coming down and
 # slowing down, for both feet and for landing comes to 280.
 BOUND: Final = 300.0
@@ -33,6 +34,7 @@ _HALF: Final = (STAGE.width - _GAP) / 2
 _TOP: Final = 10.0  # points of the scale's linear part; beyond, it is logarithmic
 _HIGHEST, _LOWEST = 1e7, -1e2
 _CHART: Final = 150.0
+_MORE: Final = 0.2  # share of landings by which one agent is better than another
 
 
 class TargetChapter(RunsChapter):
@@ -57,11 +59,11 @@ class TargetChapter(RunsChapter):
 
     def configs(self) -> Sequence[Config]:
         """Return the configurations: that of all small runs, and the same with the chosen copies."""
-        return SMALL_RUN, SMALL_RUN.changed(target_update_interval=EVERY[self.choice])
+        return SMALL_RUN, config_of(self.choice)
 
     def widgets(self) -> list[Widget]:
         """Return the choice, and the button that starts."""
-        words = [f"{every:,}" for every in EVERY]
+        words = [*(f"{every:,}" for every in EVERY[:NORMALISED]), texts.LEARN_TARGET_NORMALISED]
         choice = Choice(
             self.manager,
             self.row(1),
@@ -69,7 +71,7 @@ class TargetChapter(RunsChapter):
             words,
             self.choice,
             self._choose,
-            label_width=140,
+            label_width=96,
             size=SMALL,
         )
         start = TextButton(self.manager, self.row(3), texts.LEARN_RUNS_START[bool(self.seed)], self.start, colour=INK)
@@ -82,6 +84,15 @@ class TargetChapter(RunsChapter):
     def peaks(self) -> tuple[float, ...]:
         """Largest value that each run expected of its landers so far, in points."""
         return tuple(float(np.nanmax(self.history(run, "value"))) for run in range(2))
+
+    def verdict(self) -> int | None:
+        """Return what became of the agent without a copy that stands still; None if the right one had such."""
+        usual, other = (state.landed or 0.0 for state in self.states[-1])
+        if self._flown:
+            return None
+        if self.peaks[1] > BOUND:
+            return 2
+        return 0 if other > usual + _MORE else 1 if other >= usual - _MORE else None
 
     def why(self, guess: int | None) -> str:  # noqa: ARG002
         """Return what both expected at most, and how they landed in the end."""
@@ -113,9 +124,10 @@ class TargetChapter(RunsChapter):
 
     def draw(self, canvas: Canvas, alpha: float) -> None:  # noqa: ARG002
         """Draw both groups of landers, and below each what its network expects."""
-        usual, some, always = texts.LEARN_TARGET_NAMES
+        usual, some, always, normalised = texts.LEARN_TARGET_NAMES
         shown = self._flown if self.states else self.choice
-        names = (usual, some.format(every=f"{EVERY[shown]:,}") if shown else always)
+        other = {0: always, NORMALISED: normalised}.get(shown, some.format(every=f"{EVERY[shown]:,}"))
+        names = (usual, other)
         for run, (name, colour) in enumerate(zip(names, (NET, HUMAN), strict=True)):
             box = pygame.FRect(STAGE.left + run * (_HALF + _GAP), STAGE.top + 22, _HALF, 168)
             canvas.text(name, (box.left, STAGE.top + 12), colour=colour, room=_HALF)
@@ -139,6 +151,11 @@ class TargetChapter(RunsChapter):
                 canvas.text(landed, (box.right, box.bottom + 30), size=SMALL, colour=MUTE, align="right",
                             tabular=True, room=_HALF * 0.36)  # fmt: skip
         self.draw_status(canvas)
+
+
+def config_of(choice: int) -> Config:
+    """Return the configuration of the right-hand agent, by an index into `EVERY`."""
+    return SMALL_RUN.changed(target_update_interval=EVERY[choice], layer_normalisation=choice == NORMALISED)
 
 
 _TICKS: Final = ((-100.0, "−100"), (0.0, "0"), (1e3, "1,000"), (1e5, "100,000"), (1e7, "10,000,000"))

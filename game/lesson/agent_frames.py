@@ -16,6 +16,7 @@ from ai.lander.environment import ACTION_NAMES
 from ai.nn import NeuralNetwork, Optimizer
 from game.core import texts
 from game.lesson.after_frame import AfterFrame
+from game.lesson.code import in_points_of_reward
 from game.lesson.error_frame import ErrorFrame
 from game.lesson.figures import number, points
 from game.lesson.frame import Frame
@@ -48,11 +49,14 @@ def agent_frames(lesson: Lesson) -> list[Part]:
     derivative = lesson.derivative
     name, sentence = words["values"]
     sentence = sentence.format(action=said_action(action), value=points(predicted / scale))
+    if (best := int(lesson.predicted.argmax())) != action:
+        higher = points(float(lesson.predicted[best]) / scale)
+        sentence = f"{sentence} {texts.LESSON_NOT_THE_BEST.format(action=said_action(best), value=higher)}"
     figure = texts.LESSON_POINTS.format(points=points(predicted / scale))
     values = NetworkFrame(name, figure, sentence, forward, step, _NETWORK, "activations", step.taken.gradient)
     name, sentence = words["gradient"]
     length = texts.LESSON_LENGTH.format(length=number(step.taken.gradient_length))
-    gradient = GradientFrame(name, length, sentence, backward, step)
+    gradient = GradientFrame(name, length, f"{sentence} {texts.LESSON_DOWNHILL[step.carries_on]}", backward, step)
     places = step.strongest(step.taken.taken, 8)
     frames: list[Frame] = [
         MomentFrame(lesson, words["moment"], (DeepQAgent.learn, DeepQAgent._learn_from, Normalizer.__call__)),
@@ -66,4 +70,5 @@ def agent_frames(lesson: Lesson) -> list[Part]:
                     (predicted, after, lesson.target), derivative, texts.LESSON_NEARER),
     ]  # fmt: skip
     lines = (*(lesson.flown.lines if lesson.flown else ()), *lesson.step.lines)
+    lines = tuple(in_points_of_reward(line, scale) for line in lines)
     return [Part.of(frame, lines) for frame in frames]

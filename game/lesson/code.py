@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -31,6 +32,26 @@ _MOST: Final = 6  # values of a line that are shown
 _LISTED: Final = 12  # numbers of a value that are listed under the pointer
 _NAME, _SHAPE, _APART = 200.0, 110.0, 16.0  # points of a name and a shape at most, and between columns
 _FEW: Final = 6  # numbers of an array that are written out
+
+
+# Variables of the agent's code that are rewards, values or differences of these.
+_REWARDS: Final = frozenset((
+    "reward", "transitions.reward", "return.0.reward", "self._returns", "value", "targets", "errors", "chosen",
+    "predicted", "prediction", "target",
+))  # fmt: skip
+_VALUES_OF: Final = ("DeepQAgent._next_value", "DeepQAgent._learn_from")  # functions whose `values` are such, too
+
+
+def in_points_of_reward(line: Line, scale: float) -> Line:
+    """Return a line of the agent's code with its rewards and values in points, as all else on the screen has them."""
+
+    def shown(name: str, value: Value) -> Value:
+        rewards = name in _REWARDS or (name == "values" and line.function in _VALUES_OF)
+        if not rewards or value.case is None:
+            return value
+        return replace(value, case=np.asarray(value.case, float) / scale)
+
+    return replace(line, values={name: shown(name, value) for name, value in line.values.items()})
 
 
 class CodeWalk:

@@ -157,7 +157,8 @@ def digit_frames(lesson: DigitLesson) -> list[Part]:
     if lesson.config.dropout:
         sentence = f"{sentence} {texts.LESSON_DROPOUT_NOTE}"
     length = texts.LESSON_LENGTH.format(length=number(lesson.step.gradient_length))
-    gradient = GradientFrame(words["gradient"][0], length, words["gradient"][1], backward, step)
+    downhill = f"{words['gradient'][1]} {texts.LESSON_DOWNHILL[step.carries_on]}"
+    gradient = GradientFrame(words["gradient"][0], length, downhill, backward, step)
     names = [gradient.weight_name(place) for place in step.strongest(lesson.step.taken, 8)]
     answer = int(lesson.probabilities_before.argmax())
     frames: list[Frame] = [

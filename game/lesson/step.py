@@ -125,6 +125,11 @@ class LearningStep:
         return [place for _, place in found[:most]]
 
     @property
+    def carries_on(self) -> bool:
+        """Whether the optimizer remembers earlier slopes: then a weight may move up its slope."""
+        return any(name in self.taken.optimizer_after for name in _RUNNING)
+
+    @property
     def running(self) -> Array:
         """What the step is proportional to, parameter by parameter: the slopes so far, or this gradient alone."""
         kept = self.taken.optimizer_after

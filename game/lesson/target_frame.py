@@ -121,12 +121,21 @@ class TargetFrame(Frame):
         most = points(float(values.max()))
         picked = said_action(lesson.best)
         if lesson.next_online is None:
-            said = texts.LESSON_ROLES_SINGLE if lesson.config.target_judges else texts.LESSON_ROLES_NEWEST
+            said = texts.LESSON_ROLES_SINGLE if lesson.config.target_judges else self._instead()
             lines = [text.format(action=picked, value=own) for text in said]
         else:
             lines = [text.format(action=picked, value=own, most=most) for text in texts.LESSON_ROLES_DOUBLE]
         for line in lines:
             y = self.prose(line, 0, y, PICTURE.width)
+
+    def _instead(self) -> list[str]:
+        """Return who picks and judges without a copy, and what of this run stands in for one."""
+        config, words = self._lesson.config, texts.LESSON_ROLES_NEWEST
+        said = [words["picks"]]
+        if config.n_step > 1:
+            said.append(texts.LESSON_ROLES_NEWEST["pays"].format(count=int(self._lesson.cell.steps)))
+        said.append(words["normalised" if config.layer_normalisation else "bare"])
+        return said
 
     def paint(self, canvas: Canvas) -> None:
         """Paint the bars, on one scale for both networks, and a mark at the action that is picked."""

@@ -79,7 +79,9 @@ class Advice:
         if not self.shown:
             return
         title, said = (
-            (texts.HINT_TITLE, texts.HINTS[self._hint.name]) if self._hint else (texts.HINT_APPLIED, self.done)
+            (texts.HINT_TITLE, texts.HINTS[self._hint.name].format(what=told(self._hint.remedy)))
+            if self._hint
+            else (texts.HINT_APPLIED, self.done)
         )
         draw_hint(canvas, self._box, title, said)
 

@@ -21,6 +21,7 @@ from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
 from game.drawing.tokens import NIGHT0, SMALL
+from game.panels.chart_captions import draw_captions
 from game.panels.run_legend import RunLegend
 from game.training.beside import EarlierRun
 from game.training.knob_descriptions import told
@@ -97,8 +98,17 @@ class TrainingCharts:
             chart.read_x = texts.TRAIN_AXIS[axis].format
         self.charts.zoom.reset()
 
-    def look(self, history: History, beside: Sequence[EarlierRun], name: str = texts.TRAIN_THIS) -> None:
-        """Read new points of the current run, by its name there, and of those beside it; call it once a frame."""
+    def look(
+        self,
+        history: History,
+        beside: Sequence[EarlierRun],
+        name: str = texts.TRAIN_THIS,
+        say: Callable[[str], str] = lambda _: "",
+    ) -> None:
+        """Read new points of the current run, by its name there, and of those beside it; call it once a frame.
+
+        `say` returns the caption of a chart for the same points.
+        """
         self._turn = (self._turn + 1) % _TURNS
         number, odd = divmod(self._turn, 2)
         self._history = history
@@ -119,7 +129,7 @@ class TrainingCharts:
         series = [self._series(_CHARTS[number][0], each, emphasised) for each in runs if len(each.run)]
         self.charts.zoom.end = max([_SHORTEST[self.axis], *(float(np.max(each.x)) for each in series)])
         ticks = [Tick(self._place(tick.x), tick.text, tick.kind) for tick in ticks_of(history)] if number == 0 else ()
-        self.charts.charts[number].set(series, self.charts.zoom.shown, ticks)
+        self.charts.charts[number].set(series, self.charts.zoom.shown, ticks, say(_CHARTS[number][0]))
 
     def _series(self, name: str, beside: EarlierRun, emphasised: int | None) -> Series:
         run, (colour, dash) = beside.run, run_style(beside.style)
@@ -201,6 +211,7 @@ class TrainingCharts:
     def draw(self, canvas: Canvas) -> None:
         """Draw the charts."""
         self.charts.draw(canvas)
+        draw_captions(canvas, self.charts.charts)
         for (name, *_), chart in zip(_CHARTS, self.charts.charts, strict=True):
             canvas.explain(chart.header, texts.EXPLAIN_CHARTS[name], partial(_latest, chart))
             canvas.explain(chart.gutter, texts.EXPLAIN_AXES[self.axis], partial(_scale, name))

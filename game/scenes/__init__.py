@@ -11,17 +11,18 @@ from game.ui.context import Context
 
 # The name of each scene that another may lead to: the module in this package, and the class in that.
 ROUTES: Final = {
-    "menu": "menus.menu.MenuScene", "flights": "menus.flights.FlightsScene", "play": "play.PlayScene",
-    "missions": "missions.MissionsScene",
-    "days": "days.DaysScene",
-    "watch": "watch.WatchScene", "train": "train.TrainScene", "runs": "runs.NetworksScene",
+    "menu": "menus.menu.MenuScene", "flights": "menus.flights.FlightsScene", "play": "play.scene.PlayScene",
+    "tutorial": "play.starts.tutorial", "descent": "play.starts.descent", "race": "play.starts.race",
+    "fly_on": "play.starts.fly_on", "missions": "play.missions.MissionsScene", "days": "play.calendar.DaysScene",
+    "watch": "watch.scene.WatchScene", "train": "train.TrainScene", "runs": "runs.NetworksScene",
     "digits": "digits.DigitsScene", "digit_training": "digit_training.DigitTrainingScene",
     "digit_inside": "digit_inside.DigitInsideScene", "why_not": "why_not.WhyNotScene",
     "dream": "dream.DreamScene", "quiz": "quiz.QuizScene", "physics": "physics.PhysicsScene",
     "physics_step": "physics_step.PhysicsStepScene",
-    "logbook": "logbook.LogbookScene", "replay": "replay.ReplayScene", "settings": "menus.settings.SettingsScene",
-    "bindings": "menus.keys.BindingsScene", "choices": "choices.ChoicesScene", "assists": "menus.settings.AssistsScene",
-    "pause": "pause.PauseScene",
+    "logbook": "logbook.scene.LogbookScene", "replay": "logbook.replay.ReplayScene",
+    "settings": "menus.settings.SettingsScene", "assists": "menus.settings.AssistsScene",
+    "bindings": "menus.keys.BindingsScene", "choices": "play.choices.ChoicesScene",
+    "pause": "play.pause.PauseScene", "flight_pause": "play.pause.FlightPauseScene",
     "learn": "learn.LearnScene", "chapter": "chapter.ChapterScene", "lesson": "lesson.LessonScene",
     "error_screen": "error_screen.ErrorScene", "study": "study.StudyScene",
 }  # fmt: skip

@@ -56,7 +56,8 @@ class ChapterScene(FormScene):
         self._sky = NightSky(context.rng, ember=0.4, stars=60)
         self.chapter = chapter_type(key)(context, self.form.manager)
         page = self._progress.page(key)
-        self.page = _TRY if page >= _WHY else page  # a try from an earlier visit is gone, and its numbers in the code
+        # One that is done asks for a guess again. Of any other, a try from an earlier visit is gone with its numbers.
+        self.page = _PREDICT if self._progress.done(key) else min(page, _TRY)
         self._function, self._told = 0, ""
         tabs = (*_TABS, row_width(texts.LEARN_PAGES, TEXT), 26)
         self._tabs = self.form.add(Choice(self.form.manager, tabs, "", texts.LEARN_PAGES, self.page, self.turn_to))
@@ -87,7 +88,10 @@ class ChapterScene(FormScene):
         self._told = self.chapter.why(self._progress.guess(self.key)) if self.chapter.tried else ""
         self.context.apply_settings()
         self._code = self._read_code()
+        on_tabs = self.form.focused is self._tabs
         self._offer()
+        if not on_tabs:
+            self.form.focus(self._widgets[0])
 
     def _read_code(self) -> Sequence[Code]:
         """Return the code with the numbers of this moment: those that run on can't be read."""
@@ -233,21 +237,29 @@ class ChapterScene(FormScene):
         self._write(canvas, self.chapter.words["task"], _COLUMN[1])
 
     def _draw_why(self, canvas: Canvas) -> None:
-        y = _COLUMN[1]
-        if guess := self._progress.answer(self.key):
-            y = self._write(canvas, self._compared(guess), y, HUMAN) + 10
+        left, y, width = _COLUMN
         told = self._told or texts.LEARN_TRY_FIRST
-        y = self._write(canvas, told, y) + 10
-        self._write(canvas, self.chapter.words["why"], y, MUTE)
+        guess = self._progress.guess(self.key)
+        if guess is None:
+            y = self._write(canvas, told, y)
+        else:
+            came = self.chapter.verdict() if self._told else None
+            top, colour = y - _LEADING, MUTE if came is None else canvas.palette.good if came == guess else HUMAN
+            if came is not None:
+                canvas.marker("check" if came == guess else "cross", (left + width - 6, y - 5), 10, colour)
+            said = texts.LEARN_GUESSED.format(guess=self._progress.answer(self.key))
+            y = self._write(canvas, f"{said} {self._verdict(guess, came)}".rstrip(), y, colour) + 4
+            y = self._write(canvas, told, y)
+            canvas.line((left - 12, top + 4), (left - 12, y - 14), colour, 2)
+        self._write(canvas, self.chapter.words["why"], y + 10, MUTE)
 
-    def _compared(self, guess: str) -> str:
-        """Return the guess, and once it was tried, beside it what happens."""
-        right = self.chapter.answer
-        if right is None or not self._told:
-            return texts.LEARN_GUESSED.format(guess=guess)
-        answer = texts.LEARN_ANSWERS[self.key][right]
-        told = texts.LEARN_AGREES if guess == answer else texts.LEARN_DIFFERS
-        return told.format(guess=guess, answer=answer)
+    def _verdict(self, guess: int, came: int | None) -> str:
+        """Return whether this try has come as was guessed."""
+        if came is None:
+            return texts.LEARN_UNDECIDED[self.key] if self._told and self.key in texts.LEARN_UNDECIDED else ""
+        if came == guess:
+            return texts.LEARN_AGREES
+        return texts.LEARN_DIFFERS.format(answer=texts.LEARN_ANSWERS[self.key][came])
 
     def _draw_code(self, canvas: Canvas) -> None:
         self._write(canvas, self.chapter.words["code"], _COLUMN[1])

@@ -26,10 +26,10 @@ from game.panels.way_back import WayBack
 from game.scenes.menus.dialogs import QuestionDialog
 from game.scenes.training_scene import DISPLAY_WIDTH, LEFT, PANEL_LEFT, TrainingScene
 from game.training.digit_models import DigitModels, figures_of, runs_dir
-from game.training.kinds import DIGITS
 from game.training.knob_descriptions import knob_descriptions
 from game.training.run import TrainingRun
 from game.training.run_settings import RunKind
+from game.training.workers import DIGITS
 from game.ui.context import Context
 from game.ui.hints import HintRow
 from game.ui.scrubber import Scrubber

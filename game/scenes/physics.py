@@ -12,7 +12,6 @@ import numpy as np
 import pygame
 
 from engine.vector import Array
-from game.cockpit import hud
 from game.core import texts
 from game.core.clock import TimeScale
 from game.core.scene import Transition, push
@@ -26,6 +25,7 @@ from game.exhibits.bench import Bench
 from game.exhibits.labels import draw_label
 from game.exhibits.sliders import LEFT
 from game.input.controls import Command
+from game.panels import readouts
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.form_scene import FormScene
@@ -260,7 +260,7 @@ class PhysicsScene(FormScene):
             x, y, _ = _ROWS
             for part, left in ((texts.PHYSICS_GRAVITY, x), (texts.PHYSICS_WEIGHTLESS, x + LABEL_WIDTH)):
                 canvas.text(part, (left, y + _ROW_HEIGHT // 2 + 0.36 * SMALL), size=SMALL, colour=MUTE)
-        hud.draw_readouts(canvas, self._readouts(), _COLUMNS)
+        readouts.draw_readouts(canvas, self._readouts(), _COLUMNS)
         if self.contacts_drawn:
             draw_force_scale(canvas, _SCALE, self._weight, _COLUMNS[0] - _SCALE[0] - 16)
         if self.exhibit.world.asleep.any():
@@ -279,13 +279,13 @@ class PhysicsScene(FormScene):
         colour = INK if self.playback.stopped else HUMAN
         canvas.text(text, (right, 62), size=SMALL, colour=colour, align="right", room=right - self._tabs.box.right - 16)
 
-    def _readouts(self) -> list[hud.Readout]:
+    def _readouts(self) -> list[readouts.Readout]:
         exhibit = self.exhibit
         return [
-            hud.Readout(texts.BODIES, str(len(exhibit.bodies)), ""),
-            hud.Readout(texts.CONTACT_POINTS, str(exhibit.contact_count) if exhibit.steps else "–", ""),
-            hud.Readout(texts.KINETIC_ENERGY, f"{exhibit.kinetic_energy:.1f}", "J"),
-            hud.Readout(texts.STEP_TIME, f"{1e3 * self.step_time:.1f}", "ms"),
+            readouts.Readout(texts.BODIES, str(len(exhibit.bodies)), ""),
+            readouts.Readout(texts.CONTACT_POINTS, str(exhibit.contact_count) if exhibit.steps else "–", ""),
+            readouts.Readout(texts.KINETIC_ENERGY, f"{exhibit.kinetic_energy:.1f}", "J"),
+            readouts.Readout(texts.STEP_TIME, f"{1e3 * self.step_time:.1f}", "ms"),
         ]
 
 

@@ -27,9 +27,9 @@ from game.panels.training_status import lander_status
 from game.scenes.split_scene import SplitTrainingScene
 from game.scenes.train_dialogs import TrainDialogs
 from game.scenes.training_scene import DISPLAY_WIDTH, LEFT
-from game.training.kinds import LANDERS
 from game.training.library import Library
-from game.training.run import PACES, TrainingRun
+from game.training.run import TrainingRun
+from game.training.workers import LANDERS, PACES
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.hints import HintRow
@@ -121,7 +121,7 @@ class TrainScene(SplitTrainingScene):
         self.rewind.split = self.inside.editing.split = self.split_view.shown
         self.rewind.show_in(self.inside, self.training_charts)
         beside = self.split_view.beside
-        self.training_charts.look(lander_run.history, beside, self.split_view.name)
+        self.training_charts.look(lander_run.history, beside, self.split_view.name, self._caption)
         if bool(beside) is not self._compared and not self.inside.large:
             self._compared = bool(beside)
             self._lay_again()
@@ -150,8 +150,11 @@ class TrainScene(SplitTrainingScene):
         if lander_run.alive and len(lander_run.history):
             health = self.inside.health
             self._advice.follow(lander_run.history, lander_run.config, health.dead_share, health.clipped_share)
-            self.captions.follow(lander_run.history, lander_run.config, self._advice.hint)
         return True
+
+    def _caption(self, chart: str) -> str:
+        run = self.lander_run
+        return self.captions.read(chart, run.history, run.config, self._advice.hint) if run.alive else ""
 
     @property
     def moment(self) -> int | None:
@@ -291,7 +294,6 @@ class TrainScene(SplitTrainingScene):
         whole.line((view.left, _FLOOR), (DISPLAY_WIDTH, _FLOOR), LINE)
         self._draw_title(canvas)
         self.training_charts.draw(canvas)
-        self.captions.draw(canvas, self.training_charts.charts.charts)
 
     def _draw_panel(self, canvas: Canvas) -> None:
         self.inside.draw(canvas)

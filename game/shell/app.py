@@ -22,8 +22,8 @@ from game.drawing import letters, typeface
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import paint_on
 from game.drawing.tokens import COLOUR_SAFE, PALETTE, TEXT_SIZES
+from game.flight.friend import arrival
 from game.input.controls import Command, translate
-from game.play.friend import arrival
 from game.shell.scene_manager import SceneManager
 from game.shell.window import GameWindow
 from game.ui.notes import Note

@@ -13,8 +13,8 @@ from ai.files import brief
 from game.core import texts
 from game.core.collection import Collection, ItemKind
 from game.core.names import LONGEST_NAME
-from game.training.kinds import DIGITS
 from game.training.run import TrainingRun
+from game.training.workers import DIGITS
 
 PATIENCE: Final = DIGITS.patience  # seconds for a worker's turn
 NAMES: Final = ("modern", "classic")  # names of the shipped networks

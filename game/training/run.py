@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, Final
@@ -38,12 +37,9 @@ from game.core.collection import Collection
 from game.core.names import LibraryError
 from game.core.worker import Worker
 from game.training.beside import EarlierRun, put_beside
-from game.training.kinds import WorkedRun
-from game.training.one_after_another import OneAfterAnother
 from game.training.record import Record
+from game.training.workers import PACES, OneAfterAnother, WorkedRun
 
-# Decisions of all landers per second; one takes 1/15 s of simulated time. None is as fast as possible.
-PACES: Final[tuple[float | None, ...]] = (15.0, 60.0, None)
 SWARM_BYTES: Final = 8 << 20  # of landers' states kept to rewind to
 NETWORK_BYTES: Final = 16 << 20  # of networks
 AHEAD: Final = 12  # turns that either of two may be ahead of the slower: enough to work on between two frames
@@ -86,7 +82,7 @@ class TrainingRun(OneAfterAnother):
         self.kind, self.collection, self._keeps = kind, collection, keeps
         self.name, self.runs = "", 0
         self.config: Any = kind.config
-        self.seed, self.pace = 0, len(PACES) - 1
+        self.seed = 0
         self.earlier: list[EarlierRun] = []
         self.twin: TrainingRun | None = None
         self.differing: tuple[str, ...] = ()
@@ -306,24 +302,6 @@ class TrainingRun(OneAfterAnother):
 
     # Requests: to the run, and where both can do it, to the experiment
 
-    def pause(self) -> None:
-        """Pause."""
-        self._ask_both(Worker.pause)
-
-    def resume(self) -> None:
-        """Resume."""
-        self._ask_both(Worker.resume)
-
-    def step(self) -> None:
-        """Take one learning step, then pause."""
-        self._ask_both(Worker.pause)
-        self._ask_both(Worker.step)
-
-    def set_pace(self, index: int) -> None:
-        """Choose one of `PACES` by its index."""
-        self.pace = index
-        self._ask_both(lambda worker: worker.set_pace(PACES[index]))
-
     def change(self, name: str, value: Any) -> None:
         """Change a live setting; one in which the experiment differs, of the run alone."""
         self._send(ChangeSetting(name, value), both=name not in self.differing)
@@ -351,14 +329,6 @@ class TrainingRun(OneAfterAnother):
     def edit(self, command: EditCommand) -> None:
         """Edit the run's network by hand, or take an edit back; its `edits` say how it stands then."""
         self._send(command)
-
-    def _send(self, command: Any, *, both: bool = False) -> None:
-        (self._ask_both if both else self._ask)(lambda worker: worker.send(command))
-
-    def _ask_both(self, order: Callable[[Worker], None]) -> None:
-        self._ask(order)
-        if self.twin:
-            self.twin._ask(order)
 
     # The experiment
 
@@ -413,4 +383,4 @@ class TrainingRun(OneAfterAnother):
         limit = min(self.turns) + AHEAD if together else None
         if limit != self._limit:
             self._limit = limit
-            self._ask_both(lambda worker: worker.set_limit(limit))
+            self._ask(lambda worker: worker.set_limit(limit), both=True)

@@ -76,6 +76,7 @@ class Chart:
         self.cursor: float | None = None  # an x, for all charts of a row
         self.pointed = False  # whether the mouse is over this one
         self._marker: tuple[float, str] | None = None
+        self.caption = self.painted_caption = ""  # below the chart: as set, and as the sheet was painted
         self._painted: Painted | None = None  # until the numbers or the window change
         self._behind = PaintedRuns()
         self._stale = True
@@ -119,17 +120,20 @@ class Chart:
 
     # Data
 
-    def set(self, series: Sequence[Series], x_range: Limits, ticks: Sequence[Tick] = ()) -> None:
-        """Show these runs, the current one first. Call it when new numbers arrive; unchanged ones cost nothing."""
+    def set(self, series: Sequence[Series], x_range: Limits, ticks: Sequence[Tick] = (), caption: str = "") -> None:
+        """Show these runs, the current one first. Call it when new numbers arrive; unchanged ones cost nothing.
+
+        What is said of the numbers, the `caption`, is `painted_caption` from the frame on that shows them.
+        """
         runs = [SavedSeries(each, log=self._log) for each in series]
         if len(runs) == len(self.runs):  # of one that is the same, what was painted stays
             runs = [old if run.same(old) else run for run, old in zip(runs, self.runs, strict=True)]
         start, end = (float(x) if math.isfinite(x) else 0.0 for x in x_range)
         span = (start, end) if end > start else (start, start + 1.0)
-        if span == self.x_range and tuple(ticks) == self._ticks and runs == self.runs:
+        if span == self.x_range and tuple(ticks) == self._ticks and runs == self.runs and caption == self.caption:
             return
         first = not any(run.last() is not None for run in self.runs)
-        self.runs, self.x_range, self._ticks = runs, span, tuple(ticks)
+        self.runs, self.x_range, self._ticks, self.caption = runs, span, tuple(ticks), caption
         self._told = tuple(dict.fromkeys((start, max(start, end))))
         self._set_limits()
         if first:
@@ -213,6 +217,7 @@ class Chart:
 
     def _paint(self, canvas: Canvas) -> Painted:
         self.redraws += 1
+        self.painted_caption = self.caption
         sheet = canvas.sheet(self.box.width + 2 * _MARGIN, self.box.height + 2 * _MARGIN)
         box = pygame.FRect(_MARGIN, _MARGIN, *self.box.size)
         plot = pygame.FRect(box.x, box.y + _HEADER, *self.plot.size)

@@ -8,8 +8,9 @@ from game.drawing.tokens import HUMAN, NET
 from game.flight.flight import Flight
 from game.flight.forecast import Drift, Forecast
 from game.flight.networks import Policy
+from game.flight.six_futures import SixFutures
 from game.world.camera import View
-from game.world.paths import draw_dotted
+from game.world.paths import draw_dotted, draw_faint
 
 # After how many seconds of coasting a guardian asks for a landing, and whether there is one.
 Coasting = tuple[float, bool]
@@ -72,3 +73,13 @@ class PathPreview:
     @property
     def _arrived(self) -> bool:
         return self._flight.over or bool(self._flight.env.contacts[0].any())
+
+
+def draw_futures(canvas: Canvas, view: View, futures: SixFutures, head: float) -> None:
+    """Draw six futures as paths: blue to a landing, with a tick, or red to a cross."""
+    for path, lands in zip(futures.paths, futures.lands, strict=False):
+        colour = NET if lands else canvas.palette.warn
+        draw_faint(canvas.surface, view.pixels(path), colour, 0.55 if lands else 0.45, canvas.scale * head)
+        end = view.points(path[-1]).tolist()
+        if end[1] > head:
+            canvas.marker("check" if lands else "cross", end, 10, colour)

@@ -6,7 +6,7 @@ from ai.lander.pilots import ScriptedPilot
 from game.flight.flight import Flight
 from game.flight.flight_file import Record
 from game.flight.logbook import Records
-from game.scenes.play import PlayScene
+from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 

@@ -4,7 +4,7 @@ import pygame
 
 from ai.lander.pilots import Pilot, ScriptedPilot
 from game.core import texts
-from game.scenes.play import PlayScene
+from game.scenes.play.scene import PlayScene
 from game.ui.listing import Listing
 from game.ui.widget import Widget
 from tests.support.driver import Driver

@@ -42,7 +42,7 @@ from game.scenes.digit_inside import DigitInsideScene
 from game.scenes.error_screen import ErrorScene
 from game.scenes.lesson import LessonScene
 from game.scenes.menus.dialogs import QuestionDialog
-from game.scenes.play import PlayScene
+from game.scenes.play.scene import PlayScene
 from game.shell.app import App
 from game.training.beside import put_beside, rename_beside
 from game.training.run import TrainingRun

@@ -35,11 +35,17 @@ class OnlyFlies:
         return np.zeros(len(observation), int)
 
 
-WHO = {texts.YOU_FLY: "person", texts.CHECK_FLIGHT: "person", texts.YOU_SHARE: "both", texts.NETWORK_FLIES: "network"}
+WHO = {
+    texts.YOU_FLY: "person",
+    texts.JOINED.format(words=texts.CHECK_FLIGHT, more=texts.WITHOUT_HELP): "person",
+    texts.JOINED.format(words=texts.YOU_FLY, more=texts.WITHOUT_HELP): "person",
+    **dict.fromkeys(texts.YOU_SHARE.values(), "both"),
+    texts.NETWORK_FLIES: "network",
+    texts.NETWORK_FLIES_BACK.format(key="Tab"): "network",
+}
 WHO |= {lines[0]: "network" if name == "ALONE" else "both" for name, lines in texts.COPILOT_PANEL_WHY.items()}
 FLEW = {texts.YOU_FLEW: "you", texts.BOTH_FLEW: "both", texts.NETWORK_FLEW: "network"}
 COUNTS = [
-    texts.CHECK_ALONE,
     *texts.MEDALS[1:],
     texts.MEDAL_GOLD,
     texts.SCORE_BEST,
@@ -63,13 +69,15 @@ class Page:
         self.words = words
         parts = [part for word in words for part in word.split(texts.DIAL_JOIN)]
         self.who = {WHO[part] for part in parts if part in WHO}
-        self.flew = {FLEW[part] for part in parts if part in FLEW}
         self.counts = {counts for part in parts for says, counts in SAYS if says.match(part)}
         self.shares = [
             int(found[2]) * (1 if found[1] == "you" else -1)
             for part in parts
             if (found := re.fullmatch(r"(you|network) (\d+) %", part))
         ]
+        sides = {share > 0 for share in self.shares}
+        by_card = {"both" if len(sides) > 1 else "you" if True in sides else "network"} if sides else set()
+        self.flew = {FLEW[part] for part in parts if part in FLEW} or by_card
 
 
 class Reading:
@@ -101,11 +109,12 @@ class Reading:
         assert len(page.counts) < 2, page.words
         if flight.over:
             assert not page.who, page.words
-            assert page.flew == {flew(flight.recording.hands)}, page.words
+            if page.shares:  # the card is there
+                assert page.flew == {flew(flight.recording.hands)}, page.words
         else:
             shared = flight.copilot is not None and flight.copilot.assist > 0
             truth = "network" if flight.hand is StickHolder.NETWORK else "both" if shared else "person"
-            assert page.who == {truth}, page.words
+            assert page.who <= {truth}, page.words  # or what is more urgent is said, or the craft waits
             assert not page.flew
             if truth == "person":
                 assert not any("assist" in word or "guards" in word for word in page.words), page.words
@@ -113,7 +122,7 @@ class Reading:
             assert abs(abs(share) / 100 - (flight.share if share > 0 else 1 - flight.share)) <= 0.01
         hint = texts.HINT_TAKE_BACK if flight.hand is StickHolder.NETWORK else texts.HINT_HAND_OVER
         told = {texts.HINT_TAKE_BACK, texts.HINT_HAND_OVER} & set(page.words)
-        assert told == ({hint} if flight.network and not flight.over else set()), page.words
+        assert told <= ({hint} if flight.network and not flight.over else set()), page.words
         return page
 
 

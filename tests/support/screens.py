@@ -15,39 +15,40 @@ from game.core.assets import MODELS_DIR
 from game.core.scene import Push, Scene
 from game.exhibits import EXHIBITS, Exhibit
 from game.flight import sharing
+from game.flight.days import Days
 from game.flight.flight_file import Record
 from game.flight.skill import Skill
 from game.learn.path import FIRST, PATH
-from game.play.challenge import FlownMission
-from game.play.daily import DailyStart
-from game.play.days import Days
-from game.play.descent import Descent
 from game.scenes.chapter import ChapterScene
-from game.scenes.choices import ChoicesScene
-from game.scenes.days import DaysScene
 from game.scenes.digit_inside import DigitInsideScene
 from game.scenes.digit_training import DigitTrainingScene
 from game.scenes.digits import DigitsScene
 from game.scenes.dream import DreamScene
 from game.scenes.learn import LearnScene
 from game.scenes.lesson import LessonScene
-from game.scenes.logbook import LogbookScene
+from game.scenes.logbook.replay import ReplayScene
+from game.scenes.logbook.scene import LogbookScene
 from game.scenes.menus.dialogs import ListDialog, NameDialog, QuestionDialog
 from game.scenes.menus.flights import FlightsScene
 from game.scenes.menus.keys import BindingsScene
 from game.scenes.menus.menu import MenuScene
 from game.scenes.menus.settings import AssistsScene, SettingsScene
-from game.scenes.missions import MissionsScene
-from game.scenes.pause import PauseScene
 from game.scenes.physics import PhysicsScene
 from game.scenes.physics_step import PhysicsStepScene
-from game.scenes.play import PlayScene
+from game.scenes.play.calendar import DaysScene
+from game.scenes.play.challenge import FlownMission
+from game.scenes.play.choices import ChoicesScene
+from game.scenes.play.daily import DailyStart
+from game.scenes.play.descent import Descent
+from game.scenes.play.missions import MissionsScene
+from game.scenes.play.pause import FlightPauseScene, PauseScene
+from game.scenes.play.scene import PlayScene
+from game.scenes.play.tutorial import Tutorial
 from game.scenes.quiz import QuizScene
-from game.scenes.replay import ReplayScene
 from game.scenes.runs import NetworksScene
 from game.scenes.study import StudyScene
 from game.scenes.train import TrainScene
-from game.scenes.watch import WatchScene
+from game.scenes.watch.scene import WatchScene
 from game.scenes.why_not import WhyNotScene
 from game.ui.context import Context
 from tests.support.driver import Driver
@@ -115,10 +116,12 @@ FLOWN: dict[str, Make] = {
     "Play": lambda context: PlayScene(context, 3),
     "swarm": lambda context: WatchScene(context, 16, seed=2),
     "mission": lambda context: PlayScene(context, 0, challenge=FlownMission(MISSIONS["wind"])),
+    "tutorial": lambda context: PlayScene(context, 0, challenge=Tutorial()),
     "descent": lambda context: PlayScene(context, 3, challenge=Descent()),
     **{f"chapter, {key}": partial(ChapterScene, key=key) for key in PATH if key != FIRST},
 }
 OVER_OTHERS: dict[str, Callable[[Scene], Scene]] = {
+    "FlightPauseScene": lambda below: FlightPauseScene(below.context, below, retry=lambda: None),
     "PauseScene": lambda below: PauseScene(below.context, below, retry=lambda: None),
     "ChoicesScene": lambda below: ChoicesScene(below.context, below, Skill([]), begun=False),
     "QuestionDialog": lambda below: QuestionDialog(below, "?", "", [("yes", lambda: None), ("no", lambda: None)]),
@@ -159,6 +162,7 @@ def settle(context: Context, **settings: object) -> None:
 
 def opened(open_game: Callable[..., Driver], name: str, below: Make = MenuScene, frames: int = 5) -> Driver:
     """Open a screen; one that stands over others does so over the menu, or what is given."""
+    below = FLOWN["Play"] if name == "FlightPauseScene" else below
     driver = open_game(below if name in OVER_OTHERS else {**SCREENS, **FLOWN}[name])
     if name in OVER_OTHERS:
         driver.app.scenes.apply(Push(OVER_OTHERS[name](driver.top)))

@@ -19,25 +19,25 @@ from ai.lander.pilots import ScriptedPilot
 from game.core.names import name_problem
 from game.core.scene import Scene
 from game.exhibits import EXHIBITS
+from game.flight.days import Attempt, Days
 from game.flight.flight import Flight
 from game.flight.logbook import Records
 from game.learn.path import PATH
-from game.play.challenge import FlownMission
-from game.play.daily import DailyStart
-from game.play.days import Attempt, Days
-from game.play.descent import Descent
-from game.play.race import race
 from game.scenes.chapter import ChapterScene
 from game.scenes.digit_inside import DigitInsideScene
 from game.scenes.dream import DreamScene
 from game.scenes.lesson import LessonScene
+from game.scenes.logbook.replay import ReplayScene
 from game.scenes.menus.dialogs import ListDialog, NameDialog, QuestionDialog
 from game.scenes.physics import PhysicsScene
 from game.scenes.physics_step import PhysicsStepScene
-from game.scenes.play import PlayScene
+from game.scenes.play.challenge import FlownMission
+from game.scenes.play.daily import DailyStart
+from game.scenes.play.descent import Descent
+from game.scenes.play.scene import PlayScene
+from game.scenes.play.starts import race
 from game.scenes.quiz import QuizScene
-from game.scenes.replay import ReplayScene
-from game.scenes.watch import COUNTS, WatchScene
+from game.scenes.watch.scene import COUNTS, WatchScene
 from game.scenes.why_not import WhyNotScene
 from game.ui.context import Context
 from tests.support.lessons import lesson_of
@@ -105,7 +105,7 @@ def makers(context: Context) -> dict[str, Callable[[], Scene | None]]:
         "mission": lambda: PlayScene(context, 0, challenge=FlownMission(missions[rng.integers(len(missions))])),
         "daily": lambda: PlayScene(context, 1, challenge=DailyStart(date(2026, 1, 1), Days(context.user_dir))),
         "descent": lambda: PlayScene(context, 1, challenge=Descent()),
-        "race": lambda: replayed(lambda _, record: PlayScene(context, record.recording.seed, challenge=race(record))),
+        "race": lambda: replayed(race),
         "LessonScene": lambda: LessonScene(context, lesson_of("modern")),
         "ReplayScene": lambda: replayed(ReplayScene),
         "DreamScene": lambda: of_digits(DreamScene),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from operator import attrgetter
 from typing import Final
 
 import numpy as np
@@ -10,9 +11,11 @@ import numpy as np
 from ai.agent.schedule import learning_rate
 from ai.common.environment import Doubles
 from ai.training.config import Config
-from ai.training.history import REVERTED, History
+from ai.training.edits import EDITED
+from ai.training.history import REVERTED, History, SettingChange
 
 ENOUGH: Final = 150_000  # decisions after which the modern preset lands nearly always
+FALLEN: Final = 0.3  # share of flights fewer than before a change, from which that is to blame
 COLLAPSE: Final = 3  # times a hundred flights for which a share must have been there, and must have gone
 RATES: Final = ("learning_rate", "final_learning_rate")
 _FLIGHTS: Final = 1_000  # flights after which a run with few landers should have learned something
@@ -39,16 +42,29 @@ class RecentCurves:
         """Median of a column over the last points that are finite; NaN without any."""
         return median(self.history[name][-points:])
 
+    def now(self, name: str) -> float:
+        """Return the latest finite number of a column, as it stands above its chart; NaN without any."""
+        values = _finite(self.history[name])
+        return float(values[-1]) if len(values) else float("nan")
+
+    def before(self, name: str, share: float = 0.3) -> float:
+        """Return the mean of a column in the first half of the last share of the run."""
+        first, middle = self._halves(share)
+        return mean(self.history[name][first:middle])
+
     def is_late(self) -> bool:
         """Whether a run should be landing by now."""
         return self.last("decisions", 1) >= ENOUGH or self.last("episodes", 1) >= _FLIGHTS
 
     def gained(self, name: str, share: float = 0.3) -> float:
         """Return how much a column rose from the first to the second half of the last share of the run."""
+        return mean(self.history[name][self._halves(share)[1] :]) - self.before(name, share)
+
+    def _halves(self, share: float) -> tuple[int, int]:
+        """Return where the last share of the run begins, and its second half."""
         decisions = self.history["decisions"]
         first, middle = np.searchsorted(decisions, decisions[-1] * np.array([1.0 - share, 1.0 - share / 2]))
-        values = self.history[name]
-        return mean(values[middle:]) - mean(values[first:middle])
+        return int(first), int(middle)
 
     def by_hundreds(self) -> Doubles:
         """Return the share that landed of each successive hundred flights of this stage: none counts twice."""
@@ -67,6 +83,40 @@ class RecentCurves:
         if len(shares) < COLLAPSE:
             return 0.0
         return float(np.lib.stride_tricks.sliding_window_view(shares, COLLAPSE).min(axis=1).max())
+
+    def blamed(self) -> list[SettingChange]:
+        """Return the last change by hand since which far fewer flights land, and those of the same second.
+
+        Empty if there is none, if all is as it was, or if starts have become harder since.
+        """
+        history, shares = self.history, self.by_hundreds()[-COLLAPSE:]
+        if len(shares) < COLLAPSE:
+            return []
+        in_force = [each for each in history.setting_changes if self._in_force(each)]
+        for change in reversed(in_force):
+            row = history.row_at(change.decisions)
+            before = median(history["success"][max(row - 7, 0) : row + 1])
+            same_starts = history["stage"][row] == history["stage"][-1]
+            if same_starts and shares.max() <= before - FALLEN:
+                return [each for each in in_force if abs(each.seconds - change.seconds) < 1.0]
+        return []
+
+    def since_change(self) -> float:
+        """Return how many flights have ended since a setting or the network was last changed; infinite if never."""
+        history, changes = self.history, self.history.setting_changes
+        if not changes:
+            return float("inf")
+        return float(history["episodes"][-1] - history["episodes"][history.row_at(changes[-1].decisions)])
+
+    def _in_force(self, change: SettingChange) -> bool:
+        """Whether a setting, or the network, is still as this change has made it."""
+        if change.name == EDITED:
+            edits = [each for each in self.history.setting_changes if each.name in (EDITED, REVERTED)]
+            return bool(change.after) and edits[-1] is change
+        try:
+            return bool(attrgetter(change.name)(self.config) == change.after)
+        except AttributeError:  # demonstrations, a way back, or what a file says
+            return False
 
     def damaged_at(self) -> int | None:
         """Return when steps that were far too long began, in decisions; None if none since it last went back."""

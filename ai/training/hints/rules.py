@@ -1,4 +1,7 @@
-"""Rules of hints: conditions on the recent curves of a run, each with a remedy."""
+"""Rules of hints: conditions on the recent curves of a run, some with a remedy.
+
+A remedy is only offered if it brought back runs with that fault: `benchmarks.remedies` has tried each.
+"""
 
 from __future__ import annotations
 
@@ -8,26 +11,31 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from ai.lander.environment import LIMITS
-from ai.lander.rewards import FEET_STEPS_PAID, RewardWeights
+from ai.lander.rewards import FEET_STEPS_PAID
 from ai.training.config import Config
+from ai.training.edits import EDITED
 from ai.training.hints.curves import COLLAPSE, ENOUGH, RATES, RecentCurves, median, rate_too_high
 
 _FARTHEST: Final = 25.0  # metres from the pad, at the most
 _FASTEST: Final = 10.0  # m/s that a lander may gain or lose in a flight
 _FLIGHT: Final = 60.0 * LIMITS.time  # physics steps of the longest flight
-_FAR_SPAWNS: Final = ("random", "hard", "highest")  # of which none begins near the pad
 _SANE: Final = {"adam": (2e-3, 3e-4), "momentum": (1e-4, 1e-4), "sgd": (1e-3, 1e-3)}  # RATES, by the optimizer
 _TARGET_STEPS: Final = 8_000  # gradient steps after which a target should be nearly where the network is
+_RISES: Final = 0.05  # gain of the share that lands, from which a run is on its way back
 _PARTS: Final = ("distance", "speed", "alignment")  # of the reward, that say how close it is
 
 
 class HintRule(NamedTuple):
-    """Rule for one fault; `back_to` is the moment to go back to, in decisions."""
+    """Rule for one fault; `back_to` is the moment to go back to, in decisions.
+
+    One `of_settings` needs no curves: it holds as soon as a setting is changed.
+    """
 
     name: str
     holds: Callable[[RecentCurves], bool]
     remedy: Callable[[RecentCurves], Mapping[str, Any]] = lambda _: {}
     back_to: Callable[[RecentCurves], int | None] = lambda _: None
+    of_settings: bool = False
 
 
 # Conditions
@@ -83,8 +91,10 @@ def _dead_units(run: RecentCurves) -> bool:
 
 
 def _collapsed(run: RecentCurves) -> bool:
+    """Whether the last hundreds of flights landed far less than the best, none of them flown before a change."""
     best = run.best()
-    return best >= 0.6 and bool(run.by_hundreds()[-COLLAPSE:].max() <= best - 0.4)
+    lost = best >= 0.6 and bool(run.by_hundreds()[-COLLAPSE:].max() <= best - 0.4)
+    return lost and run.since_change() >= 100 * COLLAPSE and run.gained("success") <= _RISES
 
 
 def _crashes(run: RecentCurves) -> bool:
@@ -100,10 +110,14 @@ def _plateau(run: RecentCurves) -> bool:
     return late and 0.05 < run.last("success") < 0.85 and abs(run.gained("success")) < 0.04
 
 
+def _small_memory(run: RecentCurves) -> bool:
+    return run.config.replay_size < 8 * run.config.batch_size
+
+
 def _overfed(run: RecentCurves) -> bool:
     """Whether each memory is learned from some hundred times: 64 times by `classic`, 8 times by `modern`."""
     config = run.config
-    return config.gradient_steps * config.batch_size > 500 * config.num_envs
+    return config.gradient_steps * config.batch_size > 500 * config.num_envs and not run.last("landed") >= 0.6
 
 
 def _clipped(run: RecentCurves) -> bool:
@@ -134,25 +148,14 @@ def _before_damage(run: RecentCurves) -> int | None:
     return checkpoint.decisions if checkpoint else None
 
 
-def _slower(factor: float) -> Callable[[RecentCurves], Mapping[str, Any]]:
-    """Lower the learning rate, and what it falls to if that is higher."""
-
-    def remedy(run: RecentCurves) -> Mapping[str, Any]:
-        rate = max(1e-5, float(f"{run.config.learning_rate / factor:.1g}"))
-        lower = {"learning_rate": rate}
-        return lower | {"final_learning_rate": rate} if run.config.final_learning_rate > rate else lower
-
-    return remedy
+def _as_before(run: RecentCurves) -> Mapping[str, Any]:
+    return {each.name: each.before for each in run.blamed() if each.name != EDITED}
 
 
-def _calm_q(run: RecentCurves) -> Mapping[str, Any]:
-    if not run.config.target_judges:
-        return {"target_judges": True}
-    if not run.config.double:
-        return {"double": True}
-    if run.config.tau > 0.05 and run.config.target_update_interval < 50:
-        return {"tau": 0.005}
-    return _slower(10)(run)
+def _before_edit(run: RecentCurves) -> int | None:
+    edited = [each.decisions for each in run.blamed() if each.name == EDITED]
+    checkpoint = run.history.checkpoint_at(edited[0]) if edited else None
+    return checkpoint.decisions if checkpoint else None
 
 
 def _for_crashes(run: RecentCurves) -> Mapping[str, Any]:
@@ -160,34 +163,6 @@ def _for_crashes(run: RecentCurves) -> Mapping[str, Any]:
     if config.optimizer == "sgd" and config.learning_rate < 0.02:
         return {"optimizer": "adam"}
     return {}
-
-
-def _for_short_sight(config: Config) -> Mapping[str, Any]:
-    return {"discount": 0.985} if config.discount < 0.96 else {}
-
-
-def _for_hovering(run: RecentCurves) -> Mapping[str, Any]:
-    config, paid = run.config, RewardWeights()
-    if config.epsilon_end < 0.02:
-        return {"epsilon_end": 0.05}
-    if config.random_main > 0.4:
-        return {"random_main": 0.3}
-    if config.spawn in _FAR_SPAWNS:
-        return {"spawn": "practice"}
-    if config.reward_weights.time > paid.time:
-        return {"reward_weights.time": paid.time}
-    return _for_short_sight(config) or {"reward_weights.time": round(1.5 * config.reward_weights.time, 3)}
-
-
-def _usual_guide(_: RecentCurves) -> Mapping[str, Any]:
-    return {f"reward_weights.{part}": getattr(RewardWeights(), part) for part in _PARTS}
-
-
-def _for_plateau(run: RecentCurves) -> Mapping[str, Any]:
-    config = run.config
-    if config.n_step < 3:
-        return {"n_step": 10}
-    return _for_short_sight(config) or (_slower(3)(run) if config.learning_rate > 1e-4 else {})
 
 
 def _less_random(run: RecentCurves) -> Mapping[str, Any]:
@@ -214,12 +189,6 @@ def _fewer_steps(run: RecentCurves) -> Mapping[str, Any]:
     return {"gradient_steps": enough} if config.gradient_steps > 16 and enough else {"num_envs": 256}
 
 
-def _longer(run: RecentCurves) -> Mapping[str, Any]:
-    """Let gradients be longer; where they already may be, let the steps be shorter."""
-    clip = run.config.gradient_clip
-    return {"gradient_clip": 10.0} if clip < 10.0 else _slower(3)(run)
-
-
 # The most severe first.
 RULES: Final = (
     HintRule(
@@ -227,20 +196,23 @@ RULES: Final = (
         lambda run: rate_too_high(run.config, int(run.last("decisions", 1))),
         _sane_rates,
         _before_damage,
+        of_settings=True,
     ),
     HintRule("damaged", _damaged, back_to=_before_damage),
-    HintRule("loss_explodes", _loss_explodes, _slower(10)),
-    HintRule("q_runs_away", _q_runs_away, _calm_q),
-    HintRule("dead_units", _dead_units, lambda _: {"activation": "leaky_relu"}),
-    HintRule("collapsed", _collapsed, _slower(3), RecentCurves.best_moment),
-    HintRule("target_stands", _target_stands, _nearer_target),
-    HintRule("short_sight", _short_sight, lambda _: {"discount": 0.985}),
-    HintRule("no_guide", _no_guide, _usual_guide),
+    HintRule("changed", lambda run: bool(_as_before(run)), _as_before),
+    HintRule("edited", lambda run: any(each.name == EDITED for each in run.blamed()), back_to=_before_edit),
+    HintRule("loss_explodes", _loss_explodes),
+    HintRule("q_runs_away", _q_runs_away),
+    HintRule("dead_units", _dead_units),
+    HintRule("collapsed", _collapsed, back_to=RecentCurves.best_moment),
+    HintRule("target_stands", _target_stands, _nearer_target, of_settings=True),
+    HintRule("short_sight", _short_sight),
+    HintRule("no_guide", _no_guide),
     HintRule("crashes", _crashes, _for_crashes),
-    HintRule("hovers", _hovers, _for_hovering),
-    HintRule("small_memory", lambda run: run.config.replay_size < 8 * run.config.batch_size, _more_memory),
-    HintRule("overfed", _overfed, _fewer_steps),
+    HintRule("hovers", _hovers),
+    HintRule("small_memory", _small_memory, _more_memory, of_settings=True),
+    HintRule("overfed", _overfed, _fewer_steps, of_settings=True),
     HintRule("random", lambda run: run.is_late() and run.last("epsilon") > 0.3, _less_random),
-    HintRule("clipped", _clipped, _longer),
-    HintRule("plateau", _plateau, _for_plateau),
+    HintRule("clipped", _clipped),
+    HintRule("plateau", _plateau),
 )

@@ -11,9 +11,8 @@ from game.core import texts
 from game.core.scene import Transition, push
 from game.core.settings import TOP_RUNG
 from game.drawing.tokens import INK
-from game.flight.logbook import Records
-from game.play.days import Days
-from game.play.descent import best_of
+from game.flight.days import Days
+from game.flight.logbook import Records, best_descent
 from game.scenes.menus.background import MenuBackground
 from game.ui.actions import Table
 from game.ui.panel_scene import PanelScene
@@ -48,7 +47,7 @@ class FlightsScene(PanelScene):
         entries = records.entries()
         gold = {entry.course for entry in entries if entry.medal == 3 and not entry.outdated and entry.alone}
         attempt = days.attempts.get(self._today.isoformat())
-        best = best_of(entries)[0]
+        best = best_descent(entries)[0]
         self._figures = {
             "free": texts.FLIGHTS_RUNG.format(number=max(0, rung) + 1) if rung < TOP_RUNG else texts.FLIGHTS_ANYWHERE,
             "day": texts.FLIGHTS_FLOWN if attempt else texts.DAYS_NOT_FLOWN,
@@ -88,8 +87,4 @@ class FlightsScene(PanelScene):
 
 
 def _open(name: str) -> Transition:
-    if name == "descent":
-        from game.play.descent import Descent
-
-        return push("play", challenge=Descent())
     return push({"free": "play", "day": "days"}.get(name, name))

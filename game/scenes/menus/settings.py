@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 from game.audio.instruments import GROUPS, altitude_key
@@ -12,8 +13,8 @@ from game.core.names import LibraryError
 from game.core.scene import Push, Transition, push
 from game.core.settings import PACES
 from game.drawing.tokens import INK, TEXT_SIZES
+from game.flight.progress import Progress
 from game.input.controls import Command, Held
-from game.play.progress import Progress
 from game.scenes.menus.colours import HEIGHT, draw_scene
 from game.scenes.menus.dialogs import QuestionDialog
 from game.ui.actions import Table
@@ -123,7 +124,7 @@ class SettingsScene(PanelScene):
         left.gap(6)
         left.aside(texts.ASSISTS_COUNTED)
         flown = texts.TUTORIAL_FLOWN if self.context.settings.first_flown else ""
-        right.button(texts.TUTORIAL_OPEN, _fly_first_flight, figure=flown, colour=INK)
+        right.button(texts.TUTORIAL_OPEN, partial(push, "tutorial"), figure=flown, colour=INK)
         right.button(texts.PROGRESS_RESET, self._ask_to_reset, colour=INK)
         if self._progress.restorable:
             right.button(texts.PROGRESS_RESTORE, self._restore, colour=INK)
@@ -212,9 +213,3 @@ def _percent(share: float) -> str:
 
 def _loudness(volume: float) -> str:
     return _percent(volume) if volume else texts.SOUND_OFF
-
-
-def _fly_first_flight() -> Transition:
-    from game.play.tutorial import Tutorial
-
-    return push("play", 0, challenge=Tutorial())

@@ -151,7 +151,7 @@ def test_the_success_pass_learns_from_good_endings_only():
         ended = np.array([step == 5] * 2)
         agent.store(states, np.array([0, 1]), result(states, [step, 100 + step], ended), np.array([True, False]))
     assert len(agent.successes) == 6
-    assert agent.successes.cells.action[:6].tolist() == [0] * 6
+    assert agent.successes.transitions.action[:6].tolist() == [0] * 6
 
 
 def test_a_mirrored_memory_is_its_own_mirror_image_twice():
@@ -174,9 +174,9 @@ def test_a_mirrored_memory_is_its_own_mirror_image_twice():
 def test_half_of_each_batch_is_learnt_in_the_mirror(changes):
     agent = fed(SMALL.changed(mirror=True, **changes))
     agent.symmetry = Symmetry(np.array([100, 1, 1], np.float32), np.array([2, 1, 0]), np.array([1, 0]))
-    agent.replay.cells.state[:] += 3  # where means are 0, it makes no difference when a state is scaled
+    agent.replay.transitions.state[:] += 3  # where means are 0, it makes no difference when a state is scaled
     if agent.normalizer:
-        agent.normalizer.update(agent.replay.cells.state[:40] * np.array([60, 1, 1], np.float32))
+        agent.normalizer.update(agent.replay.transitions.state[:40] * np.array([60, 1, 1], np.float32))
     sample, update, drawn, learnt = agent.replay.sample, agent.gradient_step, [], []
     agent.replay.sample = lambda *how: drawn.append(sample(*how)) or drawn[0]
     agent.gradient_step = lambda *batch: learnt.append([part.copy() for part in batch]) or update(*batch)
@@ -202,7 +202,7 @@ def test_a_gradient_that_is_not_finite_stops_with_the_step_and_a_cause():
 @pytest.mark.parametrize("cost", ["huber", "mse"])
 def test_an_error_that_is_not_finite_stops_learning_even_where_its_gradient_is(cost):
     agent = fed(SMALL.changed(cost=cost))
-    agent.replay.cells.reward[:] = np.inf
+    agent.replay.transitions.reward[:] = np.inf
     before = agent.online.values.copy()
     with pytest.raises(FloatingPointError, match="cost was not finite at learning step 1"):
         agent.learn()

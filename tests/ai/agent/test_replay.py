@@ -15,7 +15,7 @@ def cells(first, count):
 
 
 def kept(buffer):
-    return sorted(buffer.cells.reward[(buffer.start + np.arange(len(buffer))) % buffer.capacity].tolist())
+    return sorted(buffer.transitions.reward[(buffer.start + np.arange(len(buffer))) % buffer.capacity].tolist())
 
 
 @pytest.mark.parametrize("kind", [ReplayBuffer, PrioritisedReplayBuffer])
@@ -139,7 +139,7 @@ def test_every_step_becomes_one_memory_with_its_own_return(n, slots, seed):
 
 
 def test_only_successful_episodes_are_passed_on_whole():
-    episodes = Episodes()
+    episodes = Episodes(2)
     none = np.zeros(2, dtype=bool)
     assert not list(episodes.add(cells(0, 2), np.array([0, 1]), none, none))
     assert not list(episodes.add(cells(2, 2), np.array([0, 1]), none, none))

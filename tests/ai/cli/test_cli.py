@@ -307,7 +307,7 @@ def test_a_gradient_that_is_not_finite_ends_the_run_with_the_reason_and_keeps_th
 
     def blow_up(agent):
         if agent.gradient_steps == 20:
-            agent.replay.cells.reward[:] = np.inf
+            agent.replay.transitions.reward[:] = np.inf
         return learn(agent)
 
     monkeypatch.setattr(DeepQAgent, "learn", blow_up)

@@ -22,13 +22,20 @@ from ai.agent.agent import DeepQAgent
 from ai.agent.storage import KIND, write_agent
 from ai.digits.classifier import DigitClassifier
 from ai.files import (
+    MOST,
+    append_line,
+    array_like,
     claimed_folder,
+    count_of,
     inside,
+    move_state,
     parse_json,
     read_arrays,
     read_bytes,
     read_json,
+    recover_all,
     recover_folder,
+    state_folder,
     take,
     take_folder,
     write_text,
@@ -194,6 +201,23 @@ def test_archives_that_numpy_does_not_write_are_refused(tmp_path):
         read_arrays(packed(path, zipfile.ZIP_STORED, [f"a{number}" for number in range(2000)]), 10**6, anything)
     with pytest.raises(OSError, match="larger than"):
         read_arrays(path, 1000, anything)
+    path.write_bytes(whole[:-22] + b"PK\6\7" + bytes(16) + whole[-22:])  # as of more than four gigabytes
+    with pytest.raises(ValueError, match="no archive"):
+        read_arrays(path, 1000, anything)
+    np.savez(path, steps=np.array([None], object))
+    with pytest.raises(ValueError, match="steps holds more bytes"):
+        read_arrays(path, 1000, anything)
+
+
+def test_numbers_of_a_file_are_what_they_should_be():
+    for wrong in (True, 1.0, "1", None, -1, MOST + 1):
+        with pytest.raises(ValueError, match="no whole number"):
+            count_of(wrong)
+    like = np.zeros(2, np.float32)
+    for given, finite in (([np.nan, 0], False), ([np.inf, 0], True), ([0], True), ([[0, 0]], False)):
+        with pytest.raises(ValueError, match=r"not finite|should hold float32 \[2\]"):
+            array_like(like, np.array(given, np.float32), finite=finite)
+    assert array_like(like, np.array([np.inf, 0], np.float32), finite=False)[0] == np.inf
 
 
 def layers_of(folder, layers):
@@ -308,6 +332,9 @@ def test_a_file_is_as_large_as_it_may_be_and_no_larger(tmp_path):
         read_bytes(tmp_path / "a", 4)
     with pytest.raises(OSError, match="such a name"):
         read_bytes("a\0b")
+    if Path("/proc/self/maps").exists():  # says that it is empty
+        with pytest.raises(OSError, match="larger than"):
+            read_bytes("/proc/self/maps", 10)
     with pytest.raises(OSError, match="not an ordinary file"):
         read_json("/dev/zero")
     with pytest.raises(OSError, match="leads out"):
@@ -519,6 +546,47 @@ def test_a_reader_that_puts_the_old_folder_back_does_not_stop_a_save(run, monkey
     assert len(calls) > 3
     assert resume_run(run).episodes == 77
     assert [path.name for path in run.parent.iterdir()] == ["run"]
+
+
+def test_what_a_save_left_half_made_goes_after_an_hour_and_an_old_one_comes_back(tmp_path):
+    young, stale = tmp_path / ".run.01234567.new", tmp_path / ".run.89abcdef.new"
+    for number, folder in enumerate((young, stale, tmp_path / ".gone.01234567.old", tmp_path / ".gone.89abcdef.old")):
+        folder.mkdir()
+        (folder / "number").write_text(str(number))
+        os.utime(folder, (0, 1000 * number) if folder != young else None)
+    recover_all(tmp_path)
+    assert {path.name for path in tmp_path.iterdir()} == {young.name, "gone", ".gone.01234567.old"}
+    assert (tmp_path / "gone" / "number").read_text() == "3"  # the later of the two
+
+
+def test_a_save_that_fails_or_meets_what_is_not_ours_leaves_all_as_it_was(tmp_path):
+    NeuralNetwork(*CostFunctions.use_mse()).save(tmp_path / "run")
+    before = listing(tmp_path)
+    with pytest.raises(FileNotFoundError), atomic_folder(tmp_path / "run") as new:
+        shutil.copy(tmp_path / "no such file", new)
+    assert listing(tmp_path) == before
+    with pytest.raises(FileExistsError, match="left as it is"), atomic_folder(tmp_path / "run"):
+        (tmp_path / "run" / "diary").write_text("dear")
+    assert listing(tmp_path) == before | {tmp_path / "run" / "diary": b"dear"}
+
+
+def test_a_line_stands_alone_after_one_that_was_cut_short_and_a_state_follows_its_run(tmp_path):
+    (tmp_path / "log").write_bytes(b'{"a": ')
+    append_line(tmp_path / "log", {"a": 1})
+    assert parse_json((tmp_path / "log").read_text().splitlines()[-1]) == {"a": 1}
+    for name in "ab":
+        state_folder(tmp_path / name).mkdir()
+        (state_folder(tmp_path / name) / name).touch()
+    move_state(tmp_path / "a", tmp_path / "b")
+    assert [path.name for path in state_folder(tmp_path / "b").iterdir()] == ["a"]
+    assert not state_folder(tmp_path / "a").exists()
+
+
+def test_a_file_that_cannot_be_put_in_place_leaves_nothing(tmp_path):
+    (tmp_path / "settings.json" / "within").mkdir(parents=True)
+    with pytest.raises(OSError, match="settings"):
+        write_text(tmp_path / "settings.json", "{}")
+    assert [path.name for path in tmp_path.iterdir()] == ["settings.json"]
 
 
 def test_two_writers_of_one_folder_never_mix(tmp_path):

@@ -68,6 +68,16 @@ def test_only_the_slots_that_begin_anew_get_new_sites():
     assert (before[::2, NUM_FEATURES:] != after[::2, NUM_FEATURES:]).any(axis=1).all()
 
 
+def test_limits_of_a_touch_are_those_of_each_site():
+    env = AnywhereEnv(2, 0, frame_skip=1)
+    env.settle([Site(touch_speed=3.0, slide_speed=1.2), Site()])
+    env.place(np.ones(2, bool), np.array([[12.0, PARAMS.ground + PARAMS.stand + 0.01, 1.6, -0.3, 0, 0]] * 2))
+    for _ in range(30):
+        env.step(np.zeros(2, int))
+    assert env.outcome.tolist() == [Outcome.CRASHED] * 2
+    assert env.intact.tolist() == [False, True]
+
+
 def test_sites_are_of_the_kinds_asked_for():
     env = AnywhereEnv(60, 2, sites=("moon", "earth"))
     seen = env.reset()[:, NUM_FEATURES:] / SURROUNDINGS_SCALE

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ai.agent.agent import DeepQAgent
-from ai.lander.descent import TANK, LegStart, leg, leg_of, refill
+from ai.lander.descent import TANK, LegStart, can_begin, leg, leg_of, refill
 from ai.lander.environment import Cause, LanderEnv, Outcome
 from ai.lander.pilots import ScriptedPilot
 from ai.lander.route import Route, sink_of
@@ -93,6 +93,17 @@ def test_the_tank_goes_from_leg_to_leg_and_a_better_landing_brings_more():
     assert after == LegStart(4, round(2.5 + refill(60, bare=False), 3))
     assert LegStart(3, TANK).after(0.5, 100, bare=False).tank == TANK  # no more than it holds
     assert LegStart(3, 9.0).after(6.5, 240, bare=True) == LegStart(4, 2.5, bare=True)
+
+
+def test_a_leg_begins_as_the_one_before_can_have_ended():
+    assert can_begin(5, LegStart())
+    assert not can_begin(5, LegStart(1, 9.0))
+    assert can_begin(5, LegStart(2, 5.0))
+    assert not can_begin(5, LegStart(2, 4.9))  # a pad has filled it up
+    flat = {number: any(pad.bare for pad in leg(5, number - 1).ground.pads) for number in range(2, 12)}
+    assert set(flat.values()) == {True, False}
+    for number, there in flat.items():
+        assert can_begin(5, LegStart(number, 9.0, bare=True)) is there
 
 
 def test_a_pilot_is_led_at_the_speed_at_which_it_comes_down_itself():

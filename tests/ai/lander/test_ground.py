@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from ai.lander.environment import PARAMS, Cause, LanderEnv, Outcome
-from ai.lander.ground import PADS, Ground, Pad, clearance, hilly
+from ai.lander.ground import PADS, Ground, Pad, clearance, hilly, knoll
 
 THREE = Ground(
     (Pad(-9.0, 2.0, 6.0), Pad(0.0, 1.6, 4.4, 3), Pad(9.0, 2.5, 3.6, 5)), (((3.0, 1.0), (4.5, 2.2), (6.0, 1.0)),)
@@ -80,6 +80,13 @@ def test_hills_leave_room_for_every_approach(subtests):
                 assert ground.height(pad.x) == pad.top
             assert ground.height(x).max() < 6.0
             assert len(ground.hills) > len(PADS)
+
+
+def test_a_knoll_is_flat_under_its_pad_and_a_little_wider_on_both_sides():
+    left, top_left, top_right, right = knoll(Pad(2.0, 2.3, 4.0), 1.0)
+    assert top_left == pytest.approx((-0.5, 2.0))
+    assert top_right == pytest.approx((4.5, 2.0))
+    assert left[0] + right[0] == pytest.approx(4.0)
 
 
 @pytest.mark.parametrize("pads", [(), (Pad(0, 0.5, 6),), (Pad(0, 1.6, 0),), (Pad(0, 1.6, 6), Pad(4, 1.6, 6))])

@@ -60,7 +60,7 @@ def test_a_moment_flies_on_in_any_environment_over_the_same_ground():
     env, other = hard(), LanderEnv(6, 0, frame_skip=4, ground=GROUND)
     flown(env, ACTIONS[:60])
     Moment.of(env).put(other)
-    assert other.gravity == 2.5
+    assert (other.gravity, other.strictness) == (2.5, 0.8)
     assert np.array_equal(flown(env, ACTIONS[60:]), flown(other, ACTIONS[60:]))
 
 

@@ -27,9 +27,18 @@ def test_in_points_a_flight_is_paid_for_its_two_ends_alone():
     env.reset()
     start, paid = Situation.of(env), np.zeros(20)
     while (flying := env.outcome == Outcome.FLYING).any():
-        components = env.step(rng.integers(0, NUM_ACTIONS, 20)).components
-        paid += flying * sum(components[name] for name in SHAPING)
+        result = env.step(rng.integers(0, NUM_ACTIONS, 20))
+        paid += flying * sum(result.components[name] for name in SHAPING)
+        assert result.reward == pytest.approx(sum(result.components.values()), abs=1e-4)
     assert paid == pytest.approx(shaped(start, Situation.of(env), env.weights), abs=1e-2)
+
+
+def test_alignment_falls_to_nothing_three_metres_aside_or_half_a_radian_from_upright():
+    for offset, tilt, share in ((0, 0, 1.0), (1.5, 0, 0.5), (0, 0.25, 0.5), (1.5, 0.25, 0.25), (3, 0, 0), (0, 0.5, 0)):
+        assert situation(0, 0, offset, tilt).aligned == pytest.approx(share)
+    weights = RewardWeights()
+    paid = [REWARDS[name](weights, situation(0.3, 0.4, 0, 0), MIDDLE) for name in ("distance", "speed")]
+    assert np.ravel(paid) == pytest.approx([1.5, 0.2])  # half a point for each 0.1 m, 0.05 for each 0.1 m/s
 
 
 @pytest.mark.parametrize("preset", PRESETS)

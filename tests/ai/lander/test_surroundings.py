@@ -59,6 +59,7 @@ def test_a_failing_engine_is_announced_and_its_return_too():
 
 def test_fuel_is_seen_to_run_out():
     assert seen(falling(HARD, 1.0, action=3))["fuel left"] == pytest.approx(2.0, abs=1e-5)
+    assert seen(falling(HARD, 1.0, action=1))["fuel left"] == pytest.approx(2.9, abs=1e-5)
     assert seen(falling(replace(HARD, tank=0.5), 1.0, action=3))["fuel left"] == 0.0
 
 

@@ -181,13 +181,10 @@ NAMED = {
     "classic target_update_interval 10000": ("target_stands", {"target_update_interval"}),
     "classic tau 0.0001": ("target_stands", {"target_update_interval", "tau"}),
     "classic batch_size 1024": ("small_memory", {"replay_size"}),
-    "classic gradient_clip 0.1": ("clipped", {"gradient_clip"}),
-    "modern sabotage short_sight": ("short_sight", {"discount"}),
+    "classic gradient_clip 0.1": ("clipped", set()),
+    "modern sabotage short_sight": ("short_sight", set()),
     "modern sabotage plain_steps": ("crashes", {"optimizer"}),
-    "modern sabotage no_shaping": (
-        "no_guide",
-        {"reward_weights.distance", "reward_weights.speed", "reward_weights.alignment"},
-    ),
+    "modern sabotage no_shaping": ("no_guide", set()),
 }
 
 

@@ -4,12 +4,56 @@ from functools import cache
 
 import pytest
 
-from ai.training.captions import ABOUT, CAPTION_RULES, CHARTS, captions
+from ai.training.captions import ABOUT, CAPTION_RULES, CHARTS, Caption, caption
 from ai.training.hints import RULES, Adviser, RecentCurves
 from ai.training.history import History
 from tests.support.recordings import growing, names, recorded
 
 EACH = 8  # points between two looks
+
+
+def captions(run: RecentCurves, hint: str = "") -> dict[str, Caption]:
+    return {chart: said for chart in CHARTS if (said := caption(chart, run, hint))}
+
+
+def test_a_caption_agrees_with_the_number_above_it(subtests: pytest.Subtests):
+    """While a run goes well, badly, and is broken by hand."""
+    said = set()
+    for name in ("modern healthy", "modern rates to 1 and back, late", "modern sabotage no_shaping", "classic healthy"):
+        with subtests.test(name=name):
+            shown: dict[str, str] = {}
+            for run in growing(name):
+                read = RecentCurves(run.history, run.config)
+                now = {column: read.now(column) for column in ("success", "mean_return", "epsilon", "loss")}
+                for chart in CHARTS:
+                    found = caption(chart, read, shown=shown.get(chart, ""))
+                    shown[chart] = found.name if found else ""
+                    said.add((chart, shown[chart]))
+                    figures = {name: float(value) for name, value in found.values.items()} if found else {}
+                    at = (name, run.history["decisions"][-1], found, now)
+                    match chart, shown[chart]:
+                        case "success", "steady":
+                            assert figures["percent"] == 100 * now["success"], at
+                            assert abs(figures["percent"] - figures["before"]) <= 5, at
+                        case "success", "rises":
+                            assert figures["before"] < 100 * now["success"] - 5, at
+                        case "success", "falls":
+                            assert figures["before"] > 100 * now["success"] + 5, at
+                        case "success", "high":
+                            assert now["success"] >= 0.9, at
+                        case "success", "crashes" | "hovers" | "leaves" | "none":
+                            assert now["success"] == 0, at
+                        case "mean_return", "costs" | "earns":
+                            assert figures["points"] == abs(now["mean_return"]) >= 0.5, at
+                            assert (now["mean_return"] > 0) == (shown[chart] == "earns"), at
+                        case "epsilon", "all":
+                            assert now["epsilon"] == 1, at
+                        case "epsilon", "falls" | "spread" | "steady":
+                            assert figures["percent"] == 100 * now["epsilon"], at
+                        case "loss" | "mean_q", "unknown":
+                            assert now["loss"] != now["loss"], at
+    assert {("success", "steady"), ("success", "rises"), ("success", "falls"), ("mean_return", "costs")} <= said
+    assert {("epsilon", "falls"), ("success", ""), ("loss", "rises"), ("loss", "falls")} <= said
 
 
 @cache
@@ -22,11 +66,11 @@ def seen(name: str) -> dict[str, list[str]]:
         hint = adviser.advise(run.history, run.config, run.dead_share, run.clipped_share)
         if number % EACH:
             continue
-        for chart, caption in captions(RecentCurves(run.history, run.config), hint.name if hint else "").items():
-            rule = next(rule for rule in CAPTION_RULES[chart] if rule.name == caption.name)
-            assert not (hint and chart in ABOUT[hint.name] and rule.praises), (name, hint, chart, caption)
-            if found[chart][-1:] != [caption.name]:
-                found[chart].append(caption.name)
+        for chart, told in captions(RecentCurves(run.history, run.config), hint.name if hint else "").items():
+            rule = next(rule for rule in CAPTION_RULES[chart] if rule.name == told.name)
+            assert not (hint and chart in ABOUT[hint.name] and rule.praises), (name, hint, chart, told)
+            if found[chart][-1:] != [told.name]:
+                found[chart].append(told.name)
     return found
 
 

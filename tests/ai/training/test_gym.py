@@ -89,13 +89,15 @@ class TestLearningOthersEnvironments:
     def _needs_gymnasium(self):
         pytest.importorskip("gymnasium")
 
-    def test_cart_pole_is_learnt_kept_evaluated_and_gone_on_with(self, tmp_path, capsys):
+    def test_cart_pole_is_learnt_kept_evaluated_and_gone_on_with(self, tmp_path, capsys, monkeypatch):
+        monkeypatch.setattr(GymTask, "validation_episodes", 20)
+        monkeypatch.setattr(GymTask, "test_episodes", 10)
         run = tmp_path / "run"
         assert train_cart_pole(run, 6_000, "--set", "epsilon_decisions=3000", "--set", "learning_starts=500") == 0
         assert "mean return" in capsys.readouterr().out
         described = json.loads((run / "training.json").read_text())
         assert (described["env"], described["preset"]) == ("CartPole-v1", "gym")
-        assert described["evaluation"]["episodes"] == 100
+        assert described["evaluation"]["episodes"] == 10
         assert main(["evaluate", "--model", str(run), "--episodes", "10", "--seed", "3", "--json"]) == 0
         measured = json.loads(capsys.readouterr().out)
         assert measured["mean_return"] > 100

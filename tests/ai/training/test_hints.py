@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ai.lander.rewards import RewardWeights
 from ai.training.config import PRESETS, Config
 from ai.training.experiments import sabotaged
 from ai.training.hints import HOLD, REST, RULES, STAY, Adviser, Hint, RecentCurves, returns
@@ -84,7 +83,7 @@ def test_each_rule_holds_for_what_it_is_about(subtests: pytest.Subtests):
         ("crashes", points(**CRASHES), MODERN),
         ("hovers", points(**HOVERS), MODERN),
         ("small_memory", points(), MODERN.changed(replay_size=256)),
-        ("overfed", points(), MODERN.changed(num_envs=1)),
+        ("overfed", points(landed=0.4), MODERN.changed(num_envs=1)),
         ("random", points(epsilon=0.6), MODERN),
         ("plateau", points(success=0.4), MODERN),
     ]:
@@ -155,31 +154,12 @@ def test_what_a_flight_can_pay_follows_the_weights():
 @pytest.mark.parametrize(
     ("name", "curve", "config", "cure"),
     [
-        ("loss_explodes", points(), MODERN, {"learning_rate": 3e-4}),
-        ("loss_explodes", points(), MODERN.changed(learning_rate=2e-3),
-         {"learning_rate": 2e-4, "final_learning_rate": 2e-4}),
-        ("loss_explodes", points(), MODERN.changed(learning_rate=1e-5, final_learning_rate=1e-6),
-         {"learning_rate": 1e-5}),
-        ("q_runs_away", points(), MODERN, {"target_judges": True}),
-        ("q_runs_away", points(), MODERN.changed(target_judges=True), {"double": True}),
-        ("q_runs_away", points(), sabotaged(Config(), "no_target"), {"tau": 0.005}),
         ("crashes", points(), sabotaged(MODERN, "plain_steps"), {"optimizer": "adam"}),
         ("rate_too_high", points(), sabotaged(MODERN, "rate_times_100"),
          {"learning_rate": 2e-3, "final_learning_rate": 3e-4}),
-        ("short_sight", points(), sabotaged(MODERN, "short_sight"), {"discount": 0.985}),
-        ("no_guide", points(), sabotaged(MODERN, "no_shaping"),
-         {"reward_weights.distance": 0.5, "reward_weights.speed": 0.05, "reward_weights.alignment": 30.0}),
-        ("hovers", points(), sabotaged(MODERN, "no_exploration"), {"epsilon_end": 0.05}),
-        ("hovers", points(), sabotaged(MODERN, "uniform_actions"), {"random_main": 0.3}),
-        ("hovers", points(), sabotaged(MODERN, "no_practice"), {"spawn": "practice"}),
-        ("hovers", points(), MODERN.changed(reward_weights=RewardWeights(time=0.0)), {"reward_weights.time": -0.2}),
-        ("hovers", points(), MODERN, {"reward_weights.time": -0.6}),
         ("overfed", points(), sabotaged(MODERN, "one_lander"), {"num_envs": 256}),
         ("random", points(), MODERN.changed(epsilon_end=0.5), {"epsilon_end": 0.05}),
-        ("clipped", points(), MODERN.changed(gradient_clip=0.1), {"gradient_clip": 10.0}),
-        ("clipped", points(), MODERN, {"learning_rate": 1e-3}),
         ("random", points(), PRESETS["classic"], {"epsilon_decay": 0.995}),
-        ("plateau", points(), sabotaged(MODERN, "no_n_step"), {"n_step": 10}),
     ],
 )  # fmt: skip
 def test_remedies_follow_what_is_set(name: str, curve: Curve, config: Config, cure: dict[str, Any]):
@@ -203,7 +183,7 @@ def test_a_collapse_leads_back_to_the_best_checkpoint():
     hint = watch(Adviser(config), run, config)[-1]
     assert hint is not None
     assert (hint.name, hint.back_to) == ("collapsed", 200_000)
-    assert hint.remedy["learning_rate"] < config.learning_rate
+    assert hint.remedy == {}
 
 
 # The adviser
@@ -253,21 +233,22 @@ def test_the_most_severe_comes_first():
 
 
 def test_an_applied_hint_goes_and_can_be_undone_and_does_not_come_back_at_once():
-    adviser: Any = Adviser(MODERN)
-    run = history(points(**HOVERS), seconds=40.0 + REST)
-    shown = watch(adviser, run)
+    config = MODERN.changed(epsilon_end=0.6)
+    adviser: Any = Adviser(config)
+    run = history(points(epsilon=0.6), seconds=40.0 + REST)
+    shown = watch(adviser, run, config)
     assert shown[-1] is not None
-    assert adviser.apply() == {"reward_weights.time": -0.6}
+    assert adviser.apply() == {"epsilon_end": 0.05}
     assert adviser.can_undo
-    assert adviser.undo() == {"reward_weights.time": -0.4}
+    assert adviser.undo() == {"epsilon_end": 0.6}
     assert not adviser.can_undo
     assert adviser.undo() == {}
 
-    adviser = Adviser(MODERN)
+    adviser = Adviser(config)
     growing, moments = History(), []
     for row in run.points:
         growing.append(Point(*row[:14].tolist()))
-        if adviser.advise(growing, MODERN):
+        if adviser.advise(growing, config):
             moments.append(float(row[0]))
             adviser.apply()
     assert len(moments) == 2

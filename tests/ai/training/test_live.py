@@ -225,7 +225,7 @@ def test_every_live_knob_makes_a_difference(begin, name):
         for each in (run, quiet):  # there are no landings yet to learn from: give it some
             training = each.gi_frame.f_locals["session"].training
             rng = np.random.default_rng(0)
-            cells = training.agent.replay.cells
+            cells = training.agent.replay.transitions
             picked = [part[:64].copy() for part in cells]
             picked[0] = rng.normal(size=picked[0].shape).astype(np.float32)
             training.agent.successes.add(type(cells)(*picked))
@@ -349,7 +349,7 @@ def until_it_fails(run, told):
 def test_numbers_that_run_away_stop_the_run_and_the_last_good_network_is_kept(begin, tmp_path):
     run = begin(TINY, keep=tmp_path / "keep")
     told = told_in(run, 120)
-    run.gi_frame.f_locals["session"].training.agent.replay.cells.reward[:] = np.nan
+    run.gi_frame.f_locals["session"].training.agent.replay.transitions.reward[:] = np.nan
     with pytest.raises(FloatingPointError, match=r"learning step \d+; most likely the learning rate of 0.0"):
         until_it_fails(run, told)
     good = of(Checkpoint, told)[-1]

@@ -42,7 +42,7 @@ def test_the_memory_that_is_told_is_the_one_that_is_drawn_from(prioritised: bool
         seen += state.memory.cells.state[:, 0].tolist()
         assert state.memory.oldest == max(0, len(seen) - 400)
         for number, row in zip(state.memory.drawn, run.replay.drawn, strict=True):
-            assert seen[number] == run.replay.cells.state[row, 0]
+            assert seen[number] == run.replay.transitions.state[row, 0]
     assert len(state.memory.drawn) == SMALL_RUN.batch_size * SMALL_RUN.gradient_steps
 
 

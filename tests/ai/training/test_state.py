@@ -12,6 +12,7 @@ from ai.training.checkpoints import AGENTS, resume_run, save_run
 from ai.training.config import ANYWHERE, PRESETS, Config, gym_config
 from ai.training.loop import Training
 from ai.training.run import Keeper
+from ai.training.tasks import LanderTask
 
 SMALL = PRESETS["modern"].changed(
     hidden=(8,), batch_size=16, gradient_steps=1, learning_starts=32, replay_size=500, num_envs=8, spawn="near"
@@ -94,6 +95,22 @@ def test_the_measurement_at_an_end_changes_nothing_of_a_run_that_goes_on(tmp_pat
     assert resumed.best is None
     resumed.evaluate_every = 0
     assert differing(straight, on(resumed, 30)) == []
+
+
+def test_a_validation_under_way_goes_on_with_its_run_and_is_of_the_same_network(tmp_path, monkeypatch):
+    monkeypatch.setattr(LanderTask, "validation_episodes", 4)
+    straight, stopped = begun(SMALL), begun(SMALL)
+    for training in (straight, stopped):
+        training.evaluate_every, training.validation_pace = 160, 1
+    on(straight, 25)
+    resumed = gone_on(on(stopped, 23), tmp_path / "run")
+    resumed.validation_pace = 1
+    on(resumed, 2)
+    scores = [training.validate() for training in (straight, resumed)]
+    assert scores[0] is not None
+    assert scores[0] == scores[1]
+    assert differing(straight, resumed) == []
+    assert gone_on(resumed, tmp_path / "run").evaluated == straight.evaluated == 160
 
 
 def files(folder):

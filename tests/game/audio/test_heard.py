@@ -9,8 +9,8 @@ from game.core import texts
 from game.flight.flight import StickHolder
 from game.scenes.menus.menu import MenuScene
 from game.scenes.menus.settings import SettingsScene
-from game.scenes.play import PlayScene
-from game.scenes.watch import WatchScene
+from game.scenes.play.scene import PlayScene
+from game.scenes.watch.scene import WatchScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.listener import Listener

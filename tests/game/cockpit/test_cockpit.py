@@ -8,15 +8,15 @@ import pytest
 
 from ai.common.decision import Decision, decide
 from ai.lander.environment import PARAMS, Outcome
-from game.cockpit.guardian_words import dial_words
-from game.cockpit.overrides import difference
 from game.core import texts
 from game.core.settings import SettingsFile
 from game.flight import networks
 from game.flight.flight import StickHolder
 from game.flight.flight_file import Entry
 from game.flight.logbook import LOGBOOK, Records
-from game.scenes.play import PlayScene
+from game.scenes.play.help_words import HELP, word_of
+from game.scenes.play.overrides import difference
+from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import play
@@ -66,28 +66,24 @@ def start_at(driver: Driver, *start: float) -> None:
     play(driver).flight.env.place(np.ones(1, bool), np.array([start]))
 
 
-def test_the_dial_is_turned_by_keys_wheel_drag_and_stick_and_kept(open_game: Open, context: Context):
+def test_help_is_chosen_by_keys_wheel_click_and_stick_and_kept(open_game: Open, context: Context):
     driver = fly(open_game, context)
     settings = driver.app.context.settings
-    driver.keys(pygame.K_PLUS, pygame.K_PLUS, pygame.K_PLUS, pygame.K_MINUS)  # 0.04, 0.1, 0.2, 0.1
-    assert settings.assist == pytest.approx(0.1)
+    for key, word in ((pygame.K_PLUS, "guard"), (pygame.K_PLUS, "guide"), (pygame.K_PLUS, "guide"),
+                      (pygame.K_MINUS, "guard"), (pygame.K_MINUS, "off"), (pygame.K_MINUS, "off")):  # fmt: skip
+        driver.key(key)
+        assert word_of(settings) == word
     driver.post(pygame.MOUSEWHEEL, x=0, y=3)
-    assert settings.assist == pytest.approx(0.25)
+    assert word_of(settings) == "guard"
     for value in (30000, 0):
         driver.axis(pygame.CONTROLLER_AXIS_RIGHTX, value)
-    assert settings.assist == pytest.approx(0.35)
-    driver.move((613, 59))
-    driver.post(pygame.MOUSEBUTTONDOWN, pos=driver.to_window((613, 59)), button=1)
-    driver.move((730, 90))
-    assert settings.assist == pytest.approx(1.0)
-    driver.move((694, 300))
-    driver.post(pygame.MOUSEBUTTONUP, pos=driver.to_window((694, 300)), button=1)
-    driver.move((100, 100))
-    assert settings.assist == pytest.approx(0.8)
-    driver.keys(pygame.K_g, pygame.K_ESCAPE)  # in the pause, it has been saved
+    assert word_of(settings) == "guide"
+    boxes = play(driver)._head.help_boxes(driver.app.canvas.reading)
+    driver.click(boxes["guard"].center)
+    driver.key(pygame.K_ESCAPE)  # in the pause, it has been saved
     driver.app.settings_writer.wait()
     saved = SettingsFile(context.user_dir).load()
-    assert (saved.assist, saved.copilot) == (pytest.approx(0.8), "guardian")
+    assert (saved.assist, saved.copilot) == (HELP["guard"], "guardian")
     assert play_below(driver).waiting  # none of that has begun the flight
 
 
@@ -116,6 +112,9 @@ def test_an_override_is_lit_said_and_marked_and_hands_off_is_none(open_game: Ope
     assert cockpit.overrides.lamp(flight)[0] == "diamond"
     assert cockpit.overrides.times == len(cockpit.track.moments) == 1
     assert difference(RIGHT, MAIN) in words
+    assert texts.COPILOT_PANEL_WHY["COPILOT"][0] not in words  # the panel is for those who ask
+    driver.key(pygame.K_F1)
+    driver.frames(4)
     assert texts.COPILOT_PANEL_WHY["COPILOT"][0] in words
 
 
@@ -178,22 +177,22 @@ def test_choices_are_made_with_any_device_and_the_waiting_flight_follows(
     driver = fly(open_game, context)
     if device == "keys":
         driver.keys(
-            pygame.K_c, pygame.K_RIGHT, pygame.K_DOWN, pygame.K_DOWN, pygame.K_RIGHT, pygame.K_DOWN, pygame.K_RIGHT
+            pygame.K_c, pygame.K_RIGHT, pygame.K_DOWN, pygame.K_RIGHT, pygame.K_DOWN, pygame.K_DOWN, pygame.K_RIGHT
         )
         driver.key(pygame.K_ESCAPE)
     elif device == "pad":
         right, below = pygame.CONTROLLER_BUTTON_DPAD_RIGHT, pygame.CONTROLLER_BUTTON_DPAD_DOWN
-        for button in (pygame.CONTROLLER_BUTTON_BACK, right, below, below, right, below, right):
+        for button in (pygame.CONTROLLER_BUTTON_BACK, right, below, right, below, below, right):
             driver.button(button)
         driver.button(pygame.CONTROLLER_BUTTON_B)
     else:
         driver.key(pygame.K_c)
-        rows = {widget.label: widget.box.centery for widget in driver.top.form.widgets}
-        for label, x in ((texts.CHOICES_ASSIST, 242), (texts.CHOICES_PADS, 380), (texts.CHOICES_HANDS, 282)):
-            driver.click((x, rows[label]))
+        for label in (texts.CHOICES_HELP, texts.CHOICES_PADS, texts.CHOICES_HANDS):
+            driver.frames(2)
+            driver.click(driver.widget(label)._places[1].center)
         driver.key(pygame.K_ESCAPE)
     settings = driver.app.context.settings
-    assert settings.assist == pytest.approx(0.1)
+    assert word_of(settings) == "guard"
     assert settings.three_pads
     assert settings.hands == "laggy"
     assert play(driver).waiting
@@ -206,24 +205,10 @@ def test_pads_and_hands_do_not_change_under_a_flight_that_has_begun(open_game: O
     start_at(driver, 0, 16, 0, 0, 0, 0)
     driver.frames(3)
     flight = play(driver).flight
-    driver.keys(pygame.K_c, pygame.K_DOWN, pygame.K_DOWN, pygame.K_RIGHT, pygame.K_c)
+    driver.keys(pygame.K_c, pygame.K_DOWN, pygame.K_RIGHT, pygame.K_c)
     assert play(driver).flight is flight
     driver.key(pygame.K_n)
     assert len(play(driver).flight.env.ground.pads) == 3
-
-
-def test_the_dial_has_a_place_for_one_decision_ahead_between_none_and_its_first_step(open_game: Open, context: Context):
-    driver = fly(open_game, context, copilot="guardian")
-    settings = driver.app.context.settings
-    for key, place in ((pygame.K_PLUS, 0.04), (pygame.K_PLUS, 0.1), (pygame.K_MINUS, 0.04), (pygame.K_MINUS, 0.0)):
-        driver.key(key)
-        assert settings.assist == pytest.approx(place)
-    for turn, place in ((1, 0.04), (1, 0.05), (-1, 0.04), (-1, 0.0)):
-        driver.post(pygame.MOUSEWHEEL, x=0, y=turn)
-        assert settings.assist == pytest.approx(place)
-    copilot = play(driver).flight.copilot
-    assert dial_words(0.04, copilot).startswith("Guard. It steps in where")
-    assert dial_words(0.6, copilot).startswith("Guide. It steps in where")
 
 
 def test_a_check_flight_has_no_dial_no_network_and_no_other_hands(open_game: Open, context: Context):
@@ -268,11 +253,11 @@ def test_draw_changes_nothing_of_a_shared_flight(open_game: Open, context: Conte
 @pytest.mark.parametrize(
     ("asked", "flown", "words"),
     [
-        (3, 0, "− main"),
-        (0, 4, "+ main  + left"),
-        (1, 2, "right, not left"),
-        (5, 3, "− right"),
-        (2, 4, "+ main  left, not right"),
+        (3, 0, "The network stops main"),
+        (0, 4, "The network adds main and adds left"),
+        (1, 2, "The network turns right instead of left"),
+        (5, 3, "The network stops right"),
+        (2, 4, "The network adds main and turns left instead of right"),
     ],
 )
 def test_an_override_is_told_in_engines(asked: int, flown: int, words: str):

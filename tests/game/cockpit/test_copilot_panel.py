@@ -4,11 +4,11 @@ import pytest
 
 from ai.common.decision import Decision, decide
 from ai.copilot.copilot import Mode
-from game.cockpit.copilot_panel import CopilotPanel
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.flight.flight import Flight
 from game.panels.landings import Landing, Landings, RecentLandings
+from game.scenes.play.copilot_panel import CopilotPanel
 from tests.support.drawn import Drawn, read_panel
 
 

@@ -4,22 +4,22 @@ import numpy as np
 import pytest
 
 from ai.lander.environment import Cause, Outcome
-from game.cockpit import hud
 from game.core import texts
 from game.flight.flight import Flight
 from game.flight.outcomes import cause_of, outcome_card, struck_side
+from game.panels.readouts import Readout, at_touch, flight_readouts
 
 FIGURES = {Cause.HARD: 1, Cause.SLIDING: 2, Cause.TILTED: 3}
 
 
-def dropped(start: tuple[float, ...]) -> tuple[Flight, list[hud.Readout]]:
+def dropped(start: tuple[float, ...]) -> tuple[Flight, list[Readout]]:
     """Let a craft fall from a start; return its flight, and the read-outs that stay at the end."""
-    flight, last = Flight(1), list[hud.Readout]()
+    flight, last = Flight(1), list[Readout]()
     flight.env.place(np.ones(1, bool), np.array([start]))
     while not flight.over:
-        last = hud.flight_readouts(flight.env)
+        last = flight_readouts(flight.env)
         flight.step(0)
-    return flight, hud.at_touch(last, flight.env)
+    return flight, at_touch(last, flight.env)
 
 
 def test_every_crash_has_a_marked_figure_that_agrees_with_its_reason():

@@ -6,7 +6,6 @@ import numpy as np
 import pygame
 import pytest
 
-from game.cockpit import hud
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import (
     COLOUR_SAFE,
@@ -22,6 +21,7 @@ from game.drawing.tokens import (
     Colour,
     Palette,
 )
+from game.panels import readouts
 
 # How eyes without one kind of cone see linear RGB: Machado, Oliveira and Fernandes, "A Physiologically-based Model for
 # Simulation of Color Vision Deficiency", IEEE Transactions on Visualization and Computer Graphics 15(6), 2009,
@@ -103,7 +103,7 @@ def test_within_and_beyond_differ_in_shape():
     masks = []
     for within in (True, False):
         canvas.surface.fill((0, 0, 0))
-        hud.draw_mark(canvas, (100, 100), within)
+        readouts.draw_mark(canvas, (100, 100), within)
         masks.append(pygame.surfarray.array3d(canvas.surface)[..., 0] > 100)
     assert all(mask.any() for mask in masks)
     for a, b in combinations(masks, 2):

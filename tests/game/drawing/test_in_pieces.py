@@ -13,9 +13,9 @@ from game.drawing.canvas import Canvas
 from game.drawing.paint import PIECE
 from game.drawing.paint_cache import A_FRAME, idle, paint_on, painted, spread
 from game.drawing.sky import NightSky
-from game.play.descent import Descent
 from game.scenes.menus.menu import MenuScene
-from game.scenes.play import PlayScene
+from game.scenes.play.descent import Descent
+from game.scenes.play.scene import PlayScene
 from game.shell.app import App
 from game.world.camera import Camera, CameraTarget
 from game.world.landscape.backdrop import Backdrop, forget_land

@@ -18,9 +18,9 @@ from game.export.export import Export
 from game.export.film import film, frames
 from game.export.kinds import KINDS, VideoKind
 from game.flight.flight_file import Record
-from game.scenes import replay as module
+from game.scenes.logbook import replay as module
+from game.scenes.logbook.replay import ReplayScene
 from game.scenes.menus.menu import MenuScene
-from game.scenes.replay import ReplayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import kept, landed

@@ -17,9 +17,9 @@ from game.flight.flight_file import Record
 from game.flight.logbook import Records, best, describe
 from game.flight.replay import FlightReplay, ReplayedFlight
 from game.flight.skill import Skill
-from game.play.challenge import FlownMission
-from game.scenes.choices import ChoicesScene
-from game.scenes.play import PlayScene
+from game.scenes.play.challenge import FlownMission
+from game.scenes.play.choices import ChoicesScene
+from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.player import Player

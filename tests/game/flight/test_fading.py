@@ -70,10 +70,10 @@ def test_the_players_own_turn_of_the_dial_is_respected():
     settings = fading_from(0.4)
     sure = Estimate(0.97, 0.93, 1.0, alone=20)
     assert fading.fade(settings, sure)
-    assert (settings.assist, fading.active(settings)) == (0.3, True)
+    assert (settings.assist, settings.fade) == (0.3, True)
     settings.assist = 0.5
     assert not fading.fade(settings, sure)
-    assert (settings.assist, fading.active(settings)) == (0.5, False)
+    assert (settings.assist, settings.fade) == (0.5, False)
     fading.switch(settings, on=True)
     assert fading.fade(settings, sure)
     assert settings.assist == 0.4

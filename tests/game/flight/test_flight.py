@@ -14,7 +14,7 @@ from game.flight.forecast import Forecast, coast_path
 from game.flight.logbook import describe
 from game.flight.outcomes import outcome_card
 from game.flight.swarm import Swarm
-from game.scenes.logbook import entry_row
+from game.scenes.logbook.scene import entry_row
 
 STANDING = PARAMS.pad_top + PARAMS.stand
 

@@ -12,7 +12,6 @@ from ai.flights.verification import begun
 from ai.lander.descent import LegStart
 from ai.lander.environment import Outcome
 from ai.lander.moment import Moment
-from game.cockpit.guardian_words import why_bare
 from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.core.settings import Settings
@@ -21,6 +20,7 @@ from game.flight.difficulty import Difficulty
 from game.flight.flight import Flight, StickHolder
 from game.flight.futures import FuturesProcess
 from game.flight.guard import Guard, Taps, nearest, push_of, shares_of
+from game.scenes.play.guardian_words import why_not_saved
 from tests.support.futures import AtOnce
 
 GUARD = 0.04  # of the dial: one decision ahead
@@ -123,8 +123,9 @@ def test_it_says_since_when_no_plan_is_held_and_why(agent):
         elif why == "process":
             flight.guard.ahead.problem = "no process"
         fly(flight, lambda _: (0, None), most=9)
-        assert why_bare(flight.guard) == texts.GUARDIAN_BARE[why].format(since="0.0" if why == "none" else "0.1"), why
-    assert why_bare(None) == ""
+        assert why_not_saved(flight, None) == texts.GUARDIAN_BARE[why].format(
+            since="0.0" if why == "none" else "0.1"
+        ), why
 
 
 def test_without_its_process_or_at_nought_nothing_is_guarded(agent):

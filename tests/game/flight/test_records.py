@@ -17,8 +17,8 @@ from game.flight import logbook as records
 from game.flight.flight import Flight, Recording, StickHolder
 from game.flight.flight_file import Entry, Record, from_text, to_text
 from game.flight.logbook import Records, best, longest_descent, totals
-from game.scenes.logbook import entry_row
-from game.scenes.missions import _best_by_course
+from game.scenes.logbook.scene import entry_row
+from game.scenes.play.missions import _best_by_course
 from tests.support.descent import stand_on
 from tests.support.flights import NOON, fly_out, scripted
 

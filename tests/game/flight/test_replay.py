@@ -13,8 +13,8 @@ from game.flight.flight import Flight
 from game.flight.flight_file import Record
 from game.flight.logbook import Records
 from game.flight.replay import FlightReplay, ReplayedFlight
-from game.scenes.logbook import LogbookScene
-from game.scenes.replay import ReplayScene
+from game.scenes.logbook.replay import ReplayScene
+from game.scenes.logbook.scene import LogbookScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import NOON, fly_out, kept, scripted

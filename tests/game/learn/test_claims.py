@@ -7,7 +7,7 @@ from ai.lander.rewards import FEET_STEPS_PAID, RewardWeights
 from ai.training.small_run import SMALL_RUN, Plan, SmallRun
 from game.learn.daring import DARING, PAY
 from game.learn.memory import LATEST, MemoryChapter
-from game.learn.target import BOUND
+from game.learn.target import BOUND, NORMALISED, config_of
 
 
 def test_no_flight_can_score_more_than_the_bound():
@@ -25,6 +25,12 @@ def test_values_can_run_away_without_a_target_network_and_do_not_with_it():
 
     assert peak(100, 0) < BOUND
     assert any(peak(1, seed) > 10 * BOUND for seed in range(5)), "eight of ten do, and the first on most processors"
+
+
+def test_normalised_layers_keep_values_in_bounds_without_a_copy():
+    for seed in range(2):
+        run = SmallRun(config_of(NORMALISED), seed)
+        assert max(run.advance().value for _ in range(160)) < BOUND, "none of ten passed it"
 
 
 def test_daring_can_find_a_landing_that_is_only_paid_at_the_end():

@@ -135,6 +135,27 @@ def test_a_run_learns_to_its_end_and_tells_its_own_numbers(made: Made, kind, mon
     assert not chapter.tried
 
 
+@pytest.mark.parametrize("kind", [TargetChapter, DaringChapter])
+def test_a_guess_gets_its_verdict_from_this_very_run(made: Made, kind, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(kind, "LENGTH", 150)
+    chapter = made(kind)
+    asked, other = (0, 2) if kind is TargetChapter else (1, 2)
+    for choice in (other, asked):
+        chapter.widgets()[0].choose(choice)
+        chapter.start()
+        while not chapter.over:
+            chapter.update()
+        came, (left, right) = chapter.verdict(), (state.landed or 0.0 for state in chapter.states[-1])
+        if choice == other:
+            assert came is None, "the question was about another choice"
+        elif kind is TargetChapter:
+            ran = max(chapter.peaks[1:]) > 300.0
+            assert came == (2 if ran else 0 if right > left + 0.2 else 1 if right >= left - 0.2 else None)
+            assert ran, "it does on most processors"
+        else:
+            assert came == {(True, True): 2, (True, False): 0, (False, True): 1}.get((left >= 0.5, right >= 0.5), 3)
+
+
 def test_each_memory_that_was_tried_is_compared(made: Made, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(MemoryChapter, "LENGTH", 60)
     monkeypatch.setattr("game.learn.memory.YESTERDAY", 30)
@@ -146,7 +167,10 @@ def test_each_memory_that_was_tried_is_compared(made: Made, monkeypatch: pytest.
         for _ in range(70):
             chapter.update()
         assert chapter.light.max() == 1.0  # something was drawn with the last decision
+        assert (chapter.verdict() is None) == (number < len(KINDS) - 1), "the question is about all three"
     assert set(chapter.results) == set(KINDS)
+    lost = [before - after for before, after in (chapter.results[kind] for kind in KINDS)]
+    assert chapter.verdict() == (int(np.argmax(lost)) if max(lost) >= 0.25 else 3)
     assert all(name in chapter.why(None) for name in texts.LEARN_MEMORY_NAMES)
     assert chapter.states[-1][0].memory.oldest > 0  # the last one kept the latest only
 

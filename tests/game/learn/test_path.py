@@ -117,9 +117,21 @@ def test_a_chapter_is_done_once_it_was_tried_and_its_why_read(open_game: Open, c
     driver.press_on(texts.LEARN_NEURON_HINT)
     driver.skip(650)
     assert scene.chapter.tried
-    scene.turn_to(2)
+    Progress(driver.app.context.settings).note("neuron", guess=0)
+    driver.press_on(texts.LEARN_ON[1])
     assert progress.done("neuron")
     assert driver.saved()["learnt"]["neuron"]["done"] is True
+    assert driver.top.form.focused.label == texts.LEARN_ON[2], "on to the code, before the way out"
+    words.clear()
+    driver.frames(2)
+    said = " ".join(words)
+    answers = texts.LEARN_ANSWERS["neuron"]
+    for told in (texts.LEARN_GUESSED.format(guess=answers[0]), texts.LEARN_DIFFERS.format(answer=answers[2])):
+        assert told in said
+    driver.key(pygame.K_ESCAPE)
+    driver.frames(20)
+    again = open_game(ChapterScene, "neuron")
+    assert PAGES[again.top.page] == "predict", "opened again, it asks for a guess again"
 
 
 def test_a_try_that_ends_while_its_why_is_open_is_told_there(open_game: Open, context: Context):

@@ -82,12 +82,10 @@ def test_a_remedy_is_applied_and_undone_the_way_back_too(context: Context, colla
     assert advice.adviser.shown.name == "collapsed"
     form.widgets[0].press()
     assert gone_to == [200_000]
-    applied = dict(turned)
-    assert applied["learning_rate"] < config.learning_rate
+    assert not turned
     assert advice.shown, "the way back is offered"
-    assert advice.done.startswith("Learning rate")
     assert "200,000" in advice.done, "and what was done is said"
     form.widgets[0].press()
     assert gone_to == [200_000, 399_000]
-    assert dict(turned)["learning_rate"] == config.learning_rate
+    assert not turned
     assert not advice.shown

@@ -12,13 +12,13 @@ from ai.agent.agent import DeepQAgent
 from ai.common.decision import Decision
 from ai.copilot.copilot import Mode
 from ai.lander.environment import Outcome
-from game.cockpit.copilot_panel import CopilotPanel
-from game.cockpit.decision_panel import draw_decision
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.flight.flight import DECISION_STEPS, Flight
 from game.panels.q_values import SPAN
-from game.scenes.watch import WatchScene
+from game.scenes.play.copilot_panel import CopilotPanel
+from game.scenes.watch.decision_panel import draw_decision
+from game.scenes.watch.scene import WatchScene
 from game.ui.context import Context
 from tests.support.drawn import Drawn, Panel, number, read_panel
 from tests.support.driver import Driver

@@ -11,9 +11,9 @@ from game.core import texts
 from game.core.worker import WorkerState
 from game.panels.training_charts import TrainingCharts
 from game.training.beside import EarlierRun
-from game.training.kinds import LANDERS
 from game.training.library import Library
 from game.training.run import TrainingRun
+from game.training.workers import LANDERS
 from game.ui.chart import Chart, Series
 
 NUMBERS = list(COLUMNS[:10])

@@ -7,12 +7,12 @@ import pygame
 import pytest
 
 from ai.lander.environment import Outcome
-from game.cockpit.copilot_panel import PANEL
 from game.core import texts
 from game.drawing.canvas import Canvas
+from game.drawing.tokens import VIEW_SIZE
 from game.flight import networks
-from game.scenes.play import PlayScene
-from game.scenes.watch import WatchScene
+from game.scenes.play.scene import PlayScene
+from game.scenes.watch.scene import WatchScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import play
@@ -26,6 +26,7 @@ READ_OUTS = 640
 def shared(open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch) -> Driver:
     monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", Weighs()))
     context.settings.assist, context.settings.reduced_motion = 0.5, True
+    context.settings.show_thinking = True
     context.settings_file.save(context.settings)
     driver = open_game(PlayScene, 4)
     driver.frames(2)
@@ -60,7 +61,8 @@ def test_the_panel_gives_way_to_a_craft_that_the_camera_can_not_keep_clear(share
     place(shared, 0, 12, 0, 0, 0, 0)
     shared.frames(4)
     assert panels
-    x, y = play(shared).flown.scenery.view(1.0).metres(PANEL.center).tolist()
+    box = play(shared).flown.cockpit.panel_box(shared.app.canvas.reading)
+    x, y = play(shared).flown.scenery.view(1.0).metres(box.center).tolist()
     place(shared, x, y, 0, 0, 0, 0)
     shared.frames(2)  # it leaps there between two steps
     panels.clear()
@@ -123,22 +125,15 @@ def test_a_craft_that_is_lost_lies_on_no_words(open_game: Open, context: Context
     assert 80 < y < READ_OUTS
 
 
-def test_the_word_beside_a_craft_keeps_off_the_panel(shared: Driver, monkeypatch):
-    left = play(shared).flown.cockpit.clear.right
+def test_the_flight_keeps_off_the_panel(shared: Driver):
     place(shared, 0, 12, 0, 0, 0, 0)
-    shared.post(pygame.KEYDOWN, key=pygame.K_UP, mod=0, unicode="", scancode=0)
     shared.frames(6)
-    overrides, view = play(shared).flown.cockpit.overrides, play(shared).flown.scenery.view(1.0)
-    assert overrides.strength > 0
-    clear = play(shared).flown.cockpit.clear
-    assert clear.right < PANEL.left < left
-    boxes: list[pygame.FRect] = []
-    write = Canvas.text
-    monkeypatch.setattr(Canvas, "text", lambda *args, **more: boxes.append(write(*args, **more)) or boxes[-1])
-    for x in np.linspace(300, clear.right - 20, 12):
-        pose = np.array([*view.metres((x, 200.0)), 0.0])
-        overrides.draw_word(shared.app.canvas, view, pose, clear)
-        assert boxes[-1].right <= clear.right
+    flown = play(shared).flown
+    assert flown.clear.right < flown.cockpit.panel_box(shared.app.canvas.reading).left
+    shared.key(pygame.K_F1)
+    shared.frames(2)
+    assert not flown.thinks
+    assert flown.clear.right == VIEW_SIZE[0]
 
 
 @pytest.mark.parametrize("count", [1, 16])

@@ -12,14 +12,14 @@ from ai.lander.environment import Outcome
 from ai.lander.pilots import ScriptedPilot
 from game.core import texts
 from game.core.scene import Scene
+from game.flight.days import FILE_NAME, Attempt, Days
 from game.flight.flight import Flight
 from game.flight.logbook import Records
-from game.play.daily import DailyStart
-from game.play.days import FILE_NAME, Attempt, Days
-from game.scenes.days import DaysScene
+from game.scenes.logbook.replay import ReplayScene
 from game.scenes.menus.flights import FlightsScene
-from game.scenes.play import PlayScene
-from game.scenes.replay import ReplayScene
+from game.scenes.play.calendar import DaysScene
+from game.scenes.play.daily import DailyStart
+from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import kept, play

@@ -11,10 +11,10 @@ from ai.lander.descent import LegStart, refill
 from ai.lander.environment import Outcome
 from game.core import texts
 from game.flight.flight import Flight, StickHolder
-from game.flight.logbook import Records, longest_descent
+from game.flight.logbook import Records, best_descent, longest_descent
 from game.flight.replay import FlightReplay
-from game.play.descent import Descent, best_of
-from game.scenes.play import PlayScene
+from game.scenes.play.descent import Descent
+from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from tests.support.descent import stand_on
 from tests.support.driver import Driver
@@ -75,7 +75,7 @@ def test_points_grow_with_the_row_of_landings_and_are_in_the_logbook(game: Drive
         ("descent", leg, total) for leg, total in enumerate(totals, 1)
     ]
     assert [entry.score * factor for factor, entry in enumerate(entries, 1)] == np.diff([0, *totals]).tolist()
-    assert best_of(entries) == (3, totals[-1])
+    assert best_descent(entries) == (3, totals[-1])
     assert [entry.leg for entry in longest_descent(entries)] == [1, 2, 3]
 
 
@@ -137,7 +137,7 @@ def test_a_leg_that_the_network_has_flown_brings_fuel_but_no_points_and_the_run_
     land(game)
     entries = Records(context.user_dir).entries()
     assert [entry.bar for entry in entries] == ["", "relieved", "relieved"]
-    assert best_of(entries)[0] == 1
+    assert best_descent(entries)[0] == 1
 
 
 def test_a_flat_spot_pays_three_times_and_brings_no_fuel():
@@ -156,7 +156,7 @@ def test_a_flat_spot_pays_three_times_and_brings_no_fuel():
 def test_escape_pauses_a_run_under_way_and_leaves_one_that_has_not_begun(game: Driver):
     land(game)
     game.key(pygame.K_ESCAPE)
-    assert game.top_name == "PauseScene"
+    assert "PauseScene" in game.top_name
 
 
 def test_the_menu_leads_to_it_and_escape_back(open_game: Open):

@@ -21,10 +21,11 @@ from game.flight.guard import Guard
 from game.flight.logbook import Records, best
 from game.flight.replay import FlightReplay
 from game.flight.skill import Skill
-from game.play.ladder import Ladder
-from game.play.rescue_offer import CRASHES, HELP
-from game.play.tutorial import Tutorial
-from game.scenes.play import PlayScene
+from game.scenes.play.help_words import HELP
+from game.scenes.play.ladder import Ladder
+from game.scenes.play.rescue_offer import CRASHES
+from game.scenes.play.scene import PlayScene
+from game.scenes.play.tutorial import Tutorial
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import fly_out, kept, play
@@ -86,11 +87,15 @@ def test_landings_lead_up_and_crashes_down_and_the_card_and_title_say_so(open_ga
     assert play(driver).flight.recording.spawn == "rung_1"
     end(driver, ON_PAD)
     assert settings.rung == 1
-    assert play(driver).ending.card.reason == texts.OUTCOMES["LANDED"][1]
+    assert play(driver).ending.card.title == texts.FIRST_LANDING
     assert play(driver).ending.card.climb == texts.LADDER_UP.format(number=2)
     driver.key(pygame.K_RETURN)
     assert play(driver).flight.recording.spawn == "rung_2"
     seed = play(driver).flight.recording.seed
+    end(driver, TOO_FAST)
+    assert play(driver).ending.card.climb == texts.LADDER_STAYS.format(number=2)
+    driver.key(pygame.K_RETURN)
+    assert play(driver).flight.recording.spawn == "rung_2"  # one miss changes nothing
     end(driver, TOO_FAST)
     written.clear()
     driver.frames(2)
@@ -195,7 +200,7 @@ def test_after_three_crashes_one_key_turns_the_dial(open_game: Open, written: li
             driver.key(pygame.K_RETURN)
     player.press("hand over")
     settings = driver.app.context.settings
-    assert (settings.assist, settings.copilot) == (HELP, "guardian")
+    assert (settings.assist, settings.copilot) == (HELP["guard"], "guardian")
     driver.frames(2)
     assert not play(driver).flight.over
     assert play(driver).flight.shared
@@ -211,7 +216,7 @@ def test_a_click_takes_the_help_and_a_landing_counts_anew(open_game: Open):
     end(driver, TOO_FAST)
     driver.frames(2)
     driver.click(driver.hints()[texts.HELP_HINT])
-    assert driver.app.context.settings.assist == HELP
+    assert driver.app.context.settings.assist == HELP["guard"]
 
 
 # Hanging until touched
@@ -262,7 +267,10 @@ def test_to_try_again_is_always_in_the_hints(open_game: Open):
     assert texts.HINT_RETRY in driver.hints()
     driver.key(pygame.K_UP)
     driver.frames(20)
-    assert texts.HINT_RETRY in driver.hints()
+    assert texts.HINT_RETRY not in driver.hints()  # in flight there is one sentence
+    driver.key(pygame.K_ESCAPE)
+    assert texts.PAUSE_RETRY in [widget.label for widget in driver.form.widgets]
+    driver.key(pygame.K_ESCAPE)
     end(driver, TOO_FAST)
     driver.frames(2)
     assert texts.HINT_RETRY in driver.hints()

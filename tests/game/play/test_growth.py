@@ -18,13 +18,14 @@ from game.flight.becoming import KINDS, Change
 from game.flight.flight_file import Entry
 from game.flight.logbook import LOGBOOK, Records
 from game.flight.rescues import Rescues
+from game.flight.skill import said
 from game.input.controls import Command
-from game.play import growth
-from game.play.challenge import Challenge, FlownMission
-from game.play.tutorial import Tutorial
-from game.scenes.choices import ChoicesScene
-from game.scenes.logbook import LogbookScene
-from game.scenes.play import PlayScene
+from game.scenes.logbook.scene import LogbookScene
+from game.scenes.play import growth
+from game.scenes.play.challenge import Challenge, FlownMission
+from game.scenes.play.choices import ChoicesScene
+from game.scenes.play.scene import PlayScene
+from game.scenes.play.tutorial import Tutorial
 from game.ui.context import Context
 from game.ui.widgets import Toggle
 from tests.support.driver import Driver
@@ -121,30 +122,34 @@ def test_the_dial_does_not_move_during_a_flight(open_game: Open, context: Contex
         assert driver.app.context.settings.assist == 0.4
 
 
-def test_help_rests_once_the_player_turns_the_dial_and_the_game_says_so_once(open_game: Open, context: Context):
+def test_help_fades_no_longer_once_the_player_turns_the_dial_and_the_game_says_so_once(
+    open_game: Open, context: Context
+):
     driver = fly(open_game, context, [OWN] * 24 + [HELPED] * 9)
     driver.key(pygame.K_n)
     driver.key(pygame.K_MINUS)
-    assert driver.said == texts.FADE_RESTS
+    assert driver.said == texts.FADE_ENDS
+    assert not driver.app.context.settings.fade  # its switch says so
     driver.app.notes.show("")
-    driver.key(pygame.K_MINUS)
+    driver.key(pygame.K_PLUS)
     assert driver.said == ""
-    assert driver.app.context.settings.assist == pytest.approx(0.2)
+    chosen = driver.app.context.settings.assist
     land(driver)
     assert growth_of(driver) == ()
-    assert driver.app.context.settings.assist == pytest.approx(0.2)
+    assert driver.app.context.settings.assist == chosen
 
 
 def test_fading_is_switched_on_among_the_choices_and_begins_at_the_dials_place(open_game: Open, context: Context):
     driver = fly(open_game, context, [OWN] * 3, fades=False, assist=0.7)
     driver.key(pygame.K_c)
     assert isinstance(driver.top, ChoicesScene)
+    driver.press_on(texts.CHOICES_MORE)
     (toggle,) = [
         each for each in driver.form.widgets if isinstance(each, Toggle) and each.label == texts.FADE_CHOICE[0]
     ]
     driver.click((toggle.box.right - 20, toggle.box.centery))
     settings = driver.app.context.settings
-    assert (settings.fade, settings.faded_to, fading.active(settings)) == (True, 0.7, True)
+    assert (settings.fade, settings.faded_to) == (True, 0.7)
 
 
 def test_the_logbook_says_the_estimate_by_kind_of_start(open_game: Open, context: Context, written: list[str]):
@@ -174,8 +179,9 @@ def test_the_logbook_opens_on_the_kind_flown_last(open_game: Open, context: Cont
     ("challenge", "seen"), [(None, True), (FlownMission(MISSIONS["brake"]), True), (Tutorial(), False)]
 )
 def test_the_curve_is_shown_for_flights_of_its_kind_alone(
-    open_game: Open, written: list[str], challenge: Challenge | None, seen: bool
+    open_game: Open, context: Context, written: list[str], challenge: Challenge | None, seen: bool
 ):
+    fly(open_game, context, [OWN] * 24)
     driver = open_game(PlayScene, 4, challenge=challenge)
     driver.frames(2)
     driver.key(pygame.K_c)
@@ -194,9 +200,9 @@ def test_a_rescue_is_counted_only_where_the_pilots_action_was_changed():
 
 
 def test_words_for_few_flights_and_for_many():
-    assert growth.said(Estimate(0.5, 0.1, 0.9, alone=2)) == texts.BECOMING_TOO_FEW.format(count=2)
-    assert growth.said(Estimate(0.7, 0.52, 0.88, alone=20)) == texts.BECOMING_ESTIMATE.format(share=7, low=5, high=9)
-    assert growth.said(Estimate(0.99, 0.98, 1.0, alone=20)) == texts.BECOMING_SURE.format(share=10)
+    assert said(Estimate(0.5, 0.1, 0.9, alone=2)) == texts.BECOMING_TOO_FEW.format(count=2)
+    assert said(Estimate(0.7, 0.52, 0.88, alone=20)) == texts.BECOMING_ESTIMATE.format(share=7, low=5, high=9)
+    assert said(Estimate(0.99, 0.98, 1.0, alone=20)) == texts.BECOMING_SURE.format(share=10)
 
 
 def test_the_first_checks_are_not_compared_with_what_is_not_known():

@@ -10,9 +10,9 @@ from ai.lander.environment import Outcome
 from ai.lander.pilots import ScriptedPilot
 from game.core import texts
 from game.input.bindings import Held
-from game.play.tutorial import Tutorial
-from game.play.tutorial_lessons import NEED_COPILOT
-from game.scenes.play import PlayScene
+from game.scenes.play.scene import PlayScene
+from game.scenes.play.tutorial import Tutorial
+from game.scenes.play.tutorial_lessons import NEED_COPILOT
 from tests.support.driver import Driver
 from tests.support.flights import play
 
@@ -60,8 +60,8 @@ class Reader:
     def sentence(self) -> tuple[str, dict[str, str]]:
         """Return which sentence is written, and the keys that it names."""
         scene = play(self.driver)
-        moment = scene.flown.moment(1.0)
-        words = self.challenge.words(scene.flight, moment.controls, waiting=moment.waiting, stuck=moment.stuck)
+        controls, flown = self.driver.app.context.controls, scene.flown
+        words = self.challenge.words(scene.flight, controls, waiting=flown.waiting, stuck=flown.stuck)
         for name, pattern in SENTENCES:
             if found := pattern.fullmatch(words):
                 return name, found.groupdict()

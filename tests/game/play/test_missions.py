@@ -8,8 +8,6 @@ from ai.agent.agent import DeepQAgent
 from ai.flights.verification import landing_score
 from ai.lander.environment import PARAMS, Cause, Outcome
 from ai.lander.missions import MISSIONS
-from game.cockpit.hud import flight_readouts
-from game.cockpit.surroundings import surroundings
 from game.core import texts
 from game.core.assets import ASSETS_DIR, MODELS_DIR
 from game.core.settings import Settings
@@ -22,11 +20,13 @@ from game.flight.flight_file import Record
 from game.flight.logbook import Records
 from game.flight.outcomes import OutcomeCard, flight_figures
 from game.flight.replay import FlightReplay, ReplayedFlight
-from game.play.challenge import FlownMission
-from game.scenes.logbook import LogbookScene
-from game.scenes.missions import MissionsScene
-from game.scenes.play import PlayScene
-from game.scenes.replay import ReplayScene
+from game.panels.readouts import flight_readouts
+from game.scenes.logbook.replay import ReplayScene
+from game.scenes.logbook.scene import LogbookScene
+from game.scenes.play.challenge import FlownMission
+from game.scenes.play.missions import MissionsScene
+from game.scenes.play.scene import PlayScene
+from game.scenes.play.sentence import surroundings, wind
 from game.ui.context import Context
 from game.ui.listing import Listing
 from tests.support.driver import Driver
@@ -234,11 +234,13 @@ def test_what_surrounds_a_flight_is_told():
     def told(name: str, seconds: float = 0.0) -> list[str]:
         flight = Flight(0, None, mission=name)
         flight.env.steps[:] = round(60 * seconds)
-        return [words for words, _, _ in surroundings(flight.env)]
+        return list(surroundings(flight.env))
 
     assert told("fall") == []
     assert "3.7 m/s²" in told("mars")[0]
-    assert told("mars", 1.25)[1].startswith("Wind 0.1")
+    mars = Flight(0, None, mission="mars")
+    mars.env.steps[:] = 75
+    assert wind(mars.env) == pytest.approx(0.1, abs=0.05)
     assert told("outage", 1.0) == ["The main engine fails in 1.0 s"]
     assert told("outage", 3.0) == ["No main engine for 1.0 s"]
     assert told("outage", 5.0) == []
@@ -299,12 +301,14 @@ def test_who_begins_with_help_is_told_that_medals_are_for_ones_own_hand(
 ):
     monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("modern", DeepQAgent(9, 6)))
     driver = open_game(PlayScene, 0, challenge=FlownMission(MISSIONS["brake"]))
-    driver.app.context.settings.assist = assist
+    driver.app.context.settings.assist = 0.6  # of free flights, which does not follow
     driver.key(pygame.K_r)
+    driver.keys(*[pygame.K_PLUS] * (assist > 0))
     written: set[str] = set()
     monkeypatch.setattr(Canvas, "text", lambda _, string, *__, **___: written.add(string) or pygame.FRect())
     driver.frames(1)
     assert (texts.HELP_IS_ON in written) is warned
+    assert (texts.HELP_NOT_HERE in written) is not warned
     assert (play(driver).challenge.goal in written) is not warned
 
 

@@ -6,8 +6,8 @@ from typing import Any
 import pygame
 import pytest
 
-from game.play.descent import Descent
-from game.scenes.play import PlayScene
+from game.scenes.play.descent import Descent
+from game.scenes.play.scene import PlayScene
 from tests.support.driver import Driver
 from tests.support.flights import play
 

@@ -12,20 +12,20 @@ from ai.lander.environment import PARAMS, Outcome
 from ai.lander.missions import MISSIONS
 from game.core import texts
 from game.flight import networks
+from game.flight.days import Days
 from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Entry
 from game.flight.logbook import Records
 from game.flight.replay import FlightReplay
-from game.play.challenge import FlownMission
-from game.play.daily import DailyStart
-from game.play.days import Days
-from game.play.race import fly_on, race
-from game.play.tutorial import Tutorial
-from game.scenes.choices import ChoicesScene
-from game.scenes.logbook import LogbookScene, entry_row
-from game.scenes.missions import MissionsScene
-from game.scenes.play import PlayScene
-from game.scenes.replay import ReplayScene
+from game.scenes.logbook.replay import ReplayScene
+from game.scenes.logbook.scene import LogbookScene, entry_row
+from game.scenes.play.challenge import FlownMission
+from game.scenes.play.choices import ChoicesScene
+from game.scenes.play.daily import DailyStart
+from game.scenes.play.missions import MissionsScene
+from game.scenes.play.scene import PlayScene
+from game.scenes.play.starts import against, fly_on
+from game.scenes.play.tutorial import Tutorial
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import fly_out, kept, play
@@ -47,7 +47,7 @@ def recorded(context: Context, *, mission: str = "", hand: StickHolder = StickHo
 
 
 def raced(replay: ReplayScene) -> PlayScene:
-    return PlayScene(replay.context, replay.record.recording.seed, challenge=race(replay.record))
+    return PlayScene(replay.context, replay.record.recording.seed, challenge=against(replay.record))
 
 
 def flown_on(context: Context, **more: object) -> PlayScene:
@@ -55,7 +55,7 @@ def flown_on(context: Context, **more: object) -> PlayScene:
     flight_replay = FlightReplay(replay.record)
     flight_replay.scout(40)
     flight_replay.seek(30)
-    return PlayScene(replay.context, replay.record.recording.seed, challenge=fly_on(replay.record, flight_replay))
+    return fly_on(replay.context, replay.record, flight_replay)
 
 
 SCENES: dict[str, Callable[[Context], PlayScene]] = {
@@ -226,8 +226,10 @@ def test_the_choices_say_what_letting_go_does(open_game: Open, context: Context,
     words = " ".join(reading.page(2).words)
     assert ("and it flies" in words) is (assist > 0)
     assert ("you fall" in words) is (assist == 0)
-    driver.keys(*[pygame.K_RIGHT if assist == 0 else pygame.K_LEFT] * 6)
-    assert ("and it flies" in " ".join(reading.page(2).words)) is (assist == 0)
+    driver.keys(*[pygame.K_RIGHT if assist == 0 else pygame.K_LEFT] * 3)
+    words = " ".join(reading.page(2).words)
+    assert ("you fall" in words) is (assist > 0)
+    assert (texts.HELP_MEANS["guide"] in words) is (assist == 0)
 
 
 def test_the_page_of_a_mission_says_whose_landing_earns_bronze(open_game: Open, context: Context, monkeypatch):
@@ -284,7 +286,7 @@ def test_a_flight_that_is_no_landing_is_told_of_alike_everywhere(
     end(reading.driver, outcome)
     if scene == "tutorial":  # which begins again, and says why
         page, challenge = reading.page(), play(reading.driver).challenge
-        assert page.flew == {flew(play(reading.driver).flight.recording.hands)}
+        assert not page.who
         assert challenge.why in page.words
         return
     page = reading.check(100)

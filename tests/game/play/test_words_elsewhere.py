@@ -15,7 +15,7 @@ from game.flight import networks
 from game.scenes.digit_training import DigitTrainingScene
 from game.scenes.digits import DigitsScene
 from game.scenes.train import TrainScene
-from game.scenes.watch import COUNTS, WatchScene
+from game.scenes.watch.scene import COUNTS, WatchScene
 from game.training.run import TrainingRun
 from game.ui.context import Context
 from tests.support.driver import Driver
@@ -24,7 +24,9 @@ from tests.support.reading import COUNTS as EARNED
 from tests.support.reading import FLEW, OnlyFlies, Reading, Weighs, pattern
 
 Open = Callable[..., Driver]
-NOBODYS = [pattern(text) for text in (*FLEW, texts.YOU_FLY, texts.YOU_SHARE, *texts.NOT_COUNTED.values(), *EARNED)]
+NOBODYS = [
+    pattern(text) for text in (*FLEW, texts.YOU_FLY, *texts.YOU_SHARE.values(), *texts.NOT_COUNTED.values(), *EARNED)
+]
 NETWORKS = {"weighs": Weighs(), "only flies": OnlyFlies(), networks.SCRIPTED: OnlyFlies()}
 BROKEN = "its target is missing"
 

@@ -24,10 +24,10 @@ from game.core.names import LibraryError
 from game.core.worker import WorkerState
 from game.scenes.digit_training import KNOBS, DigitTrainingScene
 from game.training.digit_models import DigitModels
-from game.training.kinds import DIGITS
 from game.training.knob_descriptions import knob_descriptions
 from game.training.run import TrainingRun
 from game.training.run_settings import RunSettings
+from game.training.workers import DIGITS
 from game.ui.scrubber import Scrubber
 from tests.support.driver import Driver
 from tests.support.player import Player

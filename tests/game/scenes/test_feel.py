@@ -11,8 +11,7 @@ from game.core import texts
 from game.flight import networks
 from game.flight.outcomes import crash_reason
 from game.flight.replay import ReplayedFlight
-from game.play.captions import BELOW_OPENING
-from game.scenes.play import PlayScene
+from game.scenes.play.scene import PlayScene
 from game.world.camera import View
 from tests.support.driver import Driver
 
@@ -183,7 +182,7 @@ def test_a_craft_that_waits_high_up_hangs_below_the_words(game: Driver, reduced:
     scenery = scene(game).flown.scenery
     scenery.cut()
     _, y = scenery.view(1.0).points((3.0, 16.0 + PARAMS.stand))
-    assert y > BELOW_OPENING.head
+    assert y > scene(game).flown.clear.head > 104
     assert scenery.view(1.0).centre[0] == 0 or not reduced
 
 

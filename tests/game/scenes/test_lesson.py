@@ -13,6 +13,7 @@ from ai.explain.agent_lesson import Lesson
 from ai.nn.costs import COSTS
 from game.core import texts
 from game.drawing.canvas import Canvas
+from game.lesson.agent_frames import agent_frames
 from game.lesson.code import CODE
 from game.lesson.error_frame import ErrorFrame
 from game.lesson.figures import number, points
@@ -38,6 +39,30 @@ def driver(open_game: Open, lesson: Lesson) -> Driver:
     opened = open_game(LessonScene, lesson)
     opened.frames(3)
     return opened
+
+
+def test_frames_say_what_the_numbers_beside_them_leave_open(lesson: Lesson):
+    frames = [part.frame for part in agent_frames(lesson)]
+    best, action = int(lesson.predicted.argmax()), int(lesson.cell.action)
+    higher = points(float(lesson.predicted[best]) / lesson.config.reward_scale)
+    assert (f"a higher value, {higher}" in frames[1].sentence) == (best != action), (
+        "why another was flown than the one with this value"
+    )
+    words = " ".join(label.text for label in frames[3].labels)
+    assert ("No copy stands still" in words) == (not lesson.config.target_judges)
+    assert ("Layer normalisation" in words) == (not lesson.config.target_judges)
+    gradient = frames[5]
+    assert isinstance(gradient, GradientFrame)
+    adam = lesson.config.optimizer == "adam"
+    assert (texts.LESSON_DOWNHILL[1] in gradient.sentence) == adam
+    moved, uphill = lesson.step.taken, 0
+    for place in gradient.step.strongest(lesson.step.gradient, 200):
+        gradient.pick(place)
+        index = gradient.step.index(place)
+        said = any(texts.LESSON_UPHILL.startswith(label.text) for label in gradient.labels if len(label.text) > 10)
+        assert said == (lesson.step.gradient[index] * moved[index] < 0), place
+        uphill += said
+    assert bool(uphill) == adam, "plain steps never go uphill, and some of Adam's do"
 
 
 # The ways through it
@@ -157,7 +182,9 @@ def test_the_line_that_does_it_is_lit_at_first_with_this_cases_numbers_beside_th
         assert name in code.line.values
         assert "_start" not in dict(code.source.lines)[code.line.number], "the sum itself, not its empty beginning"
     words = shown(driver, 3)
-    assert words.count(number(lesson.target)) == 2, "beside the line, and below"
+    target = lesson.target / lesson.config.reward_scale
+    assert words.count(number(target)) >= 2, "beside the line, and below, in points as all else on the screen"
+    assert number(lesson.target) not in words
     assert number(lesson.discount) in words
 
 

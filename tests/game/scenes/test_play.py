@@ -16,7 +16,7 @@ from game.drawing.canvas import Canvas
 from game.flight import networks
 from game.flight.flight import StickHolder
 from game.flight.logbook import Records
-from game.scenes.play import PlayScene
+from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 
@@ -181,7 +181,7 @@ def test_pause_by_key_and_by_looking_away_keeps_the_flight(open_game: Open, flow
         else:
             driver.post(event)
             driver.frames(12)
-        assert driver.top_name == "PauseScene"
+        assert "PauseScene" in driver.top_name
         steps = int(flight.env.steps[0])
         driver.frames(10)
         assert flight.env.steps[0] == steps
@@ -299,7 +299,7 @@ def test_a_window_that_is_minimised_for_a_minute_finds_the_flight_as_it_was_left
     driver.frames(3600)
     driver.post(pygame.WINDOWRESTORED)
     driver.post(pygame.WINDOWFOCUSGAINED)
-    assert driver.top_name == "PauseScene"
+    assert "PauseScene" in driver.top_name
     driver.key(pygame.K_ESCAPE)
     flight = scene(driver).flight
     flown = len(flight.recording.actions)
@@ -334,7 +334,7 @@ def test_the_pause_changes_the_network_in_mid_flight(
     driver.keys(pygame.K_ESCAPE, pygame.K_DOWN, pygame.K_DOWN, pygame.K_RETURN)
     assert driver.top_name == "NetworksScene"
     driver.keys(pygame.K_END, pygame.K_RETURN)  # the one that was saved first
-    assert driver.top_name == "PauseScene"
+    assert "PauseScene" in driver.top_name
     driver.keys(pygame.K_ESCAPE)
     assert scene(driver).flight is flight
     assert flight.hand is hand

@@ -11,13 +11,13 @@ from game.audio.mixer import Sound
 from game.core import texts
 from game.core.names import LibraryError
 from game.core.settings import Settings
+from game.flight.days import Attempt, Days
 from game.flight.logbook import Records
-from game.play.days import Attempt, Days
-from game.play.ladder import Ladder
-from game.play.progress import Progress
+from game.flight.progress import Progress
 from game.scenes.menus.menu import MenuScene
 from game.scenes.menus.settings import SettingsScene
-from game.scenes.play import PlayScene
+from game.scenes.play.ladder import Ladder
+from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import kept, landed
@@ -116,7 +116,7 @@ def test_a_disk_that_refuses_keeps_everything_where_it_is(context: Context, monk
     def full(*_: object, **__: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("game.play.progress.write_text", full)
+    monkeypatch.setattr("game.flight.progress.write_text", full)
     with pytest.raises(LibraryError, match="No space left"):
         Progress(context.user_dir, context.settings).reset()
     assert files(context) == before

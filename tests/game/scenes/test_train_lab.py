@@ -264,9 +264,16 @@ def test_captions_follow_the_run(train: Driver, monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr(inline_worker, "TURNS", 1)  # so that no flight ends before the captions are read
     train.press_on(texts.TRAIN_START)
     scene = train.top
-    train.wait(lambda: scene.captions.shown)
-    assert scene.captions.text("success") == texts.CHART_CAPTIONS["success"]["unknown"]
-    assert scene.captions.text("stage") == texts.CHART_CAPTIONS["stage"]["grows"].format(stage=0, last=1)
+    painted = {chart.label: chart for chart in scene.training_charts.charts.charts}
+    success, epsilon, stage = (painted[texts.TRAIN_CHARTS[name]] for name in ("success", "epsilon", "stage"))
+    train.wait(lambda: success.painted_caption and epsilon.painted_caption and stage.painted_caption)
+    assert success.painted_caption == texts.CHART_CAPTIONS["success"]["unknown"]
+    assert stage.painted_caption == texts.CHART_CAPTIONS["stage"]["grows"].format(stage=0, last=1)
+    for _ in range(40):  # in each frame, the number that is written is the caption's
+        train.frames(1)
+        words = texts.CHART_CAPTIONS["epsilon"]
+        told = {words[name].format(percent=100 * float(epsilon.latest)) for name in ("falls", "spread", "steady")}
+        assert epsilon.painted_caption in told | {words["all"]} or epsilon.caption != epsilon.painted_caption
 
 
 def test_an_earlier_moment_shows_both_swarms_of_it(train: Driver) -> None:

@@ -9,10 +9,10 @@ import pytest
 
 from ai.agent.agent import DeepQAgent
 from ai.lander.environment import Outcome
-from game.cockpit.touch import FASTEST, NOTCH, PLACE, SPEED, TILT, Hand
 from game.core import texts
 from game.flight.flight import DECISION_STEPS
-from game.scenes.watch import WatchScene
+from game.scenes.watch.scene import WatchScene
+from game.scenes.watch.touch import FASTEST, NOTCH, PLACE, SPEED, TILT, Hand
 from game.ui.context import Context
 from tests.support.drawn import Drawn
 from tests.support.driver import Driver

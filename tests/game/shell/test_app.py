@@ -14,7 +14,7 @@ from game.core.settings import Settings, SettingsFile
 from game.scenes import scene_of
 from game.scenes.menus.menu import MenuScene
 from game.scenes.menus.settings import SettingsScene
-from game.scenes.pause import PauseScene
+from game.scenes.play.pause import PauseScene
 from game.shell.app import LOG_NAME, App, log_to
 from game.shell.window import NoDisplayError
 from game.start import play

@@ -14,9 +14,9 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK, VIEW_SIZE
 from game.input.bindings import KEYBOARD, Bindings, Command, Held
 from game.input.controls import Controls, key_name
+from game.scenes.logbook.replay import ReplayScene
 from game.scenes.menus.background import LOADER
-from game.scenes.play import PlayScene
-from game.scenes.replay import ReplayScene
+from game.scenes.play.scene import PlayScene
 from game.ui.actions import Action, Table
 from tests.game.tour.stops import Stop
 from tests.support.driver import Driver
@@ -76,6 +76,7 @@ NOTE = "Saved as a network with a rather long name: fly with it, or watch it."
 
 def a_note_hides_nothing_that_is_to_be_read_or_pressed(visit: Visit) -> None:
     driver = visit.driver
+    driver.frames(2)  # what was pressed before may begin a flight
     driver.app.context.note(NOTE)
     driver.frames(2)
     notes, canvas = driver.app.notes, driver.app.canvas
@@ -96,13 +97,27 @@ def at_first_sight_there_is_little_to_read_and_to_choose_from(visit: Visit) -> N
     driver = visit.driver
     driver.write_in("normal")
     driver.frames(3)
-    widgets = driver.form.widgets
+    widgets = driver.form.widgets if hasattr(driver.top, "form") else []
     rows = {widget.box.top for widget in widgets}  # the key and the button of one command are one choice
     assert len(rows) <= MOST_CHOICES, [widget.label for widget in widgets]
     page = visit.written.turn(driver.app.canvas)
     driver.app.draw()
     words = [word for note in page.notes for word in note.text.split() if any(map(str.isalnum, word))]
     assert len(words) <= MOST_WORDS, f"{len(words)} words: {' '.join(words)}"
+
+
+MOST_WORDS_IN_FLIGHT = 25
+
+
+def in_flight_there_is_one_sentence(visit: Visit) -> None:
+    driver = visit.driver
+    driver.write_in("normal")
+    page = visit.written.turn(driver.app.canvas)
+    driver.app.draw()
+    words = [word for note in page.notes for word in note.text.split() if any(map(str.isalnum, word))]
+    assert not driver.top.waiting
+    assert not driver.top.flight.over
+    assert len(words) <= MOST_WORDS_IN_FLIGHT, f"{len(words)} words: {' '.join(words)}"
 
 
 # Drawing
@@ -257,6 +272,7 @@ def _press_all(stop: Stop, driver: Driver, recorder: Recorder) -> None:
 
 
 CHECKERS: tuple[Callable[[Visit], None], ...] = (
+    in_flight_there_is_one_sentence,  # before the window changes, which lets the craft hang
     texts_fit_at_the_largest_size,
     texts_fit_in_windows_of_any_shape,
     at_first_sight_there_is_little_to_read_and_to_choose_from,
@@ -267,8 +283,9 @@ CHECKERS: tuple[Callable[[Visit], None], ...] = (
     a_note_hides_nothing_that_is_to_be_read_or_pressed,
 )
 IN_HAND = {"WatchScene, explained"}  # the lander is held there: keys move it, and hints say so
+FLYING = {"Play, flown by the network"}
 NOT_AT = {
-    hints_name_the_keys_of_their_own_actions: IN_HAND,
+    hints_name_the_keys_of_their_own_actions: IN_HAND | FLYING,  # where there are none
     the_key_the_button_and_the_click_run_the_same_action: IN_HAND,
     # Words stand in every row of these.
     a_note_hides_nothing_that_is_to_be_read_or_pressed: {"swarm", "swarm, after a while", "DigitInsideScene"},
@@ -276,14 +293,20 @@ NOT_AT = {
 # Screens in rows and columns, which are laid out anew for every window.
 FLOWING = {
     "MenuScene", "FlightsScene", "SettingsScene", "AssistsScene", "BindingsScene", "QuestionDialog", "NameDialog",
-    "ListDialog", "sound", "controls",
+    "ListDialog", "sound", "controls", "ChoicesScene", "PauseScene", "FlightPauseScene, of a flight",
+}  # fmt: skip
+IN_FLIGHT = {
+    "Play, in flight", "mission, in flight", "descent, in flight", "daily, in flight", "tutorial, in flight",
+    "Play, guarded", "Play, flown by the network", "Play, shared",
 }  # fmt: skip
 ONLY_AT = {
     # Whatever is laid out for a page is laid out alike in every window: the last of these stands for all.
     texts_fit_in_windows_of_any_shape: FLOWING | {
-        "WatchScene", "ReplayScene", "Play", "swarm", "mission", "TrainScene", "PhysicsScene", "PauseScene",
+        "WatchScene", "ReplayScene", "Play", "swarm", "mission", "TrainScene", "PhysicsScene", "Play, in flight",
+        "tutorial", "mission, card",
     },
-    at_first_sight_there_is_little_to_read_and_to_choose_from: FLOWING,
+    at_first_sight_there_is_little_to_read_and_to_choose_from: FLOWING | {"Play", "mission", "daily", "descent"},
+    in_flight_there_is_one_sentence: IN_FLIGHT,
 }  # fmt: skip
 
 

@@ -60,6 +60,13 @@ def listed(context: Context) -> None:
         file.write(json.dumps(asdict(entry)) + "\n")
 
 
+def in_flight(driver: Driver) -> None:
+    """Fly, with the main engine on."""
+    driver.frames(3)
+    driver.post(pygame.KEYDOWN, key=pygame.K_UP, mod=0)
+    driver.frames(50)
+
+
 STOPS = [
     *map(Stop, (*SCREENS, *FLOWN, *OVER_OTHERS)),
     *(
@@ -75,6 +82,15 @@ STOPS = [
     Stop("WatchScene", "explained", keys(pygame.K_SPACE, pygame.K_g, pygame.K_UP, pygame.K_F1)),
     Stop("swarm", "after a while", keys(frames=400)),
     Stop("Play", "flown by the network", keys(pygame.K_TAB)),
+    Stop("Play", "in flight", in_flight),
+    Stop("mission", "in flight", in_flight),
+    Stop("descent", "in flight", in_flight),
+    Stop("daily", "in flight", in_flight),
+    Stop("tutorial", "in flight", in_flight),
+    Stop("Play", "guarded", in_flight, {"assist": 0.04, "copilot": "guardian"}),
+    Stop("Play", "thinking", in_flight, {"show_thinking": True}),
+    Stop("FlightPauseScene", "of a flight", keys(frames=90)),
+    Stop("ChoicesScene", "more", settings={"more_flights": True}),
     Stop("Play", "card", crashed),
     Stop("mission", "card", crashed),
     Stop("Play", "shared", shared, {"assist": 0.6, "three_pads": True}),

@@ -11,9 +11,9 @@ from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK, SMALL, VIEW_SIZE
 from game.input.controls import Command
-from game.scenes.choices import ChoicesScene
 from game.scenes.menus.settings import SettingsScene
-from game.scenes.play import PlayScene
+from game.scenes.play.choices import ChoicesScene
+from game.scenes.play.scene import PlayScene
 from game.ui import focus
 from game.ui.actions import hints_of
 from game.ui.context import Context

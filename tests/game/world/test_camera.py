@@ -8,9 +8,8 @@ from ai.lander.environment import LIMITS, PARAMS, LanderEnv
 from ai.lander.ground import Ground, hilly
 from game.drawing.tokens import VIEW_SIZE
 from game.flight.flight import Flight
-from game.play.captions import BELOW_OPENING
 from game.world import framing
-from game.world.camera import CLOSEST, GROUND_LINE, GROUND_ROW, WIDEST, Camera, CameraTarget, View
+from game.world.camera import CLOSEST, GROUND_LINE, GROUND_ROW, WIDEST, Camera, CameraTarget, ClearArea, View
 from game.world.landscape.sheet import WorldPicture
 
 
@@ -200,7 +199,7 @@ def test_every_flight_begins_with_all_its_pads_in_view(subtests: pytest.Subtests
     for seed in range(12):
         with subtests.test(seed=seed):
             env = Flight(seed, pads=3).env
-            view = framing.framed(env, clear=BELOW_OPENING).view(1.0)
+            view = framing.framed(env, clear=ClearArea(head=196.0)).view(1.0)
             assert all(seen(view, (edge, pad.top)) for pad in env.ground.pads for edge in (pad.left, pad.right))
 
 

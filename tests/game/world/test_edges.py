@@ -12,10 +12,10 @@ from ai.lander.ground import hilly
 from ai.lander.rules import AREAS
 from ai.lander.sensing import NEAR, near_edges
 from game.audio.flight_sounds import FlightSound
-from game.cockpit.surroundings import surroundings
 from game.drawing.canvas import Canvas
 from game.flight.flight import Flight, Recording
 from game.flight.replay import ReplayedFlight
+from game.scenes.play.sentence import dangers
 from game.world.camera import View
 from game.world.edges import draw_edges
 from game.world.stage import Stage
@@ -37,7 +37,7 @@ def test_an_edge_is_told_of_shines_and_sounds_before_it_is_crossed(state: tuple[
     [edge] = near_edges(env)
     assert (edge.side, edge.ahead) == (side, True)
     assert edge.away == pytest.approx(3)
-    assert any("3 m" in text for text, _, warns in surroundings(env) if warns)
+    assert any("3 m" in text for text in dangers(env))
     heard = FlightSound(sound, env)
     heard.follow(np.zeros(3))
     assert "edge" in sound.heard()

@@ -15,7 +15,7 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.flight import networks
 from game.flight.networks import Policy
-from game.scenes.watch import WatchScene
+from game.scenes.watch.scene import WatchScene
 from game.ui.context import Context
 from game.world.camera import View
 from game.world.policy_map import ACTION, COLOURS, OFF, SCORE, PolicyMap

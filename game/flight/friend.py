@@ -1,0 +1,57 @@
+"""A friend's flight: how it comes into the game."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import pygame
+
+from ai.flights.recording import SharedFlight
+from game.core import texts
+from game.core.scene import Push, Scene, push
+from game.flight import sharing
+from game.ui.clipboard import pasted
+from game.ui.context import Context
+
+_CONTROL = pygame.KMOD_CTRL | pygame.KMOD_META
+
+
+def arrival(event: pygame.event.Event, scene: Scene, context: Context) -> Push | None:
+    """Return the way to the page of a flight that is dropped on the window or pasted; None for all other events.
+
+    Tells the player why a flight is refused. A text that is typed takes what is pasted, and a scene that takes files
+    of its own keeps those which are no flights.
+    """
+    if event.type == pygame.DROPTEXT:
+        return _page_of_text(context, str(event.text))
+    if event.type == pygame.DROPFILE:
+        path = Path(event.file)
+        try:
+            return _page(sharing.flight_in_file(path))
+        except ValueError as error:
+            if not scene.takes_files:
+                context.note(texts.CODE_FILE_REFUSED.format(name=path.name, reason=error))
+    elif event.type == pygame.KEYDOWN and event.key == pygame.K_v and getattr(event, "mod", 0) & _CONTROL:
+        return None if scene.typing else paste(context)
+    return None
+
+
+def paste(context: Context) -> Push | None:
+    """Return the way to the page of the flight in the clipboard; if there is none, tell the player why."""
+    if text := pasted().strip():
+        return _page_of_text(context, text)
+    context.note(texts.CODE_PASTE_EMPTY)
+    return None
+
+
+def _page_of_text(context: Context, text: str) -> Push | None:
+    try:
+        return _page(sharing.flight_in(text))
+    except ValueError as error:
+        context.note(texts.CODE_PASTE_REFUSED.format(reason=error))
+    return None
+
+
+def _page(flight: SharedFlight) -> Push:
+    return push("replay", sharing.record_of(flight, time.time()), flight)

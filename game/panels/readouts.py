@@ -1,0 +1,307 @@
+"""Read-outs of a flight on the ground line, and the words in the corners of what flies."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache, partial
+from typing import Final
+
+import numpy as np
+import pygame
+
+from ai.lander.environment import Cause, LanderEnv, Outcome
+from ai.lander.rules import tenths
+from game.core import texts
+from game.drawing.canvas import Canvas, Now, Point
+from game.drawing.paint_cache import PaintCache
+from game.drawing.shapes import Shape
+from game.drawing.tokens import (
+    CAPTION,
+    FAINT,
+    FIGURE,
+    HUMAN,
+    INK,
+    LABEL,
+    MARGIN,
+    MUTE,
+    NET,
+    NIGHT0,
+    SMALL,
+    TEXT,
+    VIEW_SIZE,
+    Colour,
+)  # fmt: skip
+from game.flight import outcomes
+
+Lamp = tuple[Shape, Colour, float]  # shape, colour and strength of the glow
+
+# Four columns on the left, three on the right: the landing pad stands in the middle.
+COLUMNS: Final = (64.0, 194.0, 324.0, 454.0, 880.0, 1002.0, 1124.0)
+READOUTS: Final = 80.0  # points at the foot of a page that they take
+PILOT: Final = 4  # read-outs that a pilot needs in flight
+_LABEL_LINE: Final = 663.0
+_FIGURE_LINE: Final = 697.0
+_BAR: Final = (92.0, 2.0)
+_BAR_TOP: Final = 708.0
+_TITLE_ROOM: Final = 400.0  # points for who flies
+_SHADE, _SHADE_TOP = 0.6, 640.0  # greatest darkness behind the read-outs, and the row from which it begins
+_CAPITAL: Final = 0.72  # height of a figure, in shares of its font size
+# A readout's words are painted on a sheet: how far that reaches beyond them to the left and above, and its size.
+_ASIDE, _ABOVE = 4.0, 28.0
+_WORDS: Final = (180.0, 78.0)
+_FIGURES: Final = PaintCache(64)
+_LITTLE_TIME: Final = 5.0
+_NAMED: Final = {Cause.HARD: 1, Cause.SLIDING: 2, Cause.TILTED: 3}  # which of the read-outs a crash is named by
+_PLENTY_OF_TIME: Final = 120.0
+_STILL: Final = 0.05  # m/s, and half a degree, below which a figure has no direction
+_LEAN: Final = math.radians(0.5)
+
+
+@dataclass(frozen=True)
+class Readout:
+    """One read-out on the ground line: a figure with its label and bar.
+
+    Attributes:
+        fill: filled share of the bar, 0 to 1; None for no bar.
+        limit: place of the limit's tick on the bar, 0 to 1; None for no limit.
+        within: whether the value is within the limit; None without a limit.
+        towards: the side to which it goes or leans: -1 left, 1 right, 0 neither.
+        what, now: what it is, and what it means now, for whoever asks.
+
+    """
+
+    label: str
+    figure: str
+    unit: str
+    fill: float | None = None
+    limit: float | None = None
+    within: bool | None = None
+    towards: int = 0
+    what: str = ""
+    now: Now = str
+
+
+def flight_readouts(env: LanderEnv, slot: int = 0) -> list[Readout]:
+    """Return the read-outs of a flight: the four that a pilot needs, then thrust, fuel and time."""
+    limits = env.limits
+    across, up = env.velocity[slot].tolist()
+    if env.conditions.moves:  # on a moving pad, the speed relative to the pad counts
+        across -= float(env.pad_velocity[slot])
+    tilt, lean = float(env.tilt[slot]), math.sin(float(env.angle[slot]))
+    altitude = max(0.0, float(env.altitude[slot]))
+    descent = -up if abs(up) >= _STILL else 0.0
+
+    def against(label: str, figure: str, unit: str, value: float, limit: float, towards: int = 0) -> Readout:
+        return Readout(label, figure, unit, abs(value) / (1.8 * limit), 1 / 1.8, abs(value) <= limit, towards)
+
+    drifts = 0 if abs(across) < _STILL else 1 if across > 0 else -1
+    leans = 0 if tilt < _LEAN else -1 if lean > 0 else 1
+    share = float(env.thrust[slot, 0])
+    rows = [
+        (Readout(texts.ALTITUDE, f"{altitude:.1f}", "m"), altitude, math.inf),
+        (
+            against(texts.DESCENT, _signed(descent), "m/s", max(0.0, descent), limits.touch_speed),
+            -up,
+            limits.touch_speed,
+        ),
+        (
+            against(texts.DRIFT, f"{abs(across):.1f}", "m/s", across, limits.slide_speed, drifts),
+            abs(across),
+            limits.slide_speed,
+        ),
+        (
+            against(texts.TILT, f"{math.degrees(tilt):.0f}", "°", tilt, limits.touch_tilt, leans),
+            math.degrees(tilt),
+            math.degrees(limits.touch_tilt),
+        ),
+        (_fuel(env, slot), float(env.fuel[slot]), math.inf),
+        (_time(env, slot), float(env.time[slot]), math.inf),
+    ]
+    told = [
+        replace(readout, what=texts.EXPLAIN_READOUTS[number], now=partial(_now, number, value, limit, limits.time))
+        for number, (readout, value, limit) in enumerate(rows)
+    ]
+    return [*told[:PILOT], Readout(texts.THRUST, f"{100 * share:.0f}", "%", share), *told[PILOT:]]
+
+
+def _now(number: int, value: float, limit: float, time: float) -> str:
+    """Say what a read-out means now."""
+    if number == 1 and value < 0:
+        return texts.EXPLAIN_CLIMBING.format(value=-value)
+    said = texts.EXPLAIN_READOUTS_NOW[number].format(value=value, limit=time if number == 5 else limit)
+    return f"{said} {texts.EXPLAIN_BEYOND}" if value > limit else said
+
+
+def at_touch(readouts: list[Readout], env: LanderEnv) -> list[Readout]:
+    """Return the last read-outs before a crash, with the figure marked that the reason of the crash names.
+
+    On level ground it becomes what the foot felt, which a turning craft puts down faster than it falls itself.
+    """
+    cause = outcomes.cause_of(env)
+    if env.outcome[0] != Outcome.CRASHED or cause not in _NAMED:
+        return readouts
+    speed, slide, tilt = env.impact[0].tolist()
+    felt = {Cause.HARD: f"{speed:.1f}", Cause.SLIDING: f"{slide:.1f}", Cause.TILTED: f"{math.degrees(tilt):.0f}"}
+    named, figure = _NAMED[cause], felt[cause]
+    if outcomes.struck_side(env):  # neither down nor across, but the faster of the two is nearer to it
+        named = max(_NAMED[Cause.HARD], _NAMED[Cause.SLIDING], key=lambda row: readouts[row].fill or 0.0)
+        figure = readouts[named].figure
+    marked = replace(readouts[named], figure=figure, within=False)
+    return [*readouts[:named], marked, *readouts[named + 1 :]]
+
+
+def _time(env: LanderEnv, slot: int) -> Readout:
+    """Return the read-out of the time left, or, where there is plenty, of the time flown."""
+    flown, limit = float(env.time[slot]), env.limits.time
+    if limit > _PLENTY_OF_TIME:
+        return Readout(texts.TIME_FLOWN, f"{flown:.0f}", "s")
+    left = max(0.0, limit - flown)
+    return Readout(texts.TIME_LEFT, f"{left:.0f}", "s", left / limit, within=None if left > _LITTLE_TIME else False)
+
+
+def _fuel(env: LanderEnv, slot: int) -> Readout:
+    """Return the read-out of the fuel used, or, where the tank is limited, of the fuel left."""
+    burnt, tank = tenths(float(env.fuel[slot])), env.conditions.tank  # rounded as on the card and for medals
+    if tank == math.inf:
+        return Readout(texts.FUEL_USED, f"{burnt:.1f}", "s")
+    left = max(0.0, tank - burnt)
+    return Readout(texts.FUEL_LEFT, f"{left:.1f}", "s", left / tank, within=None if left > 0.2 * tank else False)
+
+
+def draw_readouts(canvas: Canvas, readouts: Sequence[Readout], columns: Sequence[float] = COLUMNS) -> None:
+    """Draw read-outs side by side: the bar shows the distance from the limit, a mark by the label on which side."""
+    if canvas.whole is canvas:  # a page has no world behind it
+        width, height = canvas.surface.get_width(), canvas.size[1] - canvas.px(_SHADE_TOP)
+        corner = 0, canvas.surface.get_height() - height
+        canvas.surface.blit(_shade((width, height)), corner, special_flags=pygame.BLEND_PREMULTIPLIED)
+    for x, readout in zip(columns, readouts, strict=False):
+        below = canvas.at(-1 if x < VIEW_SIZE[0] / 2 else 1, 1)
+        _draw_readout(below, x, readout)
+        if readout.what:
+            box = (x - _ASIDE, _LABEL_LINE - _ABOVE, _BAR[0] + 2 * _ASIDE, _BAR_TOP - _LABEL_LINE + _ABOVE + 8)
+            below.explain(box, readout.what, readout.now)
+
+
+def _draw_readout(canvas: Canvas, x: float, readout: Readout) -> None:
+    colour = INK if readout.within is None else canvas.palette.good if readout.within else canvas.palette.warn
+    shows = readout.label, readout.figure, readout.unit, readout.within, readout.towards
+    box = (x - _ASIDE, _LABEL_LINE - _ABOVE, *_WORDS)
+    _FIGURES.draw(canvas, box, shows, partial(_paint_readout, readout=readout, colour=colour))
+    if readout.fill is not None:
+        canvas.bar((x, _BAR_TOP, *_BAR), readout.fill, colour)
+    if readout.limit is not None:
+        canvas.line((x + readout.limit * _BAR[0], _BAR_TOP - 3), (x + readout.limit * _BAR[0], _BAR_TOP + 5), INK)
+
+
+@lru_cache(maxsize=2)
+def _shade(size: tuple[int, int]) -> pygame.Surface:
+    """Return the dark gradient behind the figures, premultiplied: over craters and wrecks they stay readable."""
+    shade = pygame.Surface(size, pygame.SRCALPHA)
+    shade.fill(NIGHT0)
+    rise = np.linspace(0.0, 1.0, size[1]) ** 0.7
+    pygame.surfarray.pixels_alpha(shade)[:] = np.round(255 * _SHADE * rise).astype(np.uint8)
+    return shade.premul_alpha_ip()
+
+
+def _paint_readout(canvas: Canvas, readout: Readout, colour: Colour) -> None:
+    """Draw label, mark, figure and unit on a cached sheet, as most stay the same for some frames."""
+    line = _FIGURE_LINE - _LABEL_LINE + _ABOVE
+    size = max(LABEL, CAPTION / canvas.scale)  # twelve pixels at least
+    label = canvas.text(readout.label, (_ASIDE, _ABOVE), size=size, colour=MUTE, weight="medium")
+    end = label.right + 9
+    if readout.towards:
+        draw_arrow(canvas, (end + 5, _ABOVE - 4), 16.0 * readout.towards, INK)
+        end += 24
+    if readout.within is not None:
+        draw_mark(canvas, (end, _ABOVE - 4), readout.within)
+    figure = canvas.text(readout.figure, (_ASIDE - 1, line), size=FIGURE, colour=colour, weight="light", tabular=True)
+    size = max(SMALL, CAPTION / canvas.scale)
+    gap, rise = (3, _CAPITAL * (FIGURE - size)) if readout.unit == "°" else (6, 0.0)
+    canvas.text(readout.unit, (figure.right + gap, line - rise), size=size, colour=MUTE)
+
+
+def draw_arrow(canvas: Canvas, middle: Point, reach: float, colour: Colour) -> None:
+    """Draw a level arrow around its middle, `reach` points long: to the right, or to the left if that is negative."""
+    x, y = middle
+    tip, side = x + reach / 2, math.copysign(1.0, reach)
+    canvas.line((x - reach / 2, y), (tip, y), colour, 1.5)
+    for lean in (-3.5, 3.5):
+        canvas.line((tip, y), (tip - side * 5, y + lean), colour, 1.5)
+
+
+def draw_mark(canvas: Canvas, place: Point, within: bool) -> None:
+    """Draw a dot for a value within its limit, a triangle for one beyond it."""
+    if within:
+        canvas.dot(place, 2.0, canvas.palette.good, 0.9)
+    else:
+        canvas.marker("triangle", place, 9, canvas.palette.warn)
+
+
+def draw_title(canvas: Canvas, text: str, lamp: Lamp, reach: float = 16.0) -> float:
+    """Write who flies, with a lamp before it that shines to `reach` points; return the text's width in points."""
+    shape, colour, glow = lamp
+    canvas = canvas.at(0, -1)
+    middle = VIEW_SIZE[0] / 2
+    width = canvas.text(text, (middle + 9, 41), size=TEXT, align="centre", room=_TITLE_ROOM).width
+    spot = lamp_spot(width)
+    canvas.glow(spot, reach, colour, glow)
+    canvas.marker(shape, spot, 8 if shape == "circle" else 11, colour)
+    return width
+
+
+def lamp_spot(width: float) -> Point:
+    """Return the middle of the lamp before a title of that width."""
+    return VIEW_SIZE[0] / 2 - width / 2 - 8, 36.0
+
+
+def draw_hand(canvas: Canvas, text: str, colour: Colour) -> None:
+    """Draw who flies at the top, over a line in their colour."""
+    canvas = canvas.at(0, -1)
+    half = max(90.0, draw_title(canvas, text, ("circle", colour, 0.8), reach=14.0) / 2 + 14)
+    line = (VIEW_SIZE[0] / 2 - half, 54, 2 * half, 2)
+    canvas.pill(line, FAINT, 0.5)
+    canvas.pill(line, colour)
+
+
+def draw_corner(canvas: Canvas, small: str, large: str, asked: str = "") -> None:
+    """Draw the flight's name and its goal in the top left corner."""
+    canvas = canvas.at(-1, -1)
+    canvas.text(small, (MARGIN, 38), size=SMALL, colour=MUTE)
+    canvas.text(large, (MARGIN, 58), size=TEXT)
+    canvas.text(asked, (MARGIN, 78), size=SMALL, colour=MUTE)
+
+
+def draw_centred_bars(
+    canvas: Canvas, values: Sequence[float], top: float, left: float, width: float, step: float
+) -> None:
+    """Draw values from -1 to 1 as bars that grow from the middle, beside their names."""
+    track = width - 96
+    middle = left + 96 + track / 2
+    for number, value in enumerate(values):
+        y = top + step * number
+        canvas.pill((left + 96, y - 1, track, 2), FAINT, 0.5)
+        reach = min(max(value, -1.0), 1.0) * track / 2
+        if abs(reach) >= 1:
+            canvas.pill((min(middle, middle + reach), y - 1.5, abs(reach), 3), NET)
+        canvas.line((middle, y - 4), (middle, y + 4), MUTE)
+
+
+def draw_share(canvas: Canvas, left: float, top: float, width: float, human: float) -> None:
+    """Draw the player's and the network's share of a flight; a share above zero never reads as 0 %."""
+    you = round(100 * human) if human in (0.0, 1.0) else min(max(round(100 * human), 1), 99)
+    if you:
+        canvas.text(texts.SHARE_YOU.format(percent=you), (left, top), size=SMALL, colour=HUMAN, tabular=True)
+    if you < 100:
+        network = texts.SHARE_NETWORK.format(percent=100 - you)
+        canvas.text(network, (left + width, top), size=SMALL, colour=NET, align="right", tabular=True)
+    edge = width * human
+    if human > 0:
+        canvas.pill((left, top + 9, max(0.0, edge - 1), 3), HUMAN)
+    if human < 1:
+        canvas.pill((left + edge + 1, top + 9, width - edge - 1, 3), NET)
+
+
+def _signed(value: float) -> str:
+    return f"{value:.1f}".replace("-", "−")

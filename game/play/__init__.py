@@ -1,1 +1,0 @@
-"""Challenges, races and the tutorial, with the ghosts, captions and outcome cards of flights."""

@@ -1,0 +1,1 @@
+"""The logbook, a flight's replay, and a friend's flight."""

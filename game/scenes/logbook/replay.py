@@ -1,0 +1,364 @@
+"""Replay scene: a recorded flight at any speed and from any moment, from which the player can fly on."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Final
+
+import pygame
+
+from ai.files import free_path
+from ai.flights.code import code_of
+from ai.flights.recording import SharedFlight
+from ai.lander.environment import Outcome
+from game.audio.flight_sounds import FlightSound
+from game.core import texts
+from game.core.assets import PACKED
+from game.core.clock import STEP
+from game.core.collection import exports_dir
+from game.core.names import LONGEST_NAME, fitting
+from game.core.pace import SlowMotion
+from game.core.scene import Pop, Push, Transition, push
+from game.drawing import typeface
+from game.drawing.canvas import Canvas
+from game.drawing.shapes import Shape
+from game.drawing.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, VIEW_SIZE
+from game.export.export import Export
+from game.export.kinds import KINDS
+from game.flight import sharing
+from game.flight.flight import StickHolder
+from game.flight.flight_file import Record
+from game.flight.outcomes import ending_word
+from game.flight.replay import FlightReplay
+from game.input.controls import Command
+from game.panels import readouts
+from game.panels.explained import Explained
+from game.panels.timeline import Timeline, runs
+from game.scenes.logbook.claim import BELOW_CLAIM, Claimed
+from game.ui.actions import Action, Table
+from game.ui.clipboard import give
+from game.ui.context import Context
+from game.ui.form_scene import FormScene
+from game.ui.hints import HintRow
+from game.ui.playback import LABEL_WIDTH, Playback
+from game.ui.widget import OnPress
+from game.ui.widgets import TextButton
+from game.ui.words import GAP
+from game.world.camera import ClearArea, View
+from game.world.paths import draw_faint
+from game.world.scenery import Scenery
+
+SPEEDS: Final = (0.25, 0.5, 1.0, 2.0)
+_EARTH: Final = (208.0, 306.0)  # points; clear of the words
+_EARTH_BELOW_CLAIM: Final = (208.0, 336.0)
+_SCOUT: Final = 10  # steps looked ahead in every frame: a few milliseconds
+_STRIP: Final = (MARGIN, 78.0, VIEW_SIZE[0] - 2 * MARGIN, 60.0)
+_FIGURE: Final = 88.0  # half of what the seconds take, and who flies
+_VERBS: Final = 149.0
+_CLEAR: Final = ClearArea(head=_VERBS + 34.0)  # below it
+_VERB: Final = 20.0
+_FIRST_HINTS: Final = 4  # hints in the first row
+
+
+class ReplayScene(FormScene):
+    """Replay of a recorded flight.
+
+    Attributes:
+        claimed: a friend's claim, checked by flying it again; None for a flight of the player's own.
+        export: the film that is being made of it; None while there is none.
+
+    """
+
+    fills = takes_tab = True
+
+    def __init__(self, context: Context, record: Record, friend: SharedFlight | None = None) -> None:
+        super().__init__(context)
+        self.record = record
+        self._pace = SlowMotion()
+        self.playback = Playback(self._pace, SPEEDS, self._fly)
+        self._warned = False
+        self.explained = Explained()
+        self.export: Export | None = None
+        self.flight_replay = FlightReplay(self.record)
+        self.flight_replay.scout(1)
+        self.form.anchor = (0, -1)
+        self.claimed = Claimed(friend, self.flight_replay) if friend else None
+        self._clear = BELOW_CLAIM if friend else _CLEAR
+        self._scenery = Scenery(self.flight_replay.flight, context.settings.reduced_motion, self._clear)
+        self._heard = FlightSound(context.sound, self.flight_replay.flight.env, self._pace, warns=False)
+        self._build()
+        self._readouts: list[readouts.Readout] = []
+        self._look()
+
+    def enter(self) -> None:
+        """Show the moment where it was left, stopped."""
+        self.playback.stopped = True
+        self._scenery.calm = self.context.settings.reduced_motion
+
+    def handle_event(self, event: pygame.event.Event) -> Transition | None:
+        """Explain, or pass the event to the actions and the widgets."""
+        return None if self.explained.handle_event(event) else super().handle_event(event)
+
+    def close(self) -> None:
+        """Cancel an unfinished film export, and tell the player."""
+        if self.export:
+            self._stop_export()
+
+    def actions(self) -> Table:
+        """Stop, step and seek; take over; go back."""
+        stop, step, *speeds = self.playback.actions(
+            texts.HINT_STEP, stop=self._stop_or_go, gamepad=Command.CONFIRM, resting=self.ended
+        )
+        on_strip = self.form.focused is self._reward_bar
+        if self.context.controls.gamepad_in_use and not on_strip:  # its A presses what is in focus
+            stop = self.form.confirms(texts.HINT_CHOOSE)
+        table = [
+            stop,
+            step,
+            Action(Command.RETRY, self._replay, texts.REPLAY_FROM_START),
+            Action(Command.HANDOVER, self._take_over, texts.REPLAY_HINT_TAKE),
+            self.form.goes_back(texts.HINT_BACK),
+            *speeds,
+            Action(pygame.K_HOME, lambda: self.seek(0)),
+            Action(pygame.K_END, lambda: self.seek(self.flight_replay.length)),
+        ]
+        if on_strip or self.context.controls.gamepad_in_use:
+            table += [Action(Command.NEXT, lambda: self._wind(60)), Action(Command.PREVIOUS, lambda: self._wind(-60))]
+        return [*table, self.explained.action()]
+
+    def hint_rows(self, canvas: Canvas) -> list[HintRow]:
+        """Return the hints on the right of the seconds, in two rows."""
+        right, top = canvas.view.right - MARGIN, canvas.view.top
+        room, hints = right - VIEW_SIZE[0] / 2 - _FIGURE, self.hints
+        rows = ((hints[:_FIRST_HINTS], 38), (hints[_FIRST_HINTS:], 60))
+        return [HintRow(row, (right, top + y), from_right=True, room=room) for row, y in rows if row]
+
+    def update(self) -> Transition | None:
+        """Advance by as many steps as the chosen speed makes due, and simulate a little further ahead."""
+        self.flight_replay.scout(1 if self.flight_replay.touching else _SCOUT)
+        self._reward_bar.reached = self.flight_replay.reached
+        self.explained.update()
+        if self.export:
+            self._follow_export(self.export)
+        if not self.claimed and self.flight_replay.complete and not self.flight_replay.faithful and not self._warned:
+            self._warned = True
+            self.context.note(texts.REPLAY_OTHER_RULES)
+        for _ in range(self.playback.steps()):
+            self._fly()
+        if not self.playback.stopped:
+            self._heard.follow(self._scenery.stage.thrust[0])
+        self._scenery.breathe()
+        return self.form.update()
+
+    # Time
+
+    def seek(self, step: int) -> None:
+        """Show another moment."""
+        self.flight_replay.seek(step)
+        self._scenery.wind_to()
+        self._pace.begin()
+        self._look()
+
+    def _wind(self, steps: int) -> None:
+        self.seek(self.flight_replay.at + steps)
+
+    @property
+    def ended(self) -> bool:
+        """Whether the last moment is shown."""
+        return self.flight_replay.complete and self.flight_replay.at >= self.flight_replay.reached
+
+    def _fly(self) -> None:
+        """Show the next moment, with fire and dust."""
+        if self.ended:
+            self.flight_replay.flight.rest()
+        flight = self.flight_replay.flight
+        was_over = flight.over
+        self.flight_replay.step()
+        ended = flight.over and not was_over
+        if ended and flight.wrecked and self._pace.rate == 1 and not self._scenery.calm:
+            self._pace.slow_down()
+        self._scenery.follow(ended)
+        self._look()
+
+    def _look(self) -> None:
+        """Update the read-outs; at the end they keep the values of the last moment before."""
+        self._reward_bar.at = self.flight_replay.at
+        flight = self.flight_replay.flight
+        self._readouts = (
+            readouts.at_touch(self._readouts, flight.env) if flight.over else readouts.flight_readouts(flight.env)
+        )
+
+    def _stop_or_go(self) -> None:
+        if self.ended:
+            self._replay()
+        else:
+            self.playback.toggle()
+
+    def _replay(self) -> None:
+        self.seek(0)
+        self.playback.stopped = False
+
+    # Words
+
+    def _build(self) -> None:
+        manager, recording = self.form.manager, self.record.recording
+        self._reward_bar = self.form.add(
+            Timeline(
+                manager, _STRIP, texts.REPLAY_LANES, recording.actions, recording.hands, self.seek, self._stop_or_go
+            )
+        )
+        width = LABEL_WIDTH + sum(typeface.width(word, SMALL, "regular") + GAP for word in self.playback.words)
+        box = (MARGIN, _VERBS, round(width), _VERB)
+        self.form.add(self.playback.row(manager, box))
+        rows: list[tuple[str, OnPress]] = [
+            (texts.REPLAY_TAKE_OVER, self._take_over),
+            (texts.FRIEND_ANSWER if self.claimed else texts.LOGBOOK_RACE, self._race),
+            (texts.CODE_COPY, self._copy),
+            (texts.REPLAY_EXPORT, self._begin_or_stop_export),
+            (texts.BACK, Pop),
+        ]
+        x = VIEW_SIZE[0] - MARGIN - sum(typeface.width(word, SMALL, "regular") + 28 for word, _ in rows) + 28
+        words = []
+        for word, press in rows:
+            wide = typeface.width(word, SMALL, "regular")
+            words.append(TextButton(manager, (round(x), _VERBS, round(wide) + 2, _VERB), word, press, size=SMALL))
+            self.form.add(words[-1])
+            x += wide + 28
+        self._export_word = words[3]
+
+    def _take_over(self) -> Transition | None:
+        """Fly on from the moment that is shown."""
+        if self.flight_replay.flight.over:
+            self.context.note(texts.REPLAY_OVER)
+            return None
+        return push("fly_on", self.record, self.flight_replay, self._rival)
+
+    def _race(self) -> Transition:
+        return push("race", self.record, self._rival)
+
+    @property
+    def _rival(self) -> str:
+        """Name of a friend's ghost; empty for one of the player's own."""
+        return texts.FRIEND_NAME if self.claimed else ""
+
+    def _copy(self) -> None:
+        """Copy the flight as a code; a friend's as it came, with its own claim."""
+        code = code_of(self.claimed.flight) if self.claimed else sharing.code(self.record)
+        give(self.context, code, texts.CODE_COPIED.format(count=len(code)))
+
+    def _begin_or_stop_export(self) -> Transition | None:
+        """Ask for the film's format and start the export, or cancel the running one."""
+        from game.scenes.menus.dialogs import QuestionDialog
+
+        if self.export is None:
+            answers: list[tuple[str, Callable[[], None]]] = [
+                (suffix[1:].upper(), partial(self._begin_export, suffix))
+                for suffix, kind in KINDS.items()
+                if not kind.missing
+            ]
+            less = texts.EXPORT_GIF_PACKED if PACKED else texts.EXPORT_GIF_ONLY
+            more = less if KINDS[".mp4"].missing else texts.EXPORT_MORE
+            return Push(QuestionDialog(self, texts.EXPORT_AS, more, [*answers, (texts.EXPORT_CANCEL, lambda: None)]))
+        self._stop_export()
+        return None
+
+    def _stop_export(self) -> None:
+        assert self.export is not None
+        self.export.close()
+        self._end_export(texts.EXPORT_STOPPED)
+
+    def _begin_export(self, suffix: str) -> None:
+        name = fitting(Path(self.record.entry.file).stem).strip(" .")[:LONGEST_NAME]  # which a file can say anything of
+        path = free_path(exports_dir(), name or texts.REPLAY_TITLE, suffix)
+        self.export = Export(ReplayScene, self.record, path, colour_safe=self.context.settings.colour_safe)
+
+    def _follow_export(self, export: Export) -> None:
+        """Show the progress of the export, or its result."""
+        export.poll()
+        self._export_word.label = texts.EXPORT_GOES_ON.format(percent=round(100 * export.share))
+        if export.over:
+            failed = texts.EXPORT_FAILED.format(reason=export.problem)
+            export.close()
+            self._end_export(failed if export.problem else texts.EXPORT_DONE.format(path=export.path))
+
+    def _end_export(self, note: str) -> None:
+        self.export = None
+        self._export_word.label = texts.REPLAY_EXPORT
+        self.context.note(note)
+
+    # The picture
+
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        """Draw the moment that is shown, and the strip of time."""
+        self.draw_world(canvas, alpha)
+        self._draw_words(canvas)
+
+    def draw_world(self, canvas: Canvas, alpha: float) -> None:
+        """Draw the moment that is shown, the way there and on, and its figures."""
+        between = self.playback.between(alpha)
+        self._scenery.draw_land(canvas, between, _EARTH_BELOW_CLAIM if self.claimed else _EARTH)
+        _draw_way(
+            canvas, self._scenery.view(canvas.scale, between).filling(canvas), self.flight_replay, self._clear.head
+        )
+        self._scenery.draw_craft(canvas, between)
+        readouts.draw_readouts(canvas, self._readouts)
+
+    def _draw_words(self, canvas: Canvas) -> None:
+        self._draw_title(canvas)
+        self._draw_moment(canvas)
+        self.form.draw(canvas)
+        self.draw_hints(canvas)
+        self.explained.draw(canvas)
+
+    def _draw_title(self, canvas: Canvas) -> None:
+        """Draw which flight it is; of a friend's, the claim, and what comes of checking it."""
+        if self.claimed:
+            self.claimed.draw(canvas)
+            return
+        entry = self.record.entry
+        when = time.strftime("%Y-%m-%d %H:%M", time.localtime(entry.when))
+        mission = texts.MISSIONS.get(self.record.recording.mission)
+        title = texts.REPLAY_MISSION.format(mission=mission[0]) if mission else texts.REPLAY_TITLE
+        readouts.draw_corner(
+            canvas,
+            title,
+            texts.REPLAY_LINE.format(
+                end=ending_word(entry.outcome, intact=entry.intact), seconds=entry.seconds, when=when
+            ),
+        )
+
+    def _draw_moment(self, canvas: Canvas) -> None:
+        """Draw the seconds, and who flies at that moment or how it ended."""
+        flight = self.flight_replay.flight
+        seconds = f"{self.flight_replay.at * STEP:.2f}"
+        middle = VIEW_SIZE[0] / 2
+        canvas = canvas.at(0, -1)
+        figure = canvas.text(f"{seconds} s", (middle, 58), size=22, weight="light", align="centre", tabular=True)
+        by_hand = flight.flown_by is StickHolder.HUMAN
+        by = (texts.YOU_FLEW if by_hand else texts.NETWORK_FLEW) if not self.claimed else texts.FRIEND_FLEW[by_hand]
+        if self.ended:
+            by = ending_word(flight.outcome.name, intact=flight.intact) if flight.over else by
+        canvas.text(by, (middle, 34), size=SMALL, colour=MUTE, align="centre", room=2 * _FIGURE - 16)
+        if flight.over:
+            good = flight.outcome is Outcome.LANDED
+            colour = canvas.palette.good if good else INK if flight.intact else canvas.palette.warn
+            mark: Shape = "check" if good else "diamond" if flight.intact else "cross"
+            canvas.marker(mark, (figure.left - 16, 51), 11, colour)
+        elif self.playback.stopped:
+            for x in (figure.left - 20, figure.left - 15):
+                canvas.line((x, 45), (x, 57), INK, 2)
+
+
+def _draw_way(canvas: Canvas, view: View, flight_replay: FlightReplay, head: float) -> None:
+    """Draw the path so far in the colour of who flew, and the path to come faintly."""
+    path, hands = flight_replay.path, flight_replay.record.recording.hands
+    at, head = min(flight_replay.at, len(path) - 1), canvas.scale * head
+    if at + 4 < len(path):
+        draw_faint(canvas.surface, view.pixels(path[at::4]), MUTE, 0.35, head)
+    for start, stop, hand in runs(hands[:at]):
+        if stop - start > 1:
+            stretch = path[start : stop + 1 : 4] if stop - start > 8 else path[start : stop + 1]
+            draw_faint(canvas.surface, view.pixels(stretch), HUMAN if hand is StickHolder.HUMAN else NET, 0.6, head)

@@ -1,0 +1,225 @@
+"""Outcome card of a flight, in rows: how it ended, why, what it earned, and what comes next."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Final
+
+import pygame
+
+from game.core import texts
+from game.drawing.cursor import BASELINE, LEADING, Cursor
+from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MEDALS, MUTE, NET, SMALL, TEXT, TITLE
+from game.flight.outcomes import OutcomeCard, RivalOutcome
+from game.panels.readouts import draw_share
+from game.scenes.play.ladder_mark import WIDTH as LADDER_WIDTH
+from game.scenes.play.ladder_mark import draw_ladder
+from game.ui.hints import Hint, HintRow, hint_lines
+
+if TYPE_CHECKING:
+    from game.drawing.canvas import Canvas, Point
+    from game.drawing.shapes import Shape
+
+_WIDEST: Final = 480.0
+_MARGIN: Final = 32.0
+_AROUND: Final = 16.0  # least points from the sides of the window
+_NARROW, _KEYS = 860.0, 54.0  # in a narrower one, keys stand above the card
+_TOP: Final = 136.0  # of the card, in a window with room
+_NEXT_LAMP, _FLASH = 0.3, 0.22  # seconds from one lamp of a medal to the next, and in which its flash fades
+_RING_PARTS: Final = 14
+_FIGURES: Final = LEADING * LABEL + 4 + LEADING * TITLE  # points of a row of figures
+_SIGN: Final = 34.0  # points for the sign before the title
+# Where a card may stand across the window, as shares of the room that is left: where it hides least of the path.
+PLACES: Final = (0.5, 0.0, 1.0)
+
+
+@dataclass(frozen=True)
+class ShownCard:
+    """Card on the screen: `shown` 0 to 1 of the way in, with its `hints` at the foot.
+
+    `advise` is whether advice is wanted. The lamps of a medal light up one after another; they have done so for `lit`
+    seconds.
+    """
+
+    card: OutcomeCard
+    hints: Sequence[Hint]
+    shown: float = 1.0
+    advise: bool = True
+    rival: RivalOutcome | None = None
+    lit: float = math.inf
+
+    def box(self, canvas: Canvas) -> pygame.FRect:
+        """Return the card's box, in points of a canvas for text that flows."""
+        view = canvas.view
+        width = min(_WIDEST, view.width - 2 * _AROUND)
+        rows = Cursor(0.0, 0.0, width - 2 * _MARGIN, canvas.scale)
+        self._write(rows)
+        height = rows.y + 12 + self._foot(canvas, width) + 0.75 * _MARGIN
+        left = view.left + _AROUND + self.card.place * (view.width - 2 * _AROUND - width)
+        if width < 0.6 * view.width and self.card.place != PLACES[0]:  # beside the path, but not at the very edge
+            left += 48 * (1 if self.card.place < 0.5 else -1)
+        above = _KEYS if view.width < _NARROW else _AROUND  # below the keys of the flight
+        top = max(view.top + above, min(_TOP, (view.height - height) / 3))
+        return pygame.FRect(left, top - 10 * (1 - self.shown), width, height)
+
+    def _foot(self, canvas: Canvas, width: float) -> float:
+        rows = hint_lines(self.hints, canvas, (0.0, 0.0), width - 2 * _MARGIN)
+        return 29.0 * len(rows)
+
+    def hint_rows(self, canvas: Canvas) -> list[HintRow]:
+        """Return the keys at its foot."""
+        box = self.box(canvas)
+        return hint_lines(self.hints, canvas, (box.left + _MARGIN, box.bottom - 10), box.width - 2 * _MARGIN)
+
+    def draw(self, canvas: Canvas) -> None:
+        """Draw it."""
+        box = self.box(canvas)
+        canvas.panel(box)
+        rows = Cursor(box.left + _MARGIN, box.top, box.width - 2 * _MARGIN, canvas.scale, canvas)
+        self._write(rows)
+        canvas.line((rows.left, rows.y + 4), (rows.right, rows.y + 4), LINE)
+        for row in self.hint_rows(canvas):
+            row.draw(canvas)
+
+    # Rows
+
+    def _write(self, rows: Cursor) -> None:
+        card = self.card
+        rows.gap(24)
+        self._write_title(rows)
+        rows.gap(6)
+        rows.text(card.reason)
+        advice = card.advice if self.advise else ""
+        for words, colour in ((card.quality, HUMAN), (advice, MUTE), (card.bare, NET), (card.assists, HUMAN)):
+            if words:
+                rows.gap(3)
+                _small(rows, words, colour)
+        rows.gap(12)
+        self._write_figures(rows)
+        self._write_rival(rows)
+        for words, figure in card.compared:
+            small = rows.in_style(SMALL, MUTE)
+            small.pair(words, figure, INK)
+            rows.y = small.y
+        self._write_share(rows)
+        for words in card.growth:
+            _small(rows, words, HUMAN)
+            rows.gap(4)
+        if card.rung is not None and card.climb:
+            beside = replace(rows, left=rows.left + LADDER_WIDTH + 8, width=rows.width - LADDER_WIDTH - 8)
+            beside = beside.in_style(SMALL)
+            if rows.canvas:
+                draw_ladder(rows.canvas, rows.left + 1, beside.baseline, card.rung)
+            beside.text(card.climb)
+            rows.y = beside.y + 4
+
+    def _write_title(self, rows: Cursor) -> None:
+        """Write how it ended after a sign, and its points or its medal at the right, or below."""
+        card, canvas = self.card, rows.canvas
+        palette = canvas.palette if canvas else None
+        colour = INK if card.intact or palette is None else palette.good if card.good else palette.warn
+        title = replace(rows, left=rows.left + _SIGN, width=rows.width - _SIGN).in_style(TITLE, colour)
+        score = rows.in_style(TEXT, HUMAN)
+        wide = score.measured(card.score) + (18 + 13 * card.medal if card.medal or card.ring else 0)
+        beside = title.measured(card.title) + wide + 24 <= title.width
+        baseline = title.baseline
+        if canvas:
+            mark: Shape = "check" if card.good else "diamond" if card.intact else "cross"
+            canvas.glow((rows.left + 10, baseline - 8), 30, colour, 0.5 * self.shown)
+            canvas.marker(mark, (rows.left + 10, baseline - 8), 18, colour)
+        title.text(card.title)
+        if card.score and not beside:
+            title.y += BASELINE * TEXT - TEXT
+            baseline = title.y + TEXT
+            title.y += LEADING * TEXT
+        if canvas and card.score:
+            right = rows.right if beside else rows.left + _SIGN + wide
+            box = canvas.text(card.score, (right, baseline), size=TEXT, colour=HUMAN, align="right")
+            _draw_medal(canvas, card, (box.left - 14, baseline - 5), self.lit)
+        rows.y = title.y
+
+    def _write_figures(self, rows: Cursor) -> None:
+        """Write the figures of the flight side by side, in two rows where their names need it."""
+        figures = self.card.figures
+        widest = max(rows.in_style(LABEL, weight="medium").measured(label) for label, _, _ in figures) + 12
+        across = len(figures) if widest * len(figures) <= rows.width else (len(figures) + 1) // 2
+        column = rows.width / across
+        for number, (label, value, unit) in enumerate(figures):
+            if number and number % across == 0:
+                rows.gap(_FIGURES)
+            if canvas := rows.canvas:
+                x, line = rows.left + number % across * column, rows.y + LEADING * LABEL + 4 + BASELINE * TITLE
+                canvas.text(label, (x, rows.y + LABEL), size=LABEL, colour=MUTE, weight="medium")
+                figure = canvas.text(value, (x, line), size=TITLE, weight="light", tabular=True)
+                canvas.text(unit, (figure.right + 4, line), size=LABEL, colour=MUTE)
+        rows.gap(_FIGURES + 4)
+
+    def _write_rival(self, rows: Cursor) -> None:
+        """Write a rival's name, result and figures, in the columns of the player's own."""
+        rival, canvas = self.rival, rows.canvas
+        if rival is None:
+            return
+        rows.gap(4)
+        name = replace(rows, left=rows.left + 16, width=rows.width - 16).in_style(SMALL, NET)
+        if canvas:
+            canvas.dot((rows.left + 4, name.baseline - 4), 4, NET)
+        name.pair(rival.name, rival.result, INK)
+        rows.y = name.y
+        column = rows.width / len(self.card.figures)
+        for number, (label, _, _) in enumerate(self.card.figures if canvas else ()):
+            value, unit = rival.figures.get(label, ("–", ""))
+            x, line = rows.left + number * column, rows.baseline
+            assert canvas is not None
+            figure = canvas.text(value, (x, line), size=TEXT, weight="light", tabular=True)
+            canvas.text(unit, (figure.right + 4, line), size=LABEL, colour=MUTE)
+        rows.gap(LEADING * TEXT + 4)
+
+    def _write_share(self, rows: Cursor) -> None:
+        """Write who flew how much, and how often the co-pilot saved the person or stepped in."""
+        card, canvas = self.card, rows.canvas
+        if told := card.told:
+            rows.gap(4)
+            words = replace(rows, left=rows.left + 18, width=rows.width - 18).in_style(SMALL, MUTE)
+            top = words.y
+            if canvas:
+                canvas.marker("diamond", (rows.left + 6, words.baseline - 4), 8, NET)
+            words.text(told)
+            rows.y = words.y
+            if canvas and card.saved is not None:
+                canvas.explain((rows.left, top, rows.width, words.y - top), texts.EXPLAIN_CARD_SAVED)
+        rows.gap(18)
+        if canvas:
+            draw_share(canvas, rows.left, rows.y, rows.width, card.human)
+        rows.gap(22)
+
+
+def _small(rows: Cursor, words: str, colour: tuple[int, int, int]) -> None:
+    small = rows.in_style(SMALL, colour)
+    small.text(words)
+    rows.y = small.y
+
+
+def _draw_medal(canvas: Canvas, card: OutcomeCard, last: Point, lit: float) -> None:
+    """Draw the lamps of a medal from right to left, each with a flash as it lights, or the ring of a shared landing."""
+    x, y = last
+    if card.ring:
+        draw_ring(canvas, last)
+    for lamp in range(card.medal):
+        age, place = lit - _NEXT_LAMP * (lamp + 1), (x - 13 * lamp, y)
+        if age < 0:
+            canvas.dot(place, 4, FAINT)
+            continue
+        flash = math.exp(-age / _FLASH)
+        canvas.glow(place, 14 + 30 * flash, MEDALS[card.medal], 0.35 + 1.6 * flash)
+        canvas.dot(place, 4 + 3 * flash, MEDALS[card.medal])
+
+
+def draw_ring(canvas: Canvas, place: Point) -> None:
+    """Draw the ring of a landing together: half the person's, half the network's."""
+    x, y = place
+    for part in range(_RING_PARTS):
+        angle = 2 * math.pi * (part + 0.5) / _RING_PARTS
+        colour = HUMAN if math.cos(angle) < 0 else NET
+        canvas.dot((x + 5 * math.cos(angle), y + 5 * math.sin(angle)), 1.3, colour)

@@ -1,0 +1,227 @@
+"""Co-pilot panel: what a shared decision weighs, Q-values or landings ahead, and whose action is flown."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import pygame
+
+from ai.lander.environment import ACTION_NAMES, NUM_ACTIONS
+from ai.lander.ground import Ground
+from ai.lander.pilots import COAST
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.drawing.paint import mix
+from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL
+from game.flight.flight import Flight, StickHolder
+from game.flight.networks import QPolicy
+from game.flight.six_futures import HELD, SixFutures
+from game.panels.landings import Landing, Landings, RecentLandings, draw_landings
+from game.panels.q_values import HEIGHT, QValues, decision_words, draw_q_values
+from game.panels.readouts import draw_share
+from game.scenes.play.guardian_words import Why, why_saved
+
+if TYPE_CHECKING:
+    from ai.copilot.copilot import SharedDecision
+
+_SIZE: Final = (280.0, 388.0)
+_TOP, _SIDE = 96.0, 36.0  # points from the edges of the window
+_PADS_HIGH: Final = 102  # extra height for the rows of three pads
+_LEFT: Final = 20  # left edge of the content, from the panel's corner
+_WIDTH: Final = _SIZE[0] - 40
+_VALUES: Final = 62  # first baseline of the values, from the panel's top
+_WHY: Final = _VALUES + int(HEIGHT) + 20
+_PADS: Final = _WHY + 114  # the first pad's row
+_NAME: Final = 96.0  # for a pad's name, before its bar
+_STAYS: Final = 50  # steps that the message on an override stays, to be read
+
+
+class CopilotPanel:
+    """What the network thinks, for whoever asks: what it weighs, whose action is flown, and why.
+
+    Attributes:
+        shown: whether there is something to explain.
+        values: what the decision that is flown weighs: where the network lands if a guardian has looked ahead, or if
+            the person flies alone, else the Q-values; None before the first.
+        why: whose action is flown, and why: a title and two lines.
+
+    """
+
+    def __init__(self, ground: Ground) -> None:
+        self.shown = False
+        self.values: QValues | Landings | None = None
+        self.why: Why = ("", "", "")
+        self._names = [texts.PAD_NAMES.get(pad.factor, "") for pad in ground.pads]
+        self._likely: list[float] = []
+        self._recent = RecentLandings()
+        self._override: Why | None = None  # explanation of the latest override, while it is still shown
+        self._stays = 0
+        self._seen: object = None
+
+    def follow(self, flight: Flight, futures: SixFutures | None = None) -> None:
+        """Update the panel after a step; `futures` are those of a flight that nobody shares."""
+        if flight.over:
+            return
+        self._stays = max(0, self._stays - 1)
+        if not self._stays:
+            self._override = None
+        alone = flight.hand is StickHolder.NETWORK and isinstance(flight.network, QPolicy)
+        decision = flight.alone if alone else flight.decision if flight.shared else None
+        if decision is None and futures:
+            self.shown, self._seen, self._likely = True, None, []
+            self.values, self.why, self._override = landings_of(futures, flight), (texts.SIX_FUTURES_WHY, "", ""), None
+            return
+        self.shown = decision is not None
+        if decision is None or decision is self._seen:
+            return
+        self._seen = decision
+        if decision is flight.alone:
+            self.values, self._likely = QValues.of(flight.alone), []
+            first, second = decision_words(flight.alone)
+            self.why, self._override = (texts.COPILOT_PANEL_ALONE, first, second), None
+        elif flight.decision is not None:
+            self._explain(flight.decision, int(flight.env.target[0]))
+
+    def _explain(self, decision: SharedDecision, pad: int) -> None:
+        """Show a shared decision by its Q-values for one of the pads as the goal."""
+        from ai.copilot.guardian import ActionSource
+
+        self._likely = decision.likely[0].tolist()
+        if decision.held is not None:
+            landings = Landings.of(decision)
+            self.values, self.why = self._recent.fill(landings), why_saved(decision, landings)
+        else:
+            self.values = values = shared_values(decision, pad)
+            self.why = why(decision, values)
+        if self.values.asked is None:
+            self._override = None
+        elif int(decision.source[0]) != ActionSource.PILOT:
+            self._override, self._stays = self.why, _STAYS
+
+    def box(self, canvas: Canvas) -> pygame.FRect:
+        """Return where it stands, in points of a canvas for text that flows."""
+        view, (width, height) = canvas.view, _SIZE
+        side = min(_SIDE, 0.03 * view.width)
+        high = height + (_PADS_HIGH if len(self._likely) > 1 else 0)
+        top = max(0.0, min(_TOP, view.bottom - high - 90))
+        return pygame.FRect(view.right - side - width, top, width, high)
+
+    def draw(self, canvas: Canvas, share: float) -> None:
+        """Draw the panel; `share` is the person's share of the flight so far."""
+        pads = self._likely if len(self._likely) > 1 else []
+        box = self.box(canvas)
+        left, top = box.left + _LEFT, box.top
+        canvas.panel(box)
+        looks = isinstance(self.values, Landings)
+        canvas.text(texts.LANDINGS_TITLE if looks else texts.DECISION_TITLE, (left, top + 34), room=_WIDTH)
+        if isinstance(self.values, Landings):
+            draw_landings(canvas, self.values, left, top + _VALUES, _WIDTH)
+        elif self.values is not None:
+            draw_q_values(canvas, self.values, left, top + _VALUES, _WIDTH)
+        canvas.line((left, top + _WHY), (left + _WIDTH, top + _WHY), LINE)
+        self._draw_why(canvas, left, top + _WHY + 26)
+        if pads:
+            self._draw_pads(canvas, pads, left, top + _PADS)
+        y = top + _WHY + 104 + box.height - _SIZE[1]
+        draw_share(canvas, left, y, _WIDTH, share)
+        canvas.explain((left, y - 14, _WIDTH, 30), texts.EXPLAIN_SHARE)
+
+    def _draw_why(self, canvas: Canvas, left: float, top: float) -> None:
+        """Draw whose action is flown; the latest override stays for a moment, marked as past."""
+        title, *lines = self._override or self.why
+        if self._override not in (None, self.why):
+            title = texts.COPILOT_PANEL_BEFORE.format(title=title)
+        canvas.text(title, (left, top), colour=NET if self._override else INK, room=_WIDTH)
+        canvas.explain((left, top - 16, _WIDTH, 62), texts.EXPLAIN_COPILOT_WHY)
+        for number, line in enumerate(lines):
+            canvas.text(line, (left, top + 22 + 18 * number), size=SMALL, colour=MUTE, room=_WIDTH)
+
+    def _draw_pads(self, canvas: Canvas, pads: Sequence[float], left: float, top: float) -> None:
+        surest = max(pads)
+        canvas.text(texts.COPILOT_PANEL_MEANT, (left, top - 20), size=LABEL, colour=MUTE, weight="medium", room=_WIDTH)
+        canvas.explain((left, top - 34, _WIDTH, 92), texts.EXPLAIN_COPILOT_MEANT)
+        for number, (name, chance) in enumerate(zip(self._names, pads, strict=True)):
+            y, likeliest = top + 22 * number, chance == surest
+            canvas.text(name, (left, y + 4), size=SMALL, colour=INK if likeliest else MUTE)
+            bar = (left + _NAME, y - 1.5, _WIDTH - _NAME, 3)
+            canvas.bar(bar, chance, HUMAN if likeliest else mix(FAINT, HUMAN, 0.45))
+
+
+def landings_of(futures: SixFutures, flight: Flight) -> Landings:
+    """Return what comes of each action as a row of the panel."""
+    after = [Landing.UNKNOWN if lands is None else Landing.LANDS if lands else Landing.LOST for lands in futures.lands]
+    flown = flight.recording.actions[-1] if flight.recording.actions else COAST
+    return Landings(tuple(after), (flown, after[flown]), flown, HELD)
+
+
+def shared_values(decision: SharedDecision, pad: int) -> QValues:
+    """Return the Q-values of one lander's shared decision, for one of the pads as the goal."""
+    from ai.copilot.copilot import Mode, guardian_margin
+
+    points, asked = decision.points[0, pad], int(decision.pilot[0])
+    feasible, allowed = decision.feasible[0], None
+    if asked != COAST and decision.mode is Mode.GUARDIAN:  # a guardian compares the action asked for with its own only
+        feasible = (np.arange(NUM_ACTIONS) != asked) | feasible
+        allowed = guardian_margin(decision.assist) if decision.points.shape[1] == 1 else None
+    elif asked != COAST:
+        allowed = (1.0 - decision.assist) * float(np.ptp(points))
+    return QValues(
+        tuple(points.tolist()),
+        int(decision.action[0]),
+        None if asked == COAST else asked,
+        tuple(feasible.tolist()),
+        allowed,
+    )
+
+
+def why(decision: SharedDecision, values: QValues) -> Why:
+    """Explain whose action is flown, and why, by the figures that decided it."""
+    from ai.copilot.copilot import Mode
+    from ai.copilot.guardian import ActionSource
+
+    source, asked = ActionSource(int(decision.source[0])), values.asked
+    if asked is None:
+        return texts.COPILOT_PANEL_WHY[ActionSource.HANDS_OFF.name]
+    title, *lines = texts.COPILOT_PANEL_WHY[source.name]
+    if not values.readable:
+        return title, *texts.VALUES_DAMAGED
+    name = texts.said(ACTION_NAMES[asked]).capitalize()
+    if decision.mode is Mode.GUARDIAN:
+        return title, *_guarded(decision, name)
+    loss, allowed = values.loss(asked), values.allowed or 0.0
+    if source is ActionSource.PILOT and loss == 0.0:
+        return title, texts.COPILOT_PANEL_SAME.format(asked=name), ""
+    if source is ActionSource.PILOT and loss > allowed * (1 + 1e-5):  # it is feasible for another pad
+        return title, texts.COPILOT_PANEL_BELOW.format(asked=name, loss=f"{loss:.1f}"), texts.COPILOT_PANEL_ANOTHER
+    less, most = _told_apart(loss, allowed)
+    if source is ActionSource.COPILOT and values.loss(values.flown) > 0.0:  # not the best for the pad that is shown
+        lines[1] = texts.COPILOT_PANEL_EVERY_PAD
+    flown = texts.said(ACTION_NAMES[values.flown])
+    first, second = (line.format(asked=name, loss=less, allowed=most, flown=flown) for line in lines)
+    return title, first, second
+
+
+def _guarded(decision: SharedDecision, name: str) -> tuple[str, str]:
+    """Explain by how much a guardian's own action is better for every pad, and whether that exceeds its margin."""
+    from ai.copilot.copilot import guardian_margin
+
+    asked, best = int(decision.pilot[0]), int(decision.best[0])
+    if asked == best:
+        return texts.COPILOT_PANEL_SAME.format(asked=name), ""
+    gain, margin = float(decision.gain[0]), guardian_margin(decision.assist)
+    if gain <= 0.0:
+        return texts.COPILOT_PANEL_SAME_GOOD.format(asked=name), ""
+    less, most = _told_apart(gain, margin)
+    first = texts.COPILOT_PANEL_WORSE.format(asked=name, loss=less, best=texts.said(ACTION_NAMES[best]))
+    return first, texts.COPILOT_PANEL_MARGIN[bool(gain > margin)].format(allowed=most)
+
+
+def _told_apart(one: float, other: float) -> tuple[str, str]:
+    """Format two figures with enough digits that the larger one also reads as larger."""
+    for digits in range(1, 5):
+        words = f"{one:.{digits}f}", f"{other:.{digits}f}"
+        if words[0] != words[1] or one == other:
+            break
+    return words

@@ -1,0 +1,238 @@
+"""Descent: an endless chain of legs from pad to pad with one tank, which landings refill.
+
+A run is flown from its first leg until the craft is lost. The next leg hangs, on its feet, until it is touched. The
+network flies every leg beside the player as a ghost, or as a relief; a run that it has had a part in does not count
+as the player's own. After a run its own flights are the ghosts of the next try over the same ground.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+import pygame
+
+from ai.flights.verification import DESCENT, landing_score
+from ai.lander.descent import TANK, LegStart, leg_of
+from ai.lander.environment import LanderEnv, Outcome
+from ai.lander.ground import Ground
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NET, NIGHT0, SMALL, TEXT
+from game.flight.credit import Credit
+from game.flight.flight import Flight, Recording
+from game.flight.flight_file import Entry
+from game.flight.logbook import best_descent
+from game.flight.networks import Policy
+from game.flight.outcomes import OutcomeCard
+from game.flight.replay import ReplayedFlight
+from game.scenes.play.challenge import Challenge, DrawnFlight
+from game.scenes.play.ghost import Ghost
+from game.world.camera import ClearArea, View
+
+_MOST: Final = 5  # the highest factor of a row of landings
+_FILLS: Final = 40  # steps in which the tank is seen to fill
+_FADES: Final = 24  # steps in which a new leg appears
+_GAUGE: Final = (120.0, 4.0)
+_OVER_PAD: Final = (0.75, 42.0)  # metres and points above the goal at which its mark points down, over its factor
+_EDGE: Final = (90.0, 140.0)  # points that marks keep from the sides, and from the lower edge
+_ANTENNA: Final = 2.0  # metres from the middle of a craft to the word of its contact light
+_CLEAR: Final = 44.0  # points from there up to what the landing has brought
+
+
+class Descent(Challenge):
+    """One run after another.
+
+    Attributes:
+        start: where the present leg begins.
+        legs: how many legs the run has landed.
+        total: points of the run.
+        streak: landings in a row by the player's own hands.
+        best: legs and points of the player's best run before this one.
+
+    """
+
+    name = DESCENT
+    title = texts.DESCENT_TITLE
+    fixed = compares = False
+    again_hint = texts.DESCENT_AGAIN
+    new_hint = texts.DESCENT_NEW
+
+    def __init__(self) -> None:
+        self.best, self._seed = (0, 0), -1
+        self._flown: list[Recording] = []
+        self._before: list[Recording] = []  # an earlier run over the same ground
+        self._clear()
+
+    def _clear(self) -> None:
+        self.start = self._next = LegStart()
+        self.legs = self.total = self.streak = 0
+        self._landed = self._relieved = False
+        self._counts = True
+        self._points, self._gained, self._since = 0, 0.0, 0
+
+    def _start_run(self, seed: int) -> None:
+        """Begin a run; over the same ground as the last one, beside the longest so far."""
+        longest = max(self._before, self._flown, key=len)
+        self._before, self._flown = longest if seed == self._seed else [], []
+        if self._counts:
+            self.best = max(self.best, (self.legs, self.total))
+        self._seed = seed
+        self._clear()
+
+    def recall(self, entries: Iterable[Entry]) -> None:
+        """Take the player's best from the logbook."""
+        self.best = max(self.best, best_descent(entries))
+
+    # The run
+
+    def flight(self, seed: int, network: Policy | None) -> Flight:
+        """Begin the next leg after a landing; otherwise begin a run."""
+        if seed != self._seed or not self._landed:
+            self._start_run(seed)
+        self.start, self._landed, self._since = self._next, False, 0
+        return Flight(seed, network, leg=self.start)
+
+    def ghost(self, seed: int, network: Policy | None) -> Ghost | None:
+        """Begin the ghost: the player's earlier flight of this leg or, without one, the network."""
+        number = self.start.number
+        if number <= len(self._before):
+            return Ghost(ReplayedFlight(self._before[number - 1]), texts.GHOST_BEFORE)
+        return Ghost(Flight(seed, network, leg=self.start), texts.MISSION_RIVAL) if network else None
+
+    def settle(self, flight: Flight, credit: Credit) -> None:
+        """Count a finished leg: points, the row of landings, and what it brings into the tank."""
+        env = flight.env
+        self._flown.append(flight.recording)
+        self._landed = flight.outcome is Outcome.LANDED
+        own = flight.share == 1.0
+        self._counts &= credit.counts
+        self._relieved |= not own
+        if not self._landed:
+            return
+        spot, score = env.ground.pads[int(env.landed_on[0])], landing_score(env)
+        self.streak = self.streak + 1 if own else 0
+        self._points = score * min(self.streak, _MOST)
+        self.total += self._points
+        self.legs = self.start.number
+        self._next = self.start.after(float(env.fuel[0]), score, bare=spot.bare)
+        self._gained = max(0.0, self._next.tank - max(0.0, self.start.tank - float(env.fuel[0])))
+
+    @property
+    def bar(self) -> str:  # type: ignore[override]
+        """Why the run does not count as the player's own, a key of `texts.NOT_COUNTED`; empty while it does."""
+        return "relieved" if self._relieved else ""
+
+    @property
+    def under_way(self) -> bool:
+        """Whether leaving would end a run that has landed."""
+        return self.legs > 0 and (self._landed or self.start.number > 1)
+
+    @property
+    def stake(self) -> tuple[str, str] | None:
+        """A run that has landed is lost with another start."""
+        return (texts.DESCENT_STAKE, texts.DESCENT_STAKE_MORE.format(count=self.legs)) if self.under_way else None
+
+    def again(self) -> bool:
+        """Whether the next leg follows: after every landing."""
+        return self._landed
+
+    @property
+    def ahead(self) -> Ground:  # type: ignore[override]
+        """The ground of the next leg, as it will be unless this one ends on a flat spot."""
+        return leg_of(self._seed, self._next if self._landed else LegStart(self.start.number + 1)).ground
+
+    def follow(self, flight: Flight) -> str:
+        """Let the tank fill once the craft has landed."""
+        self._since += flight.over
+        return ""
+
+    # In words
+
+    @property
+    def line(self) -> str:  # type: ignore[override]
+        """Number of the leg, and what stands in its way."""
+        kinds = texts.AND.join(texts.DESCENT_KINDS[kind] for kind in leg_of(self._seed, self.start).kinds)
+        return texts.DESCENT_LEG.format(number=self.start.number, kinds=kinds)
+
+    @property
+    def goal(self) -> str:  # type: ignore[override]
+        """Points, the row of landings, and the best run."""
+        words = [texts.DESCENT_POINTS.format(count=self.total)]
+        if self.streak > 1:
+            words.append(texts.DESCENT_STREAK.format(factor=min(self.streak, _MOST)))
+        if self.best[0]:
+            words.append(texts.DESCENT_BEST.format(count=self.best[0]))
+        return texts.DIAL_JOIN.join(words)
+
+    @property
+    def opening(self) -> str:  # type: ignore[override]
+        """What to do on this leg."""
+        leg = leg_of(self._seed, self.start)
+        if self.start.number == 1:
+            return texts.DESCENT_BEGIN
+        if any(pad.bare and pad.factor for pad in leg.ground.pads):
+            return texts.DESCENT_SPOT
+        return texts.DESCENT_HINTS[leg.kinds[-1]]
+
+    def card(self, card: OutcomeCard, flight: Flight, credit: Credit) -> OutcomeCard:
+        """Return the card of a run's end: how far, how many points, and whether it was the best."""
+        best = self._counts and (self.legs, self.total) > self.best and self.legs > 0
+        figures = (
+            (texts.DESCENT_FIGURES[0], f"{self.legs}", ""),
+            (texts.DESCENT_FIGURES[1], f"{self.total}", ""),
+            (texts.DESCENT_FIGURES[2], f"{max(self.best[0], self.legs if best else 0)}", ""),
+        )
+        empty = float(flight.env.fuel[0]) >= flight.env.conditions.tank
+        told = texts.DESCENT_NEW_BEST if best else texts.NOT_COUNTED[self.bar] if self._relieved else card.advice
+        return replace(card, figures=figures, score=texts.DESCENT_LEGS.format(count=self.legs),
+                       advice=texts.DESCENT_EMPTY if empty else told)  # fmt: skip
+
+    # The picture
+
+    def draw(self, canvas: Canvas, view: View, flight: Flight, scene: DrawnFlight) -> None:
+        """Draw the mark of the goal and, on the ground, what the landing has brought."""
+        if not flight.over:
+            self._draw_goal(canvas, view, flight.env)
+        elif self._landed:
+            craft = view.points(flight.poses.at(scene.alpha)[0, :2] + (0.0, _ANTENNA)).tolist()
+            self._draw_landing(canvas, craft, 1.0 if scene.calm else min(1.0, self._since / _FILLS))
+        if scene.waiting and self.start.number > 1 and not scene.calm and scene.age < _FADES:
+            _draw_veil(canvas, 1 - scene.age / _FADES)
+
+    def _draw_goal(self, canvas: Canvas, view: View, env: LanderEnv) -> None:
+        """Point to the goal and write how far it is, at the edge of the view where it lies beyond."""
+        pad = env.ground.pads[0]
+        x, y = view.point(pad.x, pad.top + _OVER_PAD[0])
+        (side, low), seen = _EDGE, canvas.view
+        row = min(max(y - _OVER_PAD[1], seen.top + ClearArea.head), seen.bottom - low)
+        spot = min(max(x, seen.left + side), seen.right - side), row
+        away = float(np.hypot(*(env.position[0] - (pad.x, pad.top + env.params.stand))))
+        canvas.text(texts.DESCENT_AWAY.format(metres=away), (spot[0], spot[1] - 12), size=SMALL, colour=INK,
+                    align="centre", tabular=True, alpha=0.8)  # fmt: skip
+        for lean in (-5, 5):
+            canvas.line((spot[0] + lean, spot[1] - 6), (spot[0], spot[1]), INK, 1.5, 0.8)
+
+    def _draw_landing(self, canvas: Canvas, craft: tuple[float, float], filled: float) -> None:
+        """Write above the craft what the landing has earned, over the tank that fills."""
+        (x, y), (width, height) = craft, _GAUGE
+        x, y = min(max(x, canvas.view.left + 2 * _EDGE[0]), canvas.view.right - 2 * _EDGE[0]), y - _CLEAR
+        words = texts.DESCENT_LANDED.format(count=self._points) if self._points else texts.DESCENT_RELIEVED
+        colour = HUMAN if self._points else NET
+        canvas.text(words, (x, y - 22), size=TEXT, colour=colour, align="centre")
+        fuel = texts.DESCENT_FUEL.format(seconds=self._gained) if self._gained > 0 else texts.DESCENT_NO_FUEL
+        canvas.text(fuel, (x, y - 4), size=SMALL, colour=MUTE, align="centre")
+        after = self._next.tank
+        now = after - (1 - filled) * self._gained
+        left = x - width / 2
+        canvas.pill((left, y + 6, width, height), FAINT)
+        canvas.pill((left, y + 6, max(height, width * now / TANK), height), canvas.palette.good)
+
+
+def _draw_veil(canvas: Canvas, strength: float) -> None:
+    """Darken the view, `strength` 0 to 1: a new leg appears out of the dark."""
+    # Two fills in place take half as long as a translucent picture of the whole window.
+    canvas.surface.fill([round(255 * (1 - strength))] * 3, special_flags=pygame.BLEND_RGB_MULT)
+    canvas.surface.fill([round(strength * part) for part in NIGHT0], special_flags=pygame.BLEND_RGB_ADD)

@@ -1,0 +1,197 @@
+"""Words at the head of a flight: all that is to be known while the craft waits, one sentence while it flies.
+
+They are laid out in rows and columns for any window and any size of text: names at the left, keys at the right, and
+below both, in the middle, what to do. Nothing here knows where it will stand.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Final
+
+import pygame
+
+from game.drawing.canvas import Now
+from game.drawing.cursor import LEADING, Cursor
+from game.drawing.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, TEXT, Colour
+from game.panels.readouts import Lamp
+from game.scenes.play.ladder_mark import WIDTH, draw_ladder
+from game.ui.hints import Hint, HintRow
+
+if TYPE_CHECKING:
+    from game.drawing.canvas import Canvas
+    from game.scenes.play.help_words import HelpWords
+
+_SIDES, _TOP = 0.05, 20.0  # free at either side, of the width; and points above
+_NARROW: Final = 860.0  # points of a window in which keys stand above names
+_SENTENCE: Final = 18.0
+_WIDEST: Final = 620.0  # points of a line of it
+_LINE: Final = 29.0  # from one row of keys to the next
+_DOTS: Final = 30.0
+
+
+@dataclass
+class Head:
+    """What is said at the head of a flight.
+
+    Attributes:
+        sentence: the one sentence; with `lamp` before it, and a mark if it warns.
+        lamp: shape, colour and glow of who flies; None for none.
+        caption, name: the kind of flight, and its name.
+        rung: place on the ladder of starts, drawn beside the caption; None off it.
+        aside: what else is to be known of it.
+        hints: the keys at the right.
+        controls: the keys of the craft, below the sentence.
+        paths: legend of the dotted paths, their words and colours.
+        help: the three words of help, and what they mean now; None where nobody can help.
+
+    """
+
+    sentence: str = ""
+    warns: bool = False
+    lamp: Lamp | None = None
+    caption: str = ""
+    name: str = ""
+    rung: int | None = None
+    aside: Sequence[str] = ()
+    hints: Sequence[Hint] = ()
+    controls: Sequence[Hint] = ()
+    paths: Sequence[tuple[str, Colour]] = ()
+    help: HelpWords | None = None
+    means: Now = field(default=str)
+
+    def write(self, canvas: Canvas, *, drawn: bool = True) -> float:
+        """Write it, or only measure; return the y of its lower end, in points of `canvas.reading`."""
+        return _Layout(self, canvas, drawn).write()
+
+    def hint_rows(self, canvas: Canvas) -> list[HintRow]:
+        """Return the keys at the right, in as many rows as they need."""
+        return _Layout(self, canvas, drawn=False).key_rows()
+
+    def help_boxes(self, canvas: Canvas) -> dict[str, pygame.FRect]:
+        """Return where each word of help can be pressed."""
+        layout = _Layout(self, canvas, drawn=False)
+        layout.write()
+        return self.help.boxes(canvas, canvas.view.centerx, layout.help_line) if self.help else {}
+
+
+class _Layout:
+    def __init__(self, head: Head, canvas: Canvas, drawn: bool) -> None:
+        self.head, self.canvas, self.drawn = head, canvas, drawn
+        view = canvas.view
+        self.side = max(min(MARGIN, _SIDES * view.width), 12.0)
+        self.narrow = view.width < _NARROW
+        self.help_line = 0.0
+
+    def cursor(self, left: float, y: float, width: float, size: float = TEXT, colour: Colour = INK) -> Cursor:
+        return Cursor(left, y, width, self.canvas.scale, self.canvas if self.drawn else None, size=size, colour=colour)
+
+    def key_rows(self) -> list[HintRow]:
+        view = self.canvas.view
+        room = view.width - 2 * self.side if self.narrow else 0.36 * view.width
+        rows: list[list[Hint]] = []
+        for hint in self.head.hints:
+            if rows and HintRow([*rows[-1], hint], (0, 0)).width(self.canvas) <= room:
+                rows[-1].append(hint)
+            else:
+                rows.append([hint])
+        right = view.right - self.side
+        return [HintRow(row, (right, _TOP + 16 + _LINE * number), from_right=True) for number, row in enumerate(rows)]
+
+    def write(self) -> float:
+        rows = self.key_rows()
+        for row in rows if self.drawn else ():
+            row.draw(self.canvas)
+        keys = _TOP + _LINE * len(rows) if rows else 0.0
+        names = self._names(keys if self.narrow else 0.0)
+        # In flight there is nothing beside the sentence, or so little that both have room.
+        alone = not names and (not rows or not self.narrow)
+        y = self._middle(_TOP if alone else max(keys, names) + 8, beside=self._reach(rows) if alone else 0.0)
+        return max(y, keys, names)
+
+    def _reach(self, rows: Sequence[HintRow]) -> float:
+        return max((row.width(self.canvas) + self.side for row in rows), default=0.0)
+
+    def _names(self, top: float) -> float:
+        """Write what is flown, at the left; return the lower end, 0 if there is nothing."""
+        head, view = self.head, self.canvas.view
+        if not (head.caption or head.name or head.aside):
+            return 0.0
+        width = view.width - 2 * self.side if self.narrow else 0.36 * view.width
+        cursor = self.cursor(view.left + self.side, max(top, _TOP), width, SMALL, MUTE)
+        if head.caption:
+            if head.rung is not None and self.drawn:
+                end = cursor.left + cursor.measured(head.caption)
+                if end + WIDTH + 12 < cursor.right:
+                    draw_ladder(self.canvas, end + 12, cursor.baseline, head.rung)
+            cursor.text(head.caption)
+        if head.name:
+            name = cursor.in_style(TEXT, INK)
+            name.text(head.name)
+            cursor.y = name.y
+        for words in head.aside:
+            cursor.text(words)
+        return cursor.y
+
+    def _middle(self, top: float, beside: float) -> float:
+        """Write the sentence, and what stands below it; return the lower end."""
+        head, view, canvas = self.head, self.canvas.view, self.canvas
+        room = min(_WIDEST, view.width - 2 * max(self.side + 24, beside + 24))
+        cursor = self.cursor(view.centerx - room / 2, top, room, _SENTENCE)
+        if head.sentence:
+            self._write_sentence(cursor)
+        if head.controls:
+            row = HintRow(head.controls, (0, 0), size=TEXT)
+            width = row.width(canvas)
+            cursor.gap(6)
+            if self.drawn:
+                replace(row, position=(view.centerx - width / 2, cursor.y + TEXT)).draw(canvas)
+            cursor.gap(LEADING * TEXT)
+        if head.paths:
+            cursor.gap(4)
+            self._write_paths(cursor)
+        if head.help:
+            cursor.gap(12)
+            self.help_line = cursor.y + SMALL
+            if self.drawn:
+                head.help.draw(canvas, view.centerx, self.help_line, head.means)
+            cursor.gap(LEADING * SMALL + 6)
+        return cursor.y
+
+    def _write_sentence(self, cursor: Cursor) -> None:
+        head, canvas = self.head, self.canvas
+        colour = canvas.palette.warn if head.warns else INK
+        words = cursor.in_style(colour=colour)
+        top, width = cursor.y, min(cursor.measured(head.sentence), cursor.width)
+        words.text(head.sentence, "centre")
+        cursor.y = words.y
+        if self.drawn and head.lamp:
+            lamp: Lamp = ("triangle", colour, 0.5) if head.warns else head.lamp
+            shape, tint, glow = lamp
+            spot = (cursor.left + (cursor.width - width) / 2 - 18, top + 0.68 * _SENTENCE)
+            canvas.glow(spot, 16, tint, glow)
+            canvas.marker(shape, spot, 8 if shape == "circle" else 11, tint)
+
+    def _write_paths(self, cursor: Cursor) -> None:
+        """Write the legend of the paths, side by side where there is room."""
+        small = cursor.in_style(SMALL, MUTE)
+        widths = [small.measured(words) + _DOTS for words, _ in self.head.paths]
+        across = sum(widths) + 28 * (len(widths) - 1) <= cursor.width
+        x = cursor.left + (cursor.width - (sum(widths) + 28 * (len(widths) - 1) if across else max(widths))) / 2
+        for (words, colour), width in zip(self.head.paths, widths, strict=True):
+            if self.drawn:
+                for number in range(3):
+                    self.canvas.dot((x + 4 + 8 * number, cursor.y + 0.62 * SMALL), 1.5, colour)
+                self.canvas.text(words, (x + _DOTS, cursor.y + SMALL), size=SMALL, colour=MUTE)
+            if across:
+                x += width + 28
+            else:
+                cursor.gap(LEADING * SMALL)
+        if across:
+            cursor.gap(LEADING * SMALL)
+
+
+def path_words(yours: str, network: str) -> list[tuple[str, Colour]]:
+    """Return the legend of the paths ahead, of the network's only if it has words."""
+    return [(yours, HUMAN), *([(network, NET)] if network else [])]

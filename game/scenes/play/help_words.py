@@ -1,0 +1,108 @@
+"""How much a network helps, in three words: off, guard, guide; one of them is chosen by keys, wheel or mouse."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import pygame
+
+from game.core import texts
+from game.core.settings import Settings
+from game.drawing.tokens import INK, MUTE, NET, SMALL
+from game.input.controls import Command, translate
+
+if TYPE_CHECKING:
+    from game.drawing.canvas import Canvas, Now
+
+GUARDIAN: Final = "guardian"  # the mode in which help goes by futures
+# Assist of each word: a guardian looks so far ahead that it steps in at the last moment, or eight decisions before it.
+HELP: Final = {"off": 0.0, "guard": 0.04, "guide": 0.64}
+OTHER: Final = "other"  # any other place of the dial, or another mode
+_APART: Final = 20.0
+_SHOWN: Final = 120  # steps that the words are seen after a change
+
+
+def word_of(settings: Settings) -> str:
+    """Return the word for the help that is set, a key of `HELP`, or `OTHER`."""
+    if settings.assist == 0:
+        return "off"
+    here = [word for word, assist in HELP.items() if assist == settings.assist and settings.copilot == GUARDIAN]
+    return here[0] if here else OTHER
+
+
+def means(settings: Settings) -> str:
+    """Say what the help that is set means."""
+    word = word_of(settings)
+    return texts.HELP_MEANS[settings.copilot if word == OTHER else word]
+
+
+def choose(settings: Settings, word: str) -> None:
+    """Set the help of a word."""
+    settings.assist = HELP[word]
+    if settings.assist:
+        settings.copilot = GUARDIAN
+
+
+class HelpWords:
+    """The three words of one flight, which set `settings`; they are seen while they are of use.
+
+    Attributes:
+        shown: steps for which they are still seen after a change.
+
+    """
+
+    def __init__(self, settings: Settings) -> None:
+        self._settings = settings
+        self.shown = 0
+
+    def take(self, event: pygame.event.Event, boxes: dict[str, pygame.FRect]) -> bool:
+        """Choose by an event, a mouse's among the words in their boxes; return whether it was meant for them."""
+        if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
+            word = next((word for word, box in boxes.items() if box.collidepoint(event.pos)), OTHER)
+            if word != OTHER:
+                self._choose(word)
+            return word != OTHER
+        if event.type == pygame.MOUSEWHEEL:
+            self._step(1 if event.y > 0 else -1)
+            return True
+        command = translate(event)
+        if command not in (Command.SLOWER, Command.FASTER):
+            return False
+        self._step(1 if command is Command.FASTER else -1)
+        return True
+
+    def _step(self, by: int) -> None:
+        """Go to the next word that helps more, or less."""
+        now, mine = self._settings.assist, list(HELP.values())
+        beyond = [assist for assist in mine if (assist > now if by > 0 else assist < now)]
+        if beyond or word_of(self._settings) == OTHER:
+            self._choose(list(HELP)[mine.index(beyond[0] if by > 0 else beyond[-1]) if beyond else -1])
+
+    def _choose(self, word: str) -> None:
+        choose(self._settings, word)
+        self.shown = _SHOWN
+
+    def boxes(self, canvas: Canvas, middle: float, y: float) -> dict[str, pygame.FRect]:
+        """Return where each word stands, around a middle, on a baseline; and the dial's place, if it is another."""
+        words = [*HELP, *([OTHER] if word_of(self._settings) == OTHER else [])]
+        widths = {word: canvas.text_width(self._label(word), size=SMALL) for word in words}
+        x, found = middle - (sum(widths.values()) + _APART * (len(widths) - 1)) / 2, {}
+        for word, width in widths.items():
+            found[word] = pygame.FRect(x - _APART / 2, y - 18, width + _APART, 28)
+            x += width + _APART
+        return found
+
+    def _label(self, word: str) -> str:
+        return (
+            texts.SOUND_SHARE.format(percent=round(100 * self._settings.assist)) if word == OTHER else texts.HELP[word]
+        )
+
+    def draw(self, canvas: Canvas, middle: float, y: float, means: Now) -> None:
+        """Draw the words, with a line under the one that is chosen; `means` says what that does now."""
+        now = word_of(self._settings)
+        for word, box in self.boxes(canvas, middle, y).items():
+            chosen = word == now
+            canvas.text(self._label(word), (box.centerx, y), size=SMALL, colour=INK if chosen else MUTE, align="centre")
+            if chosen:
+                canvas.line((box.left + _APART / 2, y + 6), (box.right - _APART / 2, y + 6), NET, 2)
+                canvas.explain(box, texts.EXPLAIN_DIAL, means)

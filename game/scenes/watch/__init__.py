@@ -1,0 +1,1 @@
+"""Watching a network fly: a swarm, what one of its landers weighs, and a hand that places it elsewhere."""

@@ -1,0 +1,83 @@
+"""Decision panel of a network that flies alone: the six Q-values and nine inputs of the decision flown."""
+
+from __future__ import annotations
+
+import math
+from functools import cache, partial
+from typing import Final
+
+import numpy as np
+import pygame
+
+from ai.common.decision import Decision
+from ai.lander.environment import OBSERVATION_SCALE
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import INK, LABEL, LINE, MUTE, SMALL
+from game.panels.q_values import HEIGHT, QValues, decision_words, draw_actions, draw_q_values
+from game.panels.readouts import draw_centred_bars
+
+PANEL: Final = pygame.Rect(964, 84, 280, 504)
+_COVER: Final = 0.92  # opacity: the small text must stay readable while landers fly past behind it
+_LEFT: Final = 20  # left edge of the content, from the panel's corner
+_VALUES: Final = 62  # first baseline of the values, from the panel's top
+_WORDS: Final = _VALUES + HEIGHT + 28
+_INPUTS: Final = _WORDS + 72  # first baseline of the inputs
+_PITCH: Final = 18
+_FIGURE: Final = 52  # room for an input's figure
+
+
+def draw_decision(canvas: Canvas, decision: Decision) -> None:
+    """Draw the decision of one lander exactly as it was made: nothing is recomputed or eased."""
+    canvas = canvas.at(1, -1)
+    left, top, width = PANEL.left + _LEFT, PANEL.top, PANEL.width - 2 * _LEFT
+    canvas.panel(PANEL, _COVER)
+    values = QValues.of(decision)
+    canvas.text(texts.DECISION_SCRIPTED_TITLE if values is None else texts.DECISION_TITLE, (left, top + 34), room=width)
+    if values is None:
+        draw_actions(canvas, int(decision.action[0]), left, top + _VALUES)
+        canvas.explain((left, top + _VALUES - 14, width, HEIGHT - 20), texts.EXPLAIN_RULES)
+    else:
+        draw_q_values(canvas, values, left, top + _VALUES, width)
+    for number, line in enumerate(decision_words(decision)):
+        canvas.text(line, (left, top + _WORDS + 18 * number), size=SMALL, colour=MUTE if number else INK, room=width)
+    canvas.explain((left, top + _WORDS - 14, width, 38), texts.EXPLAIN_WHY, partial(_keeps, decision))
+    canvas.line((left, top + _WORDS + 32), (left + width, top + _WORDS + 32), LINE)
+    canvas.text(texts.DECISION_INPUTS, (left, top + _WORDS + 54), size=LABEL, colour=MUTE, weight="medium")
+    _draw_inputs(canvas, decision.observation[0].tolist(), left, top + _INPUTS, width)
+
+
+def _draw_inputs(canvas: Canvas, inputs: list[float], left: float, top: float, width: float) -> None:
+    """Draw each input of the network: its figure, and a bar compressed by tanh."""
+    draw_centred_bars(canvas, np.tanh(inputs).tolist(), top, left, width - _FIGURE, _PITCH)
+    for number, (name, value) in enumerate(zip(texts.INPUTS, inputs, strict=True)):
+        y = top + _PITCH * number + 4
+        canvas.text(name, (left, y), size=LABEL, colour=MUTE, room=90)
+        figure = f"{value:.2f}".replace("-", "−")
+        canvas.text(figure, (left + width, y), size=LABEL, colour=MUTE, align="right", tabular=True)
+        canvas.explain((left, y - 13, width, _PITCH), _what(number), partial(_sensed, inputs, number))
+
+
+@cache
+def _what(number: int) -> str:
+    """Say what an input is, and its unit."""
+    return texts.EXPLAIN_INPUTS[number].format(unit=1 / OBSERVATION_SCALE[number])
+
+
+def _sensed(inputs: list[float], number: int) -> str:
+    """Say what an input means, in metres, seconds and degrees."""
+    value = inputs[number] / float(OBSERVATION_SCALE[number])
+    if number in (4, 5):
+        value = math.degrees(math.asin(value) if number == 4 else math.acos(value)) if abs(value) <= 1 else 0.0
+    elif number == 6:
+        value = math.degrees(value)
+    return texts.EXPLAIN_INPUTS_NOW[number].format(value=value).replace("-", "−")
+
+
+def _keeps(decision: Decision) -> str:
+    """Say when this pilot keeps an action."""
+    if decision.points is None:
+        return texts.EXPLAIN_WHY_RULES
+    if not decision.margin:
+        return texts.EXPLAIN_WHY_BEST
+    return texts.EXPLAIN_WHY_NOW.format(margin=decision.margin)

@@ -1,0 +1,346 @@
+"""Watch scene: a network flies one lander or a swarm; a panel shows the decisions of one lander."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Final
+
+import pygame
+
+from ai.common.decision import Decision
+from ai.files import brief
+from game.core import texts
+from game.core.scene import Transition, push
+from game.drawing import typeface
+from game.drawing.canvas import Canvas, moved
+from game.drawing.tokens import HUMAN, MARGIN, MUTE, NET, SMALL, TEXT, VIEW_SIZE
+from game.flight import networks
+from game.flight.swarm import Swarm
+from game.input.controls import Command
+from game.panels import readouts
+from game.panels.explained import Explained
+from game.panels.run_status import draw_landings
+from game.scenes.watch.decision_panel import PANEL, draw_decision
+from game.scenes.watch.map_legend import draw_legend
+from game.scenes.watch.touch import Hand
+from game.scenes.watch.watched import SIZES, Watched
+from game.ui.actions import Action, Table
+from game.ui.context import Context
+from game.ui.form_scene import FormScene
+from game.ui.hints import HintRow
+from game.ui.pick import ChoiceOrList
+from game.ui.playback import LABEL_WIDTH
+from game.ui.widget import OnPress
+from game.ui.widgets import Choice
+from game.ui.words import GAP
+from game.world.camera import Camera
+from game.world.policy_map import ACTION
+
+COUNTS: Final = tuple(SIZES)
+_ROW: Final = (MARGIN, 624.0, 22.0)  # left and top of the first row of choices, and how far to the next
+_ROW_HEIGHT: Final = 17.0
+_WIDEST: Final = 452.0  # of a row: the pad begins there
+_LONGEST_NAME: Final = 24
+_LONGEST_PROBLEM: Final = 110
+_READOUTS: Final = (758.0, 880.0, 1002.0, 1124.0)  # left ends of the read-outs
+_TOUCHED: Final = pygame.Rect(40, 108, PANEL.left - 80, 600)  # where the hand can put a lander
+
+
+class WatchScene(FormScene):
+    """Watch scene: a swarm in the sky, one lander's decision in a panel, choices on the ground line.
+
+    A `guest`, a name and a folder, is a network that is none of the player's: it flies at first, and is not remembered.
+
+    Attributes:
+        network: the network that flies, one of `policies`.
+        world: what flies, and what is drawn of it.
+        hand: the player's hand on the lander that is shown.
+
+    """
+
+    fills = True
+
+    def __init__(
+        self, context: Context, count: int = 1, seed: int | None = None, guest: tuple[str, Path] | None = None
+    ) -> None:
+        super().__init__(context)
+        self.form.anchor = (-1, 1)
+        self._count = COUNTS.index(count)
+        self.world = Watched(context)
+        self.playback = self.world.playback
+        self.explained = Explained()
+        self.problem = self._wanted = ""
+        self._settings = context.settings
+        self._guests = dict([guest]) if guest else {}
+        self.policies = networks.Policies(context.models_dir, context.user_dir, self._guests)
+        names = self.policies.names
+        first = guest[0] if guest else context.settings.model
+        wanted = names.index(first) if first in names else 0
+        self._model_choice = self.form.add(self._network_row(wanted))
+        self._count_choice = self._add_choice(
+            1, texts.WATCH_COUNT, [str(count) for count in COUNTS], self._count, self._choose_count
+        )
+        self._speed_choice = self.form.add(self.playback.row(self.form.manager, self._row_box(2, self.playback.words)))
+        self._map_choice = self._map_row()
+        self.form.add(self._map_choice)
+        self.hand = self.form.add(Hand(self.form.manager, self.world, _TOUCHED, lambda: self.world.size, context.view))
+        self._seed = int(context.rng.integers(2**31)) if seed is None else seed
+        self._choose_network(wanted)
+        if self.problem:
+            self.network = self.policies.first_fit()
+            self._begin()
+
+    @property
+    def swarm(self) -> Swarm:
+        """The landers that fly."""
+        return self.world.swarm
+
+    @property
+    def camera(self) -> Camera:
+        """The camera on them."""
+        return self.world.camera
+
+    @property
+    def shown(self) -> int:
+        """Number of the lander whose decisions are shown."""
+        return self.world.shown
+
+    @property
+    def decision(self) -> Decision:
+        """The decision that the shown lander flies."""
+        return self.world.decision
+
+    def enter(self) -> None:
+        """Follow a change of the networks and of the settings."""
+        self._look_again()
+        if self.world.stage.calm != self._settings.reduced_motion:
+            self.world.set_up_camera()
+
+    def handle_event(self, event: pygame.event.Event) -> Transition | None:
+        """Explain, touch or pick a lander, or pass the event to the actions and the choices."""
+        if self.explained.handle_event(event) or self.hand.mouse(event):
+            return None
+        if event.type == pygame.MOUSEWHEEL:
+            self.hand.turn(event.y)
+        if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1 and self._pick(event.pos):
+            return None
+        return super().handle_event(event)
+
+    def actions(self) -> Table:
+        """Stop and step; touch, and undo it; colour the sky; explain; show another lander; begin anew; pause."""
+        many = COUNTS[self._count] > 1
+        stop, step, *speeds = self.playback.actions(texts.HINT_DECISION)
+        by_pad = self.context.controls.gamepad_in_use  # which undoes in the hand, and finds the maps in their row
+        undo = [Action(pygame.K_z, self.world.untouch, "" if by_pad else texts.HINT_UNTOUCH)]
+        return [
+            stop,
+            step,
+            Action(Command.MODE, self._touch, texts.HINT_TOUCH),
+            *(undo if self.world.can_untouch else []),
+            Action(pygame.K_m, self._turn_map, "" if by_pad else texts.HINT_MAP),
+            Action(Command.NEXT, lambda: self._turn(1), texts.HINT_NEXT_LANDER if many else ""),
+            Action(Command.RETRY, self._begin_anew, texts.HINT_RESTART),
+            Action(Command.PAUSE, self._pause, texts.HINT_PAUSE),
+            Action(Command.PREVIOUS, lambda: self._turn(-1)),
+            Action(pygame.K_q, lambda: self.hand.turn(1)),
+            Action(pygame.K_e, lambda: self.hand.turn(-1)),
+            *speeds,
+            self.explained.action(),
+        ]
+
+    def hint_rows(self, canvas: Canvas) -> list[HintRow]:
+        """Return the hints in two rows: what can be done with the lander, on the right of who flies; and the rest."""
+        view = canvas.view
+        right, top = view.right - 36, view.top
+        room = right - VIEW_SIZE[0] / 2 - canvas.text_width(self._said, size=TEXT) / 2 - 40
+        hints = self.hints
+        undo = self.world.can_untouch and not (self.context.controls.gamepad_in_use or self.hand.typing)
+        first = 4 if undo else 3
+        return [
+            HintRow(row, (right, top + y), from_right=True, room=room)
+            for row, y in ((hints[:first], 42), (hints[first:], 66))
+            if row
+        ]
+
+    def update(self) -> Transition | None:
+        """Fly as many steps as the chosen speed makes due."""
+        self.world.update()
+        self.explained.update()
+        return self.form.update()
+
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        """Draw the world, the swarm, the panel and the choices."""
+        self.world.draw(canvas, self.playback.between(alpha))
+        above = self.hand.used(canvas.pointer)  # then it is drawn over the panel
+        if not above:
+            self.hand.draw(canvas)
+        decision = self.decision
+        draw_decision(canvas, decision)
+        if above:
+            self.hand.draw(canvas)
+        self._draw_words(canvas, int(decision.action[0]))
+        self.explained.draw(canvas)
+
+    # What flies
+
+    def _begin(self) -> None:
+        assert self.network.policy is not None
+        self.world.begin(COUNTS[self._count], self._seed, self.network.policy)
+
+    def _begin_anew(self) -> None:
+        self._seed = int(self.context.rng.integers(2**31))
+        self._begin()
+
+    def _turn(self, direction: int) -> None:
+        self.world.shown = (self.shown + direction) % COUNTS[self._count]
+
+    def _pick(self, point: tuple[float, float]) -> bool:
+        """Show the decisions of the lander nearest to a point of the canvas, if one is close."""
+        panel = PANEL.move(moved(self.context.view, 1, -1))
+        if COUNTS[self._count] == 1 or panel.collidepoint(point) or (slot := self.world.nearest(point)) is None:
+            return False
+        self.world.shown = slot
+        return True
+
+    def _touch(self) -> None:
+        """Stop with a hand on the lander; the mouse takes it without that."""
+        self.world.take_hold()
+        if not self.context.controls.mouse_in_use:
+            self.form.focus(self.hand)
+            self.hand.hold()
+
+    def _pause(self) -> Transition:
+        return push("pause", self, self._begin_anew, texts.PAUSE_NEW_STARTS, self._pause_words)
+
+    def _pause_words(self) -> list[tuple[str, OnPress]]:
+        name = brief(networks.word(self._wanted or self.network.name), _LONGEST_NAME)
+        return [(texts.PAUSE_NETWORK.format(name=name), self._open_networks)]
+
+    # Choices
+
+    def _add_choice(
+        self, row: int, label: str, words: Sequence[str], index: int, chosen: Callable[[int], None]
+    ) -> Choice:
+        manager, box = self.form.manager, self._row_box(row, words)
+        return self.form.add(Choice(manager, box, label, words, index, chosen, label_width=LABEL_WIDTH, size=SMALL))
+
+    def _row_box(self, row: int, words: Sequence[str]) -> pygame.Rect:
+        x, y, pitch = _ROW
+        width = LABEL_WIDTH + sum(typeface.width(word, SMALL, "regular") + GAP for word in words) - GAP
+        return pygame.Rect(x, y + row * pitch, math.ceil(min(width, _WIDEST)), _ROW_HEIGHT)
+
+    def _network_row(self, index: int) -> ChoiceOrList:
+        words = [brief(networks.word(name), _LONGEST_NAME) for name in self.policies.names]
+        box, everything = self._row_box(0, words), texts.WATCH_ALL.format(count=len(words))
+        return ChoiceOrList(
+            self.form.manager, box, texts.WATCH_MODEL, words, index, self._choose_network, self._open_networks,
+            everything, label_width=LABEL_WIDTH,
+        )  # fmt: skip
+
+    def _open_networks(self) -> Transition:
+        def choose(name: str) -> None:
+            self._wanted = name
+
+        return push("runs", choose=choose)
+
+    def _look_again(self) -> None:
+        """Apply the choice made in the list of networks, and reload networks added, removed or renamed meanwhile."""
+        policies = networks.Policies(self.context.models_dir, self.context.user_dir, self._guests)
+        flown = self.network.name if self.network.name in self._guests else self._settings.model
+        wanted, self._wanted = self._wanted or flown, ""
+        if policies.names == self.policies.names and wanted == self.network.name:
+            return
+        self.policies = policies
+        index = next((policies.names.index(name) for name in (wanted, self.network.name) if name in policies.names), 0)
+        row = self._network_row(index)
+        self.form.replace([self._model_choice], [row])
+        self._model_choice = row
+        if policies.names[index] != self.network.name:
+            self._choose_network(index)
+
+    def _choose_network(self, index: int) -> None:
+        """Fly the same starts with another network; report a damaged one, and keep the last good one flying."""
+        network = self.policies[self.policies.names[index]]
+        self.problem = texts.WATCH_PROBLEM.format(name=network.name, problem=network.problem) if network.problem else ""
+        if network.policy is None:
+            return
+        self.network = network
+        if network.name not in self._guests:
+            self._settings.model = network.name
+        self._offer_maps()
+        self._begin()
+
+    def _choose_count(self, index: int) -> None:
+        self._count = index
+        self._begin()
+
+    def _map_row(self, values: bool = True) -> Choice:
+        """Return the row of maps; a pilot without values has none of scores."""
+        kinds = texts.MAP_KINDS if values else texts.MAP_KINDS[: ACTION + 1]
+        manager, box, now = self.form.manager, self._row_box(3, kinds), self.world.policy_map.kind
+        return Choice(manager, box, texts.WATCH_MAP, kinds, now, self._choose_map, label_width=LABEL_WIDTH, size=SMALL)
+
+    def _offer_maps(self) -> None:
+        """Offer the maps that the network can have."""
+        values = isinstance(self.network.policy, networks.QPolicy)
+        if not values:
+            self.world.policy_map.kind = min(self.world.policy_map.kind, ACTION)
+        row = self._map_row(values)
+        self.form.replace([self._map_choice], [row])
+        self._map_choice = row
+
+    def _choose_map(self, index: int) -> None:
+        self.world.policy_map.kind = index
+        self.world.set_up_camera()
+
+    def _turn_map(self) -> None:
+        self._map_choice.choose((self._map_choice.index + 1) % len(self._map_choice.options))
+
+    # The words
+
+    def _draw_words(self, canvas: Canvas, flown: int) -> None:
+        count, world = COUNTS[self._count], self.world
+        readouts.draw_corner(canvas, texts.WATCH_TITLE, texts.WATCH_LANDERS.format(count=count))
+        left, middle = canvas.at(-1, -1), canvas.at(0, -1)
+        left.explain((MARGIN - 4, 24, 120, 42), texts.EXPLAIN_WATCH)
+        readouts.draw_hand(canvas, self._said, NET)
+        middle.explain((VIEW_SIZE[0] / 2 - 110, 24, 220, 34), texts.EXPLAIN_FLIES, self._who)
+        draw_landings(left, (MARGIN, 118), self.swarm.landed, self.swarm.lost)
+        readouts.draw_readouts(canvas, readouts.flight_readouts(self.swarm.env, self.shown), _READOUTS)
+        draw_legend(canvas, world, flown)
+        self._draw_notice(middle)
+        rows = (self._model_choice, self._count_choice, self._speed_choice, self._map_choice)
+        for row, what in zip(rows, texts.EXPLAIN_CHOICES, strict=True):
+            canvas.at(*self.form.anchor).explain(row.box, what)
+        self.form.draw(canvas)
+        if self._settings.show_hints or self.context.controls.mouse_in_use:  # for the mouse, they are what it presses
+            self.draw_hints(canvas)
+
+    def _draw_notice(self, canvas: Canvas) -> None:
+        """Say below who flies why a network cannot fly, or what the hand can do or has done."""
+        middle = VIEW_SIZE[0] / 2
+        if self.problem:
+            problem = brief(self.problem, _LONGEST_PROBLEM)
+            box = canvas.text(problem, (middle, 84), size=SMALL, colour=canvas.palette.warn, align="centre")
+            canvas.marker("cross", (box.left - 12, 80), 9, canvas.palette.warn)
+        elif self.world.touched:
+            canvas.text(texts.TOUCH_COUNTS, (middle, 84), size=SMALL, colour=HUMAN, align="centre")
+        elif self.playback.stopped:
+            canvas.text(texts.TOUCH_INVITES, (middle, 84), size=SMALL, colour=MUTE, align="centre")
+
+    def _who(self) -> str:
+        """Say who decides."""
+        if self.network.name == networks.SCRIPTED:
+            return texts.EXPLAIN_FLIES_SCRIPTED
+        return texts.EXPLAIN_FLIES_NETWORK.format(name=brief(self.network.name, _LONGEST_NAME))
+
+    @property
+    def _said(self) -> str:
+        """What is said of who flies."""
+        if self.playback.stopped:
+            return texts.WATCH_STOPPED
+        if self.network.name == networks.SCRIPTED:
+            return texts.WATCH_SCRIPTED
+        return texts.WATCH_FLIES.format(name=brief(self.network.name, _LONGEST_NAME))

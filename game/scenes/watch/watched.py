@@ -1,0 +1,213 @@
+"""What flies in Watch: a swarm with its camera, fire, trails and sound, and the player's hand on one of its landers."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+
+from ai.common.decision import Decision
+from ai.common.environment import Bools, Doubles
+from ai.lander.environment import LanderEnv, Outcome
+from game.audio.flight_sounds import FlightSound
+from game.core.clock import STEP, TimeScale
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import INK
+from game.flight.networks import Policy
+from game.flight.swarm import REST_STEPS, Swarm
+from game.scenes.watch.decision_panel import PANEL
+from game.ui.context import Context
+from game.ui.playback import Playback
+from game.world import framing
+from game.world.camera import Camera, CameraTarget, ClearArea, View
+from game.world.landscape.backdrop import landscape
+from game.world.landscape.pad import draw_pad
+from game.world.paths import Trails
+from game.world.policy_map import OFF, PolicyMap
+from game.world.scenery import mark_lost
+from game.world.stage import Stage
+
+SPEEDS: Final = (0.25, 0.5, 1.0, 2.0, 4.0)
+SIZES: Final = {1: 1.0, 16: 0.66, 64: 0.46, 256: 0.36}  # a crowd is drawn smaller, to be seen through
+_CLEAR: Final = ClearArea(left=340.0, right=PANEL.left - 16.0)  # beside the choices and the panel
+_WHOLE_SKY: Final = CameraTarget.around(-17.0, 17.0, 17.0, ClearArea(right=PANEL.left))  # beside the panel, for a map
+_CROWD: Final = 64  # landers from which on a trail more only adds to the tangle
+_CLICK_REACH: Final = 1.6  # metres
+_WRECK_STEPS: Final = 8  # steps a wreck of a swarm stays to be seen
+
+
+class Watched:
+    """Landers that one network flies, all drawn in one world.
+
+    Attributes:
+        swarm: the landers.
+        camera, stage, trails: what is drawn of them.
+        shown: number of the lander whose decisions are shown.
+        playback: the clock; while it is stopped, the shown lander can be touched.
+        policy_map: colours of the sky.
+
+    """
+
+    def __init__(self, context: Context) -> None:
+        self._context = context
+        self.policy_map = PolicyMap()
+        self._clock = TimeScale()
+        self.playback = Playback(self._clock, SPEEDS, self.fly_to_the_next_decision)
+        self.shown, self._time = 0, 0.0
+
+    def begin(self, count: int, seed: int, policy: Policy) -> None:
+        """Begin anew with so many landers."""
+        self.swarm = Swarm(count, seed, policy)
+        self.stage = Stage(self.swarm.env, np.random.default_rng(seed))
+        self.stage.blue[:] = 1.0
+        self._heard = FlightSound(self._context.sound, self.swarm.env, warns=False)
+        self.trails = Trails(count, keep=12 if count < _CROWD else 5)
+        self.shown = min(self.shown, count - 1)
+        self._before: dict[str, Any] | None = None
+        self.policy_map.forget()
+        self.set_up_camera()
+        self._clock.begin()
+
+    @property
+    def env(self) -> LanderEnv:
+        """The landers' environment."""
+        return self.swarm.env
+
+    @property
+    def decision(self) -> Decision:
+        """The decision that the shown lander flies."""
+        return self.swarm.decision.of(self.shown)
+
+    @property
+    def size(self) -> float:
+        """Size at which the shown lander is drawn; 1 is true to scale."""
+        return min(1.0, 1.5 * SIZES[self.env.num_envs])
+
+    def set_up_camera(self) -> None:
+        """Let the camera follow a single lander; with several, a map or reduced motion it rests."""
+        self.camera, self.stage.calm = Camera(), self._context.settings.reduced_motion
+        if self.policy_map.kind != OFF:
+            self.camera.cut(_WHOLE_SKY)
+        elif self._follows:
+            self.camera.cut(framing.framed(self.env, clear=_CLEAR))
+
+    @property
+    def _follows(self) -> bool:
+        return self.env.num_envs == 1 and not self.stage.calm and self.policy_map.kind == OFF
+
+    # Steps
+
+    def update(self) -> None:
+        """Fly as many steps as the chosen speed makes due, and follow with all that moves besides."""
+        for _ in range(self.playback.steps()):
+            self.fly()
+        if not self.playback.stopped:
+            self._heard.follow(self.stage.thrust[self.shown], self.shown)
+        if not self._context.settings.reduced_motion:
+            self._time += STEP
+        self.policy_map.follow(self.env, self.shown, self.swarm.policy)
+
+    def fly(self) -> None:
+        """Advance by 1/60 s."""
+        swarm = self.swarm
+        ended = swarm.step()
+        self.stage.follow(np.ones(swarm.env.num_envs, bool), ended)
+        self.trails.follow(swarm.env.position, swarm.env.outcome, swarm.fresh, ended)
+        if self._follows:
+            framing.follow(self.camera, swarm.env, clear=_CLEAR)
+
+    def fly_to_the_next_decision(self) -> None:
+        """Fly until the shown lander's next decision; the others fly on while it rests after a flight."""
+        swarm, slot = self.swarm, self.shown
+        alone = not np.delete(swarm.since_end == 0, slot).any()
+        before = swarm.decided[slot]
+        for _ in range(REST_STEPS * alone + swarm.decision_steps):
+            self.fly()
+            if swarm.decided[slot] != before:
+                return
+
+    def nearest(self, point: tuple[float, float]) -> int | None:
+        """Return the lander nearest to a point of the canvas; None if none is close."""
+        distance = np.hypot(*(self.env.position - self.hand_view().metres(point)).T)
+        slot = int(distance.argmin())
+        return slot if distance[slot] <= _CLICK_REACH else None
+
+    # The hand
+
+    @property
+    def at_hand(self) -> bool:
+        """Whether the shown lander can be touched now."""
+        return self.playback.stopped
+
+    @property
+    def touched(self) -> bool:
+        """Whether the flight of the shown lander has been touched."""
+        return bool(self.swarm.touched[self.shown])
+
+    @property
+    def can_untouch(self) -> bool:
+        """Whether there is a touch to undo."""
+        return self._before is not None
+
+    def hand_view(self) -> View:
+        """Return the view, in points."""
+        return self.camera.view(1.0).lowered(self._context.view)
+
+    def take_hold(self) -> None:
+        """Stop, so that the lander can be touched."""
+        self.playback.stopped = True
+
+    def touch(self, start: Doubles) -> None:
+        """Let the shown lander fly on from another state: x, y, vx, vy, angle, spin."""
+        if self._before is None or self._before["steps"] != self.swarm.steps:  # the first touch since it flew
+            self._before = self.swarm.snapshot()
+        self.swarm.touch(self.shown, start)
+        self._show_at_once([self.shown])
+
+    def untouch(self) -> None:
+        """Go back to the moment before the touch, and stop there."""
+        if self._before is not None:
+            self.playback.stopped = True
+            self.swarm.restore(self._before)
+            self._before = None
+            self._show_at_once(range(self.env.num_envs))
+
+    def _show_at_once(self, slots: Any) -> None:
+        """Show landers where they are now, firing as decided, without the traces of what went before."""
+        self.stage.forget()
+        for slot in slots:
+            self.trails.begin(slot)
+            action = int(self.swarm.decision.action[slot]) * (self.env.outcome[slot] == Outcome.FLYING)
+            self.stage.thrust[slot] = action >= 3, action % 3 == 2, action % 3 == 1
+
+    # The picture
+
+    def draw(self, canvas: Canvas, between: float) -> None:
+        """Draw the world, the map and the swarm."""
+        calm = self._context.settings.reduced_motion
+        view, size = self.camera.view(canvas.scale, between).filling(canvas), SIZES[self.env.num_envs]
+        landscape(canvas.surface.get_size(), calm).draw(canvas, self.camera, self._time, between)
+        self.policy_map.draw(canvas, view)
+        env, poses = self.env, self.swarm.poses.at(between)
+        others = self._others()
+        self.stage.draw_fires(canvas, view, poses, others, size)  # the pad hides what reaches below it
+        draw_pad(canvas, view, (float(env.pad[0, 0]), float(env.pad[0, 1])), float(env.pad_width[0]), self._time)
+        self.trails.draw(canvas, view, self.shown, _CLEAR.head)
+        self.stage.draw_swarm(canvas, view, poses, others, size)
+        self._draw_shown(canvas, view, poses[self.shown])
+        self.stage.draw_dust(canvas, view, between)
+
+    def _others(self) -> Bools:
+        """Which landers are drawn beside the one that is shown, (n,): all but those long wrecked."""
+        others: Bools = (self.swarm.since_end <= _WRECK_STEPS) | (self.env.outcome == Outcome.LANDED)
+        others[self.shown] = False
+        return others
+
+    def _draw_shown(self, canvas: Canvas, view: View, pose: Doubles) -> None:
+        if self.env.outcome[self.shown] == Outcome.OUT_OF_BOUNDS:
+            mark_lost(canvas, view, pose)
+            return
+        self.stage.draw_lander(canvas, view, pose, self.shown, self.size)
+        if self.env.num_envs > 1 and not self.playback.stopped:
+            x, y = view.points(pose[:2]).tolist()
+            canvas.marker("triangle_down", (x, y - 46 * self.size - 10), 9, INK)
