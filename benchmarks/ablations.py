@@ -17,6 +17,7 @@ import statistics
 import sys
 import time
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is imported, or it has no effect
@@ -109,7 +110,10 @@ def main() -> None:
     print("| | 95 % after | 99 % after | mean of the curve | at the end | worst seed | CPU s |")
     print("|---|---|---|---|---|---|---|")
     asked = [(name, seed, arguments.decisions) for name in arguments.only for seed in range(arguments.seeds)]
-    done = {asked[index]: found for index, found in each(trained, asked, arguments.address, arguments.workers)}
+    done = {
+        asked[index]: found
+        for index, found in each([partial(trained, one) for one in asked], arguments.address, arguments.workers)
+    }
     for name in arguments.only:
         runs = [done[name, seed, arguments.decisions] for seed in range(arguments.seeds)]
         curves = [landed for landed, _ in runs]

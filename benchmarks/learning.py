@@ -202,7 +202,7 @@ def compare(arguments: argparse.Namespace, config: Config) -> None:
     )
     print(f"| | {heads} | of test at the end, each seed |\n|---|---|---|---|")
     asked = [(seed, config, arguments.seconds) for seed in range(arguments.seeds)]
-    done = dict(each(raced, asked, arguments.address, arguments.workers))
+    done = dict(each([partial(raced, one) for one in asked], arguments.address, arguments.workers))
     runs = [done[seed] for seed in range(arguments.seeds)]
     mine = row(f"ours, {arguments.preset}", runs, arguments.seconds)
     if not rival:

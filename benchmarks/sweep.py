@@ -13,11 +13,11 @@ import os
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is imported, or it has no effect
 
 import argparse
-import json
 import platform
 import sys
 import tempfile
 import time
+from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 
@@ -31,18 +31,19 @@ from ai.training.config import PRESETS
 
 def plan_of(trials: int, decisions: int, knob: str) -> Plan:
     config = PRESETS["modern"].changed(replay_size=50_000)
-    space = {name: each.to_json() for name, each in knob_space(config, [knob]).items()}
+    space = knob_space(config, [knob])
     if knob == "replay_prune":
-        space[knob] |= {"low": 60_000}  # more than the buffer holds
-    settings = json.loads(json.dumps(config.to_json()))
-    return Plan("agent", settings, space, (0,), decisions, decisions, "return", "median", "random", False, trials)
+        space[knob] = replace(space[knob], low=60_000)  # more than the buffer holds
+    return Plan.of(
+        config, space, seeds=1, decisions=decisions, every=decisions, metric="return", search="random", trials=trials
+    )
 
 
 def looped(plan: Plan, study: Study, swept: Study) -> float:
     """Run a finished study's trials again in a plain loop that keeps the same; return the seconds."""
     began = time.monotonic()
     for number, trial in sorted(swept.trials.items()):
-        run = Trial(plan, Asked(number, trial.params))
+        run = Trial(plan, Asked(number, trial.params), {})
         while not run.done:
             run.step()
         study.record(*run.finish())

@@ -24,7 +24,7 @@ LATE = {
 EXTRA = {
     "ai.gym.lander": {"gymnasium"},
     "ai.sweep.driver": {"ray"},
-    "ai.sweep.journal": {"optuna"},
+    "ai.sweep.search": {"optuna"},
 }
 # The floors inside `ai` and `game`, from the bottom up: a package imports from itself and from those before it.
 AI_FLOORS = (

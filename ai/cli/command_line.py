@@ -7,7 +7,7 @@ import json
 import os
 import signal
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import FrameType
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from ai.common.knobs import Knobs
 
     Settings = TypeVar("Settings", bound=Knobs)
-    Kept = TypeVar("Kept")
 
 FAILED: Final = 1
 LONGEST: Final = 400  # letters of a printed line: text from a file or an argument may be of any length
@@ -144,37 +143,6 @@ def configured(preset: Settings, given: list[str]) -> Settings:
         parts = isinstance(value, dict) and isinstance(values[name], dict)  # those not named stay as they are
         values[name] = values[name] | value if parts else value
     return preset.from_json(values)
-
-
-def refuse_fixed(begun: Settings, wanted: Settings, begun_seed: int, seed: int | None) -> None:
-    """Raise ValueError, with their names, if choices are wanted that a run which has begun cannot change."""
-    fixed = begun.fixed_differences(wanted)
-    if seed is not None and seed != begun_seed:
-        fixed.append("seed")
-    if fixed:
-        raise ValueError(f"a run that has begun cannot change {', '.join(fixed)}; without --resume, a new run can")
-
-
-def keep(save: Callable[[Path], Kept], output: Path) -> tuple[Path, Kept]:
-    """Save a run; return its folder and what `save` returned.
-
-    If something else was put there meanwhile, that stays, and the run is saved beside it. Raises OSError if it
-    cannot be written.
-    """
-    from ai.files import free_path
-
-    try:
-        return output, save(output)
-    except FileExistsError as error:
-        fail(str(error))
-        beside = free_path(output.parent, output.name)
-        return beside, save(beside)
-
-
-def fail_diverged(stopped: str, output: Path, *, measured: bool) -> int:
-    """Report that training diverged, what is kept of it, and whether that was measured; return the exit code."""
-    kept = "What was best until then" if measured else "The last network, which has not been measured,"
-    return fail(f"{stopped}{kept} is kept in {output}.")
 
 
 @contextmanager

@@ -71,7 +71,7 @@ def _table(arguments: argparse.Namespace) -> int:
     from ai.copilot.copilot import Mode
     from ai.copilot.measurement import HELPS, seconds
     from ai.sweep.cluster import each
-    from ai.sweep.shards import fly_part, parts, tables_of
+    from ai.sweep.shards import PILOTS, parts_of
     from ai.training.config import ANYWHERE, LANDER
 
     if problem := out_of_range(arguments, episodes=EPISODES, seed=SEEDS, workers=WORKERS):
@@ -83,20 +83,21 @@ def _table(arguments: argparse.Namespace) -> int:
     try:
         agent = _lander(arguments.model, (LANDER,))
         agents = {"one_pad": agent, "three_pads": agent, "other_worlds": _lander(arguments.anywhere, (ANYWHERE,))}
-        asked = parts(agents, arguments.good == "scripted", helps, arguments.episodes, arguments.seed)
-        slots = max(len(part.names) for part in asked) * arguments.episodes
+        asked = parts_of(agents, arguments.good == "scripted", helps, arguments.episodes, arguments.seed)
         rounds = len(asked) * (1 + len(arguments.assist))
-        minutes = rounds * seconds(agent, slots) / 60 / (arguments.workers or 1)
+        minutes = rounds * seconds(agent, PILOTS * arguments.episodes) / 60 / (arguments.workers or 1)
         print(
             f"this takes about {minutes:.0f} minutes" if minutes > 1 else "this takes about a minute", file=sys.stderr
         )
         with progress_bar(len(asked), "flying", unit="part") as bar:
-            for index, rows in each(fly_part, asked, arguments.address, arguments.workers or 1):
+            for index, rows in each([part for _, part in asked], arguments.address, arguments.workers or 1):
                 done[index] = rows
                 bar.update()
     except REFUSED as error:
         return fail(reason(error))
-    tables = tables_of(asked, done)
+    tables: dict[str, list[AssistedFlights]] = {}
+    for index, (name, _) in enumerate(asked):
+        tables.setdefault(name, []).extend(done[index])
     if arguments.json:
         told = {name: [row.to_json() for row in table] for name, table in tables.items()}
         settings = {"good": arguments.good, "seed": arguments.seed, "episodes": arguments.episodes}

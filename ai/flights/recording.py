@@ -20,9 +20,7 @@ WIDER: Final = 1.5  # width of wider pads, in shares of their own
 UNHURRIED: Final = 1200.0  # seconds that a flight may take without its time limit
 AREA: Final = len(AREAS) - 1  # version of the area in which new flights are flown
 LONGEST: Final = round(UNHURRIED) * 60  # physics steps of a recorded flight, at most
-STEPS: Final = (
-    16  # from no thrust to all of it: thrust is recorded in them, so that a flight can be flown again exactly
-)
+STEPS: Final = 16  # from no thrust to all: thrust is recorded in them, so that a flight can be flown again exactly
 _MOST_CHANGES: Final = 1_000  # of gravity
 
 Shares = tuple[int, int]  # of the main engine, 0 to STEPS, and of the jets, -STEPS, left, to STEPS, right
@@ -44,16 +42,10 @@ def thrust(shares: Shares | None) -> Doubles | None:
 
 @dataclass(frozen=True)
 class Easing:
-    """Changes of a flight's rules, set at its start, that give the pilot more room; by default, none.
+    """Changes of a flight's rules, set at its start, that give the pilot more room; by default, none."""
 
-    Attributes:
-        wider_pads: whether all pads are half as wide again.
-        untimed: whether the flight may take `UNHURRIED` seconds.
-
-    """
-
-    wider_pads: bool = False
-    untimed: bool = False
+    wider_pads: bool = False  # whether all pads are half as wide again
+    untimed: bool = False  # whether the flight may take `UNHURRIED` seconds
 
     @property
     def pads(self) -> float:
@@ -89,22 +81,15 @@ def _in_order(changes: tuple[_Change, ...]) -> None:
 
 @dataclass
 class Start:
-    """All that a flight follows from besides its inputs; `ai.files.schema.read_as` checks it as files hold it.
-
-    Attributes:
-        gravity: its changes: the first step, and the share of normal gravity.
-        area: version of the area's edges, an index of `ai.lander.rules.AREAS`.
-        easing: what gave the pilot more room.
-
-    """
+    """All that a flight follows from besides its inputs; `ai.files.schema.read_as` checks it as files hold it."""
 
     seed: Seed
     spawn: Annotated[str, OneOf(SPAWNS)]
     pads: Annotated[int, OneOf((1, 3))] = 1
     mission: Annotated[str, OneOf(("", *MISSIONS))] = ""
-    gravity: Annotated[tuple[_Change, ...], Sized(_MOST_CHANGES), _in_order] = ()
-    easing: Easing = AS_IT_IS
-    area: Annotated[int, OneOf(range(len(AREAS)))] = AREA
+    gravity: Annotated[tuple[_Change, ...], Sized(_MOST_CHANGES), _in_order] = ()  # first step, share of the normal one
+    easing: Easing = AS_IT_IS  # what gave the pilot more room
+    area: Annotated[int, OneOf(range(len(AREAS)))] = AREA  # version of its edges, in `ai.lander.rules.AREAS`
 
     def gravity_at(self, step: int) -> float:
         """Return the share of normal gravity during a step."""
@@ -113,19 +98,12 @@ class Start:
 
 @dataclass
 class Recording(Start):
-    """Recording of a flight for an exact replay: its start, and the action of every step.
+    """Recording of a flight for an exact replay: its start, and the action of every step."""
 
-    Attributes:
-        leg: where a flight of a descent begins; None for any other.
-        hands: who chose each action: with a shared stick, the person if the action is the one they asked for.
-        shares: shares of thrust of each step, by its number, in which an engine gave less than all of it.
-
-    """
-
-    leg: LegStart | None = None
+    leg: LegStart | None = None  # where a flight of a descent begins
     actions: list[int] = field(default_factory=list)
-    hands: list[StickHolder] = field(default_factory=list)
-    shares: dict[int, Shares] = field(default_factory=dict)
+    hands: list[StickHolder] = field(default_factory=list)  # the person's, if the action is the one they asked for
+    shares: dict[int, Shares] = field(default_factory=dict)  # of thrust, by steps in which an engine gave less than all
 
     @classmethod
     def begun(cls, start: Start, leg: LegAsList, actions: list[int], hands: list[StickHolder],
@@ -155,17 +133,9 @@ class Claim:
 
 @dataclass(frozen=True)
 class SharedFlight:
-    """Flight as it is sent to a friend: its recording, and what its pilot claims to have earned.
-
-    Attributes:
-        recording: its start and actions.
-        claim: what it is said to have earned.
-        course: name of its challenge in the logbook; empty for a free flight.
-        barred: why it does not count as its pilot's own, a key of the game's texts; empty if it is said to count.
-
-    """
+    """Flight as it is sent to a friend: its recording, and what its pilot claims to have earned."""
 
     recording: Recording
     claim: Claim
-    course: str = ""
-    barred: str = ""
+    course: str = ""  # name of its challenge in the logbook; empty for a free flight
+    barred: str = ""  # why it is not its pilot's own, a key of the game's texts; empty if it is said to count

@@ -86,24 +86,14 @@ def in_its_place(flight: SharedFlight) -> bool:
 
 @dataclass(frozen=True)
 class Earned:
-    """What a flight really earned.
+    """What a flight really earned."""
 
-    Attributes:
-        outcome: its outcome; FLYING if its record stops before.
-        points: the points of its landing.
-        medal: 3 for gold, 2, 1, in a mission; 0 without a landing, in a free flight, or under other rules.
-        steps: physics steps flown until it ended.
-        fuel: seconds of main engine.
-        end: its last pose.
-
-    """
-
-    outcome: Outcome
-    points: int
-    medal: int
-    steps: int
-    fuel: float
-    end: End
+    outcome: Outcome  # FLYING if its record stops before
+    points: int  # of its landing
+    medal: int  # 3 for gold, 2, 1, in a mission; 0 without a landing, in a free flight, or under other rules
+    steps: int  # of physics, flown until it ended
+    fuel: float  # seconds of main engine
+    end: End  # its last pose
 
     @property
     def seconds(self) -> float:

@@ -24,9 +24,7 @@ MISSING: Final = 'this needs Ray and Optuna: pip install -e ".[sweep]"'
 LOOPBACK: Final = "127.0.0.1"
 _ROOT: Final = Path(__file__).parents[2]
 _STORE: Final = 256 << 20  # bytes of Ray's object store on one machine; results are some hundred KB each
-_QUIET: Final = {
-    "RAY_USAGE_STATS_ENABLED": "0",  # Ray reports its use by default
-}
+_QUIET: Final = {"RAY_USAGE_STATS_ENABLED": "0"}  # Ray reports its use by default
 # Ray binds its ports to the loopback interface alone only if it takes itself to be on a system without clusters; by
 # itself, "127.0.0.1" is replaced by the machine's address on the network, and the ports are open to all.
 _LOCAL: Final = {"RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER": "0"}
@@ -36,7 +34,6 @@ _PATIENCE: Final = 5.0  # seconds in which a cluster has to answer; Ray itself w
 # How a client of HTTP/2 begins, with settings that are empty; a server, as all of Ray's are, answers with its own.
 _PREFACE: Final = b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n" + bytes([0, 0, 0, 4, 0, 0, 0, 0, 0])
 
-Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 
@@ -61,57 +58,42 @@ def worker_environment() -> dict[str, str]:
 def joined(address: str | None = None, workers: int | None = None) -> Iterator[int]:
     """Start Ray on this machine, or join the cluster at an address; yield the number of cores there are for workers.
 
-    Raises ImportError without the extra, ConnectionError where no cluster answers, ValueError for an address that is
-    none.
+    Raises ImportError without the extra, ConnectionError where no cluster answers or its token is another, ValueError
+    for an address that is none.
     """
     if not installed():
         raise ImportError(MISSING)
-    if address is not None:
-        address = answering(address)
+    if address is None:
+        os.environ.update(_LOCAL | _QUIET | _TOKEN | worker_environment())
+        options: dict[str, Any] = {
+            "address": "local", "num_cpus": workers or cores(), "include_dashboard": False,
+            "_node_ip_address": LOOPBACK, "object_store_memory": _STORE,
+        }  # fmt: skip
     else:
-        _set_environment(None)
+        options = {"address": answering(address), "runtime_env": {"env_vars": worker_environment()}}
     import ray
     from ray._private import worker
 
     worker.print_to_stdstream = _tell
-    quiet: dict[str, Any] = {"log_to_driver": False, "logging_level": "ERROR"}
     try:
-        with _own_signals():
-            if address is not None:
-                _join(address, runtime_env={"env_vars": worker_environment()}, **quiet)
-            else:
-                os.environ.update(worker_environment())
-                ray.init(address="local", num_cpus=workers or cores(), include_dashboard=False,
-                         _node_ip_address=LOOPBACK, object_store_memory=_STORE, **quiet)  # fmt: skip
+        try:
+            with _own_signals():
+                ray.init(log_to_driver=False, logging_level="ERROR", **options)
+        except (ConnectionError, ray.exceptions.AuthenticationError) as error:
+            named = "the token in RAY_AUTH_TOKEN or ~/.ray/auth_token may be missing or another cluster's"
+            raise ConnectionError(f"could not join the cluster at {options['address']}: {named}") from error
         if address is None and (opened := ray.util.get_node_ip_address()) != LOOPBACK:
             raise ConnectionError(f"Ray would listen on {opened}, and not on this machine alone; nothing was started")
-        count = int(ray.cluster_resources().get("CPU", 1))
-        yield count
+        yield int(ray.cluster_resources().get("CPU", 1))
     finally:
         ray.shutdown()
 
 
-def _join(address: str, **options: Any) -> None:
-    """Join a cluster; raises ConnectionError, which says what may be missing."""
-    import ray
-
-    try:
-        ray.init(address=address, **options)
-    except (ConnectionError, ray.exceptions.AuthenticationError) as error:
-        named = "the token in RAY_AUTH_TOKEN or ~/.ray/auth_token may be missing or another cluster's"
-        raise ConnectionError(f"could not join the cluster at {address}: {named}") from error
-
-
-def _set_environment(address: str | None) -> None:
-    """Set what Ray reads of the environment when it is imported, or begins."""
-    if "ray" not in sys.modules and (address is None or _is_local(address)):
-        os.environ.update(_LOCAL)
-    os.environ.update(_QUIET if address is not None else _QUIET | _TOKEN)
-
-
 def answering(address: str) -> str:
     """Return an address, looked up if it is "auto"; raises ConnectionError unless a server like Ray's answers there."""
-    _set_environment(address)
+    if address.removeprefix("ray://").startswith(("127.", "localhost", "[::1]")):
+        os.environ.update(_LOCAL)
+    os.environ.update(_QUIET)
     if address == "auto":
         from ray._private.services import canonicalize_bootstrap_address_or_die
 
@@ -166,34 +148,30 @@ def _tell(news: Mapping[str, Any], ignore_prefix: bool = False) -> None:  # noqa
         print(f"Ray: {brief(text.strip().partition('. ')[0].replace(chr(10), ' '))}", file=sys.stderr)
 
 
-def _is_local(address: str) -> bool:
-    """Whether an address leads to this machine by its loopback interface."""
-    return address.removeprefix("ray://").startswith(("127.", "localhost", "[::1]"))
-
-
 def each(
-    function: Callable[[Item], Result],
-    items: Sequence[Item],
-    address: str | None = None,
-    workers: int | None = None,
+    tasks: Sequence[Callable[[], Result]], address: str | None = None, workers: int | None = None
 ) -> Iterator[tuple[int, Result]]:
-    """Yield the place of each item and what a function gives for it, as they are done, on many cores.
+    """Yield the place of each task and what it returns, as they are done, on many cores.
 
-    On one core of this machine the function is simply called: Ray is started for more, or with an address. A call
-    whose worker or node dies is made again elsewhere. `function` is one of a module, and depends on nothing else.
+    On one core of this machine they are simply called: Ray is started for more, or with an address. A call whose
+    worker or node dies is made again elsewhere, so a task depends on nothing else.
     """
     if address is None and (workers or cores()) == 1:
-        yield from ((index, function(item)) for index, item in enumerate(items))
+        yield from ((index, task()) for index, task in enumerate(tasks))
         return
     with joined(address, workers) as count:
         import ray
 
-        remote = ray.remote(num_cpus=1, max_retries=4)(function)
+        call = ray.remote(num_cpus=1, max_retries=4)(_call)
         waiting: dict[Any, int] = {}
-        left = list(enumerate(items))[::-1]
+        left = list(enumerate(tasks))[::-1]
         while left or waiting:
             while left and len(waiting) < 2 * count:
-                index, item = left.pop()
-                waiting[remote.remote(item)] = index
+                index, task = left.pop()
+                waiting[call.remote(task)] = index
             for done in ray.wait(list(waiting))[0]:
                 yield waiting.pop(done), ray.get(done)
+
+
+def _call(task: Callable[[], Result]) -> Result:
+    return task()

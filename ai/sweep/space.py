@@ -4,45 +4,39 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, fields
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ai.common.knobs import Knobs, field_problem, is_number
-from ai.files import read_json, shown
+from ai.common.knobs import Knobs, field_problem
+from ai.files import read_as, read_json
 
 Space = dict[str, "Dimension"]
 
 
 @dataclass(frozen=True)
 class Dimension:
-    """Dimension of a search space: the range of a knob, or the values to choose from.
-
-    Attributes:
-        low, high: ends of the range, both included.
-        log: whether the range is searched by factors, not by differences.
-        whole: whether its values are whole numbers.
-        choices: values in place of a range, as JSON holds them.
-
-    """
+    """Dimension of a search space: the range of a knob, or the values to choose from."""
 
     low: float = 0.0
-    high: float = 0.0
-    log: bool = False
+    high: float = 0.0  # included
+    log: bool = False  # whether the range is searched by factors, not by differences
     whole: bool = False
-    choices: tuple[Any, ...] = ()
+    choices: tuple[Any, ...] = ()  # values in place of a range, as JSON holds them
 
-    def to_json(self) -> dict[str, Any]:
-        """Return it as `read_dimension` reads it."""
-        if self.choices:
-            return {"choices": list(self.choices)}
-        return {name: value for name, value in asdict(self).items() if name != "choices"}
+    @property
+    def ends(self) -> tuple[Any, Any]:
+        """First and last value."""
+        return (self.choices[0], self.choices[-1]) if self.choices else (self.low, self.high)
 
     def place(self, value: Any) -> float:
-        """Return where a value lies in the range, from 0 to 1; of a choice, its number over that of the last."""
+        """Return where a value lies in the range, 0 to 1; of a choice, its number over that of the last.
+
+        Raises ValueError or TypeError for what is no such value.
+        """
         if self.choices:
             return self.choices.index(value) / max(1, len(self.choices) - 1)
         low, high, at = map(math.log, (self.low, self.high, value)) if self.log else (self.low, self.high, value)
@@ -66,46 +60,33 @@ class Dimension:
 def knob_dimension(config: Knobs, name: str, asked: Any = None) -> Dimension:
     """Return the dimension of a knob; raises ValueError where there is none.
 
-    `asked` is what a file says of it: a list of values, {"choices": list}, or {"low": …, "high": …, "log": …}, each of
-    which may be left out for the knob's own.
+    `asked` is what a file says of it: a list of values, or {"low": …, "high": …, "log": …}, each of which may be left
+    out for the knob's own.
     """
     item = next((item for item in fields(config) if item.name == name), None)
     if item is None:
         raise ValueError(f"there is no setting called {name}")
     kind, described = str(item.type), item.metadata
-    asked = {"choices": asked} if isinstance(asked, list) else asked or {}
-    if not isinstance(asked, Mapping) or set(asked) - {"low", "high", "log", "choices", "whole"}:
-        raise ValueError(f"{name}: a range is low, high and log, or a list of choices, not {shown(asked)}")
-    choices = asked.get(
-        "choices", described["choices"] or described["offers"] or ((False, True) if kind == "bool" else ())
-    )
-    if "low" in asked or "high" in asked:
-        choices = asked.get("choices", ())
-    if choices:
-        return _choices(config, name, choices)
-    if described["low"] is None or kind not in ("int", "float"):
+    choices = described["choices"] or described["offers"] or ((False, True) if kind == "bool" else ())
+    if isinstance(asked, list):
+        choices = asked
+    elif asked:
+        choices = ()
+    if not choices and (described["low"] is None or kind not in ("int", "float")):
         raise ValueError(f"{name} has no range and no choices to search; give it choices in a file")
-    low, high = asked.get("low", described["low"]), asked.get("high", described["high"])
-    if not is_number(low) or not is_number(high) or not described["low"] <= low < high <= described["high"]:
-        raise ValueError(
-            f"{name}: low and high lie between {described['low']:g} and {described['high']:g}, low below high"
-        )
-    log = asked.get("log", described["log"])
-    if not isinstance(log, bool) or (log and low <= 0):
-        raise ValueError(f"{name}: log is true or false, and false for a range that begins at 0")
-    return Dimension(low, high, log, kind == "int")
-
-
-def _choices(config: Knobs, name: str, choices: Any) -> Dimension:
-    """Return a dimension of values to choose from, each of which the knob must take."""
-    if not isinstance(choices, Sequence) or isinstance(choices, str) or not choices:
-        raise ValueError(f"{name}: choices are a list, not {shown(choices)}")
-    item = next(item for item in fields(config) if item.name == name)
-    plain = tuple(list(value) if isinstance(value, tuple) else value for value in choices)
-    for value in plain:
-        if problem := field_problem(item, config.value_from_json(name, value)):
+    if choices:
+        dimension = Dimension(choices=tuple(list(each) if isinstance(each, tuple) else each for each in choices))
+    else:
+        own = {end: described[end] for end in ("low", "high", "log")}
+        if asked and not (isinstance(asked, Mapping) and set(asked) <= set(own)):
+            raise ValueError(f"{name}: a range is low, high and log, or a list of choices")
+        dimension = read_as(Dimension, own | {"whole": kind == "int"} | (asked or {}))
+        if not dimension.low < dimension.high or (dimension.log and dimension.low <= 0):
+            raise ValueError(f"{name}: low lies below high, and above 0 where log is true")
+    for value in dimension.choices or dimension.ends:
+        if problem := field_problem(item, config.value_from_json(name, int(value) if dimension.whole else value)):
             raise ValueError(problem)
-    return Dimension(choices=plain)
+    return dimension
 
 
 def knob_space(config: Knobs, names: Iterable[str]) -> Space:
@@ -130,16 +111,7 @@ def read_space(config: Knobs, file: Path) -> Space:
     asked = read_json(file)
     if not isinstance(asked, dict) or not asked:
         raise ValueError(f"{file}: a space is a range by the name of each knob")
-    return {config.name_now(name): knob_dimension(config, config.name_now(name), each) for name, each in asked.items()}
-
-
-def read_dimension(values: Mapping[str, Any]) -> Dimension:
-    """Read what `Dimension.to_json` gave; raises ValueError, TypeError or KeyError for anything else."""
-    if "choices" in values:
-        return Dimension(choices=tuple(values["choices"]))
-    if not is_number(values["low"]) or not is_number(values["high"]):
-        raise ValueError("a range has two numbers")
-    return Dimension(values["low"], values["high"], bool(values["log"]), bool(values["whole"]))
+    return {(now := config.name_now(name)): knob_dimension(config, now, each) for name, each in asked.items()}
 
 
 def shown_value(value: Any) -> str:

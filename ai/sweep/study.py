@@ -1,8 +1,7 @@
 """Study on disk: its plan, Optuna's journal, and the finished trials, each whole or not there.
 
-    study.json            the plan
-    journal.jsonl         Optuna's: every trial that has begun, with its settings (`ai.sweep.journal`)
-    summary.json          the best so far and what matters, for lists; made from the rest
+    study.json            the plan, the best run so far, and which knobs matter
+    journal.jsonl         Optuna's: every trial that has begun, with its settings (`ai.sweep.search`)
     trials/0007/          a finished trial: trial.json with its curves, and seed-N/ with the run as `train` keeps it
 
 Only the process that runs a study writes it. It gets results through Ray, so workers need no common disk.
@@ -13,37 +12,43 @@ from __future__ import annotations
 import errno
 import json
 import re
-import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, Final, Self
 
-from ai.agent.storage import KIND
-from ai.digits.classifier import KIND as DIGITS_KIND
 from ai.files import (
+    Count,
+    Duration,
     OneOf,
+    Seed,
+    Share,
     Sized,
     brief,
     new_folder,
     read_as,
+    read_bytes,
     read_json,
     recover_all,
     remove_state,
     take_folder,
+    write_bytes,
     write_text,
 )
-from ai.sweep.metric import Metric
-from ai.sweep.plan import FORMAT, VERSION, Plan
-from ai.sweep.results import STUDIES, STUDY_FILE, SUMMARY_FILE, FinishedTrial, Summary, summary_of
-from ai.sweep.runs import DIGITS
-from ai.sweep.trial import archive, seed_folder, unpack
+from ai.sweep.metric import Metric, Point
+from ai.sweep.plan import Plan
 
+STUDIES: Final = "studies"  # folder of all studies, in the user's
+STUDY_FILE: Final = "study.json"
 TRIAL_FILE: Final = "trial.json"
-_NAME: Final = re.compile(r"\d{4,6}")
+FORMAT, VERSION = "tranquility study", 2
 _MOST: Final = 64_000_000  # bytes of a trial's file
+_MOST_RUNS: Final = 1_000_000_000  # bytes of a trial's runs
 _UNREADABLE: Final = (OSError, ValueError, TypeError, ArithmeticError, RecursionError)
+
+Files = dict[str, bytes]  # content by path
+_Words = Annotated[str, Sized(2000)]
 
 
 class StudyError(ValueError):
@@ -51,11 +56,75 @@ class StudyError(ValueError):
 
 
 @dataclass(frozen=True)
-class _StudyFile:
-    format: Annotated[str, OneOf((FORMAT,))]
-    version: Annotated[int, OneOf((VERSION,))]
-    id: Annotated[str, Sized(32, 32)]
+class SeedResult:
+    """Result of one seed of a trial."""
+
+    seed: Seed
+    curve: Annotated[tuple[Point, ...], Sized(100_000)]  # what was measured on the way
+    value: float | None  # of the metric; None if there is none
+    problem: _Words  # why the run ended before its time; empty if it did not
+    seconds: Duration  # of training, by the clock
+    figures: dict[str, Any]  # of the network kept, as its command tells them; empty for a run that was stopped early
+
+
+@dataclass(frozen=True)
+class FinishedTrial:
+    """Result of a trial."""
+
+    number: Count  # in its study
+    params: dict[str, Any]  # values of the knobs that were searched
+    value: float | None  # of the metric, as the seeds are judged; None if one has none, or the settings made no sense
+    at: Count  # decisions or epochs that were trained
+    stopped: bool  # early, because others were better
+    seconds: Duration  # that it took, by the clock, with all measuring and saving
+    seeds: Annotated[tuple[SeedResult, ...], Sized(1000)]  # none if the settings made no sense
+    parent: Count | None = None  # the trial whose runs it went on with, in a population
+    problem: _Words = ""  # why there is no result; empty if there is one
+    restarts: Count = 0  # times that it went on from its last checkpoint, as its worker had died
+
+    @property
+    def values(self) -> list[float]:
+        """Values of the seeds that have one."""
+        return [seed.value for seed in self.seeds if seed.value is not None]
+
+    @property
+    def best_seed(self) -> SeedResult | None:
+        """Seed whose network is the best, by the figures of its own validation; None if none was kept."""
+        return max((seed for seed in self.seeds if seed.figures), key=_rank, default=None)
+
+
+def _rank(seed: SeedResult) -> tuple[float, float]:
+    numbers = [seed.figures.get(name) for name in ("success", "held_out", "mean_return")]
+    success, held_out, mean = (float(number) if isinstance(number, int | float) else 0.0 for number in numbers)
+    return success + held_out, mean
+
+
+@dataclass(frozen=True)
+class StudyFile:
+    """What study.json says; `run` is the folder of the best run, `importance` what `ai.sweep.search` says of knobs."""
+
     plan: Plan
+    format: Annotated[str, OneOf((FORMAT,))] = FORMAT
+    version: Annotated[int, OneOf((VERSION,))] = VERSION
+    run: Annotated[str, Sized(200)] | None = None
+    importance: dict[str, Share] | None = None
+
+    @classmethod
+    def read(cls, folder: Path) -> Self:
+        """Read it; raises StudyError for a folder that is no study."""
+        try:
+            values = read_json(folder / STUDY_FILE)
+            if isinstance(values, dict) and (values.get("format"), values.get("version")) == (FORMAT, 1):
+                raise StudyError(f"{folder} is a study of an earlier version, which this one does not read")
+            file = read_as(cls, values)
+            file.plan.check()
+        except OSError as error:
+            raise StudyError(f"{folder} is no study: {STUDY_FILE}: {error.strerror or error}") from error
+        except StudyError:
+            raise
+        except (ValueError, TypeError, RecursionError) as error:
+            raise StudyError(f"{folder} is no study that can be read: {brief(error)}") from error
+        return file
 
 
 class Study:
@@ -63,7 +132,6 @@ class Study:
 
     Attributes:
         folder: where it lies.
-        id: hexadecimal digits that no other study has.
         plan: what was asked for.
         trials: finished ones by number.
         damaged: numbers of trials whose files cannot be read.
@@ -71,9 +139,8 @@ class Study:
 
     """
 
-    def __init__(self, folder: Path, study_id: str, plan: Plan) -> None:
-        self.folder, self.id, self.plan = folder, study_id, plan
-        self.metric = Metric.named(plan.metric)
+    def __init__(self, folder: Path, plan: Plan) -> None:
+        self.folder, self.plan, self.metric = folder, plan, Metric.named(plan.metric)
         self.trials: dict[int, FinishedTrial] = {}
         self.damaged: list[int] = []
         self.importance: dict[str, float] = {}
@@ -85,65 +152,40 @@ class Study:
         if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
             raise StudyError(f"{folder} exists already: --resume goes on with it, or choose another name")
         folder.mkdir(parents=True, exist_ok=True)
-        study = cls(folder, secrets.token_hex(16), plan)
-        study._write_plan()
+        study = cls(folder, plan)
+        study.write()
         return study
 
     @classmethod
     def load(cls, folder: Path) -> Self:
         """Read a study; raises StudyError for a folder that is none. Trials that cannot be read are `damaged`."""
-        try:
-            values = read_json(folder / STUDY_FILE)
-            if isinstance(values, dict) and (values.get("format"), values.get("version")) == (FORMAT, 1):
-                raise StudyError(f"{folder} is a study of an earlier version, which this one does not read")
-            told = read_as(_StudyFile, values)
-            told.plan.check()
-            if not re.fullmatch(r"[0-9a-f]{32}", told.id):
-                raise ValueError("its id is not 32 hexadecimal digits")
-        except OSError as error:
-            raise StudyError(f"{folder} is no study: {STUDY_FILE}: {error.strerror or error}") from error
-        except StudyError:
-            raise
-        except (ValueError, RecursionError) as error:
-            raise StudyError(f"{folder} is no study that can be read: {brief(error)}") from error
-        study = cls(folder, told.id, told.plan)
-        study._read_trials()
-        summary = summary_of(folder)
-        known = (summary and summary.importance) or {}
-        study.importance = {name: share for name, share in known.items() if name in told.plan.space}
-        return study
-
-    def _write_plan(self) -> None:
-        told = {"format": FORMAT, "version": VERSION, "id": self.id, "plan": asdict(self.plan)}
-        write_text(self.folder / STUDY_FILE, json.dumps(told, indent=2) + "\n")
-
-    def _read_trials(self) -> None:
-        for path in _numbered(self.folder / "trials"):
-            number = int(path.name)
+        file = StudyFile.read(folder)
+        study = cls(folder, file.plan)
+        study.importance = {name: share for name, share in (file.importance or {}).items() if name in file.plan.space}
+        for number in _numbers(folder / "trials"):
             try:
-                trial = read_as(FinishedTrial, read_json(path / TRIAL_FILE, _MOST))
-                self._check(number, trial)
+                trial = read_as(FinishedTrial, read_json(study.trial_folder(number) / TRIAL_FILE, _MOST))
+                study._check(number, trial)
+                study.trials[number] = trial
             except _UNREADABLE:
-                self.damaged.append(number)
-            else:
-                self.trials[number] = trial
+                study.damaged.append(number)
+        return study
 
     def _check(self, number: int, trial: FinishedTrial) -> None:
         """Raise ValueError or TypeError for what a file says of a trial if it cannot be one of this study."""
-        if trial.number != number:
-            raise ValueError("of another trial")
         self.check_params(trial.params)
-        if trial.seeds or trial.value is not None:
-            if tuple(seed.seed for seed in trial.seeds) != self.plan.seeds:
-                raise ValueError("of other seeds")
-            if trial.value is not None and len(trial.values) < len(trial.seeds):
-                raise ValueError("a value without that of a seed")
+        senseless = not trial.seeds and trial.value is None
+        seeds = tuple(seed.seed for seed in trial.seeds)
+        if trial.number != number or not (senseless or seeds == self.plan.seeds):
+            raise ValueError("of another trial, or of other seeds")
+        if trial.value is not None and len(trial.values) < len(trial.seeds):
+            raise ValueError("a value without that of a seed")
 
     def check_params(self, params: dict[str, Any]) -> None:
         """Raise ValueError or TypeError for settings that are not of this study's space."""
         if set(params) != set(self.plan.space):
             raise ValueError("of another study")
-        for name, dimension in self.plan.dimensions().items():
+        for name, dimension in self.plan.space.items():
             dimension.place(params[name])
 
     # Writing
@@ -158,42 +200,32 @@ class Study:
 
     def extend(self, trials: int) -> None:
         """Ask for so many trials in all; raises OSError, or ValueError for a number that makes no sense."""
-        plan = replace(self.plan, trials=trials)
         if self.plan.population and trials != self.plan.trials:
             raise StudyError("a population has as many trials as it began with: its generations divide the budget")
-        plan.check()
-        self.plan = plan
-        self._write_plan()
+        self.plan = replace(self.plan, trials=trials)
+        self.write()
 
-    def record(self, trial: FinishedTrial, packed: bytes = b"") -> None:
-        """Keep a finished trial and the archive of its runs, whole or not at all; raises OSError."""
-        target = self.trial_folder(trial.number)
-        with new_folder(target) as new:
-            if packed:
-                unpack(packed, new)
+    def write(self) -> None:
+        """Write study.json; raises OSError."""
+        best = self.best()
+        run = self.best_run(best) if best else None
+        name = run.relative_to(self.folder).as_posix() if run else None
+        file = StudyFile(self.plan, run=name, importance=self.importance)
+        write_text(self.folder / STUDY_FILE, json.dumps(asdict(file), indent=2) + "\n")
+
+    def record(self, trial: FinishedTrial, runs: Files) -> None:
+        """Keep a finished trial and the files of its runs, whole or not at all; raises OSError."""
+        with new_folder(self.trial_folder(trial.number)) as new:
+            write_files(runs, new)
             write_text(new / TRIAL_FILE, json.dumps(asdict(trial)) + "\n", flush=False)
         self.trials[trial.number] = trial
-        self._forget_states(self.plan.generation(trial.number))
-        with suppress(OSError):
-            self.write_summary()
-
-    def _forget_states(self, generation: int) -> None:
-        """Delete what the members before went on from, once all of a generation have."""
+        generation = self.plan.generation(trial.number)
         if generation and len(self.generation(generation)) == self.plan.population:
-            for trial in self.generation(generation - 1):
+            for before in self.generation(generation - 1):  # nobody goes on from there any more
                 for seed in self.plan.seeds:
-                    remove_state(self.trial_folder(trial.number) / seed_folder(seed))
-
-    def write_summary(self) -> None:
-        """Write what a list of studies shows; raises OSError."""
-        best = self.best()
-        seed = best.best_seed if best else None
-        summary = Summary(
-            len(self.trials), self.plan.trials, self.plan.metric, self.plan.settings.get("env"),
-            self.shown(best.value) if best else None,
-            f"trials/{best.number:04}/{seed_folder(seed.seed)}" if best and seed else None, self.importance,
-        )  # fmt: skip
-        write_text(self.folder / SUMMARY_FILE, json.dumps(asdict(summary), indent=2) + "\n", flush=False)
+                    remove_state(self.trial_folder(before.number) / seed_folder(seed))
+        with suppress(OSError):
+            self.write()
 
     # Reading
 
@@ -206,50 +238,73 @@ class Study:
         folder = self.trial_folder(trial.number) / seed_folder(seed)
         return folder if folder.is_dir() else None
 
-    def runs_of(self, number: int) -> bytes:
-        """Return the runs of a finished trial as one archive; raises OSError."""
-        folder = self.trial_folder(number)
-        for seed in self.plan.seeds:
-            run = folder / seed_folder(seed)
-            if run.exists() and (stranger := (DIGITS_KIND if self.plan.kind == DIGITS else KIND).stranger(run)):
-                raise OSError(errno.EINVAL, f"holds something else than a run ({stranger})", str(run))
-        return archive(folder)
+    def best_run(self, trial: FinishedTrial) -> Path | None:
+        """Return the folder of a trial's best run; None if none was kept."""
+        return self.run_folder(trial, trial.best_seed.seed) if trial.best_seed else None
+
+    def runs_of(self, number: int) -> Files:
+        """Return the files of the runs of a finished trial; raises OSError."""
+        return files_in(self.trial_folder(number))
 
     def ranked(self) -> list[FinishedTrial]:
         """Return the trials that have a value, the best first; those that ran to their end before those stopped."""
-        sign = 1 if self.metric.mode == "min" else -1
         known = [trial for trial in self.trials.values() if trial.value is not None]
+        sign = self.metric.sign
         return sorted(known, key=lambda trial: (trial.stopped, sign * (trial.value or 0.0), trial.number))
 
     def best(self) -> FinishedTrial | None:
         """Return the best trial; of a population, of its last generation that is whole. None before there is one."""
-        ranked = self.ranked()
-        if self.plan.population:
-            whole = [
-                number
-                for number in range(self.plan.generations)
-                if len(self.generation(number)) == self.plan.population
-            ]
-            last = whole[-1] if whole else 0
-            ranked = [trial for trial in ranked if self.plan.generation(trial.number) == last]
+        plan, ranked = self.plan, self.ranked()
+        if plan.population:
+            whole = [each for each in range(plan.generations) if len(self.generation(each)) == plan.population]
+            ranked = [trial for trial in ranked if plan.generation(trial.number) == max(whole, default=0)]
         return ranked[0] if ranked else None
 
     def generation(self, number: int) -> list[FinishedTrial]:
         """Return the finished members of a generation, by number."""
         return [each for _, each in sorted(self.trials.items()) if self.plan.generation(each.number) == number]
 
+    @property
+    def complete(self) -> bool:
+        """Whether all trials are finished."""
+        return len(self.trials) >= self.plan.trials
+
     def shown(self, value: float | None) -> str:
         """Return a value of the metric as a table shows it."""
         return self.metric.shown(value, self.plan.budget)
 
 
-def _numbered(folder: Path, suffix: str = "") -> list[Path]:
-    """Return the paths in a folder that are called by the number of a trial, sorted."""
-    try:
-        found = [path for path in folder.iterdir() if path.suffix == suffix and _NAME.fullmatch(path.stem)]
-    except OSError:
-        return []
-    return sorted(found, key=lambda path: int(path.stem))
+def _numbers(folder: Path) -> list[int]:
+    """Return the numbers that name something in the folder of a study's trials, sorted."""
+    with suppress(OSError):
+        return sorted({int(path.name) for path in folder.iterdir() if re.fullmatch(r"[0-9]{4,6}", path.name)})
+    return []
+
+
+def files_in(folder: Path) -> Files:
+    """Return the content of all files in a folder, by their paths within it.
+
+    Raises OSError for a link, for what is no ordinary file, and for more than a trial may hold: nothing is sent to
+    other processes that does not lie in the folder itself.
+    """
+    files: Files = {}
+    for path in sorted(folder.rglob("*")):
+        if path.is_symlink():
+            raise OSError(errno.ELOOP, "is a link", str(path))
+        if not path.is_dir():
+            files[path.relative_to(folder).as_posix()] = read_bytes(path, _MOST_RUNS - sum(map(len, files.values())))
+    return files
+
+
+def write_files(files: Files, folder: Path) -> None:
+    """Write the files that `files_in` has read into a folder; raises OSError."""
+    for name, content in files.items():
+        write_bytes(folder / name, content, flush=False)
+
+
+def seed_folder(seed: int) -> str:
+    """Return the name of the folder of a seed's run within its trial's."""
+    return f"seed-{seed}"
 
 
 def find(name: str, user_dir: Path) -> Path:

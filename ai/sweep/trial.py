@@ -1,192 +1,176 @@
-"""Trial of a study: the same settings trained with several seeds, in turn, on one thread."""
+"""Trial of a study: the same settings trained with several seeds, in turn, on one thread.
+
+A run takes the steps that `train` or `train-digits` takes, and is saved by the same function. So it gives the same
+network in a sweep as alone, bit for bit.
+"""
 
 from __future__ import annotations
 
-import errno
 import hashlib
-import io
 import tempfile
 import time
-import zipfile
-from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 
-from ai.files import read_bytes, remove_state
+from ai.common.knobs import Knobs
+from ai.digits.config import DigitConfig
+from ai.digits.mnist import TRAIN, load_part
+from ai.digits.training import DigitTraining
 from ai.sweep.metric import Metric, Point
 from ai.sweep.plan import Plan
-from ai.sweep.results import FinishedTrial, SeedResult
-from ai.sweep.runs import SeedRun, begin
+from ai.sweep.study import Files, FinishedTrial, SeedResult, files_in, seed_folder, write_files
+from ai.training.checkpoints import AGENTS, DIGITS, resume_digit_run, resume_run
+from ai.training.config import Config
+from ai.training.loop import Training, task_of
+from ai.training.run import Limit
+from ai.training.tasks import VALIDATION_SEED
 
 _ROOT: Final = Path(__file__).parents[2]
-_MOST: Final = 1_000_000_000  # bytes of an archive
-_MOST_SENT: Final = 100_000_000  # of a checkpoint; a larger one goes without the memories, and so on with none
+_MOST_SENT: Final = 100_000_000  # bytes of a checkpoint; a larger one goes without the memories, and so on with none
 
 
 @dataclass(frozen=True)
 class Asked:
-    """What is asked of one trial.
+    """What is asked of one trial."""
 
-    Attributes:
-        number: of the trial in its study.
-        params: values of the knobs that are searched.
-        parent: the finished trial whose runs it goes on with, in a population; else None.
+    number: int  # in its study
+    params: dict[str, Any]  # values of the knobs that are searched
+    parent: FinishedTrial | None = None  # whose runs it goes on with, in a population
 
+
+class SeedRun:
+    """Run of one seed: new, or going on, with other live knobs, from what a run kept in `parent`.
+
+    Raises ValueError for settings that make no sense, ModelFormatError for a parent that cannot be read. The settings
+    are the user's: their environment is named.
     """
 
-    number: int
-    params: dict[str, Any]
-    parent: FinishedTrial | None = None
+    def __init__(self, plan: Plan, params: dict[str, Any], seed: int, parent: Path | None) -> None:
+        self.run: Any
+        config = type(plan.config).from_json(plan.settings | params)
+        if isinstance(config, DigitConfig):
+            if not config.held_out:
+                raise ValueError("a study of digits needs images held out: held_out was 0")
+            self.run = DigitTraining(config, seed) if parent is None else resume_digit_run(parent)
+            self.kind, self.pace = DIGITS, self.run.steps_per_epoch  # steps to a unit of the budget
+        else:
+            assert isinstance(config, Config)
+            self.run = Training(config, seed) if parent is None else resume_run(parent, env=config.env)
+            self.run.validation_episodes = plan.validation or self.run.validation_episodes
+            self.kind, self.pace = AGENTS, 1
+        if parent is not None:
+            self.run.apply_live(config)
 
+    def advance(self, mark: int) -> Point:
+        """Train up to so many decisions or epochs, and measure; raises FloatingPointError if it diverges."""
+        run, last = self.run, None
+        for progress in Limit(moment=mark * self.pace).run(run):
+            last = progress
+        if self.kind is DIGITS:
+            return Point(mark, run.history[-1]["held_out"], run.history[-1]["held_out"])
+        score = last.evaluation if last else None
+        score = score or run.task.evaluate(run.agent, run.validation_episodes, VALIDATION_SEED)
+        return Point(run.moment, score.success, score.mean_return)
 
-@dataclass
-class _State:
-    """What a trial has so far, of each seed: its curve, and why it ended early."""
-
-    at: int
-    curves: list[list[Point]]
-    problems: list[str] = field(default_factory=list)
+    def save(self, folder: Path, *, final: bool = False, state: bool = False) -> dict[str, Any]:
+        """Save the run as its command does; return the figures of the network that is kept, of a `final` one."""
+        told = self.kind.save(self.run, folder, final=final, state=state)
+        return told.get("best") or {name: told[name] for name in ("held_out", "test") if name in told}
 
 
 class Trial:
     """Trial that goes from mark to mark.
 
-    Args:
-        plan: of the study.
-        asked: of this trial.
-        runs: archive of the runs to go on with, the parent's or its own, as `archive` gave it; else empty.
-        so_far: what there was of this trial when `checkpoint` gave these runs; None for one that begins.
-
+    `runs` are files of runs to go on with: its parent's, or its own, as `checkpoint` gave them with what was `so_far`.
     Raises ValueError for settings that make no sense, ModelFormatError for runs that cannot be read.
-
     """
 
-    def __init__(self, plan: Plan, asked: Asked, runs: bytes = b"", so_far: FinishedTrial | None = None) -> None:
-        self.plan, self.asked = plan, asked
-        self.metric = Metric.named(plan.metric)
-        self.begun, self.end = plan.span(asked.number)
-        self._restarts = so_far.restarts + 1 if so_far else 0
-        self._began = time.monotonic() - (so_far.seconds if so_far else 0.0)
+    def __init__(self, plan: Plan, asked: Asked, runs: Files, so_far: FinishedTrial | None = None) -> None:
+        self.plan, self.asked, self.metric = plan, asked, Metric.named(plan.metric)
+        self.at, self.end = plan.span(asked.number)
+        self._restarts, self._began = 0, time.monotonic()
+        if so_far:
+            self.at, self._restarts, self._began = so_far.at, so_far.restarts + 1, self._began - so_far.seconds
         source = so_far or asked.parent
-        earlier = [list(seed.curve) for seed in source.seeds] if source else [[] for _ in plan.seeds]
-        self._state = _State(so_far.at if so_far else self.begun, earlier, [""] * len(plan.seeds))
-        settings = plan.settings | asked.params
+        self.curves = [list(seed.curve) for seed in source.seeds] if source else [[] for _ in plan.seeds]
+        self.problems = [""] * len(plan.seeds)
         with tempfile.TemporaryDirectory() as folder:
-            if runs:
-                unpack(runs, Path(folder))
+            write_files(runs, Path(folder))
             kept = {seed: Path(folder, seed_folder(seed)) for seed in plan.seeds}
-            self._runs: list[SeedRun] = [  # what diverged at once has kept nothing, and begins anew
-                begin(plan.kind, settings, seed, run if run.is_dir() else None, plan.validation)
-                for seed, run in kept.items()
+            self.runs = [  # what diverged at once has kept nothing, and begins anew
+                SeedRun(plan, asked.params, seed, run if run.is_dir() else None) for seed, run in kept.items()
             ]
-
-    @property
-    def at(self) -> int:
-        """Decisions or epochs that every seed has trained for."""
-        return self._state.at
 
     @property
     def done(self) -> bool:
         """Whether there is nothing left to train."""
-        return self.at >= self.end or all(self._state.problems)
-
-    @property
-    def value(self) -> float | None:
-        """Value of the trial so far, as its seeds are judged."""
-        return self.metric.judged([self._value_of(index) for index in range(len(self._runs))], self.plan.judge)
-
-    def _value_of(self, index: int) -> float | None:
-        curve = self._state.curves[index]
-        of = self.metric.lost if self._state.problems[index] else self.metric.of
-        return of(curve, self.plan.budget)
+        return self.at >= self.end or all(self.problems)
 
     def step(self) -> None:
         """Train every seed up to the next mark, and measure it there."""
         mark = min(self.end, (self.at // self.plan.every + 1) * self.plan.every)
-        for index, run in enumerate(self._runs):
-            if not self._state.problems[index]:
+        for index, run in enumerate(self.runs):
+            if not self.problems[index]:
                 try:
-                    self._state.curves[index].append(run.advance(mark))
+                    self.curves[index].append(run.advance(mark))
                 except FloatingPointError as error:
-                    self._state.problems[index] = str(error)
-        self._state.at = mark
+                    self.problems[index] = str(error)
+        self.at = mark
 
-    def result(self, figures: Mapping[int, Mapping[str, Any]] | None = None) -> FinishedTrial:
+    def result(self, figures: dict[int, dict[str, Any]] | None = None) -> FinishedTrial:
         """Return what there is to tell of the trial; `figures` are those of the networks kept, by seed."""
         seeds = tuple(
-            SeedResult(
-                seed, tuple(self._state.curves[index]), self._value_of(index), self._state.problems[index],
-                round(run.seconds, 3), dict((figures or {}).get(seed, {})),
-            )
-            for index, (seed, run) in enumerate(zip(self.plan.seeds, self._runs, strict=True))
+            SeedResult(seed, tuple(curve), self.metric.of(curve, self.plan.budget, bool(problem)), problem,
+                       round(run.run.seconds, 3), (figures or {}).get(seed, {}))
+            for seed, curve, problem, run in zip(self.plan.seeds, self.curves, self.problems, self.runs, strict=True)
         )  # fmt: skip
+        value = self.metric.judged([seed.value for seed in seeds], self.plan.judge)
         parent = self.asked.parent.number if self.asked.parent else None
+        seconds = round(time.monotonic() - self._began, 3)
         return FinishedTrial(
-            self.asked.number, self.asked.params, self.value, self.at, self.at < self.end,
-            round(time.monotonic() - self._began, 3), seeds, parent, restarts=self._restarts,
+            self.asked.number, self.asked.params, value, self.at, self.at < self.end, seconds, seeds, parent,
+            restarts=self._restarts,
         )  # fmt: skip
 
-    def checkpoint(self) -> bytes:
-        """Return an archive of every seed's run as it is now, to go on with; empty if one has diverged."""
-        if any(self._state.problems):
-            return b""
+    def checkpoint(self) -> Files:
+        """Return the files of every seed's run as it is now, to go on with; none if one has diverged."""
+        if any(self.problems):
+            return {}
         with tempfile.TemporaryDirectory() as temporary:
-            folders = [Path(temporary, seed_folder(seed)) for seed in self.plan.seeds]
-            for folder, run in zip(folders, self._runs, strict=True):
-                run.keep(folder)
-            if sum(path.stat().st_size for path in Path(temporary).rglob("*")) > _MOST_SENT:
-                for folder in folders:
-                    remove_state(folder)
-            return archive(Path(temporary))
+            for seed, run in zip(self.plan.seeds, self.runs, strict=True):
+                run.save(Path(temporary, seed_folder(seed)), state=True)
+            files = files_in(Path(temporary))
+        large = sum(map(len, files.values())) > _MOST_SENT
+        return {name: content for name, content in files.items() if not (large and name.startswith("."))}
 
-    def finish(self) -> tuple[FinishedTrial, bytes]:
-        """Save and measure every seed's run as its command would; return the result and an archive of the folders."""
+    def finish(self) -> tuple[FinishedTrial, Files]:
+        """Save and measure every seed's run as its command would; return the result and the files of the runs."""
         figures: dict[int, dict[str, Any]] = {}
         goes_on = self.plan.generation(self.asked.number) + 1 < self.plan.generations  # its state is needed then
         with tempfile.TemporaryDirectory() as temporary:
-            for index, (seed, run) in enumerate(zip(self.plan.seeds, self._runs, strict=True)):
+            for seed, problem, run in zip(self.plan.seeds, self.problems, self.runs, strict=True):
                 folder = Path(temporary, seed_folder(seed))
-                if not self._state.problems[index]:
-                    figures[seed] = run.save(folder, goes_on)
+                if not problem:
+                    figures[seed] = run.save(folder, final=True, state=goes_on)
                 else:
+                    run.run.restore_best()
                     with suppress(ValueError):  # its numbers were never finite after a step
-                        run.salvage(folder)
-            packed = archive(Path(temporary))
-        return self.result(figures), packed
+                        run.save(folder)
+            return self.result(figures), files_in(Path(temporary))
 
 
-def seed_folder(seed: int) -> str:
-    """Return the name of the folder of a seed's run within its trial's."""
-    return f"seed-{seed}"
-
-
-def archive(folder: Path) -> bytes:
-    """Return the files in a folder as one archive, not compressed.
-
-    Raises OSError for a link, for what is no ordinary file, and for more than an archive may hold: nothing is sent to
-    other processes that does not lie in the folder itself.
-    """
-    packed, left = io.BytesIO(), _MOST
-    with zipfile.ZipFile(packed, "w") as writer:
-        for path in sorted(folder.rglob("*")):
-            if path.is_symlink():
-                raise OSError(errno.ELOOP, "is a link", str(path))
-            if not path.is_dir():
-                content = read_bytes(path, left)
-                left -= len(content)
-                writer.writestr(path.relative_to(folder).as_posix(), content)
-    return packed.getvalue()
-
-
-def unpack(packed: bytes, folder: Path) -> None:
-    """Write the files of an archive into a folder; raises OSError."""
-    with zipfile.ZipFile(io.BytesIO(packed)) as reader:
-        reader.extractall(folder)
+def check_ready(config: Knobs) -> None:
+    """Raise ValueError or ImportError where no run of these settings can begin: images or environment are missing."""
+    if isinstance(config, DigitConfig):
+        load_part(TRAIN)
+    else:
+        assert isinstance(config, Config)
+        task_of(config)
 
 
 @cache

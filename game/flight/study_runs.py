@@ -1,4 +1,4 @@
-"""Best network of each study, offered among the player's networks. It reads each study's small summary, no more."""
+"""Best network of each study, offered among the player's networks. It reads each study's own file, no more."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from ai.files import brief, inside
-from ai.sweep.results import STUDIES, STUDY_FILE, summary_of
+from ai.sweep.study import STUDIES, STUDY_FILE, StudyFile
 from ai.training.config import LANDER
 from game.core import texts
 
@@ -27,12 +27,13 @@ def best_runs(user_dir: Path) -> dict[str, Path]:
     """Return the folder of the best run of each study of the lander, by the name under which it is offered."""
     found = {}
     for study in studies(user_dir):
-        summary = summary_of(study)
-        if summary and summary.env == LANDER and summary.run and _RUN.fullmatch(summary.run):
-            try:
-                folder = inside(study, summary.run)
-            except (OSError, ValueError):
+        try:
+            file = StudyFile.read(study)
+            if file.plan.settings.get("env") != LANDER or not _RUN.fullmatch(file.run or ""):
                 continue
-            if folder.is_dir():
-                found[texts.STUDY_BEST.format(study=brief(study.name, 40))] = folder
+            folder = inside(study, file.run or "")
+        except (OSError, ValueError):
+            continue
+        if folder.is_dir():
+            found[texts.STUDY_BEST.format(study=brief(study.name, 40))] = folder
     return found

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 
 import pygame
 
-from ai.sweep.results import FinishedTrial
-from ai.sweep.study import Study
+from ai.sweep.study import FinishedTrial, Study
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import LABEL, LINE, MUTE, NET
@@ -25,18 +24,18 @@ class StudyDots:
         self, canvas: Canvas, study: Study, trials: Sequence[FinishedTrial], knob: str, chosen: FinishedTrial
     ) -> None:
         """Draw the trials by their values of a knob, and a ring around the chosen one."""
-        shows = (study.id, len(trials), knob, chosen.number)
+        shows = (study.folder, len(trials), knob, chosen.number)
         self._cache.draw(canvas, self.box, shows, lambda sheet: self._paint(sheet, study, trials, knob, chosen))
 
     def _paint(
         self, canvas: Canvas, study: Study, trials: Sequence[FinishedTrial], knob: str, chosen: FinishedTrial
     ) -> None:
-        dimension = study.plan.dimensions()[knob]
+        dimension = study.plan.space[knob]
         plot = pygame.FRect(0, 8, self.box.width, self.box.height - 30)
         canvas.line(plot.bottomleft, plot.bottomright, LINE)
         values = [trial.value or 0.0 for trial in trials]
         low, high = min(values), max(values)
-        better_up = study.metric.mode == "max"
+        better_up = study.metric.sign == -1
         inner = plot.inflate(-16, -16)
         for trial, value in zip(trials, values, strict=True):
             share = (value - low) / (high - low) if high > low else 0.5
@@ -46,10 +45,8 @@ class StudyDots:
             if trial.number == chosen.number:
                 canvas.dot(spot, 3.5, NET)
                 canvas.outline((spot[0] - 8, spot[1] - 8, 16, 16), 8, NET)
-        choices = dimension.choices
-        ends = (choices[0], choices[-1]) if choices else (dimension.low, dimension.high)
         y = self.box.height - 6
-        left, right = map(knob_value, ends)
+        left, right = map(knob_value, dimension.ends)
         canvas.text(left, (0, y), size=LABEL, colour=MUTE)
         canvas.text(right, (plot.right, y), size=LABEL, colour=MUTE, align="right")
 

@@ -8,9 +8,8 @@ from typing import Final
 import pygame
 
 from ai.files import brief
-from ai.sweep.results import FinishedTrial
-from ai.sweep.runs import DIGITS
-from ai.sweep.study import Study, StudyError
+from ai.sweep.plan import DIGITS
+from ai.sweep.study import FinishedTrial, Study, StudyError
 from ai.training.config import LANDER
 from game.core import texts
 from game.core.scene import Transition, push
@@ -84,7 +83,7 @@ class StudyScene(ListScene[FinishedTrial]):
         self._shares = study.importance
         self._knobs = sorted(study.plan.space, key=lambda name: -self._shares.get(name, 0.0))
         self._study = study
-        better = texts.STUDY_LESS if study.metric.mode == "min" else texts.STUDY_MORE
+        better = texts.STUDY_LESS if study.metric.sign == 1 else texts.STUDY_MORE
         self._line = texts.STUDY_LINE.format(
             finished=len(study.trials), trials=study.plan.trials, metric=_metric(study), better=better
         )
@@ -98,8 +97,8 @@ class StudyScene(ListScene[FinishedTrial]):
 
     def _row(self, item: FinishedTrial) -> Row:
         assert self._study is not None
-        sign = 1 if self._study.metric.mode == "min" else -1
-        worst = max(item.values, key=lambda value: sign * value, default=None)
+        metric = self._study.metric
+        worst = max(item.values, key=lambda value: value * metric.sign, default=None)
         name = texts.STUDY_TRIAL.format(number=item.number)
         return name, _shown(self._study, item.value), _shown(self._study, worst)
 
@@ -130,9 +129,7 @@ class StudyScene(ListScene[FinishedTrial]):
     @property
     def _run(self) -> Path | None:
         """Folder of the chosen trial's best run; None if none was kept."""
-        if self._study is None or self.chosen is None or (seed := self.chosen.best_seed) is None:
-            return None
-        return self._study.run_folder(self.chosen, seed.seed)
+        return self._study.best_run(self.chosen) if self._study and self.chosen else None
 
     def _show_curves(self) -> None:
         """Show the learning curves of the chosen trial's seeds."""

@@ -6,10 +6,9 @@ from pathlib import Path
 
 from ai.sweep.metric import Point
 from ai.sweep.plan import Plan
-from ai.sweep.results import FinishedTrial, SeedResult
 from ai.sweep.space import knob_space
-from ai.sweep.study import Study
-from ai.sweep.trial import Asked, Trial, archive
+from ai.sweep.study import FinishedTrial, SeedResult, Study, files_in
+from ai.sweep.trial import Asked, Trial
 from ai.training.config import PRESETS, gym_config
 from game.core.assets import MODELS_DIR
 
@@ -19,7 +18,7 @@ TINY = {"num_envs": 4, "learning_starts": 64, "gradient_steps": 1, "hidden": (16
 def tiny_plan(**changes):
     """Return a plan of runs of some tenths of a second each."""
     config = gym_config("CartPole-v1").changed(**TINY)
-    space = {name: each.to_json() for name, each in knob_space(config, ["learning_rate", "tau"]).items()}
+    space = knob_space(config, ["learning_rate", "tau"])
     told = {
         "kind": "agent", "settings": json.loads(json.dumps(config.to_json())), "space": space, "seeds": (0, 1),
         "budget": 400, "every": 200, "metric": "return", "judge": "median", "search": "tpe", "stop_early": False,
@@ -28,9 +27,9 @@ def tiny_plan(**changes):
     return Plan(**(told | changes))
 
 
-def run_alone(plan, asked, parents=b""):
+def run_alone(plan, asked, parents=None):
     """Train a trial to its end in this process."""
-    trial = Trial(plan, asked, parents)
+    trial = Trial(plan, asked, parents or {})
     while not trial.done:
         trial.step()
     return trial.finish()
@@ -66,13 +65,13 @@ def shown_study(folder, trials=9):
     space = knob_space(PRESETS["modern"], ["learning_rate", "tau", "optimizer"])
     plan = Plan(
         "agent", json.loads(json.dumps(PRESETS["modern"].to_json())),
-        {name: each.to_json() for name, each in space.items()}, (0, 1), 160, 40, "time_to_99", "median", "tpe", True,
+        space, (0, 1), 160, 40, "time_to_99", "median", "tpe", True,
         trials + 3,
     )  # fmt: skip
     study = Study.create(folder, plan)
     shutil.copytree(MODELS_DIR / "lander" / "modern", folder / "seed-0")
     shutil.move(folder / "seed-0", folder / "run" / "seed-0")
-    runs = archive(folder / "run")
+    runs = files_in(folder / "run")
     shutil.rmtree(folder / "run")
     for number in range(trials):
         share, stopped = 1 - abs(number - 3) / 10, number == trials - 1
@@ -88,7 +87,7 @@ def shown_study(folder, trials=9):
             "optimizer": ("adam", "sgd")[number % 2],
         }
         trial = FinishedTrial(number, params, 40.0 * (number + 1), 160, stopped, 2.0, seeds)
-        study.record(trial, b"" if stopped else runs)
+        study.record(trial, {} if stopped else runs)
     study.importance = {"learning_rate": 0.71, "optimizer": 0.12, "tau": 0.03}
-    study.write_summary()
+    study.write()
     return study

@@ -24,13 +24,13 @@ def test_a_metric_reads_a_curve(subtests):
 def test_a_share_never_reached_counts_for_more_than_the_whole_run_and_the_nearer_the_better():
     metric = Metric.named("time_to_99")
     far, near = ([Point(400, share, 0.0)] for share in (0.1, 0.9))
-    nearer, farther, lost = metric.of(near, 400), metric.of(far, 400), metric.lost(far, 400)
+    nearer, farther, lost = metric.of(near, 400), metric.of(far, 400), metric.of(far, 400, True)
     assert nearer
     assert farther
     assert lost
     assert 400 < nearer < farther < lost
-    assert metric.mode == "min"
-    assert Metric.named("return").mode == "max"
+    assert metric.sign == 1
+    assert Metric.named("return").sign == -1
 
 
 @pytest.mark.parametrize("name", ["", "time_to_0", "time_to_101", "time_to_", "loss", "TIME_TO_99"])
@@ -49,6 +49,6 @@ def test_seeds_are_judged_by_the_median_or_the_worst():
 
 
 def test_a_diverged_seed_has_the_worst_value_there_is():
-    assert Metric.named("success").lost(CURVE, 400) == 0.0
-    assert Metric.named("return").lost(CURVE, 400) == -5.0
-    assert Metric.named("return").lost([], 400) is None
+    assert Metric.named("success").of(CURVE, 400, True) == 0.0
+    assert Metric.named("return").of(CURVE, 400, True) == -5.0
+    assert Metric.named("return").of([], 400, True) is None

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from ai.sweep.population import explored, proposed
+from ai.sweep.space import Dimension
 from ai.sweep.study import Study
 from ai.sweep.trial import Asked
 from ai.training.checkpoints import resume_run
@@ -46,16 +47,16 @@ def test_a_copy_begins_with_the_networks_of_its_parent_and_goes_on_as_train_does
     training.apply_live(training.config.changed(**asked.params))
     while training.agent.decisions < 400:
         training.advance()
-    from ai.sweep.trial import unpack
+    from ai.sweep.study import write_files
     from ai.training.checkpoints import save_run
 
     save_run(training, tmp_path / "alone", final=True)
-    unpack(runs, tmp_path / "swept")
+    write_files(runs, tmp_path / "swept")
     assert networks_in(tmp_path / "alone") == networks_in(tmp_path / "swept" / "seed-0")
 
 
 def test_a_changed_knob_stays_in_its_range():
-    space = tiny_plan().dimensions()
+    space = tiny_plan().space
     rng = np.random.default_rng(0)
     for _ in range(200):
         params = {name: each.draw(rng) for name, each in space.items()}
@@ -64,7 +65,7 @@ def test_a_changed_knob_stays_in_its_range():
 
 
 def test_a_population_changes_only_what_can_change_while_a_run_goes_on():
-    space = {"n_step": {"low": 1, "high": 5, "log": False, "whole": True}}
+    space = {"n_step": Dimension(1, 5, whole=True)}
     with pytest.raises(ValueError, match="n_step cannot change"):
         tiny_plan(search="population", population=2, space=space).check()
 

@@ -2,6 +2,7 @@
 
 import json
 import os
+import pickle
 import shutil
 
 import numpy as np
@@ -12,7 +13,7 @@ from ai.copilot import measurement
 from ai.lander.environment import LanderEnv
 from ai.sweep import shards as module
 from ai.sweep.cluster import each
-from ai.sweep.shards import flown_shards, fly, fly_part, pack_agent, packed_agent, parts, shards, tables_of
+from ai.sweep.shards import flown_shards, packed, parts_of, received, shards
 from ai.training.tasks import FlightSums, evaluate
 from game.core.assets import MODELS_DIR
 from main import main
@@ -29,7 +30,7 @@ def total(parts):
 def test_flights_are_those_of_one_batch_whatever_the_size_of_a_shard(monkeypatch, size):
     monkeypatch.setattr(module, "SHARD", size)
     parts = shards(AGENT, 40, 3, "hard")
-    assert [part.last - part.first for part in parts] == ([7] * 5 + [5] if size == 7 else [40])
+    assert [len(part.args[1]) for part in parts] == ([7] * 5 + [5] if size == 7 else [40])
     cut, whole = total(parts).evaluation(), evaluate(AGENT, 40, 3, "hard")
     if size == 40:
         assert cut == whole
@@ -43,8 +44,8 @@ def test_the_order_in_which_shards_are_done_changes_nothing(monkeypatch):
     parts = shards(AGENT, 20, 3, "random")
     in_order = total(parts)
 
-    def backwards(function, items, address, workers):
-        yield from reversed(list(each(function, items, address, workers)))
+    def backwards(tasks, address, workers):
+        yield from reversed(list(each(tasks, address, workers)))
 
     monkeypatch.setattr(module, "each", backwards)
     assert total(parts) == in_order
@@ -69,7 +70,7 @@ def test_evaluate_tells_an_interval_around_the_share(capsys):
 
 def test_a_worker_flies_one_shard_after_another_with_the_same_network(monkeypatch):
     parts = shards(AGENT, 3, 0, "random")
-    assert fly(parts[0]) == fly(parts[0])
+    assert parts[0]() == parts[0]()
 
 
 def test_the_copilots_table_is_the_same_in_parts(monkeypatch):
@@ -77,10 +78,10 @@ def test_the_copilots_table_is_the_same_in_parts(monkeypatch):
     table = (lambda slots, rng: LanderEnv(slots, rng, "rung_1"), names)
     monkeypatch.setattr(measurement, "TABLES", {"one_pad": table})
     monkeypatch.setattr(module, "PILOTS", 1)
-    asked = parts({"one_pad": AGENT}, False, helps, 3, 2)
-    assert len(asked) == 2
-    done = {index: fly_part(part) for index, part in reversed([*enumerate(asked)])}
-    assert tables_of(asked, done)["one_pad"] == list(measurement.rows(AGENT, AGENT, "one_pad", names, helps, 3, 2))
+    asked = parts_of({"one_pad": AGENT}, False, helps, 3, 2)
+    assert [name for name, _ in asked] == ["one_pad"] * 2
+    rows = [row for _, part in asked for row in part()]
+    assert rows == list(measurement.rows(AGENT, AGENT, "one_pad", names, helps, 3, 2))
 
 
 def test_evaluating_a_model_sends_what_was_read_and_leaves_nothing_behind(monkeypatch, tmp_path, capsys):
@@ -95,23 +96,25 @@ def test_evaluating_a_model_sends_what_was_read_and_leaves_nothing_behind(monkey
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "temporary"))
     asked = []
 
-    def here(function, items, address, workers):
-        asked.extend(items)
-        return each(function, items, None, 1)
+    def here(tasks, address, workers):
+        asked.extend(tasks)
+        return each(tasks, None, 1)
 
     monkeypatch.setattr(module, "each", here)
-    module.packed_agent.cache_clear()
     command = ["evaluate", "--model", str(tmp_path / "model"), "--episodes", "3", "--workers", "2"]
     assert main(command) == 0
     capsys.readouterr()
     assert asked
     for shard in asked:
-        assert b"a secret" not in shard.agent
-        assert len(shard.agent) < 1_000_000
+        sent = pickle.dumps(shard)
+        assert b"a secret" not in sent
+        assert len(sent) < 1_000_000
     assert not list((tmp_path / "temporary").iterdir())
 
 
 def test_an_agent_that_was_sent_flies_alike():
-    sent = packed_agent(pack_agent(AGENT))
+    (shard,) = shards(AGENT, 5, 3, "hard")
+    assert pickle.loads(pickle.dumps(shard))() == shard()
+    sent = received(packed(AGENT))
     assert np.array_equal(sent.network.values, AGENT.network.values)
     assert not sent.folder.exists()

@@ -1,12 +1,14 @@
 """Search spaces from the knobs' own ranges, by name, by group and from a file."""
 
 import json
+from dataclasses import asdict
 
 import numpy as np
 import pytest
 
 from ai.digits.config import DIGIT_PRESETS
-from ai.sweep.space import Dimension, knob_dimension, knob_space, read_dimension, read_space
+from ai.files import read_as
+from ai.sweep.space import Dimension, knob_dimension, knob_space, read_space
 from ai.training.config import PRESETS
 
 MODERN = PRESETS["modern"]
@@ -71,7 +73,7 @@ def test_a_file_that_makes_no_sense_is_refused(tmp_path, asked):
 @pytest.mark.parametrize("name", ["learning_rate", "n_step", "hidden", "epsilon_decisions", "double"])
 def test_values_and_places_are_inverse_and_drawn_within_the_range(name):
     dimension = knob_dimension(MODERN, name)
-    assert read_dimension(json.loads(json.dumps(dimension.to_json()))) == dimension
+    assert read_as(Dimension, json.loads(json.dumps(asdict(dimension)))) == dimension
     rng = np.random.default_rng(0)
     for _ in range(50):
         value = dimension.draw(rng)

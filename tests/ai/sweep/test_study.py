@@ -4,7 +4,7 @@ import errno
 import json
 import os
 import shutil
-from dataclasses import asdict
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
@@ -16,11 +16,9 @@ from ai.files import read_arrays, read_as
 from ai.sweep import study as study_module
 from ai.sweep.plan import Plan
 from ai.sweep.report import report, told
-from ai.sweep.results import FinishedTrial
-from ai.sweep.runs import AgentRun
-from ai.sweep.space import knob_space
-from ai.sweep.study import Study, StudyError, find
-from ai.sweep.trial import Asked, Trial, archive, unpack
+from ai.sweep.space import Dimension, knob_space
+from ai.sweep.study import FinishedTrial, Study, StudyError, files_in, find, write_files
+from ai.sweep.trial import Asked, SeedRun, Trial
 from ai.training.checkpoints import save_digit_run
 from ai.training.config import PRESETS
 from main import main
@@ -40,11 +38,9 @@ def study(made, tmp_path):
 
 
 def digits_plan(config, epochs):
-    return Plan(
-        "digits", json.loads(json.dumps(config.to_json())),
-        {name: each.to_json() for name, each in knob_space(config, ["learning_rate"]).items()}, (3,), epochs, 1,
-        "accuracy", "worst", "random", False, 1,
-    )  # fmt: skip
+    plan = Plan.of(config, knob_space(config, ["learning_rate"]), every=1, judge="worst", search="random", trials=1)
+    assert plan.budget == epochs
+    return replace(plan, seeds=(3,))
 
 
 def optimizer_of(folder):
@@ -72,7 +68,7 @@ def test_a_study_reads_what_it_wrote(study, made):
     assert study.trials == made.trials
     assert study.plan == made.plan
     assert study.damaged == []
-    summary = json.loads((study.folder / "summary.json").read_text())
+    summary = json.loads((study.folder / "study.json").read_text())
     best = study.best()
     assert summary["run"] == f"trials/{best.number:04}/seed-{best.best_seed.seed}"
     assert (study.folder / summary["run"] / "online").is_dir()
@@ -82,12 +78,12 @@ def test_a_full_disk_keeps_no_half_of_a_trial(study, monkeypatch):
     plan, asked = study.plan, Asked(2, {"learning_rate": 0.01, "tau": 0.1})
     result, runs = run_alone(plan, asked)
 
-    def full(packed, folder):
-        unpack(packed, folder)
+    def full(files, folder):
+        write_files(files, folder)
         raise OSError(errno.ENOSPC, "No space left on device")
 
     with monkeypatch.context() as patched:
-        patched.setattr(study_module, "unpack", full)
+        patched.setattr(study_module, "write_files", full)
         with pytest.raises(OSError, match="No space"):
             study.record(result, runs)
     left = Study.load(study.folder)
@@ -125,14 +121,6 @@ def test_a_folder_that_is_no_study_is_refused(study, content):
         Study.load(study.folder)
 
 
-def test_a_study_with_an_id_that_leads_elsewhere_is_refused(study):
-    told_ = json.loads((study.folder / "study.json").read_text())
-    told_["id"] = "../../../../../../../../etc/passwd..".ljust(32)[:32]
-    (study.folder / "study.json").write_text(json.dumps(told_))
-    with pytest.raises(StudyError):
-        Study.load(study.folder)
-
-
 def test_a_new_study_takes_no_folder_that_holds_anything(study):
     with pytest.raises(StudyError, match="--resume"):
         Study.create(study.folder, study.plan)
@@ -142,9 +130,9 @@ def test_settings_that_diverge_are_a_result_and_not_an_error(tmp_path, monkeypat
     def diverge(*_):
         raise FloatingPointError("the loss is not finite")
 
-    monkeypatch.setattr(AgentRun, "advance", diverge)
+    monkeypatch.setattr(SeedRun, "advance", diverge)
     plan = tiny_plan(metric="success", seeds=(0,))
-    trial = Trial(plan, Asked(0, {"learning_rate": 1.0, "tau": 1.0}))
+    trial = Trial(plan, Asked(0, {"learning_rate": 1.0, "tau": 1.0}), {})
     trial.step()
     assert trial.done
     result, runs = trial.finish()
@@ -163,7 +151,7 @@ def test_a_report_is_json_and_names_the_best(study):
 
 def test_a_trial_that_goes_on_from_a_checkpoint_ends_as_long_and_says_so():
     plan, asked = tiny_plan(every=100), Asked(0, {"learning_rate": 0.01, "tau": 0.1})
-    trial = Trial(plan, asked)
+    trial = Trial(plan, asked, {})
     trial.step()
     trial.step()
     so_far, runs = trial.result(), trial.checkpoint()
@@ -182,12 +170,12 @@ def test_a_killed_trial_of_the_lander_goes_on_bit_for_bit(tmp_path):
     settings = PRESETS["modern"].changed(**TINY, spawn="random")
     plan = tiny_plan(settings=json.loads(json.dumps(settings.to_json())), seeds=(0,), metric="success")
     asked = Asked(0, {"learning_rate": 0.01, "tau": 0.1})
-    trial = Trial(plan, asked)
+    trial = Trial(plan, asked, {})
     trial.step()
     again = Trial(plan, asked, trial.checkpoint(), trial.result())
     again.step()
-    unpack(again.finish()[1], tmp_path / "again")
-    unpack(run_alone(plan, asked)[1], tmp_path / "straight")
+    write_files(again.finish()[1], tmp_path / "again")
+    write_files(run_alone(plan, asked)[1], tmp_path / "straight")
     assert networks_in(tmp_path / "again") == networks_in(tmp_path / "straight")
 
 
@@ -200,13 +188,13 @@ def test_a_trial_of_digits_goes_on_from_a_checkpoint_as_if_nothing_had_been(tmp_
     plan = digits_plan(config, 2)
     asked = Asked(0, {"learning_rate": 0.01})
     straight, expected = run_alone(plan, asked)
-    trial = Trial(plan, asked)
+    trial = Trial(plan, asked, {})
     trial.step()
     again = Trial(plan, asked, trial.checkpoint(), trial.result())
     again.step()
     result, runs = again.finish()
-    unpack(expected, tmp_path / "straight")
-    unpack(runs, tmp_path / "again")
+    write_files(expected, tmp_path / "straight")
+    write_files(runs, tmp_path / "again")
     ours, uninterrupted = (networks_in(tmp_path / name) for name in ("again", "straight"))
     assert [name for name in uninterrupted if name.endswith(".npy") and ours[name] != uninterrupted[name]] == []
     assert result.value == straight.value
@@ -214,19 +202,19 @@ def test_a_trial_of_digits_goes_on_from_a_checkpoint_as_if_nothing_had_been(tmp_
 
 def test_taking_a_checkpoint_changes_nothing_of_a_run(tmp_path):
     plan, asked = tiny_plan(seeds=(0,)), Asked(0, {"learning_rate": 0.01, "tau": 0.1})
-    trial, kept = Trial(plan, asked), []
+    trial, kept = Trial(plan, asked, {}), []
     while not trial.done:
         trial.step()
         kept.append(trial.checkpoint())
-    unpack(trial.finish()[1], tmp_path / "kept")
-    unpack(run_alone(plan, asked)[1], tmp_path / "straight")
+    write_files(trial.finish()[1], tmp_path / "kept")
+    write_files(run_alone(plan, asked)[1], tmp_path / "straight")
     assert all(kept)
     assert networks_in(tmp_path / "kept") == networks_in(tmp_path / "straight")
 
 
 def test_a_study_of_an_environment_that_is_code_is_not_searched_over_environments():
     with pytest.raises(ValueError, match="env cannot be searched"):
-        tiny_plan(space={"env": {"choices": ["CartPole-v1", "evilcwd:X-v0"]}}).check()
+        tiny_plan(space={"env": Dimension(choices=("CartPole-v1", "evilcwd:X-v0"))}).check()
 
 
 def test_a_study_of_before_is_refused_by_name(study):
@@ -276,7 +264,7 @@ def test_the_runs_of_a_trial_are_sent_without_anything_that_is_no_run(study, tmp
 def test_an_archive_holds_a_folder(tmp_path):
     (tmp_path / "a" / "b").mkdir(parents=True)
     (tmp_path / "a" / "b" / "c.txt").write_text("here")
-    unpack(archive(tmp_path / "a"), tmp_path / "there")
+    write_files(files_in(tmp_path / "a"), tmp_path / "there")
     assert (tmp_path / "there" / "b" / "c.txt").read_text() == "here"
 
 
@@ -294,7 +282,7 @@ def test_a_trial_of_digits_is_that_of_train_digits(tmp_path):
     while not training.done:
         training.advance()
     save_digit_run(training, tmp_path / "alone", final=True)
-    unpack(runs, tmp_path / "swept")
+    write_files(runs, tmp_path / "swept")
     assert networks_in(tmp_path / "alone") == networks_in(tmp_path / "swept" / "seed-3")
     assert result.value == training.best
     assert result.best_seed.figures["test"] > 0.1

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from main import main
 from tests.support.studies import shown_study
 
-FILES = ("study.json", "trials/0000/trial.json", "summary.json")
+FILES = ("study.json", "trials/0000/trial.json")
 NASTY = (
     None, True, -1, 0, 2, 0.5, 1e308, -1e308, 5e-324, 10**30, 10**39, "", "x", "\ud800\x1b[2J", "x" * 5000, "٣", [], {},
     [[]], [None], [1e308] * 2, {"a": None}, float("nan"), float("inf"),

@@ -97,9 +97,9 @@ def test_the_best_run_of_a_study_is_among_the_players_networks(open_game, contex
 
 
 @pytest.mark.parametrize("damage", ["gone", "elsewhere", "nonsense"])
-def test_a_summary_that_is_wrong_offers_no_network(context, damage):
+def test_a_study_file_that_is_wrong_offers_no_network(context, damage):
     study = shown_study(context.user_dir / "studies" / "mine")
-    file = study.folder / "summary.json"
+    file = study.folder / "study.json"
     if damage == "gone":
         shutil.rmtree(study.trial_folder(0))
     elif damage == "elsewhere":
@@ -115,7 +115,7 @@ def test_a_study_is_read_without_ray_or_optuna(tmp_path):
     program = (
         "import sys; sys.modules['ray'] = sys.modules['optuna'] = None\n"
         "from pathlib import Path\n"
-        "from ai.sweep.study import Study; from ai.sweep.report import told; from ai.sweep.page import page\n"
+        "from ai.sweep.study import Study; from ai.sweep.report import page, told\n"
         f"study = Study.load(Path({str(folder)!r})); assert 'Trial' not in told(study); assert '<svg' in page(study)\n"
     )
     subprocess.run([sys.executable, "-c", program], cwd=ROOT, check=True)

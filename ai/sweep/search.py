@@ -18,16 +18,15 @@ from optuna.storages import JournalStorage
 from optuna.storages.journal import BaseJournalBackend
 from optuna.trial import Trial, TrialState
 
-from ai.files import OneOf, Sized, Within, brief, parse_json, read_as, read_text, write_text
-from ai.files.schema import Count
+from ai.files import Count, OneOf, Sized, Within, brief, parse_json, read_as, read_text, write_text
 from ai.sweep.plan import RANDOM
-from ai.sweep.results import FinishedTrial
 from ai.sweep.space import Dimension
-from ai.sweep.study import Study, StudyError
+from ai.sweep.study import FinishedTrial, Study, StudyError
+from ai.sweep.trial import Asked
 
 JOURNAL: Final = "journal.jsonl"
-REDUCTION: Final = 3  # successive halving: one trial in three goes on at each rung
 LEAST: Final = 8  # trials below which nothing is said of importance
+_REDUCTION: Final = 3  # successive halving: one trial in three goes on at each rung
 _MOST: Final = 64_000_000  # bytes of a journal
 _Word = Annotated[str, Sized(100)]
 
@@ -89,13 +88,15 @@ class Journal(BaseJournalBackend):
 
 
 class Search:
-    """Optuna's study beside ours: which trials there are, and what they are asked to try."""
+    """Optuna's study beside ours, as the driver asks it for trials; raises StudyError for one that cannot be read.
+
+    Our study's files are right where the two differ, and Optuna is told.
+    """
 
     def __init__(self, study: Study) -> None:
-        """Open the journal of a study that is claimed; raises StudyError for one that cannot be read."""
         optuna.logging.set_verbosity(optuna.logging.ERROR)
         warnings.simplefilter("ignore", optuna.exceptions.ExperimentalWarning)
-        self._study, self._space = study, study.plan.dimensions()
+        self._study, self._room = study, study.plan.trials - len(study.trials)
         try:
             self._optuna = _opened(study)
             rows = self._optuna.trials
@@ -115,11 +116,12 @@ class Search:
             self.tell(done)
             return False
         try:
+            for name, distribution in _distributions(self._study).items():  # it may have been cut off amid these
+                self._trial(row.number)._suggest(name, distribution)
             self._study.check_params(self.params(row.number))
-        except (ValueError, TypeError, KeyError):  # as of a trial that was cut off before all knobs were drawn
-            if not self._study.plan.population:  # what a member is asked follows from those before it
-                self._optuna.tell(row.number, state=TrialState.FAIL)
-                return False
+        except (ValueError, TypeError, KeyError):
+            self._optuna.tell(row.number, state=TrialState.FAIL)
+            return False
         return True
 
     def _trial(self, number: int) -> Trial:
@@ -127,16 +129,16 @@ class Search:
 
     def params(self, number: int) -> dict[str, Any]:
         """Return the settings of a trial."""
-        asked = self._trial(number).params
-        return {name: json.loads(value) if self._space[name].choices else value for name, value in asked.items()}
+        space, asked = self._study.plan.space, self._trial(number).params
+        return {name: json.loads(value) if space[name].choices else value for name, value in asked.items()}
 
-    def ask(self, params: dict[str, Any] | None = None) -> int:
-        """Return the number of a new trial, with Optuna's settings or with those given; raises OSError."""
-        trial = self._optuna.ask(_distributions(self._study) if params is None else {})
-        if params is not None:
-            trial.set_user_attr("params", params)
-        number: int = trial.number
-        return number
+    def next(self) -> Asked | None:
+        """Return the next trial, one that was interrupted or a new one; None for no more. Raises OSError."""
+        if not self._room:
+            return None
+        number = self.left[0] if self.left else self._optuna.ask(_distributions(self._study)).number
+        self.left, self._room = self.left[1:], self._room - 1
+        return Asked(number, self.params(number))
 
     def falls_behind(self, trial: FinishedTrial) -> bool:
         """Note how good a trial is so far; return whether others are so much better that it should end."""
@@ -147,48 +149,40 @@ class Search:
         return bool(noted.should_prune())
 
     def tell(self, trial: FinishedTrial) -> None:
-        """Note the end of a trial."""
+        """Note the end of a trial; raises OSError."""
         state = TrialState.FAIL if trial.value is None else TrialState.COMPLETE
         self._optuna.tell(trial.number, trial.value, state=state)
 
+    def importance(self) -> dict[str, float]:
+        """Return the share that each knob has in setting the best trials apart, the most important first.
 
-def importance_of(study: Study) -> dict[str, float]:
-    """Return the share that each knob has in setting the best trials apart, the most important first.
-
-    PED-ANOVA (Watanabe, Bansal and Hutter 2023), as Optuna computes it. Empty for a population, whose knobs change on
-    the way, for too few trials, and for equal values.
-    """
-    known = [trial for _, trial in sorted(study.trials.items()) if trial.value is not None]
-    if study.plan.population or len(known) < LEAST or len({trial.value for trial in known}) < 2:
-        return {}
-    optuna.logging.set_verbosity(optuna.logging.ERROR)
-    warnings.simplefilter("ignore", optuna.exceptions.ExperimentalWarning)
-    beside = optuna.create_study(direction="minimize" if study.metric.mode == "min" else "maximize")
-    distributions = _distributions(study)
-    for trial in known:
-        params = {name: _plain(each, trial.params[name]) for name, each in study.plan.dimensions().items()}
-        beside.add_trial(optuna.create_trial(params=params, distributions=distributions, value=trial.value))
-    evaluator = optuna.importance.PedAnovaImportanceEvaluator()
-    shares: dict[str, float] = optuna.importance.get_param_importances(beside, evaluator=evaluator)
-    return shares
+        PED-ANOVA (Watanabe, Bansal and Hutter 2023). Empty for too few trials, and for equal values.
+        """
+        known = [trial.value for trial in self._study.trials.values() if trial.value is not None]
+        if len(known) < LEAST or len(set(known)) < 2:
+            return {}
+        evaluator = optuna.importance.PedAnovaImportanceEvaluator()
+        shares: dict[str, float] = optuna.importance.get_param_importances(self._optuna, evaluator=evaluator)
+        return shares
 
 
 def _opened(study: Study) -> optuna.Study:
     plan = study.plan
-    storage = JournalStorage(Journal(study.folder / JOURNAL))
     # Another seed each time, or a study that goes on would propose once more what it began with.
     seed = plan.seed * 1_000_003 + len(study.trials) & 0x7FFFFFFF
     tpe = optuna.samplers.TPESampler
-    sampler = optuna.samplers.RandomSampler(seed) if plan.search == RANDOM else tpe(seed=seed, constant_liar=True)
-    pruner = optuna.pruners.SuccessiveHalvingPruner(min_resource=1, reduction_factor=REDUCTION)
-    direction = "minimize" if study.metric.mode == "min" else "maximize"
     return optuna.create_study(
-        storage=storage, sampler=sampler, pruner=pruner, study_name="study", direction=direction, load_if_exists=True
+        storage=JournalStorage(Journal(study.folder / JOURNAL)),
+        sampler=optuna.samplers.RandomSampler(seed) if plan.search == RANDOM else tpe(seed=seed, constant_liar=True),
+        pruner=optuna.pruners.SuccessiveHalvingPruner(min_resource=1, reduction_factor=_REDUCTION),
+        study_name="study",
+        direction="minimize" if study.metric.sign == 1 else "maximize",
+        load_if_exists=True,
     )
 
 
 def _distributions(study: Study) -> dict[str, Any]:
-    return {name: _distribution(dimension) for name, dimension in study.plan.dimensions().items()}
+    return {name: _distribution(dimension) for name, dimension in study.plan.space.items()}
 
 
 def _distribution(dimension: Dimension) -> Any:
@@ -197,7 +191,3 @@ def _distribution(dimension: Dimension) -> Any:
     if dimension.whole:
         return optuna.distributions.IntDistribution(int(dimension.low), int(dimension.high), log=dimension.log)
     return optuna.distributions.FloatDistribution(dimension.low, dimension.high, log=dimension.log)
-
-
-def _plain(dimension: Dimension, value: Any) -> Any:
-    return json.dumps(value) if dimension.choices else value

@@ -7,10 +7,9 @@ import pytest
 
 pytest.importorskip("optuna")
 
-from ai.sweep.journal import JOURNAL, LEAST, Search, importance_of
-from ai.sweep.results import FinishedTrial, SeedResult
-from ai.sweep.study import Study, StudyError
-from tests.support.studies import shown_study, tiny_plan
+from ai.sweep.search import JOURNAL, LEAST, Search
+from ai.sweep.study import FinishedTrial, SeedResult, Study, StudyError
+from tests.support.studies import tiny_plan
 
 
 def finished(number, params, value, at=400):
@@ -24,9 +23,9 @@ def study(tmp_path):
     study = Study.create(tmp_path / "study", tiny_plan(trials=9))
     search = Search(study)
     for _ in range(3):
-        search.ask()
+        search.next()
     search.tell(finished(0, search.params(0), 5.0))
-    study.record(finished(0, search.params(0), 5.0))
+    study.record(finished(0, search.params(0), 5.0), {})
     return study
 
 
@@ -38,22 +37,34 @@ def test_what_was_under_way_goes_on_with_its_settings(study):
     first, second = again(study), again(study)
     assert first.left == second.left == [1, 2]
     assert {number: first.params(number) for number in (1, 2)} == {number: second.params(number) for number in (1, 2)}
-    assert second.ask() == 3
-    space = study.plan.dimensions()
+    assert [second.next().number for _ in range(3)] == [1, 2, 3]
+    space = study.plan.space
     assert all(space[name].low <= value <= space[name].high for name, value in second.params(3).items())
 
 
 def test_a_trial_that_was_kept_and_not_told_is_not_run_again(study):
     search = again(study)
-    study.record(finished(1, search.params(1), 7.0))
+    study.record(finished(1, search.params(1), 7.0), {})
     assert again(study).left == [2]
     assert [row.value for row in again(study)._optuna.trials[:2]] == [5.0, 7.0]
 
 
 def test_a_study_that_goes_on_proposes_nothing_twice(study):
     search = again(study)
-    asked = [search.params(number) for number in (0, 1, 2)] + [search.params(search.ask()) for _ in range(4)]
+    asked = [search.params(number) for number in (0, 1, 2)] + [search.next().params for _ in range(6)][2:]
     assert len({json.dumps(params) for params in asked}) == 7
+
+
+def test_a_trial_cut_off_before_all_its_knobs_were_drawn_is_run_all_the_same(study):
+    file, settings = study.folder / JOURNAL, again(study).params(2)
+    lines = file.read_text().splitlines()
+    last = max(index for index, line in enumerate(lines) if json.loads(line)["op_code"] == 5)
+    file.write_text("".join(f"{line}\n" for line in lines[:last]))
+    search = again(study)
+    cut = search.params(2)
+    assert search.left == [1, 2]
+    assert [cut[name] == value for name, value in settings.items()].count(True) == 1
+    assert again(study).params(2) == cut
 
 
 def test_a_line_cut_off_by_a_kill_is_left_out(study):
@@ -68,13 +79,14 @@ def test_a_line_cut_off_by_a_kill_is_left_out(study):
 
 def test_a_full_disk_leaves_no_half_of_a_line(study, monkeypatch):
     search, before = again(study), (study.folder / JOURNAL).read_text()
+    search.left = []
     journal = search._optuna._storage._backend
     monkeypatch.setattr(type(journal), "_path", property(lambda self: Full(study.folder / JOURNAL)), raising=False)
     with pytest.raises(OSError, match="No space"):
-        search.ask()
+        search.next()
     monkeypatch.undo()
     assert (study.folder / JOURNAL).read_text() == before
-    assert search.ask() == 3
+    assert search.next().number == 3
 
 
 class Full:
@@ -148,8 +160,8 @@ def test_a_trial_that_falls_behind_is_ended(tmp_path):
     search = Search(study)
     ended = []
     for value in (1.0, 9.0, 8.0, 0.5, 0.4, 10.0):
-        number = search.ask()
-        ended.append(search.falls_behind(finished(number, search.params(number), value, at=200)))
+        asked = search.next()
+        ended.append(search.falls_behind(finished(asked.number, asked.params, value, at=200)))
     assert ended == [False, False, True, True, True, False]
     plain = replace(study.plan, stop_early=False)
     study.plan = plain
@@ -157,14 +169,17 @@ def test_a_trial_that_falls_behind_is_ended(tmp_path):
 
 
 def test_the_knob_that_decides_matters_most_and_too_few_trials_say_nothing(tmp_path):
-    study = shown_study(tmp_path / "mine", LEAST - 1)
-    assert importance_of(study) == {}
-    study = shown_study(tmp_path / "more", 40)
-    for number, trial in study.trials.items():
-        study.trials[number] = replace(trial, value=trial.params["tau"], params=trial.params | {"learning_rate": 1e-3})
-    shares = importance_of(study)
-    assert next(iter(shares)) == "tau"
-    assert sum(shares.values()) == pytest.approx(1.0)
-    for number, trial in study.trials.items():
-        study.trials[number] = replace(trial, value=1.0)
-    assert importance_of(study) == {}
+    for count, value_of, best in (
+        (LEAST - 1, lambda params: params["tau"], None),
+        (40, lambda params: params["tau"], "tau"),
+        (LEAST, lambda params: 1.0, None),
+    ):
+        study = Study.create(tmp_path / f"{count}", tiny_plan(trials=count, search="random"))
+        search = Search(study)
+        while asked := search.next():
+            trial = finished(asked.number, asked.params, value_of(asked.params))
+            study.trials[asked.number] = trial
+            search.tell(trial)
+        shares = search.importance()
+        assert next(iter(shares), None) == best, count
+        assert sum(shares.values()) == pytest.approx(1.0 if best else 0.0)

@@ -1,0 +1,134 @@
+"""The commands that measure a network: `evaluate` and `evaluate-digits`. Nothing heavy is imported until one runs."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from typing import TYPE_CHECKING, Any, Final
+
+from ai.cli.command_line import (
+    EPISODES,
+    REFUSED,
+    SEEDS,
+    WORKERS,
+    add_where,
+    fail,
+    folder,
+    out_of_range,
+    progress_bar,
+    reason,
+)
+
+if TYPE_CHECKING:
+    from ai.agent.agent import DeepQAgent
+    from ai.training.tasks import Score, Task
+
+FLIGHTS: Final = (1, 10**8)
+_SHARES: Final = ("success", "crash", "out_of_bounds", "time_out")
+
+
+def add_commands(commands: Any) -> None:
+    """Add `evaluate` and `evaluate-digits` to a parser's sub-commands."""
+    land = commands.add_parser("evaluate", help="measure how well a network does")
+    read = commands.add_parser("evaluate-digits", help="measure how well a network reads MNIST's test images")
+    land.add_argument("--env", metavar="NAME", help="the environment, where its name is module:Name")
+    land.add_argument("--episodes", type=int, help="default: 1000 flights, or 100 episodes of another environment")
+    land.add_argument("--seed", type=int, default=0)
+    land.add_argument("--spawn", help="random or hard (default: random)")
+    add_where(land, "processes at once (default: this one alone)")
+    for command, run in ((land, _evaluate), (read, _evaluate_digits)):
+        command.add_argument("--model", type=folder, required=True, metavar="DIR")
+        command.add_argument("--json", action="store_true", help="print one JSON object")
+        command.set_defaults(run=run)
+
+
+def _evaluate(arguments: argparse.Namespace) -> int:
+    from ai.common.intervals import wilson
+    from ai.lander.spawns import SPAWNS
+    from ai.training.config import LANDER
+
+    if problem := out_of_range(arguments, episodes=FLIGHTS, seed=SEEDS, workers=WORKERS):
+        return fail(problem)
+    if arguments.spawn not in (None, *SPAWNS):
+        return fail(f"--spawn is one of {', '.join(SPAWNS)}, not {arguments.spawn}")
+    try:
+        agent, task, env = _agent_and_task(arguments)
+        episodes = arguments.episodes or task.test_episodes
+        if env == LANDER:
+            score: Score = _flown(arguments, agent, episodes)
+        elif arguments.address is not None or arguments.workers is not None or episodes > EPISODES[1]:
+            most = f"{EPISODES[1]:,}"
+            return fail(f"--address, --workers and more than {most} episodes are for the lander on the moon")
+        elif arguments.spawn is not None:
+            return fail(f"--spawn is for the lander on the moon; this network is for {env}")
+        else:
+            score = task.evaluate(agent, episodes, arguments.seed)
+    except REFUSED as error:
+        return fail(reason(error))
+    told: dict[str, Any] = score.to_json()
+    if score.success is not None:
+        told["success_interval"] = wilson(score.success, score.episodes)
+    if arguments.json:
+        print(json.dumps(told, indent=2))
+        return 0
+    low, high = told.pop("success_interval", (0.0, 0.0))
+    for name, value in told.items():
+        if value is None or isinstance(value, int):
+            figure = "–" if value is None else str(value)
+        else:
+            figure = f"{value:.2%}" if name in _SHARES else f"{value:.2f}"
+        interval = f" (95%: {low:.2%} to {high:.2%})" if name == "success" and value is not None else ""
+        print(f"{name.replace('_', ' '):14} {figure}{interval}")
+    return 0
+
+
+def _agent_and_task(arguments: argparse.Namespace) -> tuple[DeepQAgent, Task[Any], str]:
+    """Read the network, what it is measured by, and its environment; raises ValueError where they do not fit."""
+    from ai.training.config import load_agent
+    from ai.training.loop import task_of
+
+    agent, config = load_agent(arguments.model, env=arguments.env)
+    if arguments.env not in (None, config.env):
+        raise ValueError(f"the network in {arguments.model} is for {config.env}, not for {arguments.env}")
+    task = task_of(config)
+    if (agent.num_features, agent.num_actions) != (task.num_features, task.num_actions):
+        raise ValueError(f"the network in {arguments.model} is not made for {config.env}")
+    return agent, task, config.env
+
+
+def _flown(arguments: argparse.Namespace, agent: DeepQAgent, episodes: int) -> Score:
+    """Fly the flights, in shards; on several processes if that is asked for. Raises what `ai.sweep.cluster` raises."""
+    from ai.sweep.shards import flown_shards, shards
+
+    parts = shards(agent, episodes, arguments.seed, arguments.spawn or "random")
+    with progress_bar(episodes, "flying", unit="flight", disable=True if len(parts) == 1 else None) as bar:
+        for sums in flown_shards(parts, arguments.address, arguments.workers or 1):
+            if sums is not None:
+                return sums.evaluation()
+            bar.update(episodes / len(parts))
+    raise AssertionError("an evaluation has one part or more")
+
+
+def _evaluate_digits(arguments: argparse.Namespace) -> int:
+    from ai.digits.classifier import DigitClassifier
+    from ai.digits.mnist import TEST, load_part
+    from ai.digits.training import confusion
+
+    try:
+        classifier = DigitClassifier.load(arguments.model)
+        images, labels = load_part(TEST)
+    except REFUSED as error:
+        return fail(reason(error))
+    table = confusion(classifier, images, labels)
+    right, shown = table.diagonal(), table.sum(axis=1)
+    accuracy = int(right.sum()) / len(labels)
+    if arguments.json:
+        by_digit = (right / shown).tolist()
+        measured = {"accuracy": accuracy, "images": len(labels), "by_digit": by_digit, "confusion": table.tolist()}
+        print(json.dumps(measured))
+        return 0
+    print(f"read right  {accuracy:.2%} of {len(labels):,}")
+    print("drawn       read as" + "".join(f"{digit:>5}" for digit in range(len(table))))
+    for digit, row in enumerate(table):
+        print(f"{digit:>5} {right[digit] / shown[digit]:>11.2%} " + "".join(f"{count:>5}" for count in row))
+    return 0
