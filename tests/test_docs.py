@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from tests.test_imports import AI_FLOORS, GAME_FLOORS
 from tranquility.__main__ import _version
 
 ROOT = Path(__file__).parents[1]
@@ -15,6 +16,7 @@ SOURCES = [path for folder in ("ai", "engine", "game", "benchmarks") for path in
 DOCUMENTS = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 _DOTTED = re.compile(r"`((?:ai|engine|game|benchmarks|tests)(?:\.\w+)+)(?<!\.pot)(?:\([^`]*\))?`")
 _FILE = re.compile(r"`((?:ai|engine|game|benchmarks|tests|models|docs|assets)/[\w/.-]+\.(?:py|json|npz|pot|md))`")
+_TEST = re.compile(r"\btests(?:/\w+)+(?:\.py)?")
 _LINK = re.compile(r"\]\(([^)#:]+)(?:#[^)]*)?\)")
 
 
@@ -40,9 +42,20 @@ def test_what_a_document_names_exists(subtests: pytest.Subtests):
         with subtests.test(document=document):
             text = document.read_text(encoding="utf-8")
             names = {name for name in _DOTTED.findall(text) if not exists(name)}
-            files = {name for name in _FILE.findall(text) if not (ROOT / name).exists()}
+            files = {name for name in _FILE.findall(text) + _TEST.findall(text) if not (ROOT / name).exists()}
             links = {link for link in _LINK.findall(text) if not (document.parent / link).exists()}
             assert not names | files | links
+
+
+def test_the_map_draws_every_floor_in_its_order():
+    page = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    game, ai = re.split(r"\n-+\n", page.split("```")[1], maxsplit=1)
+    programs = {"start", "verify", "cli"}
+    for drawn, floors, left_out in ((ai, AI_FLOORS, set()), (game, GAME_FLOORS, programs)):
+        rows = [re.findall(r"\w+", re.split(r" {5,}", row)[0]) for row in drawn.splitlines()]
+        names = [name for name in (floor.rpartition(".")[2] for floor in floors) if name not in left_out]
+        heights = [next(height for height, row in enumerate(rows) if name in row) for name in names]
+        assert heights == sorted(heights, reverse=True)
 
 
 def test_every_picture_is_shown_and_has_a_way_to_be_made():

@@ -1,4 +1,4 @@
-"""The seven frames of a lesson of the agent that learns to land."""
+"""The frames of a lesson of the agent that learns to land: its memory alone, then the seven of the run's own step."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from ai.lander.environment import ACTION_NAMES
 from ai.nn import NeuralNetwork, Optimizer
 from game.core import texts
 from game.lesson.after_frame import AfterFrame
+from game.lesson.alone_frame import AloneFrame
 from game.lesson.code import in_points_of_reward
 from game.lesson.error_frame import ErrorFrame
 from game.lesson.figures import number, points
@@ -41,7 +42,7 @@ def learning_step(lesson: Lesson) -> LearningStep:
 
 
 def agent_frames(lesson: Lesson) -> list[Part]:
-    """Return the seven frames of a lesson of the agent."""
+    """Return the frames of a lesson of the agent."""
     step, scale = learning_step(lesson), lesson.config.reward_scale
     action, words, network = int(lesson.cell.action), texts.LESSON_FRAMES, step.network
     forward, backward = forward_functions(network), backward_functions(network, make_optimizer(lesson.config))
@@ -59,6 +60,7 @@ def agent_frames(lesson: Lesson) -> list[Part]:
     gradient = GradientFrame(name, length, f"{sentence} {texts.LESSON_DOWNHILL[step.carries_on]}", backward, step)
     places = step.strongest(step.taken.taken, 8)
     frames: list[Frame] = [
+        AloneFrame(lesson, words["alone"], (NeuralNetwork.correct,), step),
         MomentFrame(lesson, words["moment"], (DeepQAgent.learn, DeepQAgent._learn_from, Normalizer.__call__)),
         values,
         HappenedFrame(lesson, words["happened"], (NStep.add,)),

@@ -100,7 +100,7 @@ class GradientFrame(NetworkFrame):
         for place, (word, figure, help_) in enumerate(self._parts(index)):
             self._row(x, PICTURE.width - x, y + 24 + 22 * place, word, figure, Explanation((help_,)))
         if float(step.taken.gradient[index]) * float(step.taken.taken[index]) < 0:
-            self.prose(texts.LESSON_UPHILL, 0, y + 24 + 22 * 4 + 4, x - 20)
+            self.prose(texts.LESSON_UPHILL, 0, y + 24 + 22 * 4, x - 20)
 
     def _parts(self, index: int) -> list[tuple[str, str, str]]:
         """Return the steps from the slope of a weight to its new value: words, figure, and what it means."""

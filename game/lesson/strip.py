@@ -9,7 +9,7 @@ import pygame
 
 from game.drawing.canvas import Canvas, Point
 from game.drawing.paint_cache import PaintCache
-from game.drawing.tokens import INK, LABEL, LINE, MUTE, NET, SMALL, TEXT
+from game.drawing.tokens import INK, LABEL, LINE, MUTE, NET, SMALL
 from game.lesson.frame import SMALL_PICTURE, Frame
 
 STRIP: Final = pygame.Rect(40, 62, 1200, 72)
@@ -47,4 +47,4 @@ class FilmStrip:
             corner = (box.right - 10 - wide, box.bottom - 12 - high)
             self._pictures[number].draw(canvas, (*corner, wide, high), None, frame.paint_small)
             colour = INK if lit else MUTE
-            canvas.text(frame.figure, (x, box.top + 54), size=TEXT, colour=colour, tabular=True, room=room - wide - 4)
+            canvas.text(frame.figure, (x, box.top + 54), size=SMALL, colour=colour, tabular=True, room=room - wide)

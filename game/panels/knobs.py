@@ -80,6 +80,11 @@ class KnobsPanel:
         return Deeds(self.turn, self._seek)
 
     @property
+    def _shown_few(self) -> tuple[str, ...]:
+        """Names of the knobs that are shown alone, where few are."""
+        return ()
+
+    @property
     def view(self) -> View:
         """What is shown: knobs, the list of sabotages, a guess, or what came of an experiment."""
         return self._view
@@ -169,7 +174,7 @@ class KnobsPanel:
         sections: dict[str, Section] = {
             "head": ((run_settings.holds, self._lab_word()[0]), self._make_head),
             "tabs": (view, lambda: [self._rows.tabs(self._page, self._turn_page)] if view == "all" else []),
-            "body": ((view, self._page, self._opened), self._bodies[view]),
+            "body": ((view, self._page, self._opened, self._shown_few), self._bodies[view]),
             **self._more_sections(),
             "answers": (answer, lambda: self._make_answers(answer)),
         }

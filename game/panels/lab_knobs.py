@@ -66,9 +66,15 @@ class LabKnobsPanel(KnobsPanel):
         self._show("result" if self._laboratory.flies else self._home)
 
     @property
-    def _few(self) -> tuple[str, ...]:
+    def _shown_few(self) -> tuple[str, ...]:
         """Names of the knobs that are shown with their experiments."""
-        return {"few": self._run_kind.first, "knob": (self._opened,)}.get(self._view, ())
+        return {"few": self._first, "knob": (self._opened,)}.get(self._view, ())
+
+    @property
+    def _first(self) -> tuple[str, ...]:
+        """Names of the few knobs to begin with; one that has no effect any more gives way to the one that acts."""
+        spent = in_force.idle if (in_force := self._run_settings.in_force) else {}
+        return tuple(dict.fromkeys(spent.get(name, name) for name in self._run_kind.first))
 
     # The picture
 
@@ -80,21 +86,21 @@ class LabKnobsPanel(KnobsPanel):
             lab.draw_result(canvas, self._box, laboratory)
         else:
             knob_page.draw_try(canvas, self._sections["tries"][1])
-            self._draw_foot(canvas, None if self._view == "picks" else self._rows.advice_room(len(self._few)))
+            self._draw_foot(canvas, None if self._view == "picks" else self._rows.advice_room(len(self._shown_few)))
 
     # Widgets
 
     @property
     def _bodies(self) -> dict[View, Callable[[], list[Widget]]]:
         return super()._bodies | {
-            "few": lambda: self._rows.few(self._few),
-            "knob": lambda: self._rows.few(self._few),
+            "few": lambda: self._rows.few(self._shown_few),
+            "knob": lambda: self._rows.few(self._shown_few),
             "guess": self._make_guess,
             "result": self._make_result,
         }
 
     def _more_sections(self) -> dict[str, Section]:
-        return {"tries": ((self._few, self.config), self._make_tries), "switch": (self._view, self._make_switch)}
+        return {"tries": ((self._shown_few, self.config), self._make_tries), "switch": (self._view, self._make_switch)}
 
     def _lab_word(self) -> Word:
         if self._laboratory.flies and self._view in _KNOBS:
@@ -102,7 +108,7 @@ class LabKnobsPanel(KnobsPanel):
         return super()._lab_word()
 
     def _make_tries(self) -> list[Widget]:
-        return self._rows.tries(self._sections["body"][1]) if self._few else []
+        return self._rows.tries(self._sections["body"][1]) if self._shown_few else []
 
     def _make_switch(self) -> list[Widget]:
         """Make the word that shows all knobs, or few again, or leaves the page of one."""

@@ -104,8 +104,8 @@ class LessonScene(FormScene):
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Follow the mouse; a click goes to a frame, or picks what it points at."""
-        if event.type in (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN) and not self.form.typing:
-            self._point(event)
+        if event.type == pygame.MOUSEBUTTONDOWN or (event.type == pygame.MOUSEMOTION and not self.form.typing):
+            self._point(event)  # a click counts also while keys move a pointer
         if event.type == pygame.MOUSEWHEEL:
             self.code.step(-event.y)
             return None

@@ -33,7 +33,7 @@ def test_a_key_passes_the_files_that_the_map_names_and_no_others(open_game: Call
     paragraph = next(each for each in PAGE.split("\n\n") if each.startswith("**From a key to the thrust"))
     named = set(re.findall(r"`((?:engine|ai|game)/[\w/]+\.py)`", paragraph))
     assert named == seen
-    assert len(named) <= MOST
+    assert len(named - {AIR}) <= MOST  # near the ground, where the engine moves the craft
 
 
 def files_passed(play: Callable[[], Any]) -> set[str]:

@@ -253,7 +253,7 @@ def test_beside_the_player_flies_what_lands_or_what_they_choose(open_game: Open)
     assert play(driver).flown.ghost.flight.hand is StickHolder.NETWORK
     assert not isinstance(play(driver).flown.ghost.flight, ReplayedFlight)
     driver.key(pygame.K_ESCAPE)
-    driver.keys(*[pygame.K_DOWN] * 10, pygame.K_RETURN)
+    driver.keys(*[pygame.K_DOWN] * list(MISSIONS).index("outage"), pygame.K_RETURN)
     assert play(driver).challenge.name == "outage"
     assert not isinstance(play(driver).flown.ghost.flight, ReplayedFlight)
     driver.key(pygame.K_ESCAPE)

@@ -1,4 +1,4 @@
-"""A lesson on the screen: seven frames by keys, mouse and gamepad, whose numbers are those of the learning step."""
+"""A lesson on the screen: its frames by keys, mouse and gamepad, whose numbers are those of the learning step."""
 
 from collections.abc import Callable
 from itertools import pairwise
@@ -14,6 +14,7 @@ from ai.nn.costs import COSTS
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.lesson.agent_frames import agent_frames
+from game.lesson.alone_frame import AloneFrame
 from game.lesson.code import CODE
 from game.lesson.error_frame import ErrorFrame
 from game.lesson.figures import number, points
@@ -26,7 +27,7 @@ from tests.support.lessons import SMALL, in_view, lesson_from, lesson_of, shown
 from tests.support.written import words_written
 
 Open = Callable[..., Driver]
-FRAMES = 7
+FRAMES = 8
 
 
 @pytest.fixture(params=sorted(SMALL))
@@ -41,17 +42,43 @@ def driver(open_game: Open, lesson: Lesson) -> Driver:
     return opened
 
 
+def test_it_opens_on_this_memory_alone_which_walks_to_its_target_press_by_press(driver: Driver, lesson: Lesson):
+    frame, scale, action = driver.top.frame, lesson.config.reward_scale, int(lesson.cell.action)
+    assert isinstance(frame, AloneFrame)
+    assert frame.alone.way == [pytest.approx(float(lesson.predicted[action]), abs=1e-6)]
+    for word in (texts.LESSON_ALONE_ONCE, texts.LESSON_ALONE_ONCE):
+        label = next(label for label in frame.labels if label.text == word)
+        driver.click(in_view(label.box.center))
+    off = [abs(value - lesson.target) for value in frame.alone.way]
+    assert len(off) == 3
+    assert off[0] > off[1] > off[2], "each press brings it nearer"
+    label = next(label for label in frame.labels if label.text == texts.LESSON_ALONE_GO)
+    driver.click(in_view(label.box.center))
+    driver.skip(400)
+    assert frame.alone.arrived
+    assert not frame.going
+    words = shown(driver, 0)
+    assert points(frame.alone.way[-1] / scale) in words
+    assert points(lesson.target / scale) in words
+    assert abs(frame.alone.way[-1] - lesson.target) < 0.011 * off[0]
+    moved = (frame.alone.outputs - lesson.predicted) / scale
+    assert all(points(float(each)) in words for each in moved)
+    assert np.abs(np.delete(moved, action)).max() > 0, "the others move with it: they share the weights"
+    frame.again()
+    assert len(frame.alone.way) == 1
+
+
 def test_frames_say_what_the_numbers_beside_them_leave_open(lesson: Lesson):
     frames = [part.frame for part in agent_frames(lesson)]
     best, action = int(lesson.predicted.argmax()), int(lesson.cell.action)
     higher = points(float(lesson.predicted[best]) / lesson.config.reward_scale)
-    assert (f"a higher value, {higher}" in frames[1].sentence) == (best != action), (
+    assert (f"a higher value, {higher}" in frames[2].sentence) == (best != action), (
         "why another was flown than the one with this value"
     )
-    words = " ".join(label.text for label in frames[3].labels)
+    words = " ".join(label.text for label in frames[4].labels)
     assert ("No copy stands still" in words) == (not lesson.config.target_judges)
     assert ("Layer normalisation" in words) == (not lesson.config.target_judges)
-    gradient = frames[5]
+    gradient = frames[6]
     assert isinstance(gradient, GradientFrame)
     adam = lesson.config.optimizer == "adam"
     assert (texts.LESSON_DOWNHILL[1] in gradient.sentence) == adam
@@ -69,7 +96,7 @@ def test_frames_say_what_the_numbers_beside_them_leave_open(lesson: Lesson):
 
 
 def test_all_frames_by_keys(driver: Driver):
-    names = ("moment", "values", "happened", "target", "error", "gradient", "after")
+    names = ("alone", "moment", "values", "happened", "target", "error", "gradient", "after")
     for number_, name in enumerate(names):
         assert driver.top.current == number_
         assert driver.top.frame.name == texts.LESSON_FRAMES[name][0]
@@ -83,6 +110,13 @@ def test_all_frames_by_mouse(driver: Driver):
     for number_ in reversed(range(FRAMES)):
         driver.click(driver.top.strip.box(number_).center)
         assert driver.top.current == number_
+
+
+def test_a_card_takes_a_click_while_keys_point_at_numbers(driver: Driver):
+    driver.key(pygame.K_RETURN)
+    assert driver.top.pointer.typing
+    driver.click(driver.top.strip.box(3).center)
+    assert driver.top.current == 3
 
 
 def test_all_frames_by_gamepad(driver: Driver):
@@ -99,7 +133,7 @@ def test_all_frames_by_gamepad(driver: Driver):
 def test_numbers_are_pointed_at_without_a_mouse(open_game: Open):
     driver = open_game(LessonScene, lesson_of("modern"))
     driver.frames(2)
-    driver.keys(pygame.K_RIGHT, pygame.K_RETURN)
+    driver.keys(pygame.K_RIGHT, pygame.K_RIGHT, pygame.K_RETURN)
     assert driver.top.pointer.typing
     unit = driver.top.frame.view.centres[1][0]
     driver.top.pointer.place.update(unit[0] - 12, unit[1])
@@ -107,7 +141,7 @@ def test_numbers_are_pointed_at_without_a_mouse(open_game: Open):
     driver.frames(1)
     driver.post(pygame.KEYUP, key=pygame.K_RIGHT, mod=0)
     assert driver.top.frame.pointed is not None
-    assert driver.top.current == 1, "the arrows move the pointer now"
+    assert driver.top.current == 2, "the arrows move the pointer now"
     driver.key(pygame.K_ESCAPE)
     assert isinstance(driver.top, LessonScene)
     assert driver.top.frame.pointed is None
@@ -116,7 +150,7 @@ def test_numbers_are_pointed_at_without_a_mouse(open_game: Open):
 def test_a_gamepads_pointer_picks_a_weight(open_game: Open):
     driver = open_game(LessonScene, lesson_of("modern"))
     driver.frames(2)
-    for _ in range(5):
+    for _ in range(6):
         driver.button(pygame.CONTROLLER_BUTTON_DPAD_RIGHT)
     frame = driver.top.frame
     assert isinstance(frame, GradientFrame)
@@ -137,7 +171,7 @@ def test_lines_are_stepped_through_and_stand_in_the_source(driver: Driver, lesso
             seen += 1
         part.code.index = begin
     assert seen > 100
-    driver.top.show(3)
+    driver.top.show(4)
     code = driver.top.code
     before = code.index
     assert "targets" in code.line.values, "the walk begins where the target is set"
@@ -148,7 +182,7 @@ def test_lines_are_stepped_through_and_stand_in_the_source(driver: Driver, lesso
 
 
 def test_lines_and_their_numbers_are_on_the_screen(driver: Driver):
-    words = shown(driver, 4)
+    words = shown(driver, 5)
     line, source = driver.top.code.line, driver.top.code.source
     assert str(line.number) in words
     text = dict(source.lines)[line.number].strip()
@@ -159,7 +193,7 @@ def test_lines_and_their_numbers_are_on_the_screen(driver: Driver):
 
 
 def test_the_numbers_of_a_line_are_listed_under_the_mouse(driver: Driver, lesson: Lesson):
-    driver.top.show(5)
+    driver.top.show(6)
     code = driver.top.code
     code.index = next(number_ for number_, line in enumerate(code.lines) if "output_error" in line.values)
     row = [*code.line.values].index("output_error")
@@ -176,12 +210,12 @@ def test_the_numbers_of_a_line_are_listed_under_the_mouse(driver: Driver, lesson
 
 
 def test_the_line_that_does_it_is_lit_at_first_with_this_cases_numbers_beside_the_lines(driver: Driver, lesson: Lesson):
-    sets = {0: "rows", 2: "self._returns", 3: "targets", 4: "errors", 6: "values"}
+    sets = {1: "rows", 3: "self._returns", 4: "targets", 5: "errors", 7: "values"}
     for frame, name in sets.items():
         code = driver.top.parts[frame].code
         assert name in code.line.values
         assert "_start" not in dict(code.source.lines)[code.line.number], "the sum itself, not its empty beginning"
-    words = shown(driver, 3)
+    words = shown(driver, 4)
     target = lesson.target / lesson.config.reward_scale
     assert words.count(number(target)) >= 2, "beside the line, and below, in points as all else on the screen"
     assert number(lesson.target) not in words
@@ -199,7 +233,7 @@ def test_shapes_and_numbers_below_the_listing_never_touch(driver: Driver, monkey
         return box
 
     monkeypatch.setattr(Canvas, "text", listen)
-    for frame in range(FRAMES):
+    for frame in range(1, FRAMES):
         driver.top.show(frame)
         for _ in range(12):
             drawn.clear()
@@ -213,7 +247,7 @@ def test_shapes_and_numbers_below_the_listing_never_touch(driver: Driver, monkey
 
 
 def test_every_part_of_the_pay_has_its_name_beside_its_colour(driver: Driver, lesson: Lesson):
-    words = shown(driver, 2)
+    words = shown(driver, 3)
     assert lesson.flown is not None
     for name, paid in lesson.flown.parts.items():
         assert (texts.REWARD_PARTS[name][0] in words) == bool(paid.any())
@@ -226,7 +260,7 @@ def test_every_card_has_a_picture_that_is_painted_once(driver: Driver, monkeypat
         part.frame.paint_small(sheet)
         assert pygame.image.tobytes(sheet.surface, "RGBA") != before
         monkeypatch.setattr(part.frame, "paint_small", lambda _: pytest.fail("painted again"))
-    driver.top.show(2)
+    driver.top.show(3)
     driver.frames(3)
 
 
@@ -234,7 +268,7 @@ def test_every_card_has_a_picture_that_is_painted_once(driver: Driver, monkeypat
 
 
 def test_the_moment_shows_the_nine_inputs(driver: Driver, lesson: Lesson):
-    words = shown(driver, 0)
+    words = shown(driver, 1)
     for feature, value in enumerate(in_units(lesson.cell.state).tolist()):
         assert texts.INPUTS[feature] in words
         assert sensed(value, feature) in words
@@ -242,13 +276,13 @@ def test_the_moment_shows_the_nine_inputs(driver: Driver, lesson: Lesson):
 
 
 def test_the_values_are_the_networks(driver: Driver, lesson: Lesson):
-    words = shown(driver, 1)
+    words = shown(driver, 2)
     for value in in_points(lesson.predicted, lesson.config.reward_scale).tolist():
         assert f"{value:.2f}".replace("-", "−") in words
 
 
 def test_what_happened_shows_the_pay_of_each_decision(driver: Driver, lesson: Lesson):
-    words = shown(driver, 2)
+    words = shown(driver, 3)
     assert lesson.flown is not None
     for reward in lesson.flown.rewards.tolist():
         assert points(reward) in words
@@ -258,7 +292,7 @@ def test_what_happened_shows_the_pay_of_each_decision(driver: Driver, lesson: Le
 
 
 def test_the_target_is_a_sum_that_can_be_read(driver: Driver, lesson: Lesson):
-    words, scale = shown(driver, 3), lesson.config.reward_scale
+    words, scale = shown(driver, 4), lesson.config.reward_scale
     for value in (lesson.target, float(lesson.cell.reward), lesson.next_value):
         assert points(value / scale) in words
     assert f"{lesson.discount:.3f}" in words
@@ -277,15 +311,15 @@ def test_a_target_at_the_end_of_a_flight_says_that_nothing_comes_after(open_game
     )
     assert lesson.cell.terminal
     driver = open_game(LessonScene, lesson)
-    words = shown(driver, 3)
+    words = shown(driver, 4)
     assert texts.LESSON_PART_ENDED in words
     assert points(lesson.target / config.reward_scale) in words
     assert lesson.target == pytest.approx(float(lesson.cell.reward))
-    assert set(texts.LESSON_OUTCOMES) & set(shown(driver, 2))
+    assert set(texts.LESSON_OUTCOMES) & set(shown(driver, 3))
 
 
 def test_the_curve_is_the_costs_own(driver: Driver, lesson: Lesson):
-    words = shown(driver, 4)
+    words = shown(driver, 5)
     frame = driver.top.frame
     assert isinstance(frame, ErrorFrame)
     cost = COSTS[lesson.config.cost]()
@@ -298,7 +332,7 @@ def test_the_curve_is_the_costs_own(driver: Driver, lesson: Lesson):
 
 
 def test_the_gradient_and_the_step_of_a_weight_are_the_optimizers(driver: Driver, lesson: Lesson):
-    words = shown(driver, 5)
+    words = shown(driver, 6)
     frame = driver.top.frame
     assert isinstance(frame, GradientFrame)
     assert frame.weight is not None
@@ -314,7 +348,7 @@ def test_the_gradient_and_the_step_of_a_weight_are_the_optimizers(driver: Driver
 
 
 def test_another_weight_is_picked_by_a_click_on_its_link(driver: Driver):
-    driver.top.show(5)
+    driver.top.show(6)
     driver.frames(2)
     frame = driver.top.frame
     assert isinstance(frame, GradientFrame)
@@ -328,7 +362,7 @@ def test_another_weight_is_picked_by_a_click_on_its_link(driver: Driver):
 
 
 def test_the_share_alone_flows_back_when_it_is_asked_for(driver: Driver, lesson: Lesson):
-    driver.top.show(5)
+    driver.top.show(6)
     driver.frames(2)
     frame = driver.top.frame
     assert isinstance(frame, GradientFrame)
@@ -339,7 +373,7 @@ def test_the_share_alone_flows_back_when_it_is_asked_for(driver: Driver, lesson:
 
 
 def test_after_the_step_the_value_and_its_pulls_are_told(driver: Driver, lesson: Lesson):
-    words, scale = shown(driver, 6), lesson.config.reward_scale
+    words, scale = shown(driver, 7), lesson.config.reward_scale
     frame, action = driver.top.frame, int(lesson.cell.action)
     before, after = (float(each[action]) / scale for each in (lesson.predicted, lesson.predicted_after))
     assert any(points(before) in word and points(after) in word for word in words)
@@ -368,7 +402,7 @@ def test_a_dueling_network_and_one_without_source_are_shown(open_game: Open, mon
         words = shown(driver, frame)
         assert words
     driver.move((500, 400))
-    driver.top.show(5)
+    driver.top.show(6)
     driver.move((600, 350))
     driver.frames(2)
 

@@ -37,7 +37,7 @@ def figure(row: TooltipRow) -> float:
 
 
 def test_a_units_sum_adds_up_to_its_value(driver: Driver, lesson: Lesson):
-    driver.top.show(1)
+    driver.top.show(2)
     frame = driver.top.frame
     assert isinstance(frame, NetworkFrame)
     for column in range(1, len(frame.view.columns)):
@@ -63,7 +63,7 @@ def test_every_number_of_every_picture_explains_itself(driver: Driver):
 
 
 def test_the_link_under_the_mouse_tells_its_weight_and_slope(driver: Driver, lesson: Lesson):
-    driver.top.show(5)
+    driver.top.show(6)
     frame = driver.top.frame
     assert isinstance(frame, GradientFrame)
     place = WeightPlace(1, 2, 3)

@@ -10,7 +10,7 @@ import pygame
 import pytest
 
 from ai.files import read_json
-from ai.training.config import Config
+from ai.training.config import Config, in_force
 from ai.training.history import History
 from ai.training.loop import Training
 from game.core import texts
@@ -40,6 +40,19 @@ def split(driver: Driver) -> None:
 
 
 # Knobs
+
+
+def test_a_knob_without_effect_gives_way_to_the_one_that_acts(train: Driver) -> None:
+    scene = train.top
+    config = scene.knobs.config.changed(schedule_decisions=10_000)
+    scene.knobs.set_config(config, 0)
+    scene.knobs.show_in_force(in_force(config, 20_000, 300))
+    shown = knobs(train)
+    assert shown == ["final_learning_rate", "epsilon_end", "discount"]
+    spent = in_force(config, 20_000, 300).idle
+    assert not set(shown) & set(spent)
+    scene.knobs.show_in_force(in_force(config, 5_000, 100))
+    assert knobs(train)[0] == "learning_rate"
 
 
 def test_three_knobs_come_first_and_all_on_demand_which_is_remembered(
