@@ -9,6 +9,7 @@ import numpy as np
 from ai.common.environment import Doubles
 from ai.flights.recording import Shares
 from ai.flights.verification import Earned, earned
+from ai.lander.missions import STARTS
 from ai.lander.pilots import COAST
 from game.flight.flight import DECISION_STEPS, Flight, Recording, StickHolder
 from game.flight.flight_file import Record
@@ -136,3 +137,8 @@ class FlightReplay:
         while self.at < step:
             self.flight.step(COAST)
         self.flight.rest()
+
+
+def flown_elsewhere(recording: Recording) -> bool:
+    """Whether a recorded flight was flown where it is not as on the moon."""
+    return bool(recording.gravity) or (recording.mission != "" and STARTS[recording.mission].elsewhere)

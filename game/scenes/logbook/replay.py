@@ -28,11 +28,12 @@ from game.drawing.shapes import Shape
 from game.drawing.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, VIEW_SIZE
 from game.export.export import Export
 from game.export.kinds import KINDS
-from game.flight import sharing
+from game.flight import networks, sharing
 from game.flight.flight import StickHolder
 from game.flight.flight_file import Record
 from game.flight.outcomes import ending_word
-from game.flight.replay import FlightReplay
+from game.flight.replay import FlightReplay, flown_elsewhere
+from game.flight.six_futures import SixFutures
 from game.input.controls import Command
 from game.panels import readouts
 from game.panels.explained import Explained
@@ -48,12 +49,14 @@ from game.ui.widget import OnPress
 from game.ui.widgets import TextButton
 from game.ui.words import GAP
 from game.world.camera import ClearArea, View
+from game.world.path_preview import draw_futures
 from game.world.paths import draw_faint
 from game.world.scenery import Scenery
 
 SPEEDS: Final = (0.25, 0.5, 1.0, 2.0)
 _EARTH: Final = (208.0, 306.0)  # points; clear of the words
 _EARTH_BELOW_CLAIM: Final = (208.0, 336.0)
+_AHEAD: Final = 3  # decisions of six futures that are flown in a frame
 _SCOUT: Final = 10  # steps looked ahead in every frame: a few milliseconds
 _STRIP: Final = (MARGIN, 78.0, VIEW_SIZE[0] - 2 * MARGIN, 60.0)
 _FIGURE: Final = 88.0  # half of what the seconds take, and who flies
@@ -80,6 +83,8 @@ class ReplayScene(FormScene):
         self._pace = SlowMotion()
         self.playback = Playback(self._pace, SPEEDS, self._fly)
         self._warned = False
+        self._asks, self._looked = False, -1  # whether futures are asked for, and of which step they are
+        self._futures: SixFutures | None = None
         self.explained = Explained()
         self.export: Export | None = None
         self.flight_replay = FlightReplay(self.record)
@@ -127,7 +132,7 @@ class ReplayScene(FormScene):
         ]
         if on_strip or self.context.controls.gamepad_in_use:
             table += [Action(Command.NEXT, lambda: self._wind(60)), Action(Command.PREVIOUS, lambda: self._wind(-60))]
-        return [*table, self.explained.action()]
+        return [*table, Action(pygame.K_t, self._show_futures, texts.REPLAY_FUTURES), self.explained.action()]
 
     def hint_rows(self, canvas: Canvas) -> list[HintRow]:
         """Return the hints on the right of the seconds, in two rows."""
@@ -139,6 +144,7 @@ class ReplayScene(FormScene):
     def update(self) -> Transition | None:
         """Advance by as many steps as the chosen speed makes due, and simulate a little further ahead."""
         self.flight_replay.scout(1 if self.flight_replay.touching else _SCOUT)
+        self._look_ahead()
         self._reward_bar.reached = self.flight_replay.reached
         self.explained.update()
         if self.export:
@@ -161,6 +167,31 @@ class ReplayScene(FormScene):
         self._scenery.wind_to()
         self._pace.begin()
         self._look()
+
+    def _show_futures(self) -> None:
+        """Show the six futures of the moment at which the replay stops, or no longer."""
+        self._futures = None
+        self._asks = not self._asks
+        if self._asks:
+            self.playback.stopped = True
+
+    def _look_ahead(self) -> None:
+        """Fly the six futures of the moment that is shown, if somebody asks and nothing moves."""
+        flight = self.flight_replay.flight
+        if not self._asks or flight.over or not self.playback.stopped:
+            self._futures = None
+            return
+        if self._futures is None or self._looked != self.flight_replay.at:
+            context, self._looked = self.context, self.flight_replay.at
+            elsewhere = flown_elsewhere(self.record.recording)
+            policy = networks.chosen(context.models_dir, context.user_dir, context.settings.model, elsewhere).policy
+            if policy is None:
+                self._asks = False
+                self.context.note(texts.REPLAY_NO_FUTURES)
+                return
+            self._futures = SixFutures(policy, flight.route)
+            self._futures.begin(flight.env)
+        self._futures.follow(_AHEAD)
 
     def _wind(self, steps: int) -> None:
         self.seek(self.flight_replay.at + steps)
@@ -303,6 +334,10 @@ class ReplayScene(FormScene):
         _draw_way(
             canvas, self._scenery.view(canvas.scale, between).filling(canvas), self.flight_replay, self._clear.head
         )
+        if self._futures:
+            draw_futures(
+                canvas, self._scenery.view(canvas.scale, between).filling(canvas), self._futures, self._clear.head
+            )
         self._scenery.draw_craft(canvas, between)
         readouts.draw_readouts(canvas, self._readouts)
 

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 _WIDEST: Final = 480.0
 _MARGIN: Final = 32.0
+_COVER: Final = 0.94  # opacity: neither the Earth nor a path shines through the words
 _AROUND: Final = 16.0  # least points from the sides of the window
 _NARROW, _KEYS = 860.0, 54.0  # in a narrower one, keys stand above the card
 _TOP: Final = 136.0  # of the card, in a window with room
@@ -56,7 +57,7 @@ class ShownCard:
         width = min(_WIDEST, view.width - 2 * _AROUND)
         rows = Cursor(0.0, 0.0, width - 2 * _MARGIN, canvas.scale)
         self._write(rows)
-        height = rows.y + 12 + self._foot(canvas, width) + 0.75 * _MARGIN
+        height = rows.y + self._foot(canvas, width) + 0.6 * _MARGIN
         left = view.left + _AROUND + self.card.place * (view.width - 2 * _AROUND - width)
         if width < 0.6 * view.width and self.card.place != PLACES[0]:  # beside the path, but not at the very edge
             left += 48 * (1 if self.card.place < 0.5 else -1)
@@ -76,7 +77,7 @@ class ShownCard:
     def draw(self, canvas: Canvas) -> None:
         """Draw it."""
         box = self.box(canvas)
-        canvas.panel(box)
+        canvas.panel(box, _COVER)
         rows = Cursor(box.left + _MARGIN, box.top, box.width - 2 * _MARGIN, canvas.scale, canvas)
         self._write(rows)
         canvas.line((rows.left, rows.y + 4), (rows.right, rows.y + 4), LINE)

@@ -9,7 +9,7 @@ from typing import Final
 from ai.flights.recording import AS_IT_IS
 from ai.lander.environment import Cause, LanderEnv, Outcome
 from ai.lander.ground import Ground
-from ai.lander.missions import STARTS, Mission
+from ai.lander.missions import Mission
 from game.core import texts
 from game.core.settings import Settings
 from game.drawing.canvas import Canvas
@@ -19,7 +19,7 @@ from game.flight.flight import Flight, Recording
 from game.flight.flight_file import Entry, Record
 from game.flight.networks import Policy
 from game.flight.outcomes import OutcomeCard
-from game.flight.replay import FlightReplay, ReplayedFlight
+from game.flight.replay import FlightReplay, ReplayedFlight, flown_elsewhere
 from game.input.controls import Controls
 from game.scenes.play.ghost import Ghost
 from game.world.camera import View
@@ -250,11 +250,6 @@ class ContinuedFlight(Challenge):
         rerun = ReplayedFlight(self._recording)
         rerun.put(self._moment, self._recording, self._step)
         return Ghost(rerun, self._name)
-
-
-def flown_elsewhere(recording: Recording) -> bool:
-    """Whether a recorded flight was flown where it is not as on the moon."""
-    return bool(recording.gravity) or (recording.mission != "" and STARTS[recording.mission].elsewhere)
 
 
 def _as_begun(recording: Recording, seed: int, network: Policy | None) -> Flight:

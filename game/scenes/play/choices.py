@@ -58,7 +58,7 @@ class ChoicesScene(PanelScene):
         self._helped = helped or context.settings
         flights = sum(map(len, skill.becoming.flights.values()))
         self._curve = curve and flights >= _ENOUGH
-        self._behind = StillPicture(below, dimmed=0.7)
+        self._behind = StillPicture(getattr(below, "bare", below), dimmed=0.7)
         self._taught = count_demonstrations(context.user_dir)
         self.build()
 

@@ -231,7 +231,7 @@ class FlownFlight:
         self.path_preview.follow(waiting=False)
         if not self._was_over:
             if self._settings.show_thinking:
-                self.think(1)
+                self.think(2)
             self.cockpit.follow(self.futures if self._settings.show_thinking else None)
             self._note_chance()
             if flight.over:

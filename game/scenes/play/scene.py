@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
@@ -41,7 +42,23 @@ from game.ui.widget import OnPress
 
 # Switching to full screen and back removes the window's focus for a moment, which must not pause the game.
 _AWAY_STEPS: Final = 10
+_SKIP_ALL: Final = 60  # steps that the key for what comes next is held to leave out the whole tutorial
+_RELEASES: Final = (pygame.KEYUP, pygame.CONTROLLERBUTTONUP, pygame.WINDOWFOCUSLOST)
 _INTERRUPTS: Final = (pygame.WINDOWFOCUSLOST, pygame.WINDOWSIZECHANGED)
+
+
+class _Bare(Scene):
+    """A flight without words."""
+
+    flows = True
+
+    def __init__(self, flight: PlayScene) -> None:
+        super().__init__(flight.context)
+        self._flight = flight
+
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        """Draw it."""
+        self._flight.draw_bare(canvas)
 
 
 class PlayScene(Scene):
@@ -70,6 +87,7 @@ class PlayScene(Scene):
         self._stick = FlightControls(context.controls, context.settings)
         self.explained = Explained()
         self._away = 0  # steps since the window was left; 0 while it is in use
+        self._held_next = 0  # steps for which the key for what comes next is held; 0 while it is not
         self._controls, self._settings, self._sound = context.controls, context.settings, context.sound
         self._load_network()
         if self.challenge is None and seed is None and not context.settings.tutored:
@@ -114,6 +132,10 @@ class PlayScene(Scene):
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Handle explanations, handover, retry, pause and the choice of help."""
         self.explained.handle_event(event)
+        if event.type in _RELEASES:
+            self._held_next = 0
+        elif translate(event) is Command.NEXT:
+            self._held_next = 1
         if event.type in (pygame.WINDOWFOCUSLOST, pygame.WINDOWFOCUSGAINED):
             self._away = int(event.type == pygame.WINDOWFOCUSLOST)
         if event.type in _INTERRUPTS:
@@ -218,6 +240,9 @@ class PlayScene(Scene):
         self._away += self._away > 0
         if self._away > _AWAY_STEPS and not self.flight.over:
             return self.pause()
+        self._held_next += self._held_next > 0
+        if self._held_next > _SKIP_ALL and self.challenge and self.challenge.next_hint:
+            self._end_challenge()
         action, shares = self._stick.read(self._across)
         self.flown.lay_out(self._head)
         due = self.flown.due(action)
@@ -246,6 +271,15 @@ class PlayScene(Scene):
             card.draw(canvas)
         if not self._stick.mouse_flies:  # a mouse that flies asks for nothing
             self.explained.draw(canvas)
+
+    @property
+    def bare(self) -> Scene:
+        """This flight as a scene without words, for a picture behind other ones."""
+        return _Bare(self)
+
+    def draw_bare(self, canvas: Canvas) -> None:
+        """Draw the flight without words."""
+        self.flown.draw(canvas, 1.0, Head(), whole=False, low=math.inf)
 
     def draw_whole(self, canvas: Canvas) -> None:
         """Draw the flight while it is paused, with all that can be known of it but the words at the head."""
@@ -442,12 +476,17 @@ class PlayScene(Scene):
 
     def _leave_challenge(self) -> Transition:
         """Leave the challenge for free flights, from the pause menu."""
+        self._end_challenge()
+        return Pop()
+
+    def _end_challenge(self) -> None:
+        """Go on with free flights."""
         assert self.challenge is not None
+        self._held_next = 0
         self.challenge.leave()
         self._remember(self.challenge)
         self.challenge = None
         self._begin(self._new_seed())
-        return Pop()
 
     @property
     def _leaves(self) -> bool:

@@ -173,10 +173,11 @@ class Tutorial(Challenge):
         """Return the final card: tutorial complete, or the crash of a player who flies it once more."""
         if not card.good:
             return replace(card, score="")
-        reason = texts.TUTORIAL_DONE_REASON
+        title, reason = texts.TUTORIAL_DONE, texts.TUTORIAL_DONE_REASON
         if self.lesson.guarded:
+            title = texts.TUTORIAL_SAVED_TITLE if card.stepped_in else title
             reason = texts.TUTORIAL_SAVED if card.stepped_in else texts.TUTORIAL_NOT_NEEDED
-        return replace(card, title=texts.TUTORIAL_DONE, reason=reason, score="", advice=texts.TUTORIAL_NEXT)
+        return replace(card, title=title, reason=reason, score="", advice=texts.TUTORIAL_NEXT)
 
     def _begin_lesson(self, number: int) -> None:
         self._number, self._why = number, ""

@@ -1,5 +1,6 @@
 """A network edited by hand: what an edit changes, what is refused, and the way back, bit for bit."""
 
+from inspect import getgeneratorlocals
 from pathlib import Path
 
 import numpy as np
@@ -190,7 +191,10 @@ def test_it_learns_on_from_an_edit_and_can_still_go_back() -> None:
     for _ in range(10):
         next(run)
     assert state(run.send(UndoEdit())) not in (before, edited)
+    training = getgeneratorlocals(run)["session"].training
+    optimizer = training.agent.optimizer
     assert state(run.send(UndoEdit(all=True))) == before
+    assert training.agent.optimizer is not optimizer, "what it remembers belongs to other weights"
     run.close()
 
 

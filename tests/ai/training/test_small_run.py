@@ -55,3 +55,10 @@ def test_a_memory_of_the_latest_drops_the_rest_when_the_day_changes():
     assert state.memory.oldest == 31 * 16 - 100
     assert state.memory.first == 30 * 16
     assert state.flown.height.max() < 1.2
+
+
+def test_those_that_are_tested_take_no_random_actions():
+    run = SmallRun(SMALL_RUN, 0, Plan(tested=(1.0, 8.0)))
+    for _ in range(10):  # before it learns
+        best = run.agent.act(run._tests._observation)
+        assert np.array_equal(run.advance().tested.main, best == 1)

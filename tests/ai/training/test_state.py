@@ -133,22 +133,29 @@ def test_transitions_lie_in_blocks_that_are_written_once_and_go_when_they_are_fo
     assert differing(training, resume_run(tmp_path / "copy")) == []
 
 
-def test_of_what_is_too_large_the_newest_is_kept_and_it_is_said(tmp_path, monkeypatch):
+def test_of_what_is_too_large_the_newest_is_kept_and_it_is_said(tmp_path, monkeypatch, subtests):
     monkeypatch.setattr(states, "BLOCK", 16)
-    monkeypatch.setattr(states, "MOST", 30_000)
-    training = on(begun(SMALL), 60)
-    save_run(training, tmp_path / "run", state=True)
-    resumed = resume_run(tmp_path / "run")
-    assert "too large" in resumed.lost
-    kept = resumed.agent.replay
-    assert 0 < len(kept) < len(training.agent.replay)
-    assert sum(path.stat().st_size for path in files(tmp_path / "run").values() if path.suffix == ".npy") < 30_000
-    ours, theirs = (
-        buffer.at((buffer.start + np.arange(len(buffer) - 20, len(buffer))) % buffer.capacity).reward
-        for buffer in (training.agent.replay, kept)
-    )
-    assert np.array_equal(ours, theirs)
-    on(resumed, 3)
+    for prioritised, most in ((False, 30_000), (True, 38_000)):
+        with subtests.test(prioritised=prioritised):
+            monkeypatch.setattr(states, "MOST", most)
+            training = on(begun(SMALL.changed(prioritised=prioritised)), 60)
+            save_run(training, tmp_path / "run", state=True)
+            resumed = resume_run(tmp_path / "run")
+            assert "too large" in resumed.lost
+            kept = resumed.agent.replay
+            assert 0 < len(kept) < len(training.agent.replay)
+            paths = files(tmp_path / "run").values()
+            assert sum(path.stat().st_size for path in paths if path.suffix == ".npy") < most
+            ours, theirs = (newest(buffer, 20) for buffer in (training.agent.replay, kept))
+            assert all(np.array_equal(*pair) for pair in zip(ours, theirs, strict=True))
+            on(resumed, 3)
+
+
+def newest(buffer, count):
+    """Rewards of the newest transitions, and their priorities, if they have any."""
+    rows = (buffer.start + np.arange(len(buffer) - count, len(buffer))) % buffer.capacity
+    tree = getattr(buffer, "tree", None)
+    return [buffer.at(rows).reward, *([tree.leaves[rows]] if tree else [])]
 
 
 def test_damage_is_named_with_the_way_out_wherever_it_is(tmp_path, monkeypatch):

@@ -1,5 +1,6 @@
 import json
 from dataclasses import replace
+from itertools import count
 
 import numpy as np
 import pytest
@@ -182,11 +183,18 @@ def test_a_failed_save_leaves_the_old_run(tmp_path, monkeypatch):
     assert [path.name for path in tmp_path.iterdir()] == ["run"]
 
 
-def test_the_clock_stops_at_the_decisions_asked_for():
-    training, _ = advanced(decisions=1)
-    clock = Limit(moment=80)
-    assert [progress.decisions for progress in clock.run(training)][-1] == 80
-    assert clock.share(training) == 1.0
+def test_a_run_stops_at_the_decisions_or_seconds_asked_for_whichever_comes_first(subtests):
+    for limit, decisions, seconds in [
+        (Limit(moment=80), 80, 20.0),
+        (Limit(seconds=5.0, moment=800), 24, 6.0),
+        (Limit(seconds=500.0, moment=40), 40, 10.0),
+    ]:
+        with subtests.test(decisions=decisions):
+            ticks = count()
+            training = Training(SMALL, 0, **QUICK, clock=lambda ticks=ticks: float(next(ticks)))
+            assert [progress.decisions for progress in limit.run(training)][-1] == decisions
+            assert limit.share(training) == 1.0
+            assert training.seconds == seconds, "a step looks at the clock twice, and once for its pace"
 
 
 def test_a_curriculum_run_climbs_its_stages():
