@@ -1,4 +1,4 @@
-"""Chapter 9, daring: exploration, and landers that never dare."""
+"""Chapter 10, daring: exploration, and landers that never dare."""
 
 from __future__ import annotations
 

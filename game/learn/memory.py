@@ -1,4 +1,4 @@
-"""Chapter 8, learning from yesterday: the replay memory as a wall of moments, and what is drawn from it."""
+"""Chapter 9, learning from yesterday: the replay memory as a wall of moments, and what is drawn from it."""
 
 from __future__ import annotations
 

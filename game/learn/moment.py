@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import Final, NamedTuple
+from typing import ClassVar, Final, NamedTuple
 
 import numpy as np
 import pygame
@@ -79,7 +79,7 @@ class MomentChapter(Chapter):
     """
 
     key = "moment"
-    answer = 2
+    answer: ClassVar[int | None] = 2
     door = Route("watch")
 
     def __init__(self, context: Context, manager: PointsManager) -> None:

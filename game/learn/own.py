@@ -1,4 +1,4 @@
-"""Chapter 10, your own: train a network, let it fly, hand over to it, race it; what is done ticks itself."""
+"""Chapter 11, your own: train a network, let it fly, hand over to it, race it; what is done ticks itself."""
 
 from __future__ import annotations
 

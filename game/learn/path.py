@@ -24,6 +24,7 @@ PATH: Final[dict[str, Entry]] = {
     "backwards": Entry("backwards.BackwardsChapter", 3),
     "pay": Entry("pay.PayChapter", 5),
     "moment": Entry("moment.MomentChapter", 4),
+    "choice": Entry("choice.ChoiceChapter", 3),
     "target": Entry("target.TargetChapter", 3),
     "memory": Entry("memory.MemoryChapter", 4),
     "daring": Entry("daring.DaringChapter", 3),

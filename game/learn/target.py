@@ -1,4 +1,4 @@
-"""Chapter 7, a guess from a guess: the target network, and values that chase their own tail without it."""
+"""Chapter 8, a guess from a guess: the target network, and values that chase their own tail without it."""
 
 from __future__ import annotations
 

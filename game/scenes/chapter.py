@@ -131,6 +131,8 @@ class ChapterScene(FormScene):
         if self.chapter.changed:
             self.chapter.changed = False
             self._offer()
+            if self.page == _WHY and self._told:  # what is told there is of all that was tried by now
+                self._told = self.chapter.why(self._progress.guess(self.key))
         if self.page == _WHY and self.chapter.tried and not self._told:
             self.turn_to(_WHY)  # what was begun on the page before has come to its end
         return self.form.update()
@@ -237,7 +239,7 @@ class ChapterScene(FormScene):
         self._write(canvas, self.chapter.words["task"], _COLUMN[1])
 
     def _draw_why(self, canvas: Canvas) -> None:
-        left, y, width = _COLUMN
+        left, y, _ = _COLUMN
         told = self._told or texts.LEARN_TRY_FIRST
         guess = self._progress.guess(self.key)
         if guess is None:
@@ -246,7 +248,7 @@ class ChapterScene(FormScene):
             came = self.chapter.verdict() if self._told else None
             top, colour = y - _LEADING, MUTE if came is None else canvas.palette.good if came == guess else HUMAN
             if came is not None:
-                canvas.marker("check" if came == guess else "cross", (left + width - 6, y - 5), 10, colour)
+                canvas.marker("check" if came == guess else "cross", (left - 26, y - 5), 10, colour)
             said = texts.LEARN_GUESSED.format(guess=self._progress.answer(self.key))
             y = self._write(canvas, f"{said} {self._verdict(guess, came)}".rstrip(), y, colour) + 4
             y = self._write(canvas, told, y)

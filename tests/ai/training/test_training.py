@@ -190,11 +190,19 @@ def test_a_run_stops_at_the_decisions_or_seconds_asked_for_whichever_comes_first
         (Limit(seconds=500.0, moment=40), 40, 10.0),
     ]:
         with subtests.test(decisions=decisions):
-            ticks = count()
-            training = Training(SMALL, 0, **QUICK, clock=lambda ticks=ticks: float(next(ticks)))
+            training = Training(SMALL, 0, **QUICK, clock=map(float, count()).__next__)
             assert [progress.decisions for progress in limit.run(training)][-1] == decisions
             assert limit.share(training) == 1.0
             assert training.seconds == seconds, "a step looks at the clock twice, and once for its pace"
+
+
+def test_what_is_best_stays_as_it_was_while_training_goes_on():
+    training, _ = advanced(SMALL.changed(normalise_inputs=True))
+    training.evaluate()
+    values, scale = training.best_values.copy(), training.best_normalizer.to_json()
+    training.advance()
+    assert np.array_equal(training.best_values, values)
+    assert training.best_normalizer.to_json() == scale != training.agent.normalizer.to_json()
 
 
 def test_a_curriculum_run_climbs_its_stages():

@@ -18,6 +18,7 @@ from game.core.scene import Push
 from game.flight.logbook import Records
 from game.learn import runs as runs_module
 from game.learn.chapter import Chapter
+from game.learn.choice import ChoiceChapter
 from game.learn.daring import DaringChapter
 from game.learn.memory import KINDS, MemoryChapter
 from game.learn.moment import MOMENTS, MomentChapter
@@ -223,3 +224,36 @@ def test_the_list_ticks_what_was_really_done_and_nothing_before(made: Made, cont
     assert "race" not in look(chapter)  # opened, and not flown yet
     records.keep(landed(), time.time() + 5, network="mine")
     assert "race" in look(chapter)
+
+
+# Six values
+
+
+def test_six_values_and_what_comes_of_each_are_the_networks_own(made: Made):
+    chapter = made(ChoiceChapter)
+    agent = DeepQAgent.load(MODELS_DIR / "lander" / "modern")
+    seed, spawn, decisions = MOMENTS[0]
+    assert decisions == 0
+    for action in (chapter.best, chapter.worst):
+        chapter.begin_with(action)
+        while not chapter.over:
+            chapter.update()
+        env = LanderEnv(1, seed, spawn, frame_skip=4, weights=Config.of(agent).reward_weights)
+        decided = agent.decide(env.reset(), held=env.actions)
+        assert decided.points is not None
+        np.testing.assert_allclose(chapter.values, decided.points[0], rtol=1e-5)
+        flown, pays = np.array([action]), []
+        while env.outcome[0] == Outcome.FLYING:
+            result = env.step(flown)
+            pays.append(float(result.reward[0]))
+            flown = agent.decide(result.observation, held=env.actions).action
+        came = sum(agent.config.discount**number * pay for number, pay in enumerate(pays))
+        assert chapter.results[action].points == pytest.approx(came, abs=0.5)
+        assert chapter.results[action].landed == (env.outcome[0] == Outcome.LANDED)
+    best, worst = chapter.results[chapter.best], chapter.results[chapter.worst]
+    assert best.landed
+    expected = 0 if not worst.landed else 1 if best.points - worst.points <= 5 else 2
+    assert chapter.verdict() == expected
+    assert chapter.tried
+    chapter.turn()
+    assert chapter.verdict() is None
