@@ -105,6 +105,8 @@ class Episodes:
         """
         self._transitions = joined([self._transitions, transitions])
         self._slots = np.concatenate([self._slots, slots])
+        if not ended.any():
+            return []
         whole = [_taken(self._transitions, self._slots == slot) for slot in np.flatnonzero(ended & success)]
         goes_on = ~ended[self._slots]
         self._transitions, self._slots = _taken(self._transitions, goes_on), self._slots[goes_on]

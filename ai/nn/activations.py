@@ -82,12 +82,7 @@ class ActivationFunctions:
     @staticmethod
     def use_relu() -> Activation:
         """Rectified linear unit max(0, x) (Nair & Hinton 2010); its derivative at 0 counts as 0."""
-        return Activation(
-            _relu,
-            lambda _x, y, out: np.greater(y, 0, out=out),
-            name="relu",
-            initialisation="he",
-        )
+        return Activation(_relu, lambda _x, y, out: np.greater(y, 0, out=out), "relu", initialisation="he")
 
     @staticmethod
     def use_leaky_relu(slope: float = 0.01) -> Activation:

@@ -56,14 +56,7 @@ class ConvolutionLayer(FullyConnectedLayer):
     framed: Array  # images of the last forward pass, with zeros around them
 
     def __init__(
-        self,
-        inputs: ImageShape,
-        filters: int,
-        kernel: int,
-        *,
-        stride: int = 1,
-        padding: int = 0,
-        **options: Any,
+        self, inputs: ImageShape, filters: int, kernel: int, *, stride: int = 1, padding: int = 0, **options: Any
     ) -> None:
         height, width, channels = shape = _checked_shape(inputs)
         self.kernel, self.stride = checked_size("kernel", kernel), checked_size("stride", stride)

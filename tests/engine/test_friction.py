@@ -108,23 +108,17 @@ def test_a_moving_static_body_carries_a_box_along():
     assert box.velocity == pytest.approx(np.zeros((2, 2)), abs=1e-6)
 
 
-@pytest.mark.parametrize(
-    ("pair", "friction"), [((0.2, 0.8), 0.4), ((0.3, None), 0.3), ((None, 0.3), 0.3), ((None, None), 0.5), ((0, 1), 0)]
-)
-def test_two_frictions_make_their_geometric_mean(pair, friction):
-    world = World(gravity=(0.0, -G))
-    world.add(Polygon.box(100.0, 1.0), (0.0, -0.5), static=True, friction=pair[0])
-    world.add(Polygon.box(1.0, 0.5), (0.0, 0.25), friction=pair[1])
-    world.step()
-    assert world.contacts.friction == pytest.approx([friction])
-
-
-@pytest.mark.parametrize(
-    ("pair", "bounce"), [((0.2, 0.8), 0.8), ((0.3, None), 0.3), ((None, 0.3), 0.3), ((None, None), 0.0)]
-)
-def test_of_two_restitutions_the_larger_holds(pair, bounce):
-    world = World(gravity=(0.0, -G))
-    world.add(Polygon.box(100.0, 1.0), (0.0, -0.5), static=True, restitution=pair[0])
-    world.add(Circle(0.25), (0.0, 0.25), restitution=pair[1])
-    world.step()
-    assert world.contacts.restitution == pytest.approx([bounce])
+def test_two_frictions_make_their_geometric_mean_and_of_two_restitutions_the_larger_holds():
+    for pair, friction, bounce in [
+        ((0.2, 0.8), 0.4, 0.8),
+        ((0.3, None), 0.3, 0.3),
+        ((None, 0.3), 0.3, 0.3),
+        ((None, None), 0.5, 0.0),
+        ((0, 1), 0, 1),
+    ]:
+        world = World(gravity=(0.0, -G))
+        world.add(Polygon.box(100.0, 1.0), (0.0, -0.5), static=True, friction=pair[0], restitution=pair[0])
+        world.add(Polygon.box(1.0, 0.5), (0.0, 0.25), friction=pair[1], restitution=pair[1])
+        world.step()
+        assert world.contacts.friction == pytest.approx([friction]), pair
+        assert world.contacts.restitution == pytest.approx([bounce]), pair

@@ -11,14 +11,10 @@ from tests.support.worlds import advance
 G = 1.62
 
 
-def run(world, steps):
-    advance(world, steps)
-
-
 def test_free_fall_is_semi_implicit_euler_exactly_and_the_parabola_nearly():
     world = World(gravity=(0.0, -G))
     body = world.add(Circle(0.5), (3.0, 100.0))
-    run(world, 300)
+    advance(world, 300)
     time = 300 * DT
     assert body.velocity[0, 1] == pytest.approx(-G * time, rel=1e-12)
     assert body.position[0, 1] == pytest.approx(100 - G * DT**2 * 300 * 301 / 2, rel=1e-12)
@@ -30,11 +26,11 @@ def test_gravity_may_differ_between_worlds_and_change():
     world = World(batch=3)
     body = world.add(Circle(1.0), (0, 0))
     world.gravity = np.array([[0.0, -1.0], [0.0, -2.0], [3.0, 0.0]])
-    run(world, 60)
+    advance(world, 60)
     assert body.velocity == pytest.approx(world.gravity)
-    world.gravity = (0.0, 0.0)
-    run(world, 60)
-    assert body.velocity == pytest.approx(np.array([[0.0, -1.0], [0.0, -2.0], [3.0, 0.0]]))
+    world.gravity = (0.0, -1.0)
+    advance(world, 60)
+    assert body.velocity == pytest.approx(np.array([[0.0, -2.0], [0.0, -3.0], [3.0, -1.0]]))
 
 
 @pytest.mark.parametrize(("linear", "quadratic"), [(0.8, 0.0), (0.0, 0.3), (0.8, 0.3), (500.0, 0.0)])
@@ -42,7 +38,9 @@ def test_terminal_speed_of_a_fall(linear, quadratic):
     mass, g = 2.0, 9.81
     world = World(gravity=(0.0, -g))
     body = world.add(Circle(0.5), (0, 0), mass=mass, linear_drag=linear, quadratic_drag=quadratic)
-    run(world, 3000)
+    body.angular_velocity = 1.0
+    advance(world, 3000)
+    assert body.angular_velocity[0] == 1.0
     speed = -body.velocity[0, 1]
     assert linear * speed + quadratic * speed**2 == pytest.approx(mass * g, rel=1e-7)
 
@@ -71,7 +69,7 @@ def test_drag_slows_a_motion_along_it(drag, speed, tolerance):
     world = World(gravity=(0.0, 0.0))
     body = world.add(Circle(0.5), (0, 0), mass=2.0, **drag)
     body.velocity = (6.0, 8.0)
-    run(world, 240)
+    advance(world, 240)
     assert np.hypot(*body.velocity[0]) == pytest.approx(speed, rel=tolerance)
     assert body.velocity[0, 0] / body.velocity[0, 1] == pytest.approx(0.75)
 
@@ -82,29 +80,16 @@ def test_no_drag_can_turn_a_motion_round(linear, quadratic, speed):
     world = World(gravity=(0.0, 0.0))
     body = world.add(Circle(0.5), (0, 0), linear_drag=linear, quadratic_drag=quadratic, angular_drag=linear)
     body.set(velocity=(speed, 0.0), angular_velocity=speed)
-    run(world, 3)
+    advance(world, 3)
     assert 0 <= body.velocity[0, 0] * np.sign(speed) <= abs(speed)
     assert 0 <= body.angular_velocity[0] * np.sign(speed) <= abs(speed)
-
-
-def test_translation_and_rotation_are_damped_apart():
-    world = World(gravity=(0.0, 0.0))
-    slides = world.add(Circle(0.5), (0, 0), linear_drag=1.0, quadratic_drag=1.0)
-    spins = world.add(Circle(0.5), (9, 0), angular_drag=1.0, angular_quadratic_drag=1.0)
-    for body in (slides, spins):
-        body.set(velocity=(0.0, 1.0), angular_velocity=1.0)
-    run(world, 60)
-    assert slides.velocity[0, 1] < 0.5
-    assert slides.angular_velocity[0] == 1.0
-    assert spins.velocity[0, 1] == 1.0
-    assert spins.angular_velocity[0] < 0.5
 
 
 def test_torque_free_spin_keeps_its_speed():
     world = World(gravity=(0.0, -G))
     body = world.add(Polygon([(0, 0), (2, 0), (0.3, 0.7)]), (0, 0))
     body.angular_velocity = 2.5
-    run(world, 1200)
+    advance(world, 1200)
     assert body.angular_velocity[0] == 2.5
     assert body.angle[0] == pytest.approx(2.5 * 20.0)
     assert body.position[0, 0] == 0.0
@@ -126,7 +111,7 @@ def test_forces_add_up_and_last_for_one_step():
     body.apply_force((1.0, 0.0))
     body.apply_force([[1.0, 0.0], [5.0, 0.0]])
     body.apply_torque([1.0, -1.0])
-    run(world, 2)
+    advance(world, 2)
     assert body.velocity[:, 0] == pytest.approx(np.array([2.0, 6.0]) / 2.0 * DT)
     assert body.angular_velocity == pytest.approx(np.array([1.0, -1.0]) / body.inertia * DT)
 
@@ -135,7 +120,7 @@ def test_forces_do_not_move_a_static_body():
     world = World(gravity=(0.0, -9.81))
     body = world.add(Polygon.box(1, 1), (0, 0), static=True)
     body.apply_force((100.0, 0.0), (3.0, 4.0))
-    run(world, 10)
+    advance(world, 10)
     assert not body.position.any()
     assert not body.velocity.any()
     assert body.mass == body.inertia == np.inf

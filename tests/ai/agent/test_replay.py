@@ -146,3 +146,14 @@ def test_only_successful_episodes_are_passed_on_whole():
     both = np.ones(2, dtype=bool)
     whole = list(episodes.add(cells(4, 2), np.array([0, 1]), both, np.array([False, True])))
     assert [episode.reward.tolist() for episode in whole] == [[1.0, 3.0, 5.0]]
+    assert not episodes.state()  # nothing of them is left for the next ones
+    whole = episodes.add(cells(6, 2), np.array([0, 1]), np.array([True, False]), both)
+    assert [episode.reward.tolist() for episode in whole] == [[6.0]]
+
+    resumed, state, observation = Episodes(2), episodes.state(), np.zeros((2, 2), dtype=np.float32)
+    resumed.load_state(state, observation)
+    whole = resumed.add(cells(8, 1), np.array([1]), np.array([False, True]), both)
+    assert [episode.reward.tolist() for episode in whole] == [[7.0, 8.0]]
+    for slot in (-1, 2):
+        with pytest.raises(ValueError, match="no slot"):
+            resumed.load_state(state | {"slots": np.array([slot])}, observation)
