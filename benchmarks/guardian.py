@@ -52,8 +52,10 @@ from game.flight.guard import Guard
 
 MODEL = Path(__file__).parent.parent / "models" / "lander" / "modern"
 BATCHES = (1, 6, 12, 18, 42)
-KINDS = STUBBORN, FAMILIES, UNSEEN  # of hands, which are flown at once: futures of many take hardly longer
-ROUND = 25  # flights of each family in a round
+# Hands that are flown at once: futures of many take hardly longer.
+HOSTILE = "adversary, random", "adversary, least"
+KINDS = [name for name in STUBBORN if name not in HOSTILE], HOSTILE, [*FAMILIES, *UNSEEN]
+ROUND = 10  # flights of each family in a round
 LIVE_STEPS = 480  # of a flight in real time at most: hands that crash are kept in the air for long
 
 
@@ -200,7 +202,7 @@ def promises(agent: DeepQAgent, names: list[str], dials: list[float], flights: i
     A round that is in the file already is left out, so one that was broken off goes on.
     """
     done = [json.loads(line) for line in into.read_text().splitlines()] if into.exists() else []
-    for number in range(flights // ROUND):
+    for number in range(-(-flights // ROUND)):
         for kind in KINDS:
             mine = [name for name in kind if name in names]
             for dial in (None, *dials):
@@ -239,7 +241,12 @@ def main() -> None:
     parser.add_argument("--costs", action="store_true", help="measure how long futures take")
     parser.add_argument("--live", action="store_true", help="fly in real time, with futures from another process")
     parser.add_argument("--rounds", type=int, default=100, help="moments from which futures are flown")
-    parser.add_argument("--flights", type=int, default=300, help="of each family with each dial; live, at most 4")
+    parser.add_argument(
+        "--flights",
+        type=int,
+        default=300,
+        help=f"of each family with each dial, in whole rounds of {ROUND}; live, at most 4",
+    )
     parser.add_argument("--into", type=Path, default=Path("guardian.jsonl"), help="file of the rounds that were flown")
     parser.add_argument("--hands", nargs="*", default=list(PILOTS), choices=list(PILOTS), metavar="NAME")
     parser.add_argument("--dials", type=float, nargs="*", default=[0.04, 0.27, 1.0])

@@ -76,8 +76,6 @@ def _train(arguments: argparse.Namespace) -> int:
     from ai.training.loop import Training
     from ai.training.run import Limit
 
-    if arguments.output and arguments.seconds is None and arguments.decisions is None:
-        return fail("say when to stop: --seconds S or --decisions N")
     if problem := out_of_range(arguments, decisions=DECISIONS, validation=EPISODES):
         return fail(problem)
 

@@ -11,11 +11,12 @@ from typing import Final
 _T: Final = (12.71, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160, 2.145, 2.131)
 
 
-def wilson(share: float, count: int, z: float = 1.96) -> tuple[float, float]:
-    """Return the interval of a share that was found in `count` trials; `z` standard deviations to each side.
+def wilson(share: float, count: int) -> tuple[float, float]:
+    """Return the 95 % interval of a share that was found in `count` trials.
 
     Wilson, "Probable Inference, the Law of Succession, and Statistical Inference" (1927).
     """
+    z = 1.96  # standard deviations to each side
     middle = (share + z * z / (2 * count)) / (1 + z * z / count)
     half = z * sqrt(share * (1 - share) / count + z * z / (4 * count * count)) / (1 + z * z / count)
     return max(0.0, middle - half), min(1.0, middle + half)

@@ -25,6 +25,7 @@ from ai.lander.rules import ACTION_SHARES
 
 # Points of reward by which the guardian's action must be better than the pilot's, at an assist of one half.
 GUARDIAN_MARGIN: Final = 3.0
+_AT_ONCE: Final = 256  # futures that take little longer than a few
 _STEERS: Final = 3  # action = 3 * main + steer
 
 
@@ -359,19 +360,23 @@ class CoPilot:
     ) -> dict[int, Push]:
         """Return for each slot the first of its wishes that passes, or the first of all; note futures as `known` (n).
 
-        One wish after another is flown ahead: for who knows what they want, that is less than all six.
+        Of many slots, one wish after another is flown ahead: for who knows what they want, that is less than all.
         """
         self._void(env)
         here, left = Here.all(env), dict(wishes)
         first = {slot: order[0] for slot, order in wishes.items()}
-        for turn in range(max(map(len, wishes.values()), default=0)):
-            new = [(slot, order[turn]) for slot, order in left.items()
-                   if not self.guardians[slot].knows(here[slot], order[turn], known[slot])]  # fmt: skip
+        turn = 0
+        while left and turn < NUM_ACTIONS:
+            until = turn + max(1, _AT_ONCE // len(left))
+            new = [(slot, push) for slot, order in left.items() for push in order[turn:until]
+                   if not self.guardians[slot].knows(here[slot], push, known[slot])]  # fmt: skip
             self._look(env, env.target, new, known)
-            passed = {slot: order[turn] for slot, order in left.items()
-                      if order[turn] not in known[slot] or known[slot][order[turn]].passes}  # fmt: skip
-            first |= passed
-            left = {slot: order for slot, order in left.items() if slot not in passed}
+            for slot, order in list(left.items()):
+                passing = [push for push in order[turn:until] if push not in known[slot] or known[slot][push].passes]
+                if passing:
+                    first[slot] = passing[0]
+                    del left[slot]
+            turn = until
         return first
 
     def _void(self, env: LanderEnv) -> None:

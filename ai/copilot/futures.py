@@ -29,6 +29,10 @@ SPARE: Final = 1.5  # seconds before time is out, from which on a landing does n
 _MOST: Final = round(LONGEST / DT) // DECISION_STEPS  # decisions
 _TOGETHER: Final = 4  # futures from which on a batch takes less time than one lander alone after another
 _AT_ONCE: Final = 64  # futures of several pads that are flown in one batch; of more, those to other pads come later
+_GATHERED: Final = 8  # futures from which on those that touch down wait for each other
+_FEW: Final = 8  # until only one of so many is in the air
+# Metres of height, and of a leg that leans, and seconds of falling, within which one touches down soon.
+_LOW, _LEG, _SOON = 0.1, 1.5, 0.1
 _BATCH: Final = 4096  # futures at most in one batch: more take no less time each
 
 
@@ -261,55 +265,66 @@ class Lookahead:
         return plans
 
     def _fly(self, moment: Moment, asked: Sequence[tuple[int, Opening, int]]) -> Flying[Plan | None]:
-        """Fly landers with openings to pads; return the plans of those that land."""
+        """Fly landers with openings to pads; return the plans of those that land.
+
+        Of many, those that are about to touch down wait until most are as far, and go on together: a step takes ten
+        times as long with a single contact in it.
+        """
         if not asked:
             return []
-        count, longest = len(asked), max(len(opening) for _, opening, _ in asked)
-        length = np.array([len(opening) for _, opening, _ in asked])
-        pushed = np.zeros((longest, count, 3))
-        for index, (_, opening, _) in enumerate(asked):
-            pushed[: len(opening), index] = opening
+        count = len(asked)
+        length, pushed = _table([opening for _, opening, _ in asked])
         start = moment.take(np.array([row for row, _, _ in asked]))
         start.target[:] = [pad for _, _, pad in asked]
-        actions, shares = np.zeros((_MOST, count), dtype=np.intp), np.zeros((_MOST, count, 2))
-        states = np.empty((_MOST + 1, count, 6))
-        ends, landed = np.zeros((2, count), dtype=np.intp)
+        # A row more than there are decisions: what has ended, or waits, writes into the next one.
+        actions, shares = np.zeros((_MOST + 1, count), dtype=np.intp), np.zeros((_MOST + 1, count, 2))
+        states = np.empty((_MOST + 2, count, 6))
+        flown, landed = np.zeros((2, count), dtype=np.intp)
         env, future = self._begin(start, np.arange(count))  # future (n,) of every slot, fewer than there are slots
         states[0] = _states(env)[:count]
-        flies = np.arange(env.num_envs) < count
-        left = np.flatnonzero(flies)
+        flies = np.arange(env.num_envs) < count  # (slots,), as are the next two
+        waits, down = np.zeros((2, env.num_envs), dtype=bool)
+        gathers = count >= _GATHERED
         soonest = float(((env.limits.time - SPARE - env.time) / DT).min()) // DECISION_STEPS - 1  # decisions in time
-        for number in range(_MOST):
-            n = len(future)
+        rounds = 0
+        while flies.any():
+            n, at = len(future), flown[future]
             action, share = self._choose(env)
-            if number < longest:
-                opens, given = number < length[future], pushed[number, future]
-                action[:n] = np.where(opens, given[:, 0], action[:n])
-                share[:n] = np.where(opens[:, None], given[:, 1:], share[:n])
-            rows = future if n < count else slice(None)
-            actions[number, rows], shares[number, rows] = action[:n], share[:n]
+            if gathers:
+                action[waits], share[waits] = env.actions[waits], env.shares[waits]
+            if rounds < len(pushed) or gathers:
+                opens = np.flatnonzero(at < length[future])
+                given = pushed[at[opens], future[opens]]
+                action[opens], share[opens] = given[:, 0], given[:, 1:]
+            actions[at, future], shares[at, future] = action[:n], share[:n]
             env.fly(action, share)
-            states[number + 1, rows] = _states(env)[:n]
+            states[at + 1, future] = _states(env)[:n]
+            moves = flies & ~waits
+            flown[future] += moves[:n]
+            rounds += 1
             yield
-            if number < soonest and np.count_nonzero(env.outcome) == env.num_envs - len(left):
+            if gathers:
+                waits, down = _gather(env, flies, waits, down)
+                moves &= ~waits
+            if rounds < min(soonest, _MOST) and not (moves & (env.outcome != Outcome.FLYING)).any():
                 continue  # none has ended, and none is late
             late = env.time > env.limits.time - SPARE
-            over = np.flatnonzero(flies & (late | (env.outcome != Outcome.FLYING)))
+            ended = late | (env.outcome != Outcome.FLYING)
+            ended[:n] |= flown[future] == _MOST
+            over = np.flatnonzero(moves & ended)
             landed[future[over]] = (env.outcome == Outcome.LANDED)[over] & ~late[over]
-            ends[future[over]] = number + 1
             flies[over] = False
             left = np.flatnonzero(flies)
-            if not len(left):
-                break
-            if _size(len(left)) <= env.num_envs // 2:
+            if len(left) and _size(len(left)) <= env.num_envs // 2:
+                masks = np.zeros((3, _size(len(left))), dtype=bool)
+                masks[:, : len(left)] = flies[left], waits[left], down[left]
                 env, future = self._begin(Moment.of(env).take(left), future[left])
-                flies = np.arange(env.num_envs) < len(left)
-        plans: list[Plan | None] = [None] * count
-        for row in np.flatnonzero(landed).tolist():
-            end = ends[row]
-            plans[row] = Plan(int(start.steps[row]), start.fall(row), asked[row][2], actions[:end, row].copy(),
-                              shares[:end, row].copy(), states[: end + 1, row].copy())  # fmt: skip
-        return plans
+                flies, waits, down = masks
+        return [
+            Plan(int(start.steps[row]), start.fall(row), asked[row][2], actions[:end, row].copy(),
+                 shares[:end, row].copy(), states[: end + 1, row].copy()) if landed[row] else None
+            for row, end in enumerate(flown.tolist())
+        ]  # fmt: skip
 
     def _choose(self, env: LanderEnv) -> tuple[Ints, Doubles]:
         """Return the network's actions (n,), and their shares of thrust, (n, 2)."""
@@ -329,6 +344,33 @@ class Lookahead:
         env.outcome[count:] = Outcome.TIMED_OUT
         env.lander.active = env.outcome == Outcome.FLYING
         return env, future
+
+
+def _table(openings: Sequence[Opening]) -> tuple[Ints, Doubles]:
+    """Return how long n openings are, (n,), and their pushes, actions and shares, (longest, n, 3)."""
+    length = np.array([len(opening) for opening in openings])
+    pushed = np.zeros((length.max(), len(openings), 3))
+    for index, opening in enumerate(openings):
+        pushed[: len(opening), index] = opening
+    return length, pushed
+
+
+def _gather(env: LanderEnv, flies: Bools, waits: Bools, down: Bools) -> tuple[Bools, Bools]:
+    """Let those that `flies` and will soon touch down wait in the air, or all that `waits` go on and be `down`.
+
+    All are (n,); returns which of them wait now, and which have gone on. Those that wait are out of the environment's
+    hands, as if they had ended.
+    """
+    sin, _, _ = env.turned
+    height = env.altitude - _LEG * np.abs(sin) + _SOON * env.velocity[:, 1]
+    coming = flies & ~waits & ~down & (env.outcome == Outcome.FLYING)
+    near = coming & (height < _LOW) & ~env.contacts.any(axis=1)
+    env.outcome[near] = Outcome.TIMED_OUT
+    waits = waits | near
+    if _FEW * np.count_nonzero(coming & ~near) <= np.count_nonzero(flies & ~down):
+        env.outcome[waits], down, waits = Outcome.FLYING, down | waits, np.zeros_like(waits)
+    env.lander.active = env.outcome == Outcome.FLYING
+    return waits, down
 
 
 def roomy(slots: int, moment: Moment) -> LanderEnv:

@@ -27,12 +27,7 @@ class ActivationMaximisation:
     would read. `calm`, the regularisation from 0 to 1, limits its ink, blurs it, and moves it to and fro, so that
     only strokes stay that mean the same wherever they are (Yosinski et al. 2015, Mordvintsev et al. 2015).
     It begins with `start`, an image (28, 28), or with noise. Raises ValueError for a digit outside 0 to 9.
-
-    Attributes:
-        image: (28, 28), 0 to 1.
-        probabilities: (10,), what the network reads in it.
-        step: how many steps it has taken.
-
+    `image` is (28, 28), 0 to 1; `probabilities` (10,) what the network reads in it after `step` steps.
     """
 
     def __init__(

@@ -18,18 +18,11 @@ _SHARE: Final = 1 / 60  # of a run's length, later: a run of a minute has 140 mo
 
 @dataclass(frozen=True, eq=False)
 class FilterMoment:
-    """Filters at one moment of a training run.
+    """Filters at one moment of a training run."""
 
-    Attributes:
-        seconds: spent learning until then.
-        step: learning steps until then.
-        images: (n, height, width) float16, as `first_filters` returns them.
-
-    """
-
-    seconds: float
-    step: int
-    images: npt.NDArray[np.float16]
+    seconds: float  # spent learning until then
+    step: int  # learning steps until then
+    images: npt.NDArray[np.float16]  # (n, height, width), as `first_filters` returns them
 
 
 def first_filters(network: NeuralNetwork, most: int | None = MOST_FILTERS) -> npt.NDArray[np.float32]:

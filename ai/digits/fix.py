@@ -34,24 +34,14 @@ class FixStep:
 
 @dataclass(frozen=True)
 class Fixed:
-    """Result of a fix.
+    """Result of a fix."""
 
-    Attributes:
-        digit: what the drawing is.
-        probability: how probable the network found that before, and finds it now.
-        accuracy: the part of the test images that it read before, and reads now.
-        steps: how many were taken; none if it was sure already.
-        folder: where the fixed network is; None if it was not kept.
-        problem: why it was not kept.
-
-    """
-
-    digit: int
-    probability: tuple[float, float]
-    accuracy: tuple[float, float]
-    steps: int
-    folder: Path | None = None
-    problem: str = ""
+    digit: int  # what the drawing is
+    probability: tuple[float, float]  # of that digit before, and now
+    accuracy: tuple[float, float]  # on the test images before, and now
+    steps: int  # how many were taken; none if it was sure already
+    folder: Path | None = None  # where the fixed network is; None if it was not kept
+    problem: str = ""  # why it was not kept
 
 
 def steps_to_fix(

@@ -18,20 +18,13 @@ _SLICE: Final = 100  # images that are read between two steps
 
 @dataclass(frozen=True, eq=False)
 class Confusion:
-    """Confusion matrix of the images held out, with some that were misread.
-
-    Attributes:
-        table: (10, 10) how often each digit (row) was read as which (column).
-        cells: (n, 2) row and column of some that were misread, at most EXAMPLES of each kind.
-        images: (n, 28, 28) uint8, those images.
-
-    """
+    """Confusion matrix of the images held out, with some that were misread."""
 
     newest_only: ClassVar = True
 
-    table: npt.NDArray[np.int64]
-    cells: npt.NDArray[np.int64]
-    images: npt.NDArray[np.uint8]
+    table: npt.NDArray[np.int64]  # (10, 10), how often each digit (row) was read as which (column)
+    cells: npt.NDArray[np.int64]  # (n, 2), row and column of some that were misread, at most EXAMPLES of each kind
+    images: npt.NDArray[np.uint8]  # (n, 28, 28), those images
 
 
 class ValidationReading:

@@ -116,12 +116,10 @@ def _share(network: NeuralNetwork, values_before: Floats, derivative: Floats, ro
     """Return the gradient that one row of the last minibatch brought: the backward pass with the other errors at 0."""
     alone = np.zeros_like(derivative)
     alone[row] = derivative[row]
-    gradient, after = network.gradients.copy(), network.values.copy()
-    network.values = values_before  # the layers still hold what the forward pass left in them
-    network.backward_propagate(alone)
-    share = network.gradients.copy()
-    network.values, network.gradients[...] = after, gradient
-    return share
+    after, network.values = network.values.copy(), values_before
+    network.backward_propagate(alone)  # the layers still hold what the forward pass left in them
+    network.values = after
+    return network.gradients.copy()
 
 
 def _kept_by(optimizer: Optimizer, values: Floats) -> dict[str, Floats]:

@@ -11,6 +11,7 @@ from ai.common.environment import Floats, Ints
 from ai.lander.environment import NUM_FEATURES, OBSERVATION_SCALE
 
 COAST: Final = 0
+MARGIN: Final = 0.1  # metres
 
 
 class Pilot(Protocol):
@@ -109,15 +110,12 @@ class NoisyPilot:
 
 
 class SensorPilot:
-    """Steers towards the pad when it is more than `margin` metres aside; never fires the main engine."""
-
-    def __init__(self, margin: float = 0.1) -> None:
-        self.margin = margin
+    """Steers towards the pad when it is more than `MARGIN` metres aside; never fires the main engine."""
 
     def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:  # noqa: ARG002
         """Actions (n,) for observations (n, 9)."""
         x = np.atleast_2d(observation)[:, 0] / OBSERVATION_SCALE[0]
-        return np.where(x > self.margin, 1, np.where(x < -self.margin, 2, 0)).astype(np.intp)
+        return np.where(x > MARGIN, 1, np.where(x < -MARGIN, 2, 0)).astype(np.intp)
 
 
 class NoPilot:

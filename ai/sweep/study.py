@@ -128,22 +128,13 @@ class StudyFile:
 
 
 class Study:
-    """Study in a folder. Reading it changes nothing on disk.
-
-    Attributes:
-        folder: where it lies.
-        plan: what was asked for.
-        trials: finished ones by number.
-        damaged: numbers of trials whose files cannot be read.
-        importance: share that each knob has in setting the best trials apart, as it was last known.
-
-    """
+    """Study in a folder. Reading it changes nothing on disk."""
 
     def __init__(self, folder: Path, plan: Plan) -> None:
         self.folder, self.plan, self.metric = folder, plan, Metric.named(plan.metric)
-        self.trials: dict[int, FinishedTrial] = {}
-        self.damaged: list[int] = []
-        self.importance: dict[str, float] = {}
+        self.trials: dict[int, FinishedTrial] = {}  # finished ones by number
+        self.damaged: list[int] = []  # numbers of trials whose files cannot be read
+        self.importance: dict[str, float] = {}  # as StudyFile's
 
     @classmethod
     def create(cls, folder: Path, plan: Plan) -> Self:

@@ -38,12 +38,14 @@ class SixFutures:
         self.paths: list[Doubles] = []
         self.lands: list[bool | None] = [None] * COUNT
         self._env: LanderEnv | None = None
+        self._kept: LanderEnv | None = None
         self._places: list[Doubles] = []
 
     def begin(self, env: LanderEnv) -> None:
         """Begin at the present moment of one lander, and forget what was begun before."""
         moment = Moment.of(env).take(np.zeros(COUNT, dtype=np.intp))
-        self._env = ahead = roomy(COUNT, moment)
+        self._kept = ahead = self._kept or roomy(COUNT, moment)  # building one takes longer than a frame
+        self._env = ahead
         moment.put(ahead)
         ahead.frame_skip = decision_steps(self._policy)
         self._places = [ahead.position.copy()]

@@ -1,1 +1,1 @@
-"""One lesson: a single learning step as a strip of seven frames, beside the code that took it."""
+"""One lesson: a single learning step as a strip of frames, beside the code that took it."""

@@ -57,6 +57,12 @@ class SplitView:
             return self._split.earlier
         return [EarlierRun(chosen.name if chosen else texts.LAB_HEADING, twin.history, _STYLE)]
 
+    @property
+    def paid_otherwise(self) -> bool:
+        """Whether the experiment is paid by other weights: then its points say nothing beside those of the run."""
+        twin, run = self._split.twin, self._split
+        return twin is not None and twin.config.reward_weights != run.config.reward_weights
+
     def clear(self) -> None:
         """Empty both halves, for other runs."""
         self._pictures = []

@@ -42,6 +42,7 @@ _DIMMED: Final = 0.68  # of the other runs' lines, while one is emphasised
 _ZOOM_RIGHT: Final = 820.0
 _AXES: Final = pygame.Rect(436, 436, 262, 20)  # by what the charts are measured, while runs are compared
 BY_DECISIONS: Final = 1  # of the ways to measure the horizontal axis: see texts.TRAIN_AXES
+PAID: Final = ("mean_return", "mean_q")  # charts in points of what a run is paid
 _STEPPED: Final = ("epsilon", "stage")  # curves without noise
 _CHARTS: Final = (
     ("success", (40, 456, 360, 112), (0.0, 100.0), "{:.0f}"),
@@ -104,10 +105,13 @@ class TrainingCharts:
         beside: Sequence[EarlierRun],
         name: str = texts.TRAIN_THIS,
         say: Callable[[str], str] = lambda _: "",
+        *,
+        paid_otherwise: bool = False,
     ) -> None:
         """Read new points of the current run, by its name there, and of those beside it; call it once a frame.
 
-        `say` returns the caption of a chart for the same points.
+        `say` returns the caption of a chart for the same points. Where the others are `paid_otherwise`, their pay says
+        nothing beside that of this one, and is not shown.
         """
         self._turn = (self._turn + 1) % _TURNS
         number, odd = divmod(self._turn, 2)
@@ -126,7 +130,9 @@ class TrainingCharts:
         if self._told[number] == told:
             return
         self._told[number] = told
-        series = [self._series(_CHARTS[number][0], each, emphasised) for each in runs if len(each.run)]
+        name = _CHARTS[number][0]
+        compared = runs[:1] if name in PAID and paid_otherwise else runs
+        series = [self._series(name, each, emphasised) for each in compared if len(each.run)]
         self.charts.zoom.end = max([_SHORTEST[self.axis], *(float(np.max(each.x)) for each in series)])
         ticks = [Tick(self._place(tick.x), tick.text, tick.kind) for tick in ticks_of(history)] if number == 0 else ()
         self.charts.charts[number].set(series, self.charts.zoom.shown, ticks, say(_CHARTS[number][0]))

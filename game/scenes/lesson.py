@@ -1,4 +1,4 @@
-"""Lesson scene: one learning step as a strip of seven frames, each beside the code that does it."""
+"""Lesson scene: one learning step as a strip of frames, each beside the code that does it."""
 
 from __future__ import annotations
 

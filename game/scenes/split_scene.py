@@ -13,6 +13,7 @@ import pygame
 from ai.training.config import PRESETS, Config
 from ai.training.experiments import Experiment, differences
 from game.core import texts
+from game.core.names import LibraryError
 from game.core.scene import Push, Transition
 from game.flight.demonstrations import FILE_NAME, count_demonstrations
 from game.panels.lab import Laboratory
@@ -61,7 +62,21 @@ class SplitTrainingScene(TrainingScene):
         return len(self.lander_run.history) > 0
 
     def _begin(self, config: Config, seed: int) -> None:
+        self._keep_left()
         self._start(config, seed)
+
+    def _keep_left(self) -> None:
+        """Put what the last visit left without a name among the others, before the first run takes its place."""
+        runs = self.lander_run.collection
+        left = runs.rescued() if self.lander_run.runs == 0 else None
+        if left is None or not left.success:  # it has landed nothing yet
+            return
+        try:
+            runs.keep_rescued(left.name)
+        except LibraryError as error:
+            self.context.note(str(error))
+        else:
+            self.context.note(texts.TRAIN_LEFT_KEPT.format(name=left.name))
 
     def _go_on(self, folder: Path) -> None:
         """Resume a saved run, with its own settings."""
@@ -102,6 +117,7 @@ class SplitTrainingScene(TrainingScene):
         config, seed = self.knobs.config, self.knobs.seed
         changed = experiment.applied(config)
         self._was_running = False
+        self._keep_left()
         if note := self.lander_run.split(config, seed, changed, tuple(differences(config, changed)), self.knobs.name):
             self.context.note(note)
         self._clear()

@@ -22,7 +22,7 @@ from game.panels.explained import Explained
 from game.panels.network_panel import NetworkPanel
 from game.panels.rewind import Rewind
 from game.panels.run_status import draw_run_status
-from game.panels.training_charts import TrainingCharts
+from game.panels.training_charts import PAID, TrainingCharts
 from game.panels.training_status import lander_status
 from game.scenes.split_scene import SplitTrainingScene
 from game.scenes.train_dialogs import TrainDialogs
@@ -121,7 +121,10 @@ class TrainScene(SplitTrainingScene):
         self.rewind.split = self.inside.editing.split = self.split_view.shown
         self.rewind.show_in(self.inside, self.training_charts)
         beside = self.split_view.beside
-        self.training_charts.look(lander_run.history, beside, self.split_view.name, self._caption)
+        others = self.split_view.paid_otherwise
+        self.training_charts.look(
+            lander_run.history, beside, self.split_view.name, self._caption, paid_otherwise=others
+        )
         if bool(beside) is not self._compared and not self.inside.large:
             self._compared = bool(beside)
             self._lay_again()
@@ -154,6 +157,8 @@ class TrainScene(SplitTrainingScene):
 
     def _caption(self, chart: str) -> str:
         run = self.lander_run
+        if chart in PAID and self.split_view.paid_otherwise:
+            return texts.LAB_PAID_OTHERWISE
         return self.captions.read(chart, run.history, run.config, self._advice.hint) if run.alive else ""
 
     @property

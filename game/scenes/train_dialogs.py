@@ -71,4 +71,4 @@ class TrainDialogs:
         except LibraryError as error:
             self._scene.context.note(str(error))
         else:
-            self._scene.context.note(texts.RUN_DELETED.format(name=name))
+            self._scene.context.note(texts.TRAIN_LEFT_DISCARDED.format(name=name))

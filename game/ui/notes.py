@@ -15,14 +15,14 @@ from game.drawing.tokens import FAINT, INK, SMALL
 _STEPS_SHOWN: Final = 60 * 5
 _STEPS_FADING: Final = 20
 _LONGEST: Final = 220  # characters
-_WIDEST: Final = 380.0  # points of a line; a longer message takes more of them
+_WIDTHS: Final = (380.0, 560.0, 240.0)  # points of a line, the best first; a longer message takes more of them
 _MARGINS: Final = (16.0, 7.0)  # points beside and above what it says
 _COVER: Final = 0.96  # opacity of the panel, over any background
-# Where its middle may be across the window, as shares of what is left beside it, and its top down from there: the best
+# How wide its lines may be, where its middle may be across the window, as shares of what is left beside it, and its top down from there: the best
 # first. The rows near the upper and the lower edge, and then those between them.
 _ACROSS: Final = (0.5, 0.25, 0.75, 0.0, 1.0)
-_DOWN: Final = (0.10, 0.92, 0.15, 0.03, 0.875, 0.86, 0.20, 0.80, 0.26, 0.74, 0.32, 0.68, 0.38, 0.62, 0.44, 0.56)
-_PLACES: Final = tuple(product(_ACROSS, _DOWN))
+_DOWN: Final = (0.10, 0.92, 0.15, 0.03, 0.0, 0.875, 0.86, 0.20, 0.80, 0.26, 0.74, 0.32, 0.68, 0.38, 0.62, 0.44, 0.56)
+_PLACES: Final = tuple(product(_WIDTHS, _ACROSS, _DOWN))
 
 
 class Note:
@@ -61,13 +61,12 @@ class Note:
         reading = canvas.reading
         return reading.rect(*self._box_at(reading, self._place))
 
-    def _box_at(self, reading: Canvas, place: tuple[float, float]) -> pygame.FRect:
-        view, (beside, above) = reading.view, _MARGINS
-        room = min(_WIDEST, view.width - 4 * beside)
+    def _box_at(self, reading: Canvas, place: tuple[float, float, float]) -> pygame.FRect:
+        (widest, across, down), view, (beside, above) = place, reading.view, _MARGINS
+        room = min(widest, view.width - 4 * beside)
         told = lines(self.text, SMALL, "regular", room, reading.scale)
         width = max(reading.text_width(line, size=SMALL) for line in told) + 2 * beside
         height = len(told) * LEADING * SMALL + 2 * above
-        across, down = place
         return pygame.FRect(across * (view.width - width), down * (view.height - height), width, height)
 
     def draw(self, canvas: Canvas) -> None:

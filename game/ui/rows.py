@@ -274,15 +274,22 @@ class EntryRow(RowWidget, Entry):
 
 
 class ListRow(RowWidget, Listing):
-    """List to choose from, as high as its rows, ten at most."""
+    """List to choose from, as high as its rows, `most` of them; `more` is as for a `Listing`."""
 
     def __init__(
-        self, manager: PointsManager, rows: Sequence[Row], press: Callable[[int], Transition | None], empty: str = ""
+        self,
+        manager: PointsManager,
+        rows: Sequence[Row],
+        press: Callable[[int], Transition | None],
+        empty: str = "",
+        most: int = 8,
+        **more: Any,
     ) -> None:
-        super().__init__(manager, _NOWHERE, rows, on_press=press, empty=empty)
+        super().__init__(manager, _NOWHERE, rows, on_press=press, empty=empty, **more)
+        self._most = most
 
     def write(self, cursor: Cursor) -> None:
         """Draw the rows."""
-        cursor.take(self._pitch * min(max(len(self.rows), 1), 8))
+        cursor.take(self._pitch * min(max(len(self.rows), 1), self._most))
         if cursor.canvas:
             Listing.paint(self, cursor.canvas)

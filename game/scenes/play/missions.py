@@ -2,81 +2,182 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
-from typing import Final
-
-import pygame
+from typing import TYPE_CHECKING, Final
 
 from ai.lander.missions import MISSIONS
 from ai.lander.rules import tenths
 from game.core import texts
 from game.core.scene import Transition, push
-from game.drawing.canvas import Canvas
+from game.drawing.cursor import BASELINE, LEADING, Cursor
 from game.drawing.glyphs import icon
-from game.drawing.prose import draw_wrapped
-from game.drawing.tokens import HUMAN, INK, MARGIN, MEDALS, MUTE, SMALL, TEXT, TITLE, VIEW_SIZE
+from game.drawing.tokens import HUMAN, INK, MEDALS, MUTE, SMALL, TITLE
 from game.flight import flight_file
 from game.flight.credit import TOGETHER
 from game.flight.flight_file import Entry, Record
 from game.flight.logbook import Records, rank
 from game.scenes.play.card import draw_ring
 from game.scenes.play.challenge import FlownMission
-from game.ui.context import Context
-from game.ui.list_scene import ListLayout, ListScene
+from game.ui.actions import Table
 from game.ui.listing import Row
-from game.ui.widget import Widget
-from game.ui.widgets import Choice
+from game.ui.panel_scene import PanelScene
+from game.ui.rows import ListRow
 
-_LEFT: Final = 720
-_LAYOUT: Final = ListLayout(
-    box=pygame.Rect(MARGIN, 164, 560, 416),
-    columns=(112.0, 0.0),
-    headings=texts.MISSIONS_COLUMNS,
-    pitch=32,
-    verbs=(_LEFT, 524),
-    foot=608,
-)
+if TYPE_CHECKING:
+    from game.drawing.canvas import Canvas
+    from game.ui.context import Context
+    from game.ui.panel import Panel
+
+_LEAST: Final = 320.0  # points of a column
+_PITCH, _AROUND = 30.0, 200.0  # points of a row of the list, and above and below the list
+_COLUMNS: Final = (88.0, 0.0)  # from the right end of the list: where medals and fuel end
 _RING: Final = 14.0  # from a ring to its words
 _LAMP, _LAMPS = 13.0, 62.0  # from one lamp of a medal to the next, and from the last to the end of its column
-_WIDTH: Final = VIEW_SIZE[0] - MARGIN - _LEFT
-_RIVAL: Final = (_LEFT, 412, _WIDTH, 32)
-_RIVAL_LABEL: Final = 112.0
-_NETWORK: Final = 468.0  # baseline of the network's result
 _FLIGHTS: Final = "flights"  # in the game's own data
 _NAMES: Final = tuple(MISSIONS)
 
 
-class MissionsScene(ListScene[str]):
-    """Missions scene: missions on the left, in teaching order; the chosen one on the right."""
+class MissionsScene(PanelScene):
+    """Missions: a list in teaching order, and the chosen one beside it, or below it in a narrow window."""
 
     def __init__(self, context: Context) -> None:
-        super().__init__(context, texts.MISSIONS_TITLE, _LAYOUT)
+        super().__init__(context)
+        self._index = 0
         self._rival = ""  # the player's choice of ghost; empty for the default of each mission
-        self._fly_button = self._buttons([(texts.MISSION_FLY, self._fly)])
-        self._reload()
+        self._list: ListRow | None = None
+        self._read()
+        self.build()
 
-    def _reload(self) -> None:
-        """Reload the results from disk."""
+    def _read(self) -> None:
+        """Read the results from disk."""
         self._records = Records(self.context.user_dir)
-        self._best = _best_by_course(self._records.entries())
+        entries = self._records.entries()
+        self._best = _best_by_course(entries)
         if self._records.problem:
             self.context.note(self._records.problem)
-        self._kept, self._together = self._records.kept(), landed_together(self._records.entries())
+        self._kept, self._together = self._records.kept(), landed_together(entries)
         gold = sum(entry.medal == 3 for name, entry in self._best.items() if name in MISSIONS)
         self._line = texts.MISSIONS_LINE.format(gold=gold, count=len(MISSIONS))
-        self._show(_NAMES, self.items and self.chosen)
+
+    def enter(self) -> None:
+        """Read again what has been flown."""
+        self._read()
+        self.build()
+
+    def actions(self) -> Table:
+        """Move, choose, go back."""
+        return [self.form.moves, *super().actions()]
 
     @property
     def chosen(self) -> str:
         """Name of the chosen mission."""
-        return _NAMES[self._list.index]
+        return _NAMES[self._index]
+
+    # Rows
+
+    def describe(self, panel: Panel) -> None:
+        """Add the list, and what there is to say of the chosen mission."""
+        panel.title(texts.MISSIONS_TITLE)
+        panel.aside(self._line)
+        panel.gap(8)
+        left, right = panel.beside((5, 4), _LEAST)
+        self._shown = self._most
+        first = self._list.first if self._list else 0
+        self._list = left.widget(
+            ListRow(
+                self.form.manager, [self._row(name) for name in _NAMES], lambda _: self._fly(), most=self._most,
+                index=self._index, on_choose=self._choose, columns=_COLUMNS, pitch=_PITCH,
+            )
+        )  # fmt: skip
+        self._list.first = first
+        right.title(lambda: texts.MISSIONS[self.chosen][0], 28.0)
+        right.text(lambda: texts.MISSIONS[self.chosen][1])
+        right.gap(10)
+        for medal in (3, 2, 1):
+            right.add(partial(self._write_medal, medal))
+        right.add(self._write_best)
+        right.gap(10)
+        self._rivals = right.choice(texts.MISSION_RIVAL_LABEL, [""], 0, self._choose_rival)
+        self._offer()
+        right.aside(lambda: _network_words(self.chosen))
+        right.gap(6)
+        right.button(texts.MISSION_FLY, self._fly, size=TITLE, colour=INK)
+
+    def _offer(self) -> None:
+        """Offer the ghosts of the chosen mission."""
+        offered = self._offered
+        self._rivals.options = [texts.MISSION_RIVALS[rival] for rival in offered]
+        self._rivals.index = offered.index(self._chosen_rival)
+
+    def _write_best(self, cursor: Cursor) -> None:
+        """Write the player's best result, if there is one."""
+        if best := self._best.get(self.chosen):
+            words = texts.MISSION_BEST.format(fuel=tenths(best.fuel), seconds=tenths(best.seconds), count=best.score)
+            small = cursor.in_style(SMALL, HUMAN)
+            small.text(words)
+            cursor.y = small.y
+
+    @property
+    def _most(self) -> int:
+        """Number of rows of the list that a window has room for."""
+        return min(len(_NAMES), max(4, int((self.context.reading().view.height - _AROUND) / _PITCH)))
+
+    def update(self) -> Transition | None:
+        """Animate the rows, and follow a change of the window."""
+        outcome = super().update()
+        if self._shown != self._most:
+            self.build()
+        return outcome
+
+    def _choose(self, index: int) -> None:
+        self._index = index
+        self._offer()
+
+    def _row(self, name: str) -> Row:
+        best = self._best.get(name)
+        title = f"{icon(name)}   {texts.MISSIONS[name][0]}"
+        if best is None:
+            return title, texts.MISSION_TOGETHER if name in self._together else "–", ""
+        return title, texts.MEDALS[best.medal], f"{tenths(best.fuel):.1f} s"
+
+    def _write_medal(self, medal: int, cursor: Cursor) -> None:
+        """Write what a medal asks, behind its lamps, and a tick if it is won."""
+        mission, best = MISSIONS[self.chosen], self._best.get(self.chosen)
+        limit = {3: mission.gold, 2: mission.silver}.get(medal)
+        words = texts.MISSION_LIMIT.format(fuel=limit[0], seconds=limit[1]) if limit else texts.MISSION_ANY
+        if canvas := cursor.canvas:
+            _draw_lamps(canvas, (cursor.left + 5, cursor.baseline - 5), medal)
+            canvas.text(texts.MEDALS[medal], (cursor.left + 52, cursor.baseline), size=SMALL + 1, colour=INK)
+            if best and best.medal >= medal:
+                canvas.marker("check", (cursor.right - 8, cursor.baseline - 4), 11, canvas.palette.good)
+        beside = replace(cursor, left=cursor.left + 124, width=cursor.width - 148).in_style(SMALL, MUTE)
+        beside.y += BASELINE * (cursor.size - SMALL)
+        beside.text(words)
+        cursor.y = max(beside.y, cursor.y + LEADING * cursor.size) + 6
+
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        """Draw the rows, and the lamps of the medals in the list."""
+        super().draw(canvas, alpha)
+        listed = self._list
+        assert listed is not None
+        for row, name in enumerate(_NAMES):
+            y = listed.baseline(row) - 4
+            if not self.panel.box.collidepoint(listed.box.left, y):
+                continue
+            if name in self._best:
+                end, medal = listed.right - _COLUMNS[0] - _LAMPS, self._best[name].medal
+                _draw_lamps(canvas, (end - _LAMP * medal, y), medal)
+            elif name in self._together:
+                end = listed.right - _COLUMNS[0] - canvas.text_width(texts.MISSION_TOGETHER)
+                draw_ring(canvas, (end - _RING, y))
+
+    # Flights
 
     def _mission(self, name: str, rival: str) -> FlownMission:
         """Return a mission beside a ghost, with the way to the next one."""
         mission, record = MISSIONS[name], self._rival_record(name, rival)
-        names = list(MISSIONS)
-        later = names[names.index(name) + 1 :]
+        later = _NAMES[_NAMES.index(name) + 1 :]
         following = partial(self._go_to, later[0]) if later else None
         if record is None:
             return FlownMission(mission, following=following)
@@ -84,16 +185,11 @@ class MissionsScene(ListScene[str]):
 
     def _go_to(self, name: str) -> FlownMission:
         """Choose a mission, so that the way back leads to it, and return it beside its usual ghost."""
-        self._list.index = _NAMES.index(name)
+        self._index = _NAMES.index(name)
         return self._mission(name, _usual_rival(name))
-
-    def _press_row(self) -> Transition:
-        return self._fly()
 
     def _fly(self) -> Transition:
         return push("play", 0, challenge=self._mission(self.chosen, self._chosen_rival))
-
-    # Ghosts
 
     @property
     def _offered(self) -> list[str]:
@@ -104,23 +200,10 @@ class MissionsScene(ListScene[str]):
     @property
     def _chosen_rival(self) -> str:
         """The player's choice of ghost if available; else the network where it lands, or a recorded landing."""
-        if self._rival in self._offered:
-            return self._rival
-        return _usual_rival(self.chosen)
+        return self._rival if self._rival in self._offered else _usual_rival(self.chosen)
 
-    def _make_verbs(self) -> list[Widget]:
-        """Return the choice of ghosts for the chosen mission, and the button that begins it."""
-        offered = self._offered
-        words = [texts.MISSION_RIVALS[name] for name in offered]
-        rivals = Choice(self.form.manager, _RIVAL, texts.MISSION_RIVAL_LABEL, words, offered.index(self._chosen_rival),
-                        self._choose_rival(offered), label_width=_RIVAL_LABEL)  # fmt: skip
-        return [rivals, *self._fly_button]
-
-    def _choose_rival(self, offered: list[str]) -> Callable[[int], None]:
-        def choose(index: int) -> None:
-            self._rival = offered[index]
-
-        return choose
+    def _choose_rival(self, index: int) -> None:
+        self._rival = self._offered[index]
 
     def _rival_record(self, name: str, rival: str) -> Record | None:
         """Return the recorded flight to race, None for the network; tell the player of one that can't be read."""
@@ -132,49 +215,6 @@ class MissionsScene(ListScene[str]):
         except ValueError as error:
             self.context.note(str(error))
         return None
-
-    def _row(self, name: str) -> Row:
-        best = self._best.get(name)
-        title = f"{icon(name)}   {texts.MISSIONS[name][0]}"
-        if best is None:
-            return title, texts.MISSION_TOGETHER if name in self._together else "–", ""
-        return title, texts.MEDALS[best.medal], f"{tenths(best.fuel):.1f} s"
-
-    # The picture
-
-    def _draw_chosen(self, canvas: Canvas) -> None:
-        """Draw the lamps of the medals in the list, and the chosen mission beside it."""
-        for row, name in enumerate(_NAMES):
-            if name in self._best:
-                end, medal = self._list.right - _LAYOUT.columns[0] - _LAMPS, self._best[name].medal
-                _draw_lamps(canvas, (end - _LAMP * medal, self._list.baseline(row) - 4), medal)
-            elif name in self._together:
-                end = self._list.right - _LAYOUT.columns[0] - canvas.text_width(texts.MISSION_TOGETHER)
-                draw_ring(canvas, (end - _RING, self._list.baseline(row) - 4))
-        self._draw_mission(canvas, self.chosen)
-
-    def _draw_mission(self, canvas: Canvas, name: str) -> None:
-        title, asked = texts.MISSIONS[name]
-        canvas.text(title, (_LEFT, 190), size=TITLE + 6, weight="light")
-        draw_wrapped(canvas, asked, (_LEFT, 224), _WIDTH, size=TEXT, leading=22)
-        best = self._best.get(name)
-        self._draw_medals(canvas, name)
-        draw_wrapped(canvas, _network_words(name), (_LEFT, _NETWORK), _WIDTH, colour=MUTE, leading=19)
-        if best:
-            fuel, seconds = tenths(best.fuel), tenths(best.seconds)
-            words = texts.MISSION_BEST.format(fuel=fuel, seconds=seconds, count=best.score)
-            canvas.text(words, (_LEFT, 384), size=SMALL, colour=HUMAN)
-
-    def _draw_medals(self, canvas: Canvas, name: str) -> None:
-        mission, best = MISSIONS[name], self._best.get(name)
-        for row, (medal, limit) in enumerate(((3, mission.gold), (2, mission.silver), (1, None))):
-            y = 276 + 30 * row
-            _draw_lamps(canvas, (_LEFT + 5, y - 4), medal)
-            canvas.text(texts.MEDALS[medal], (_LEFT + 52, y), size=SMALL + 1, colour=INK)
-            words = texts.MISSION_LIMIT.format(fuel=limit[0], seconds=limit[1]) if limit else texts.MISSION_ANY
-            canvas.text(words, (_LEFT + 124, y), size=SMALL, colour=MUTE)
-            if best and best.medal >= medal:
-                canvas.marker("check", (_LEFT + _WIDTH - 8, y - 4), 11, canvas.palette.good)
 
 
 def _draw_lamps(canvas: Canvas, first: tuple[float, float], medal: int) -> None:

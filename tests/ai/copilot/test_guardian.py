@@ -8,6 +8,7 @@ import pytest
 
 from ai.agent.agent import DeepQAgent
 from ai.cli.copilot import MODEL
+from ai.copilot import copilot as copilot_module
 from ai.copilot.copilot import CoPilot, Mode
 from ai.copilot.futures import KEYS, Future, Here, Lookahead, Plan, Push
 from ai.copilot.guardian import Guardian, decisions_of
@@ -138,13 +139,16 @@ def test_the_first_wish_that_passes_is_found_without_flying_the_rest(agent, monk
     every = copilot.futures(env)
     order = [KEYS[action] for action in (2, 4, 1, 5, 3, 0)]
     known = [{} for _ in range(4)]
+    monkeypatch.setattr(copilot_module, "_AT_ONCE", 1)
     first = copilot.first_passing(env, dict.fromkeys(range(4), order), known)
     for slot in range(4):
         passing = [push for push in order if every.lasts[slot, push.action]]
         assert first[slot] == (passing or order)[0], slot
-        assert list(known[slot]) == order[: order.index(first[slot]) + 1] if passing else order, slot
+        assert list(known[slot]) == (order[: order.index(first[slot]) + 1] if passing else order), slot
     decision = copilot.decide(env.observe(), [first[slot].action for slot in range(4)], None, None, env, known)
     assert not (decision.overridden & every.lasts.any(axis=1)).any()
+    monkeypatch.setattr(copilot_module, "_AT_ONCE", 256)
+    assert copilot.first_passing(env, dict.fromkeys(range(4), order), [{} for _ in range(4)]) == first, "all at once"
     monkeypatch.setattr(Lookahead, "futures", lambda *_, **__: [])
     plan_held = copilot.guardians[0].plan
     assert plan_held

@@ -94,6 +94,7 @@ def test_the_target_is_the_agents(case):
     targets, values = agent.targets(cells)
     assert lesson.target == targets[row]
     assert lesson.next_value == values[row]
+    assert lesson.weight == before.weights[row]
     assert lesson.error == lesson.predicted[int(cell.action)] - np.float32(lesson.target)
     judge = agent.target if agent.config.target_judges else agent.online
     np.testing.assert_allclose(lesson.next_judged, judge.predict(cells.next_state)[row], rtol=1e-6)

@@ -85,6 +85,9 @@ def test_what_is_named_early_is_true_before_all_is_measured(classifier):
     assert not contrast.done
     measured_now = int(np.isfinite(contrast.taken[..., 0]).sum())
     assert measured_now == contrast.batch
+    ink = np.lib.stride_tricks.sliding_window_view(np.pad(image, 1), (3, 3)).sum(axis=(2, 3))
+    early = np.isfinite(contrast.taken[..., 0])  # the squares with the most ink come first
+    assert ink[early].min() >= ink[~early].max() - 1e-4
     if change := contrast.best(7, 0):
         assert scores(classifier, contrast.changed(change.row, change.column, 0))[7] > scores(classifier, image)[7]
 

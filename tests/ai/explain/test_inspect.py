@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from ai.agent.network import build_network
-from ai.explain.inspection import dead_units, links, traces
+from ai.explain.inspection import NetworkHealth, dead_units, links, traces
 from ai.nn import (
     ActivationFunctions,
     ActivationLayer,
@@ -41,6 +41,8 @@ def test_links_of_a_dueling_layer_make_its_values() -> None:
     *_, hidden, output = traces(network, OBSERVATION)
     last = links(network)[-1]
     np.testing.assert_allclose(hidden @ last.weights + last.bias, output, atol=1e-6)
+    network.gradients[:] = -2 * network.values
+    np.testing.assert_allclose(links(network)[-1].gradient, -2 * last.weights, rtol=1e-5)
 
 
 def test_links_show_the_gradients_of_the_last_way_back() -> None:
@@ -91,6 +93,19 @@ def test_dead_units_are_counted_exactly() -> None:
     assert dead_units(network, observations) == 0.5  # the third never answers, the fourth not to these
     assert dead_units(network, [[1.0, 0.0]]) == 0.75
     assert dead_units(network, [[1.0, 9.0], [-1.0, 0.0]]) == 0.25
+
+
+def test_health_counts_gradients_that_were_cut_and_units_that_are_silent() -> None:
+    network, health = network_of(), NetworkHealth()
+    network.values[:] = 0  # every unit is silent
+    for number in range(64):
+        assert (health.clipped_share is None) == (number < 40)
+        assert health.dead_share is None
+        network.gradients[:] = 0
+        network.gradients[0] = 0.9995 if number % 4 else 0.99
+        health.look(network, OBSERVATION, 1.0)
+    assert health.clipped_share == 0.75
+    assert health.dead_share == 1.0
 
 
 def test_units_that_cannot_die_are_not_counted() -> None:

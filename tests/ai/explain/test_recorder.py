@@ -40,6 +40,19 @@ def test_each_line_has_the_values_that_it_set():
     assert {line.function for line in call.lines} == {"scaled"}
 
 
+def reshaped(numbers):
+    numbers = numbers.reshape(2, 1)
+    numbers = numbers.view(np.int64)
+    return numbers.sum()
+
+
+def test_a_new_shape_or_kind_of_the_same_bytes_is_news():
+    with Recorder([reshaped]) as recorder:
+        reshaped(np.zeros(2))
+    news = [line.values["numbers"] for line in recorder.call(reshaped).lines if "numbers" in line.values]
+    assert [(each.shape, each.dtype) for each in news] == [((2,), float), ((2, 1), float), ((2, 1), np.int64)]
+
+
 def test_what_is_recorded_stays_when_the_array_changes():
     numbers = np.ones(3)
     with Recorder([scaled]) as recorder:

@@ -529,23 +529,24 @@ def test_a_pipe_in_place_of_a_lock_lets_nobody_wait(tmp_path):
     subprocess.run([sys.executable, "-c", waiter, tmp_path / "run"], check=True, timeout=300)
 
 
-def test_a_reader_that_puts_the_old_folder_back_does_not_stop_a_save(run, monkeypatch):
+def test_a_reader_that_puts_the_old_folder_back_does_not_stop_a_save(tmp_path, monkeypatch):
     rename, calls = Path.rename, []
 
     def meddled(path, target):
         moved = rename(path, target)
         calls.append(path.name)
         if len(calls) == 1:
-            recover_folder(run)
+            recover_folder(tmp_path / "net")
         return moved
 
+    network = NeuralNetwork(*CostFunctions.use_mse())
+    network.save(tmp_path / "net")
+    network.add_layer(ActivationLayer(*ActivationFunctions.use_tanh()))
     monkeypatch.setattr(Path, "rename", meddled)
-    training = Training(SMALL, validation_episodes=1)
-    training.episodes = 77
-    save_run(training, run)
-    assert len(calls) > 3
-    assert resume_run(run).episodes == 77
-    assert [path.name for path in run.parent.iterdir()] == ["run"]
+    network.save(tmp_path / "net")
+    assert calls[0] == calls[2] == "net"
+    assert len(NeuralNetwork.load(tmp_path / "net").layers) == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["net"]
 
 
 def test_what_a_save_left_half_made_goes_after_an_hour_and_an_old_one_comes_back(tmp_path):

@@ -184,13 +184,25 @@ print(sorted(each([partial(seed_folder, seed) for seed in (1, 300, 8000)], {node
 
 def test_without_an_address_nothing_listens_but_on_this_machine(tmp_path):
     folder = tmp_path / "study"
-    with sweep(folder, *NEW, "--trials", "2", "--decisions", "400", "--workers", "1", "--stop-early") as driver:
+    with sweep(folder, *NEW, "--trials", "2", "--decisions", "400", "--workers", "1") as driver:
         wait_for(lambda: finished(folder), driver)
         opened = listening([driver.pid, *descendants(driver.pid)])
         ended(driver)
     assert opened <= {"0100007F", "0000000000000000FFFF00000100007F"}
     assert len(opened) == 2
     assert len(finished(folder)) == 2
+
+
+def test_trials_that_fall_behind_are_ended_and_the_others_go_on(tmp_path):
+    folder = tmp_path / "study"
+    options = ["--trials", "8", "--decisions", "1800", "--every", "200", "--workers", "2", "--stop-early"]
+    with sweep(folder, *NEW, *options) as driver:
+        assert "a trial failed" not in ended(driver)
+    study = Study.load(folder)
+    ends = {trial.at if trial.stopped else "end" for trial in study.trials.values()}
+    assert len(study.trials) == 8
+    assert {200, "end"} <= ends <= {200, 600, "end"}, "at powers of three of --every"
+    assert all(study.run_folder(trial, 0) is None for trial in study.trials.values() if trial.stopped)
 
 
 def test_a_termination_ends_in_143_whenever_it_comes_and_the_study_goes_on(tmp_path):

@@ -5,7 +5,7 @@ import pytest
 
 from ai.sweep.population import explored, proposed
 from ai.sweep.space import Dimension
-from ai.sweep.study import Study
+from ai.sweep.study import FinishedTrial, SeedResult, Study
 from ai.sweep.trial import Asked
 from ai.training.checkpoints import resume_run
 from tests.support.studies import networks_in, run_alone, tiny_plan
@@ -43,6 +43,7 @@ def test_a_copy_begins_with_the_networks_of_its_parent_and_goes_on_as_train_does
     assert result.parent == asked.parent.number
     assert [point.at for point in result.seeds[0].curve] == [200, 400]
     training = resume_run(study.run_folder(asked.parent, 0))
+    assert not training.lost, "it has its whole state"
     training.validation_episodes = study.plan.validation
     training.apply_live(training.config.changed(**asked.params))
     while training.agent.decisions < 400:
@@ -53,6 +54,18 @@ def test_a_copy_begins_with_the_networks_of_its_parent_and_goes_on_as_train_does
     save_run(training, tmp_path / "alone", final=True)
     write_files(runs, tmp_path / "swept")
     assert networks_in(tmp_path / "alone") == networks_in(tmp_path / "swept" / "seed-0")
+
+
+def test_the_best_is_of_the_last_generation_that_is_whole_and_states_are_kept_until_then(tmp_path):
+    plan = tiny_plan(search="population", population=2, trials=4, seeds=(0,))
+    study = Study.create(tmp_path / "study", plan)
+    values = [9.0, 8.0, 7.0, 6.0]
+    for number, (value, best, states) in enumerate(zip(values, (0, 0, 0, 2), (1, 2, 3, 2), strict=True)):
+        seed = SeedResult(0, (), value, "", 1.0, {})
+        runs = {"seed-0/config.json": b"{}", ".seed-0.state/blocks": b"all"}
+        study.record(FinishedTrial(number, {}, value, 400, False, 1.0, (seed,)), runs)
+        assert study.best().number == best, number
+        assert len([*study.folder.glob("trials/*/.seed-0.state")]) == states, number
 
 
 def test_a_changed_knob_stays_in_its_range():

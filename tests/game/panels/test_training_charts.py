@@ -45,6 +45,17 @@ def test_mean_q_is_drawn_in_points_of_reward_whatever_the_networks_count_in(monk
         np.testing.assert_allclose(series.y, 80.0, rtol=1e-6)
 
 
+def test_a_twin_that_is_paid_otherwise_is_not_compared_by_its_pay(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn: dict[str, int] = {}
+    monkeypatch.setattr(Chart, "set", lambda chart, series, *_: drawn.update({chart.label: len(series)}))
+    training_charts = TrainingCharts()
+    healthy, other = (run(PRESETS["modern"], 80.0) for _ in range(2))
+    for _ in range(24):
+        training_charts.look(healthy, [EarlierRun("other", other, 1)], paid_otherwise=True)
+    compared = {name for name in texts.TRAIN_CHARTS if drawn[texts.TRAIN_CHARTS[name]] == 2}
+    assert compared == {"success", "loss", "epsilon", "stage"}
+
+
 @pytest.mark.parametrize("preset", ["modern", "classic"])
 def test_a_run_says_in_which_unit_it_counts(preset: str, tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
     config = PRESETS[preset].changed(num_envs=1, hidden=(4,))

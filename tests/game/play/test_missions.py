@@ -29,6 +29,7 @@ from game.scenes.play.scene import PlayScene
 from game.scenes.play.sentence import surroundings, wind
 from game.ui.context import Context
 from game.ui.listing import Listing
+from game.ui.rows import ListRow
 from tests.support.driver import Driver
 from tests.support.flights import kept, play, scripted
 from tests.support.missions import fly, pilots
@@ -123,7 +124,7 @@ def test_a_mission_is_flown_again_from_its_file_as_it_was(context: Context, name
 
 def rows(driver: Driver) -> dict[str, tuple[str, ...]]:
     """The list of missions, by name."""
-    listed = driver.the(Listing).rows
+    listed = driver.the(ListRow).rows
     return {name: row for name, (title, _) in texts.MISSIONS.items() for row in listed if row[0].endswith(title)}
 
 

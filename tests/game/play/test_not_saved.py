@@ -64,6 +64,8 @@ def test_what_would_have_saved_it_does(agent: DeepQAgent):
 def test_six_futures_end_where_the_flight_ends_after_that_action(agent: DeepQAgent):
     flight = Flight(4, agent)
     futures = SixFutures(agent)
+    futures.begin(Flight(9, agent).env)  # of another moment, left at once
+    futures.follow(3)
     futures.begin(flight.env)
     before = flight.env.snapshot()
     while futures.under_way:

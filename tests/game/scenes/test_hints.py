@@ -22,10 +22,6 @@ def test_sentences_name_the_players_own_keys_too(open_game, context: Context):
     context.settings_file.save(context.settings)
     settings = open_game(SCREENS["SettingsScene"]).top
     assert settings.form.widgets[1]._hint.startswith("F9 ")
-    driver = opened(open_game, "ChoicesScene")
-    help_ = driver.top._rows[driver.top.form.widgets[0]]()
-    assert " X" in help_
-    assert "+" not in help_
 
 
 def test_a_hint_is_clicked_where_it_is_written_whether_or_not_it_is_drawn():

@@ -4,6 +4,7 @@ import gc
 import threading
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from multiprocessing import active_children
 from pathlib import Path
 
@@ -28,7 +29,7 @@ from game.panels.network_view import NetworkView
 from game.scenes.menus.dialogs import QuestionDialog
 from game.scenes.train import TrainScene
 from game.training.knob_descriptions import knob_descriptions
-from game.training.library import Library
+from game.training.library import Library, SavedRun
 from game.training.run import TrainingRun
 from game.ui import focus
 from game.ui.rows import EntryRow
@@ -143,6 +144,27 @@ def test_what_was_left_without_a_name_can_be_discarded(train: Driver, open_game:
     library = driver.top.library
     assert library.rescued() is None
     assert library.last_deleted
+
+
+def test_what_has_landed_and_was_left_without_a_name_outlives_a_start(
+    train: Driver, open_game: Callable[..., Driver], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    start(train)
+    train.app.close()
+    rescued = Library.rescued
+
+    def landed(library: Library) -> SavedRun | None:
+        left = rescued(library)
+        return left and replace(left, success=0.98)
+
+    monkeypatch.setattr(Library, "rescued", landed)
+    driver = open_game(TrainScene)
+    driver.frames(2)
+    driver.key(pygame.K_ESCAPE)
+    driver.frames(2)
+    name = landed(driver.top.library).name
+    start(driver)
+    assert [run.name for run in driver.top.library.runs()] == [name]
 
 
 def test_a_saved_run_goes_on_in_the_scene_that_is_there(train: Driver) -> None:

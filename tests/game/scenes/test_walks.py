@@ -13,7 +13,7 @@ from game.scenes.menus.menu import MenuScene
 from game.scenes.menus.settings import GROUPS_OF_SETTINGS
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
-from game.ui.listing import Listing
+from game.ui.rows import ListRow
 from tests.support.driver import Driver
 from tests.support.player import DEVICES, Player
 from tests.support.screens import OVER_OTHERS, SCREENS, flown, settle
@@ -55,7 +55,7 @@ def test_a_mission_is_found_flown_and_left(open_screen):
     player.skip(90)
     player.press("pause")  # Enter leads on to the next one
     assert player.top_name == "MissionsScene"
-    assert player.the(Listing).rows[0][1] in texts.MEDALS[1:]
+    assert player.the(ListRow).rows[0][1] in texts.MEDALS[1:]
     player.press("back", "back")
     assert player.top_name == "MenuScene"
 

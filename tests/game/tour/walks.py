@@ -48,6 +48,9 @@ def is_seen(player: Player, widget: Widget) -> bool:
         form.focus(focused)
         player.frames(2)
         around = canvas.rect(*widget.box.inflate(28, 16)).clip(canvas.surface.get_rect())
+        if not around.width or not around.height:
+            assert focused is not widget, "it is scrolled away"
+            return True  # it comes into view with the focus
         pictures.append(pygame.surfarray.array3d(canvas.surface.subsurface(around)).astype(int))
     height = min(picture.shape[1] for picture in pictures)  # a panel may have scrolled by part of a pixel
     pictures = [picture[:, :height] for picture in pictures]
