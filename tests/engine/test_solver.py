@@ -52,3 +52,29 @@ def test_of_points_that_nearly_coincide_the_deeper_does_alone():
     deeper = int(contacts.depth[0].argmax())
     assert contacts.impulse[0, deeper] > 1.0
     assert contacts.impulse[0, 1 - deeper] == 0.0
+
+
+def test_pushes_solve_the_linear_complementarity_problem():
+    random = np.random.default_rng(3)
+    count, nothing = 500, np.zeros((3, 6, 1))
+    first, second = random.uniform(0.5, 2.0, (2, count))
+    coupling = random.uniform(-0.9, 0.9, count) * np.sqrt(first * second)
+    determinant = first * second - coupling**2
+    constraints = Constraints(
+        index=np.zeros((6, 1), dtype=int),
+        jacobian=nothing,
+        response=nothing,
+        mass=1 / np.stack([first, second, first]),
+        coupling=coupling,
+        friction_coupling=nothing[:2, 0],
+        inverse=np.stack([second, first]) / determinant,
+        cross_inverse=-coupling / determinant,
+    )
+    total, lacking = random.uniform(0, 1, (2, count)), random.normal(size=(2, count))
+    change = constraints.push(lacking, total) - total
+    gained = np.stack([first, second]) * change + coupling * change[::-1]
+    pushes = total + change
+    assert (pushes >= 0).all()
+    assert (gained >= lacking - 1e-9).all()
+    assert np.abs(pushes * (gained - lacking)).max() < 1e-9
+    assert (pushes == 0).any(axis=0).mean() > 0.2

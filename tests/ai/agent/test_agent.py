@@ -72,6 +72,11 @@ def test_an_update_moves_only_the_chosen_action_towards_its_target():
     assert abs(agent.online.predict(states)[0, 0] - target[0]) < 1
 
 
+def test_the_last_layer_begins_as_small_as_is_set():
+    whole, tenth = (DeepQAgent(3, 2, SMALL.changed(output_scale=scale)).online.layers[-1] for scale in (1.0, 0.1))
+    assert tenth.parameters[0].value == pytest.approx(0.1 * whole.parameters[0].value)
+
+
 def test_the_target_network_is_copied_every_so_many_steps():
     agent = fed(SMALL.changed(target_update_interval=4, tau=1.0, gradient_steps=3))
     first = agent.target.values.copy()
