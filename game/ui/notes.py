@@ -15,10 +15,11 @@ from game.drawing.tokens import FAINT, INK, SMALL
 _STEPS_SHOWN: Final = 60 * 5
 _STEPS_FADING: Final = 20
 _LONGEST: Final = 220  # characters
-_WIDTHS: Final = (380.0, 560.0, 240.0)  # points of a line, the best first; a longer message takes more of them
+# Points of a line, the best first; a longer message takes more lines.
+_WIDTHS: Final = (380.0, 560.0, 240.0)
 _MARGINS: Final = (16.0, 7.0)  # points beside and above what it says
 _COVER: Final = 0.96  # opacity of the panel, over any background
-# How wide its lines may be, where its middle may be across the window, as shares of what is left beside it, and its top down from there: the best
+# Where its middle may be across the window, as shares of what is left beside it, and its top down from there: the best
 # first. The rows near the upper and the lower edge, and then those between them.
 _ACROSS: Final = (0.5, 0.25, 0.75, 0.0, 1.0)
 _DOWN: Final = (0.10, 0.92, 0.15, 0.03, 0.0, 0.875, 0.86, 0.20, 0.80, 0.26, 0.74, 0.32, 0.68, 0.38, 0.62, 0.44, 0.56)

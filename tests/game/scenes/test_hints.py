@@ -11,7 +11,7 @@ from game.input import signs
 from game.input.bindings import KEYBOARD, Bindings, Command
 from game.ui.context import Context
 from game.ui.hints import Hint, HintRow
-from tests.support.screens import SCREENS, opened
+from tests.support.screens import SCREENS
 
 
 def test_sentences_name_the_players_own_keys_too(open_game, context: Context):
