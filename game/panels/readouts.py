@@ -51,6 +51,7 @@ _CAPITAL: Final = 0.72  # height of a figure, in shares of its font size
 # A readout's words are painted on a sheet: how far that reaches beyond them to the left and above, and its size.
 _ASIDE, _ABOVE = 4.0, 28.0
 _WORDS: Final = (180.0, 78.0)
+_LABEL_ROOM: Final = 112.0  # points from one column to the next, without a gap
 _FIGURES: Final = PaintCache(64)
 _LITTLE_TIME: Final = 5.0
 _NAMED: Final = {Cause.HARD: 1, Cause.SLIDING: 2, Cause.TILTED: 3}  # which of the read-outs a crash is named by
@@ -208,7 +209,8 @@ def _shade(size: tuple[int, int]) -> pygame.Surface:
 def _paint_readout(canvas: Canvas, readout: Readout, colour: Colour) -> None:
     """Draw label, mark, figure and unit on a cached sheet, as most stay the same for some frames."""
     line = _FIGURE_LINE - _LABEL_LINE + _ABOVE
-    size = max(LABEL, CAPTION / canvas.scale)  # twelve pixels at least
+    fits = LABEL * _LABEL_ROOM / canvas.text_width(readout.label, size=LABEL, weight="medium")
+    size = max(LABEL, min(CAPTION / canvas.scale, fits))  # twelve pixels, if the next column lets it
     label = canvas.text(readout.label, (_ASIDE, _ABOVE), size=size, colour=MUTE, weight="medium")
     end = label.right + 9
     if readout.towards:

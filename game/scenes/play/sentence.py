@@ -78,7 +78,7 @@ def surroundings(env: LanderEnv) -> Iterator[str]:
     """Yield what differs in this flight from one on the moon, for a craft that waits."""
     params, conditions, time = env.params, env.conditions, float(env.time[0])
     if params.gravity != PARAMS.gravity:
-        yield texts.GRAVITY.format(gravity=params.gravity, times=params.gravity / PARAMS.gravity)
+        yield texts.GRAVITY.format(times=params.gravity / PARAMS.gravity)
     if conditions.moves:
         speed = float(env.pad_velocity[0])
         yield (texts.PAD_RIGHT if speed > 0 else texts.PAD_LEFT).format(speed=abs(speed))

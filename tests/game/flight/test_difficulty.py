@@ -135,7 +135,7 @@ def test_a_gravity_beyond_its_limits_is_defaulted(value):
 
 
 def test_gravity_is_changed_in_flight_at_once_and_told(open_game: Open, context: Context):
-    context.settings.tutored = True
+    context.settings.tutored = context.settings.more_flights = True
     context.settings_file.save(context.settings)
     game = open_game(PlayScene, 3)
     play = game.top
@@ -177,7 +177,9 @@ def test_a_mission_keeps_its_own_gravity(open_game: Open, context: Context):
     assert not game.top.flown.difficulty.practice
 
 
-def test_nothing_but_the_pace_can_be_chosen_in_a_course(open_game: Open):
+def test_nothing_but_help_and_the_pace_can_be_chosen_in_a_course(open_game: Open, context: Context):
+    context.settings.more_flights = True
+    context.settings_file.save(context.settings)
     game = open_game(PlayScene, 0, challenge=FlownMission(MISSIONS["fall"]))
     game.keys(pygame.K_UP, pygame.K_c)
     labels = [widget.label for widget in game.top.form.widgets]

@@ -199,7 +199,7 @@ def test_the_card_of_a_landing_and_of_the_other_ends():
         flight.step(0)
     card = outcome_card(flight.env, 0.81)
     assert card.good
-    assert card.title == "Landed"
+    assert card.title == "Perfect"
     assert ("OFF CENTRE", "0.4", "m") in card.figures
     flight = Flight(1)
     place(flight.env, 29.9, 12, 6, 0, 0, 0)

@@ -299,7 +299,7 @@ def test_pause_offers_retry_settings_and_the_way_out(open_game):
     game.app.scenes.apply(Push(PauseScene(game.app.context, probe, lambda: retried.append(True))))
     game.keys(pygame.K_DOWN, pygame.K_DOWN, pygame.K_RETURN)
     assert game.top_name == "SettingsScene"
-    game.keys(pygame.K_ESCAPE, pygame.K_DOWN, pygame.K_SPACE)
+    game.keys(pygame.K_ESCAPE, pygame.K_UP, pygame.K_SPACE)  # what was chosen stays so
     assert retried == [True]
     assert game.top is probe
     game.app.scenes.apply(Push(PauseScene(game.app.context, probe)))
