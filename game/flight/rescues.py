@@ -40,5 +40,11 @@ class Rescues:
             self._since = 0
 
     def saved(self, flight: Flight) -> int | None:
-        """Return how often the person was saved in a flight that is over; None unless it was guarded and landed."""
-        return self.times if self.guarded and flight.outcome is Outcome.LANDED else None
+        """Return how often the person was saved in a flight that is over; None unless it was guarded and landed.
+
+        None as well if something else was flown only because answers came late: nobody knows whether that was needed.
+        """
+        if not self.guarded or flight.outcome is not Outcome.LANDED:
+            return None
+        late = flight.guard.late if flight.guard else 0
+        return None if late and not self.times else self.times

@@ -20,6 +20,7 @@ from game.flight.difficulty import Difficulty
 from game.flight.flight import Flight, StickHolder
 from game.flight.futures import FuturesProcess
 from game.flight.guard import Guard, Taps, nearest, push_of, shares_of
+from game.flight.rescues import Rescues
 from game.scenes.play.guardian_words import why_not_saved
 from tests.support.futures import AtOnce
 
@@ -87,6 +88,12 @@ def test_what_was_not_flown_ahead_in_time_waits_once_and_then_the_plan_flies_on(
     assert flight.guard.safe
     assert flight.overridden
     assert flight.recording.hands[-1] is StickHolder.NETWORK
+    rescues = Rescues()
+    rescues.follow(flight)
+    assert land(flight).outcome is Outcome.LANDED
+    assert rescues.saved(flight) is None  # nobody knows whether the key that was late would have crashed it
+    flight.guard.late = 0
+    assert rescues.saved(flight) == 0
 
 
 def test_a_hand_over_and_another_network_leave_the_plan(agent):
