@@ -55,7 +55,7 @@ BATCHES = (1, 6, 12, 18, 42)
 # Hands that are flown at once: futures of many take hardly longer.
 HOSTILE = "adversary, random", "adversary, least"
 KINDS = [name for name in STUBBORN if name not in HOSTILE], HOSTILE, [*FAMILIES, *UNSEEN]
-ROUND = 10  # flights of each family in a round
+ROUND = 100  # flights of each family in a round: few at once cost several times as much each
 LIVE_STEPS = 480  # of a flight in real time at most: hands that crash are kept in the air for long
 
 

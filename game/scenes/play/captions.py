@@ -23,7 +23,8 @@ def title(flight: Flight, challenge: Challenge | None, network: Network, hands: 
         named = whole and flight.network and challenge.elsewhere
         flown = texts.WITH_NETWORK.format(network=titled(network.name)) if named else ""
         return texts.DIAL_JOIN.join(filter(None, (challenge.title, flown))), challenge.line
-    flown = texts.WITH_NETWORK.format(network=titled(network.name)) if flight.network else texts.ALONE
+    helper = texts.WITH_NETWORK.format(network=titled(network.name)) if whole else ""  # Tab hands over: a key says so
+    flown = helper if flight.network else texts.ALONE
     if hands != OWN:
         flown = texts.HANDICAPS.format(hands=texts.CHOICES_HANDS_WORDS[hands])
     rung = rung_of(flight)
