@@ -27,7 +27,7 @@ from ai.training.config import Config
 from ai.training.tasks import FlightSums, finished, flown
 
 SHARD: Final = 10_000  # flights at once, in 5 KB each
-PILOTS: Final = 8  # of a part of a table: the more fly at once, the less time each takes
+PILOTS: Final = 32  # of a part of a table: the more fly at once, the less time each takes
 
 
 def packed(agent: DeepQAgent) -> Files:

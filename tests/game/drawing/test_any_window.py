@@ -171,7 +171,9 @@ def test_the_panel_that_explains_stands_at_the_right_edge(open_game, context, wr
     settle(context, three_pads=True, assist=0.4, show_thinking=True)
     driver = opened(open_game, "Play")
     reshape(driver, size)
-    shared(driver)
+    driver.frames(3)
+    driver.post(pygame.KEYDOWN, key=pygame.K_UP, mod=0)
+    driver.frames(25)  # later the craft is behind the panel in the narrowest window, which then makes way
     page = written.turn(driver.app.canvas)
     driver.app.draw()
     reading, canvas = driver.app.canvas.reading, driver.app.canvas
