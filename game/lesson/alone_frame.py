@@ -116,7 +116,8 @@ class AloneFrame(Frame):
         y = self._height(self.alone.target)
         canvas.line((_CHART.left, _CHART.top), (_CHART.left, _CHART.bottom), LINE)
         canvas.line((_CHART.left, y), (_CHART.right, y), HUMAN, 1.5)
-        canvas.text(texts.LESSON_TARGET, (_CHART.left - 8, y + 4), size=LABEL, colour=HUMAN, align="right")
+        beyond = -6 if way[0][1] > y else 6 + LABEL  # on the side from which the way does not come
+        canvas.text(texts.LESSON_TARGET, (_CHART.right, y + beyond), size=LABEL, colour=HUMAN, align="right")
         canvas.text(points(self.alone.way[0] / self._scale), (_CHART.left - 8, way[0][1] + 4), size=LABEL, colour=MUTE,
                     align="right")  # fmt: skip
         for start, end in pairwise(way):

@@ -230,7 +230,7 @@ def test_a_termination_ends_in_143_whenever_it_comes_and_the_study_goes_on(tmp_p
 
 def test_a_trial_goes_on_from_its_last_checkpoint_when_its_worker_is_killed(tmp_path):
     folder = tmp_path / "study"  # its trial must last longer than until its worker is killed
-    options = ["--trials", "1", "--decisions", "240000", "--every", "4000", "--workers", "1"]
+    options = ["--trials", "1", "--decisions", "480000", "--every", "4000", "--workers", "1"]
     with sweep(folder, *NEW, *options) as driver:
         (worker,) = wait_for(lambda: training_workers(driver.pid), driver)
         from ai.sweep.driver import CHECKPOINT_SECONDS
@@ -241,7 +241,7 @@ def test_a_trial_goes_on_from_its_last_checkpoint_when_its_worker_is_killed(tmp_
     assert "raylet" not in out, "Ray tells it elsewhere than among the results"
     (trial,) = Study.load(folder).trials.values()
     assert trial.restarts == 1
-    assert [point.at for point in trial.seeds[0].curve] == list(range(4000, 244000, 4000))
+    assert [point.at for point in trial.seeds[0].curve] == list(range(4000, 484000, 4000))
 
 
 def test_what_is_missing_on_a_node_is_a_failure_and_no_finished_trial(tmp_path):
