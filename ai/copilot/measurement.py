@@ -30,7 +30,7 @@ Help = tuple[str, float]  # alone, or how the co-pilot helps; and how much
 GUARD: Final[Help] = (Mode.GUARDIAN, 0.04)  # there must be a landing after one decision of an action
 HELPS: Final[tuple[Help, ...]] = ((ALONE, 0.0), (Mode.TOLERANCE, 0.4), (VALUES, 0.4), GUARD)
 _STARTS: Final = 0x5AFE7AB1E  # beside the seed, so that no start is one that anything was trained with
-_BATCHES: Final = 300  # of futures as long as those from a start, that flights with a guardian take
+_BATCHES: Final = 750  # of futures as long as those from a start, that flights with a guardian take
 
 
 @dataclass(frozen=True)
