@@ -41,6 +41,8 @@ Lamp = tuple[Shape, Colour, float]  # shape, colour and strength of the glow
 COLUMNS: Final = (64.0, 194.0, 324.0, 454.0, 880.0, 1002.0, 1124.0)
 READOUTS: Final = 80.0  # points at the foot of a page that they take
 PILOT: Final = 4  # read-outs that a pilot needs in flight
+LITTLE_TIME: Final = 5.0  # seconds left, below which a pilot is warned
+LITTLE_FUEL: Final = 0.2  # share of the tank left, likewise
 _LABEL_LINE: Final = 663.0
 _FIGURE_LINE: Final = 697.0
 _BAR: Final = (92.0, 2.0)
@@ -53,7 +55,6 @@ _ASIDE, _ABOVE = 4.0, 28.0
 _WORDS: Final = (180.0, 78.0)
 _LABEL_ROOM: Final = 112.0  # points from one column to the next, without a gap
 _FIGURES: Final = PaintCache(64)
-_LITTLE_TIME: Final = 5.0
 _NAMED: Final = {Cause.HARD: 1, Cause.SLIDING: 2, Cause.TILTED: 3}  # which of the read-outs a crash is named by
 _PLENTY_OF_TIME: Final = 120.0
 _STILL: Final = 0.05  # m/s, and half a degree, below which a figure has no direction
@@ -159,7 +160,7 @@ def _time(env: LanderEnv, slot: int) -> Readout:
     if limit > _PLENTY_OF_TIME:
         return Readout(texts.TIME_FLOWN, f"{flown:.0f}", "s")
     left = max(0.0, limit - flown)
-    return Readout(texts.TIME_LEFT, f"{left:.0f}", "s", left / limit, within=None if left > _LITTLE_TIME else False)
+    return Readout(texts.TIME_LEFT, f"{left:.0f}", "s", left / limit, within=None if left > LITTLE_TIME else False)
 
 
 def _fuel(env: LanderEnv, slot: int) -> Readout:
@@ -168,7 +169,8 @@ def _fuel(env: LanderEnv, slot: int) -> Readout:
     if tank == math.inf:
         return Readout(texts.FUEL_USED, f"{burnt:.1f}", "s")
     left = max(0.0, tank - burnt)
-    return Readout(texts.FUEL_LEFT, f"{left:.1f}", "s", left / tank, within=None if left > 0.2 * tank else False)
+    within = None if left > LITTLE_FUEL * tank else False
+    return Readout(texts.FUEL_LEFT, f"{left:.1f}", "s", left / tank, within=within)
 
 
 def draw_readouts(canvas: Canvas, readouts: Sequence[Readout], columns: Sequence[float] = COLUMNS) -> None:

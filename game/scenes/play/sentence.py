@@ -14,12 +14,11 @@ from game.flight.flight import Flight, StickHolder
 from game.flight.outcomes import TIPPED
 from game.input.bindings import Command, Held
 from game.input.controls import Controls
+from game.panels.readouts import LITTLE_FUEL, LITTLE_TIME
 from game.scenes.play.overrides import Overrides
 from game.scenes.play.tutorial_lessons import falls_too_fast, leaves_at_the_top, turned
 
 _SOON: Final = 3.0  # seconds ahead that a failure is announced
-_LITTLE_TIME: Final = 5.0  # seconds that are left
-_LITTLE_FUEL: Final = 0.2  # of the tank
 
 
 def sentence(flight: Flight, credit: Credit, overrides: Overrides, controls: Controls) -> tuple[str, bool]:
@@ -68,9 +67,9 @@ def dangers(env: LanderEnv) -> Iterator[str]:
     burnt = float(env.fuel[0])
     if burnt >= conditions.tank:
         yield texts.TANK_EMPTY
-    elif conditions.tank - burnt < _LITTLE_FUEL * conditions.tank:
+    elif conditions.tank - burnt < LITTLE_FUEL * conditions.tank:
         yield texts.TANK_LOW.format(seconds=conditions.tank - burnt)
-    if env.limits.time - time < _LITTLE_TIME:
+    if env.limits.time - time < LITTLE_TIME:
         yield texts.TIME_SHORT.format(seconds=max(0.0, env.limits.time - time))
 
 
