@@ -81,7 +81,7 @@ class World:
             share = np.where(strength > 0, dot(before, gravity) / np.maximum(strength, 1e-30), 1.0).clip(0.0, 1.0)
             impulse = self._impulses.impulse * np.broadcast_to(share, self.batch)[self._impulses.world, None]
             self._impulses = replace(self._impulses, impulse=impulse)
-        self._gravity = gravity
+        self._gravity: Array = gravity
 
     @property
     def iterations(self) -> int:
