@@ -86,10 +86,10 @@ def test_impulses_a_step_begins_with(subtests, pass_on):
     narrow = pair_of_boxes()
     for name, (last, now, kept, passed) in CASES.items():
         with subtests.test(name, pass_on=pass_on):
-            now = now.with_others(contacts((A, B), (1, 2), pair=5))  # which did not touch
-            narrow.warm_start(now, OTHER.with_others(last), pass_on=pass_on)
-            assert now.impulse.tolist() == [list(passed if pass_on else kept), [0, 0, 0]]
-            assert now.age[0] == 8
+            both = now.with_others(contacts((A, B), (1, 2), pair=5))  # which did not touch
+            narrow.warm_start(both, OTHER.with_others(last), pass_on=pass_on)
+            assert both.impulse.tolist() == [list(passed if pass_on else kept), [0, 0, 0]]
+            assert both.age[0] == 8
 
 
 def test_impulses_of_other_worlds_and_pairs_are_no_ones():
