@@ -47,7 +47,7 @@ def test_each_lander_of_a_batch_flies_as_it_would_alone():
         for slot, other in enumerate(single):
             other.step(actions[slot : slot + 1])
         together.append(np.column_stack([env.observe(), env.outcome, env.fuel]))
-        apart.append([[*other.observe_wide()[0], other.outcome[0], other.fuel[0]] for other in single])
+        apart.append([[*other.observe(wide=True)[0], other.outcome[0], other.fuel[0]] for other in single])
     np.testing.assert_allclose(together, apart, rtol=1e-6, atol=1e-5)
     assert Outcome.LANDED in env.outcome
 
