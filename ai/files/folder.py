@@ -93,8 +93,8 @@ def atomic_folder(target: str | Path, kind: FolderKind | None = NETWORK) -> Iter
         recover_folder(path)
         shutil.rmtree(new, ignore_errors=True)
         raise
-    for old in _aside(path, _OLD) if kind else ():
-        if not any(old.iterdir()) or not kind.stranger(old):
+    for old in _aside(path, _OLD):
+        if kind and (not any(old.iterdir()) or not kind.stranger(old)):
             shutil.rmtree(old, ignore_errors=True)
 
 

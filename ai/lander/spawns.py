@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 
@@ -20,7 +20,8 @@ from ai.lander.rules import Limits
 Spawn = Callable[[np.random.Generator], Doubles]
 
 
-class _Box(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class _Box:
     """Starts spread evenly around one; `reach` is how far to each side."""
 
     middle: Doubles
@@ -31,8 +32,7 @@ class _Box(NamedTuple):
 
     def toward(self, other: _Box, share: float) -> _Box:
         """Return the box that is `share` of the way to another."""
-        middle, reach = (own + share * (others - own) for own, others in zip(self, other, strict=True))
-        return _Box(middle, reach)
+        return _Box(self.middle + share * (other.middle - self.middle), self.reach + share * (other.reach - self.reach))
 
 
 def _box(height: float, rise: float, *reach: float) -> _Box:

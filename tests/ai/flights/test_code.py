@@ -6,6 +6,7 @@ import tracemalloc
 import zlib
 from dataclasses import replace
 from string import ascii_letters
+from typing import Any
 
 import numpy as np
 from hypothesis import given, settings
@@ -178,8 +179,8 @@ def test_a_start_or_a_claim_that_no_flight_can_have_is_refused(subtests):
         "barred": ("x" * 41,), "more": (1,),
     }  # fmt: skip
     assert [refusal(remade(told | {name: value}, inputs)) for name, value in sound.items()] == ["", "", ""]
-    on_a_leg = {"pads": 3, "mission": "fall", "gravity": [[0, 0.7]]}
-    changes = [{name: value} for name, values in wrong.items() for value in values]
+    on_a_leg: dict[str, Any] = {"pads": 3, "mission": "fall", "gravity": [[0, 0.7]]}
+    changes: list[dict[str, Any]] = [{name: value} for name, values in wrong.items() for value in values]
     changes += [{"leg": [2, 1.0, False], name: value} for name, value in on_a_leg.items()]
     for change in changes:
         with subtests.test(change=change):

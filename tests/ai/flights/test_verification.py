@@ -3,6 +3,7 @@
 from dataclasses import replace
 from datetime import date
 from functools import cache
+from typing import Any
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from ai.lander.rules import ACTION_SHARES
 from ai.lander.spawns import RUNGS, SPAWNS
 from game.input.analogue import pushed
 
-KINDS = {
+KINDS: dict[str, dict[str, Any]] = {
     "plain": {},
     "three pads": {"pads": 3},
     "a mission": {"mission": "fall"},

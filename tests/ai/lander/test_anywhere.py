@@ -26,7 +26,9 @@ def alone(site):
         params=replace(PARAMS, gravity=site.gravity, main_thrust=site.thrust, quadratic_drag=site.air),
         ground=Ground((Pad(0.0, pad.top, pad.width),)),
         limits=replace(LIMITS, touch_speed=site.touch_speed, slide_speed=site.slide_speed, time=site.time),
-        conditions=Conditions(*site[6:10], (site.dead, site.back), site.swing, site.swing_period),
+        conditions=Conditions(
+            site.wind, site.gust, site.gust_period, site.tank, (site.dead, site.back), site.swing, site.swing_period
+        ),
     )
 
 
