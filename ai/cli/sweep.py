@@ -15,7 +15,6 @@ from ai.cli.command_line import (
     SEEDS,
     WORKERS,
     Unheard,
-    add_where,
     exit_code,
     fail,
     folder,
@@ -74,7 +73,8 @@ def add_commands(commands: Any) -> None:
     add("--preset", help="settings of all that is not searched, as for train or train-digits")
     add("--set", action="append", metavar="NAME=VALUE", dest="changes", help="change such a setting")
     add("--seed", type=int, help="of the search itself (default: 0)")
-    add_where(sweep, "processes at once (default: all cores)")
+    add("--address", metavar="HOST:PORT", help="join the Ray cluster there; auto for the one around")
+    add("--workers", type=int, metavar="N", help="processes at once (default: all cores)")
     sweep.set_defaults(run=_sweep)
 
     study = commands.add_parser("study", help="tell what a study found: the best settings, and which knobs matter")
