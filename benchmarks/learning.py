@@ -21,7 +21,6 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 import argparse
 import platform
 import statistics
-import sys
 import time
 from collections.abc import Callable, Iterator
 from copy import deepcopy

@@ -33,9 +33,10 @@ from ai.cli.command_line import (
 if TYPE_CHECKING:
     from ai.digits.config import DigitConfig
     from ai.digits.training import DigitProgress
+    from ai.run import Run
     from ai.training.config import Config
     from ai.training.loop import Progress, Training
-    from ai.training.run import Limit, Run, RunKind
+    from ai.training.run import Limit, RunKind
 
 DECISIONS: Final = (1, 10**12)
 _LINE_SECONDS: Final = 20.0  # between two lines where there is no terminal

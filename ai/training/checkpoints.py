@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.normalizer import Normalizer
 from ai.agent.storage import KIND, LAST, write_agent
-from ai.digits.checkpoints import read_last, read_settings
+from ai.digits.checkpoints import read_settings
 from ai.digits.checkpoints import snapshot as digit_snapshot
 from ai.digits.classifier import KIND as DIGITS_KIND
 from ai.digits.training import DigitTraining
@@ -60,12 +59,6 @@ def snapshot(training: Training, final: bool = False) -> tuple[dict[str, Any], C
     return described, write
 
 
-AGENTS: Final = RunKind(KIND, snapshot)
-DIGITS: Final = RunKind(DIGITS_KIND, digit_snapshot)
-save_run: Final = partial(AGENTS.save, state=False)  # the networks alone
-save_digit_run: Final = DIGITS.save
-
-
 def resume_run(folder: str | Path, *, env: str | None = None) -> Training:
     """Resume a run of an agent: the very same, if its state lies beside its folder, else with an empty memory.
 
@@ -111,7 +104,7 @@ def _begun(config: Config, best: DeepQAgent, last: DeepQAgent, described: Any) -
     return training
 
 
-def resume_digit_run(folder: str | Path, **options: Any) -> DigitTraining:
+def resume_digit_run(folder: str | Path, *, env: str | None = None, **options: Any) -> DigitTraining:  # noqa: ARG001
     """Resume an unfinished run that was kept, the very same; raises ModelFormatError for anything else."""
     folder = Path(folder)
     config, seed, step = read_settings(folder)
@@ -119,15 +112,17 @@ def resume_digit_run(folder: str | Path, **options: Any) -> DigitTraining:
         training = DigitTraining(config, seed, **options)
     except (ValueError, OverflowError) as error:
         raise ModelFormatError(folder, [str(error)]) from error
-    kept = read_state(folder, step)
-    state = kept or read_last(folder, training)
+    state = read_state(folder, step)
     if state is None:
         raise ModelFormatError(folder, ["there is nothing to go on with: the run is finished, or its state is gone"])
     with going_on(folder):
         training.load_state(state)
-    if kept:
-        training.around, training.states = kept.get("around", {}), StateWriter(folder, kept)
+        training.around, training.states = state.get("around", {}), StateWriter(folder, state)
     return training
+
+
+AGENTS: Final = RunKind(Training, resume_run, KIND, snapshot)
+DIGITS: Final = RunKind(DigitTraining, resume_digit_run, DIGITS_KIND, digit_snapshot)
 
 
 def agent_of(config: Config, checkpoint: Checkpoint) -> DeepQAgent:

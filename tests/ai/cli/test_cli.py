@@ -165,10 +165,10 @@ def test_a_pause_past_a_checkpoint_changes_nothing_that_is_kept(tmp_path, monkey
 
     def kept(name, decisions, pauses):
         now, folder = [0.0], tmp_path / name
-        advance, begin = Training.advance, Training.__post_init__
+        advance, begin = Training.advance, Training.__init__
 
-        def clocked(training):
-            begin(training)
+        def clocked(training, *arguments, **options):
+            begin(training, *arguments, **options)
             training.clock = lambda: now[0]
 
         def slow(training):
@@ -177,7 +177,7 @@ def test_a_pause_past_a_checkpoint_changes_nothing_that_is_kept(tmp_path, monkey
 
         with monkeypatch.context() as patch:
             patch.setattr(Training, "advance", slow)
-            patch.setattr(Training, "__post_init__", clocked)
+            patch.setattr(Training, "__init__", clocked)
             arguments = ["train", "--preset", preset, "--decisions", str(decisions), "--validation", "6", "--seed", "4"]
             assert main([*arguments, "--output", str(folder), *(f"--set={change}" for change in changes)]) == 0
         files = {str(file.relative_to(folder)): file.read_bytes() for file in folder.rglob("*.npy")}

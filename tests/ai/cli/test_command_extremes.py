@@ -21,7 +21,7 @@ from ai.digits.config import DIGIT_PRESETS
 from ai.digits.training import DigitTraining
 from ai.lander.environment import LanderEnv
 from ai.nn import ModelFormatError
-from ai.training.checkpoints import save_digit_run, save_run
+from ai.training.checkpoints import AGENTS, DIGITS
 from ai.training.config import PRESETS
 from ai.training.history import HISTORY_FILE, Checkpoint, History, SettingChange, Validation
 from ai.training.loop import Training
@@ -33,7 +33,7 @@ MODEL = str(ROOT / "models" / "lander" / "modern")
 SMALL = PRESETS["modern"].changed(
     num_envs=2, hidden=(4,), batch_size=8, learning_starts=8, gradient_steps=1, replay_size=100
 )
-DIGITS = DIGIT_PRESETS["classic"].changed(hidden=(4,), held_out=100)
+READER = DIGIT_PRESETS["classic"].changed(hidden=(4,), held_out=100)
 
 TRAIN = ["train", "--output", "new", "--decisions", "100"]
 TRAIN_DIGITS = ["train-digits", "--output", "new"]
@@ -162,11 +162,11 @@ def runs(tmp_path_factory):
     training = Training(SMALL, 3, validation_episodes=2)
     training.advance()
     training.evaluate()
-    save_run(training, folder / "lander")
+    AGENTS.save(training, folder / "lander", state=False)
     images, labels = np.zeros((200, 28, 28), np.float32), np.zeros(200, np.uint8)
-    digits = DigitTraining(DIGITS, data=(images, labels))
+    digits = DigitTraining(READER, data=(images, labels))
     digits.advance()
-    save_digit_run(digits, folder / "digits")
+    DIGITS.save(digits, folder / "digits")
     return folder
 
 

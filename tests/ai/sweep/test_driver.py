@@ -170,18 +170,6 @@ with joined(None, 1):
     assert len(finished(tmp_path / "study")) == 3
 
 
-def test_any_function_is_called_for_many_items_and_each_answer_finds_its_place(nodes):
-    program = f"""
-from functools import partial
-from ai.sweep.cluster import each
-from ai.sweep.study import seed_folder
-print(sorted(each([partial(seed_folder, seed) for seed in (1, 300, 8000)], {nodes.address!r})))
-"""
-    done = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False)
-    # Ray itself tells of a node that is gone, if another test has taken it away before.
-    assert done.stdout.splitlines()[-1] == "[(0, 'seed-1'), (1, 'seed-300'), (2, 'seed-8000')]", done.stderr
-
-
 def test_without_an_address_nothing_listens_but_on_this_machine(tmp_path):
     folder = tmp_path / "study"
     with sweep(folder, *NEW, "--trials", "2", "--decisions", "400", "--workers", "1") as driver:

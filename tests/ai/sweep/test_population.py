@@ -7,7 +7,7 @@ from ai.sweep.population import explored, proposed
 from ai.sweep.space import Dimension
 from ai.sweep.study import FinishedTrial, SeedResult, Study
 from ai.sweep.trial import Asked
-from ai.training.checkpoints import resume_run
+from ai.training.checkpoints import AGENTS, resume_run
 from tests.support.studies import networks_in, run_alone, tiny_plan
 
 
@@ -49,9 +49,8 @@ def test_a_copy_begins_with_the_networks_of_its_parent_and_goes_on_as_train_does
     while training.agent.decisions < 400:
         training.advance()
     from ai.sweep.study import write_files
-    from ai.training.checkpoints import save_run
 
-    save_run(training, tmp_path / "alone", final=True)
+    AGENTS.save(training, tmp_path / "alone", final=True, state=False)
     write_files(runs, tmp_path / "swept")
     assert networks_in(tmp_path / "alone") == networks_in(tmp_path / "swept" / "seed-0")
 

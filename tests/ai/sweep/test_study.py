@@ -19,7 +19,7 @@ from ai.sweep.report import report, told
 from ai.sweep.space import Dimension, knob_space
 from ai.sweep.study import FinishedTrial, Study, StudyError, files_in, find, write_files
 from ai.sweep.trial import Asked, SeedRun, Trial
-from ai.training.checkpoints import save_digit_run
+from ai.training.checkpoints import DIGITS
 from ai.training.config import PRESETS
 from main import main
 from tests.support.studies import TINY, finished_study, networks_in, run_alone, tiny_plan
@@ -281,7 +281,7 @@ def test_a_trial_of_digits_is_that_of_train_digits(tmp_path):
     training = DigitTraining(config.changed(learning_rate=0.01), 3)
     while not training.done:
         training.advance()
-    save_digit_run(training, tmp_path / "alone", final=True)
+    DIGITS.save(training, tmp_path / "alone", final=True)
     write_files(runs, tmp_path / "swept")
     assert networks_in(tmp_path / "alone") == networks_in(tmp_path / "swept" / "seed-3")
     assert result.value == training.best

@@ -300,7 +300,8 @@ def test_a_run_that_is_closed_has_kept_itself(begin, tmp_path):
 
 
 def test_it_keeps_itself_by_the_clock(tmp_path):
-    training = Training(TINY, clock=(clock := Clock()))
+    training = Training(TINY)
+    training.clock = clock = Clock()
     saving = keeping.Keeper(training, AGENTS, tmp_path / "keep", History())
     for seconds, kept in ((1.4, 0), (0.2, 2), (9.9, 2), (0.2, 4)):
         clock.now += seconds

@@ -9,9 +9,9 @@ from ai.agent.schedule import geometric, linear
 from ai.lander.environment import LIMITS, LanderEnv, Outcome
 from ai.lander.pilots import NoPilot, ScriptedPilot
 from ai.nn import ModelFormatError
-from ai.training.checkpoints import resume_run, save_run
+from ai.training.checkpoints import AGENTS, resume_run
 from ai.training.config import PRESETS, Config
-from ai.training.loop import Training, run
+from ai.training.loop import Training
 from ai.training.run import Limit
 from ai.training.tasks import Evaluation, LanderTask, evaluate
 
@@ -66,16 +66,16 @@ def test_progress_counts_what_happened():
 
 
 def test_progress_tells_the_pace_by_the_clock_it_is_given():
-    moments = iter(range(1000))
-    _, progress = advanced(SMALL, 10, clock=lambda: 0.5 * next(moments))
-    assert progress.steps_per_second == 8 * 4 / 0.5
+    training = Training(SMALL, 0, **QUICK)
+    training.clock = map(float, count(0, 0.5)).__next__
+    assert [training.advance() for _ in range(10)][-1].steps_per_second == 8 * 4 / 0.5
 
 
-def test_the_generator_takes_changed_knobs():
-    going = run(SMALL, 0, **QUICK)
-    next(going)
-    assert going.send(SMALL.changed(epsilon_decisions=8, epsilon_end=0.0)).epsilon == 0.0
-    going.close()
+def test_live_knobs_act_at_once():
+    training = Training(SMALL, 0, **QUICK)
+    training.advance()
+    training.apply_live(SMALL.changed(epsilon_decisions=8, epsilon_end=0.0))
+    assert training.advance().epsilon == 0.0
 
 
 def test_a_change_of_what_cannot_change_while_a_run_goes_on_changes_nothing():
@@ -134,7 +134,7 @@ def test_the_best_checkpoint_is_kept():
 def test_a_run_is_kept_and_gone_on_with(tmp_path):
     training, _ = advanced()
     training.seconds = 12.0
-    save_run(training, tmp_path / "run", final=True)
+    AGENTS.save(training, tmp_path / "run", final=True, state=False)
     described = json.loads((tmp_path / "run" / "training.json").read_text())
     assert described["decisions"] == 240
     assert described["preset"] == "modern"
@@ -162,7 +162,7 @@ def test_a_run_is_kept_and_gone_on_with(tmp_path):
 
 @pytest.mark.parametrize("damage", ["", "{", '{"seed": 0}', "[]"])
 def test_a_damaged_run_is_named(tmp_path, damage):
-    save_run(advanced()[0], tmp_path / "run")
+    AGENTS.save(advanced()[0], tmp_path / "run", state=False)
     (tmp_path / "run" / "training.json").write_text(damage)
     with pytest.raises(ModelFormatError, match=r"training\.json"):
         resume_run(tmp_path / "run")
@@ -170,14 +170,14 @@ def test_a_damaged_run_is_named(tmp_path, damage):
 
 def test_a_failed_save_leaves_the_old_run(tmp_path, monkeypatch):
     training, _ = advanced()
-    save_run(training, tmp_path / "run")
+    AGENTS.save(training, tmp_path / "run", state=False)
 
     def full(*_, **__):
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(np, "savez", full)
     with pytest.raises(OSError, match="No space"):
-        save_run(training, tmp_path / "run")
+        AGENTS.save(training, tmp_path / "run", state=False)
     monkeypatch.undo()
     assert resume_run(tmp_path / "run").agent.decisions == 240
     assert [path.name for path in tmp_path.iterdir()] == ["run"]
@@ -190,7 +190,8 @@ def test_a_run_stops_at_the_decisions_or_seconds_asked_for_whichever_comes_first
         (Limit(seconds=500.0, moment=40), 40, 10.0),
     ]:
         with subtests.test(decisions=decisions):
-            training = Training(SMALL, 0, **QUICK, clock=map(float, count()).__next__)
+            training = Training(SMALL, 0, **QUICK)
+            training.clock = map(float, count()).__next__
             assert [progress.decisions for progress in limit.run(training)][-1] == decisions
             assert limit.share(training) == 1.0
             assert training.seconds == seconds, "a step looks at the clock twice, and once for its pace"
