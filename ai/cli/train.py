@@ -46,7 +46,7 @@ def add_commands(commands: Any) -> None:
         add = command.add_argument
         add("--seconds", type=float, help="stop when the whole run, resumed or not, has trained for so many seconds")
         add("--output", type=cli.folder, metavar="DIR", help="where to keep the network")
-        add("--resume", type=cli.folder, metavar="DIR", help="go on with what an earlier run kept there by its settings;"
+        add("--resume", type=cli.folder, metavar="DIR", help="go on with the run that is kept there, by its settings;"
             " --set and --preset may change those that can change while a run goes on")  # fmt: skip
         add("--replace", action="store_true", help="put the new run in the place of an earlier one")
         add("--seed", type=int, help="what all chance follows from (default: 0)")

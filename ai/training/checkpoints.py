@@ -46,7 +46,6 @@ def snapshot(training: Training, final: bool = False) -> tuple[dict[str, Any], C
         "landings": training.env.landings,
         "seconds": round(training.seconds, 3),
         "best": training.best.to_json() if training.best else None,
-        "flights": training.statistics.to_json(),
     }
     best, last = training.best_agent(), training.last_agent()
 
@@ -98,8 +97,6 @@ def _begun(config: Config, best: DeepQAgent, last: DeepQAgent, described: Any) -
         training.best_values, training.best_normalizer = best.network.values.copy(), best.normalizer
     training.episodes, training.env.landings = count_of(described["episodes"]), count_of(described["landings"])
     training.seconds = float(number_of(described["seconds"], 0))
-    if "flights" in described:  # older runs do not have them
-        training.statistics.load(described["flights"])
     training.agent.copy_from(last)
     return training
 

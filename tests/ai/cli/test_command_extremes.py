@@ -20,10 +20,8 @@ import pytest
 from ai.digits.config import DIGIT_PRESETS
 from ai.digits.training import DigitTraining
 from ai.lander.environment import LanderEnv
-from ai.nn import ModelFormatError
 from ai.training.checkpoints import AGENTS, DIGITS
 from ai.training.config import PRESETS
-from ai.training.history import HISTORY_FILE, Checkpoint, History, SettingChange, Validation
 from ai.training.loop import Training
 from ai.training.run import TRAINING_FILE
 from main import main
@@ -224,25 +222,6 @@ def test_a_run_whose_file_makes_no_sense_is_not_gone_on_with(subtests, not_resum
         for kind in RESUME:
             with subtests.test(f"{kind}: {content[:12]!r}"):
                 not_resumed(kind, content.encode("latin-1"))
-
-
-def test_a_history_with_nonsense_for_numbers_is_named(subtests, tmp_path):
-    history = History()
-    history.append(Checkpoint(0.0, 0, 0.0, np.zeros(3, np.float32)))
-    history.append(SettingChange(5, "gradient_steps", 1, 2))
-    history.append(Validation(7, 0.5, 1.0, True))
-    history.write(tmp_path)
-    assert len(History.read(tmp_path).checkpoints) == 1
-    with np.load(tmp_path / HISTORY_FILE) as arrays:
-        kept = dict(arrays)
-    for entry in ("checkpoints", "alterations", "validations"):
-        for value in (None, "x", [], True, -1, float("inf"), float("nan"), {}):
-            with subtests.test(f"{entry}: {value}"):
-                described = json.loads(str(kept["described"]))
-                described[entry][0]["decisions"] = value
-                np.savez(tmp_path / HISTORY_FILE, **kept | {"described": np.array(json.dumps(described))})
-                with pytest.raises(ModelFormatError, match=r"history\.npz"):
-                    History.read(tmp_path)
 
 
 class Terminal(io.TextIOWrapper):

@@ -115,19 +115,6 @@ def test_what_is_put_into_a_run_meanwhile_is_kept_and_so_is_the_run(tmp_path, ca
     assert "run 2" in capsys.readouterr().out
 
 
-@pytest.mark.usefixtures("few")
-@pytest.mark.parametrize("output", ["letters", "letters/dear.txt/run"])
-def test_a_folder_that_cannot_be_written_is_named_before_anything_is_learnt(tmp_path, capsys, monkeypatch, output):
-    (tmp_path / "letters").mkdir()
-    (tmp_path / "letters" / "dear.txt").write_text("you")
-    monkeypatch.delattr(DigitTraining, "advance")
-    options = ["--preset", "classic", "--epochs", "1", "--set", "held_out=100"]
-    assert main(["train-digits", *options, "--output", str(tmp_path / output)]) == 1
-    assert "letters" in capsys.readouterr().err
-    assert (tmp_path / "letters" / "dear.txt").read_text() == "you"
-    assert [path.name for path in tmp_path.iterdir()] == ["letters"]
-
-
 @pytest.mark.slow
 def test_the_recipe_as_described_saves_reloads_and_reads(tmp_path, capsys):
     run = str(tmp_path / "run")

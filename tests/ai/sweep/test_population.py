@@ -6,7 +6,6 @@ import pytest
 from ai.sweep.population import explored, proposed
 from ai.sweep.space import Dimension
 from ai.sweep.study import FinishedTrial, SeedResult, Study
-from ai.sweep.trial import Asked
 from ai.training.checkpoints import AGENTS, resume_run
 from tests.support.studies import networks_in, run_alone, tiny_plan
 
@@ -80,7 +79,3 @@ def test_a_population_changes_only_what_can_change_while_a_run_goes_on():
     space = {"n_step": Dimension(1, 5, whole=True)}
     with pytest.raises(ValueError, match="n_step cannot change"):
         tiny_plan(search="population", population=2, space=space).check()
-
-
-def test_an_asked_trial_knows_its_parent(study):
-    assert isinstance(proposed(study, 5), Asked)

@@ -111,16 +111,6 @@ class TestLearningOthersEnvironments:
         assert main(["evaluate", "--model", str(run), "--spawn", "hard"]) == 1
         assert "--spawn is for the lander" in capsys.readouterr().err
 
-    def test_the_same_seed_gives_the_same_network(self):
-        runs = [Training(gym_config("CartPole-v1").changed(learning_starts=64, gradient_steps=1), 5) for _ in range(2)]
-        for training in runs:
-            for _ in range(40):
-                training.advance()
-        first, second = (training.agent for training in runs)
-        assert first.gradient_steps > 0
-        assert np.array_equal(first.online.values, second.online.values)
-        assert first.normalizer.to_json() == second.normalizer.to_json()
-
     def test_the_contract_of_an_environment_holds(self):
         env = GymTask(gym_config("CartPole-v1")).make_env(np.random.default_rng(0))
         before = env.reset()
@@ -231,11 +221,3 @@ def test_lunar_lander_looks_the_same_in_a_mirror():
         assert one[0] @ mirror.matrix == pytest.approx(other[0], abs=0.01)
         assert one[1] == pytest.approx(other[1], abs=0.05)
     assert abs(one[0][4]) > 0.1, "it has turned: the test is not of a lander that falls straight"
-
-
-def test_lunar_lander_has_settings_of_its_own():
-    lander, other = gym_config("LunarLander-v3"), gym_config("Acrobot-v1")
-    assert lander.env == "LunarLander-v3"
-    assert lander.mirror
-    assert not other.mirror
-    assert other.changed(env="CartPole-v1") == gym_config("CartPole-v1")
