@@ -10,7 +10,7 @@ import time
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 from ai.cli import command_line as cli
 
@@ -26,6 +26,8 @@ DECISIONS: Final = (1, 10**12)
 _LINE_SECONDS: Final = 20.0  # between two lines where there is no terminal
 _PARTS: Final = 1000  # of the bar
 _BAR: Final = "{desc} {percentage:3.0f}%|{bar}| {elapsed}<{remaining} {postfix}"
+
+Preset = TypeVar("Preset")
 
 
 def add_commands(commands: Any) -> None:
@@ -107,7 +109,7 @@ def digit_config(arguments: argparse.Namespace, begun: DigitConfig | None = None
     return config if arguments.epochs is None else config.changed(epochs=arguments.epochs)
 
 
-def _preset(named: str | None, presets: Mapping[str, Any], begun: Any) -> Any:
+def _preset(named: str | None, presets: Mapping[str, Preset], begun: Preset | None) -> Preset:
     """Return the preset of a name, or without one what a run was begun with; raises ValueError for other names."""
     if named not in (None, *presets):
         raise ValueError(f"--preset is one of {', '.join(presets)}, not {named}")
