@@ -23,7 +23,7 @@ _RANGES: Final = {
 }  # fmt: skip
 # Options of a plan, which a study keeps: as they are, and what they are made into.
 _PLAN: Final = (
-    "seeds", "metric", "judge", "search", "population", "stop_early", "decisions", "every", "validation", "seed",
+    "seeds", "metric", "search", "population", "stop_early", "decisions", "every", "validation", "seed",
 )  # fmt: skip
 _OF_A_NEW_ONE: Final = (*_PLAN, "knobs", "space", "epochs", "preset", "changes", "digits")
 
@@ -40,7 +40,6 @@ def add_commands(commands: Any) -> None:
     add("--seeds", type=int, metavar="N", help="runs of each trial, seeds 0 to N-1 (default: 3)")
     add("--metric", metavar="NAME", help="what trials are compared by: time_to_99 or any percentage, in decisions;"
         " success, return, mean, accuracy (default: by what is trained)")  # fmt: skip
-    add("--judge", choices=("median", "worst"), help="how a trial's seeds are judged (default: median)")
     add("--knobs", metavar="NAMES", help="knobs or groups to search by their own ranges, with commas between"
         " (default: learning, the whole group)")  # fmt: skip
     add("--space", type=Path, metavar="FILE", help="knobs to search, with ranges, as JSON")

@@ -44,7 +44,7 @@ def told(study: Study, most: int = _BEST) -> str:
     plan, best, ranked = study.plan, study.best(), study.ranked()
     trials = f"{study.folder.name}: {len(study.trials)} of {plan.trials} trials, {len(plan.seeds)} seeds each"
     better = f"({'less' if study.metric.sign == 1 else 'more'} is better)"
-    lines = [f"{trials}, compared by {plan.metric}, {plan.judge} of the seeds {better}"]
+    lines = [f"{trials}, compared by {plan.metric}, median of the seeds {better}"]
     if study.damaged:
         lines.append(f"of {len(study.damaged)} more, the files cannot be read: {', '.join(map(str, study.damaged))}")
     if senseless := [trial for _, trial in sorted(study.trials.items()) if trial.problem]:

@@ -20,7 +20,7 @@ import numpy as np
 from ai.digits.config import DigitConfig
 from ai.digits.mnist import TRAIN, load_part
 from ai.files.knobs import Knobs
-from ai.sweep.metric import Metric, Point
+from ai.sweep.metric import Metric, Point, median
 from ai.sweep.plan import DIGITS as OF_DIGITS
 from ai.sweep.plan import Plan
 from ai.sweep.study import Files, FinishedTrial, SeedResult, files_in, seed_folder, write_files
@@ -127,7 +127,7 @@ class Trial:
                        round(run.run.seconds, 3), (figures or {}).get(seed, {}))
             for seed, curve, problem, run in zip(self.plan.seeds, self.curves, self.problems, self.runs, strict=True)
         )  # fmt: skip
-        value = self.metric.judged([seed.value for seed in seeds], self.plan.judge)
+        value = median(seed.value for seed in seeds)
         parent = self.asked.parent.number if self.asked.parent else None
         seconds = round(time.monotonic() - self._began, 3)
         return FinishedTrial(

@@ -54,7 +54,6 @@ def test_without_the_extra_the_command_says_what_to_install(tmp_path, capsys, mo
         (["--set", "n_step=many"], "n_step"),
         (["--epochs", "3"], "--digits"),
         (["--digits", "--env", "CartPole-v1"], "--env"),
-        (["--judge", "best"], "--judge"),
         (["--resume"], "no study"),
     ],
 )

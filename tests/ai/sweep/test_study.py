@@ -38,7 +38,7 @@ def study(made, tmp_path):
 
 
 def digits_plan(config, epochs):
-    plan = Plan.of(config, knob_space(config, ["learning_rate"]), every=1, judge="worst", search="random", trials=1)
+    plan = Plan.of(config, knob_space(config, ["learning_rate"]), every=1, search="random", trials=1)
     assert plan.budget == epochs
     return replace(plan, seeds=(3,))
 
