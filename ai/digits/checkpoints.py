@@ -39,9 +39,6 @@ class _TrainingFile:
     changes: dict[str, Any]
     seed: Seed
     step: Count
-    seconds: Duration
-    held_out: float | None
-    history: tuple[dict[str, int | float | None], ...]
 
 
 def read_summary(folder: Path, file: str = TRAINING_FILE) -> DigitRunSummary:

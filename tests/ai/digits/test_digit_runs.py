@@ -36,17 +36,6 @@ def test_a_run_learns_and_tells_how_it_stands(data):
     assert progress[0].learning_rate < progress[8].learning_rate > progress[-1].learning_rate
 
 
-def test_the_same_seed_gives_the_same_network(data):
-    def values(seed):
-        training = DigitTraining(SMALL, seed, data)
-        for _ in range(5):
-            training.advance()
-        return training.classifier.network.values
-
-    np.testing.assert_array_equal(values(2), values(2))
-    assert not np.array_equal(values(2), values(3))
-
-
 def test_live_knobs_are_taken_over_and_the_others_stay(data):
     training = DigitTraining(SMALL, data=data)
     training.apply_live(SMALL.changed(learning_rate=1e-5, final_learning_rate=1e-6, hidden=(3,)))

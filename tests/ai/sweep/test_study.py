@@ -204,6 +204,7 @@ def test_a_trial_of_other_seeds_or_with_a_value_out_of_nowhere_is_damaged(study)
     file = study.trial_folder(0) / "trial.json"
     sound = json.loads(file.read_text())
     for name, change in {
+        "another knob": {"params": sound["params"] | {"env": "evil:X-v0"}},
         "no seeds": {"seeds": []},
         "one seed": {"seeds": sound["seeds"][:1]},
         "seeds in another order": {"seeds": sound["seeds"][::-1]},

@@ -88,17 +88,6 @@ def test_a_run_that_is_asked_to_finish_is_kept_measured_and_can_be_gone_on_with(
     assert resume_digit_run(tmp_path / "run", data=data).step == 7
 
 
-def test_a_run_is_saved_to_another_folder_when_asked(data, tmp_path):
-    run = live_digits(SMALL, 4, keep=tmp_path / "run", data=data)
-    for _ in range(9):
-        next(run)
-    assert run.send(Save(tmp_path / "named")) == (Saved(tmp_path / "named"),)
-    assert resume_digit_run(tmp_path / "named", data=data).step == 7
-    (tmp_path / "file").write_text("in the way")
-    (refused,) = run.send(Save(tmp_path / "file" / "named"))
-    assert refused.problem
-
-
 def test_live_knobs_turn_and_others_are_refused(data):
     run = live_digits(SMALL, data=data)
     next(run), next(run)

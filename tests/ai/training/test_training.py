@@ -8,7 +8,7 @@ import pytest
 from ai.agent.schedule import geometric, linear
 from ai.lander.environment import LIMITS, LanderEnv, Outcome
 from ai.lander.pilots import NoPilot, ScriptedPilot
-from ai.training.checkpoints import AGENTS, resume_run
+from ai.training.checkpoints import AGENTS
 from ai.training.config import PRESETS, Config
 from ai.training.loop import Training
 from ai.training.run import Limit
@@ -32,19 +32,6 @@ def test_schedules():
     assert linear(1.0, 0.2, 0, 0) == 0.2
     assert geometric(1.0, 0.05, 0.5, 2) == 0.25
     assert geometric(1.0, 0.05, 0.5, 10) == 0.05
-
-
-@pytest.mark.parametrize(
-    "changes",
-    [{}, {"spawn": "curriculum", "num_envs": 1, "epsilon_decay": 0.9, "epsilon_decisions": 0, "success_pass": True}],
-)
-def test_the_same_seed_and_configuration_give_the_same_network(changes):
-    first, _ = advanced(SMALL.changed(**changes), 60)
-    second, _ = advanced(SMALL.changed(**changes), 60)
-    assert first.agent.gradient_steps > 0
-    assert np.array_equal(first.agent.online.values, second.agent.online.values)
-    assert np.array_equal(first.agent.target.values, second.agent.target.values)
-    assert not np.array_equal(first.agent.online.values, advanced(SMALL, 59)[0].agent.online.values)
 
 
 def test_evaluating_changes_nothing_about_the_training():
@@ -130,7 +117,7 @@ def test_the_best_checkpoint_is_kept():
     assert np.array_equal(training.best_agent().network.values, kept)
 
 
-def test_a_run_is_kept_and_gone_on_with(tmp_path):
+def test_a_run_is_kept_with_what_it_is(tmp_path):
     training, _ = advanced()
     training.seconds = 12.0
     AGENTS.save(training, tmp_path / "run", final=True, state=False)
@@ -147,16 +134,6 @@ def test_a_run_is_kept_and_gone_on_with(tmp_path):
         "spawn": "near",
     }
     assert described["evaluation"]["episodes"] == 1000
-    resumed = resume_run(tmp_path / "run")
-    assert np.array_equal(resumed.agent.online.values, training.agent.online.values)
-    assert resumed.agent.decisions == training.agent.decisions
-    assert resumed.best == training.best
-    assert resumed.episodes == training.episodes
-    assert resumed.seconds == 12.0
-    before = resumed.agent.gradient_steps
-    for _ in range(40):
-        resumed.advance()
-    assert resumed.agent.gradient_steps > before
 
 
 def test_a_run_stops_at_the_decisions_or_seconds_asked_for_whichever_comes_first(subtests):
