@@ -20,13 +20,12 @@ from game.flight.assists import eased
 from game.flight.credit import Credit
 from game.flight.difficulty import Difficulty
 from game.flight.flight import Flight, StickHolder
-from game.flight.flight_file import Record
+from game.flight.flight_file import Entry, Record
 from game.flight.handicap import OWN
 from game.flight.last_chance import LastChance
 from game.flight.logbook import Records
 from game.flight.networks import Network, Policy
 from game.flight.six_futures import SixFutures
-from game.flight.skill import Skill
 from game.panels.readouts import COLUMNS, PILOT, READOUTS, Readout, at_touch, draw_readouts, flight_readouts
 from game.scenes.play import captions
 from game.scenes.play.challenge import Challenge, DrawnFlight
@@ -63,7 +62,6 @@ class FlownFlight:
         pads: number of landing pads of a free flight.
         spawn: kind of start of a free flight.
         hands: handicap of a free flight, a name of `game.flight.handicap.HANDS`.
-        check: whether it is a check flight.
 
     Attributes:
         flight: the flight itself.
@@ -90,20 +88,19 @@ class FlownFlight:
         pads: int = 1,
         spawn: str = "random",
         hands: str = OWN,
-        check: bool = False,
     ) -> None:
         self._context, self._settings = context, context.settings
         self.challenge, self.hands = challenge, hands
         self.waiting = self._held_before = True
-        self._written, self._age = False, 0
+        self._age = 0
         self.record: Record | None = None
         self.begun = False
         self._was_over = False  # whether the flight was over before its latest step
-        alone = check or (challenge is not None and challenge.alone)
+        alone = challenge is not None and challenge.alone
         self._policy = None if alone else policy
         self.flight = self._begin(seed, spawn, pads)
         self.difficulty = Difficulty(self._settings, self.flight, free=not challenge)
-        self.credit = Credit(self.flight, self.difficulty, challenge, hands, check=check)
+        self.credit = Credit(self.flight, self.difficulty, challenge, hands)
         self.helped = challenge.dial(self._settings) if challenge else self._settings
         self.cockpit = Cockpit(self.flight, self.helped, self.credit)
         self._last_chance: LastChance | None = None
@@ -257,18 +254,20 @@ class FlownFlight:
             rows.append((texts.CARD_NETWORK, texts.SCORE.format(count=score) if score else texts.CARD_NO_LANDING))
         return tuple(rows)
 
-    def make_card(self, skill: Skill) -> None:
-        """Make the outcome card of the finished flight."""
+    def make_card(self, best: int) -> None:
+        """Make the outcome card of the finished flight; `best` is the score to beat in free flights."""
         chance = self._last_chance if self.credit.helped else None
         while chance and not (chance.known or self.flight.outcome is Outcome.LANDED):
             chance.look(_SEARCH)
-        self.ending.make_card(self.cockpit, self.challenge, skill, self.scenery, chance)
+        self.ending.make_card(self.cockpit, self.challenge, best, self.scenery, chance)
 
-    def write_down(self, records: Records, skill: Skill, network: Network) -> None:
-        """Record the finished flight, once; save it as a demonstration if wished, and report failures."""
-        if self._written:
-            return
-        self._written = True
+    def write_down(self, records: Records, network: Network) -> Entry | None:
+        """Record the finished flight, and return its line; None if that was done before.
+
+        It is saved as a demonstration if wished, and failures are reported.
+        """
+        if self.record:
+            return None
         context, credit, challenge = self._context, self.credit, self.challenge
         told = (
             ""
@@ -290,9 +289,9 @@ class FlownFlight:
         x, y, angle = self.flight.poses.now[0].tolist()
         self.record = Record(self.flight.recording, entry, (x, y, angle))
         told = told or (challenge.written(entry) if challenge else "")
-        skill.add(entry)
         if told or records.problem:
             context.note(told or records.problem)
+        return entry
 
     def _note_chance(self) -> None:
         """Keep moments of a helped flight, to tell what would have saved it if it is lost."""
@@ -346,7 +345,7 @@ class FlownFlight:
             return Head(hints=hints) if self.ending.shown else replace(head, sentence=told or "")
         if not waits:
             return replace(head, sentence=self.credit.header, lamp=cockpit.lamp())
-        opening = captions.opening(flight, challenge, begun=self.begun, stuck=stuck, check=self.credit.check)
+        opening = captions.opening(flight, challenge, begun=self.begun, stuck=stuck)
         keys = flight_hints(controls) if opening and told is None else ()
         paths = (
             path_words(texts.PATH_YOURS, texts.PATH_NETWORK if self.path_preview.asks else "")

@@ -18,9 +18,8 @@ from game.flight import networks
 from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Entry
 from game.flight.guard import Guard
-from game.flight.logbook import Records, best
+from game.flight.logbook import Records, best, best_alone
 from game.flight.replay import FlightReplay
-from game.flight.skill import Skill
 from game.scenes.play.help_words import HELP
 from game.scenes.play.ladder import Ladder
 from game.scenes.play.rescue_offer import CRASHES
@@ -181,7 +180,7 @@ def test_flights_from_the_ladder_replay_but_do_not_measure_skill(context: Contex
     assert record.recording.spawn == "rung_3"
     [entry] = Records(context.user_dir).entries()
     assert entry.on_ladder
-    assert Skill([entry]).own == []
+    assert best_alone([entry]) == 0
     assert best([entry])
 
 
