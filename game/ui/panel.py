@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import TYPE_CHECKING, Final, TypeVar
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import pygame
 
@@ -164,9 +164,11 @@ class Column:
         """Add a line to type in."""
         return self.widget(EntryRow(self._form.manager, text, accept, cancel, limit, fits))
 
-    def listing(self, rows: Sequence[Cells], press: Callable[[int], Transition | None], empty: str = "") -> ListRow:
-        """Add a list to choose from."""
-        return self.widget(ListRow(self._form.manager, rows, press, empty))
+    def listing(
+        self, rows: Sequence[Cells], press: Callable[[int], Transition | None], empty: str = "", **more: Any
+    ) -> ListRow:
+        """Add a list to choose from; `more` is as for a `ListRow`."""
+        return self.widget(ListRow(self._form.manager, rows, press, empty, **more))
 
     # Columns
 

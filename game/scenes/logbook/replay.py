@@ -95,7 +95,7 @@ class ReplayScene(FormScene):
         self._scenery = Scenery(self.flight_replay.flight, context.settings.reduced_motion, self._clear)
         self._heard = FlightSound(context.sound, self.flight_replay.flight.env, self._pace, warns=False)
         self._build()
-        self._readouts: list[readouts.Readout] = []
+        self._readouts: dict[str, readouts.Readout] = {}
         self._look()
 
     def enter(self) -> None:
@@ -339,7 +339,7 @@ class ReplayScene(FormScene):
                 canvas, self._scenery.view(canvas.scale, between).filling(canvas), self._futures, self._clear.head
             )
         self._scenery.draw_craft(canvas, between)
-        readouts.draw_readouts(canvas, self._readouts)
+        readouts.draw_flight(canvas, self._readouts)
 
     def _draw_words(self, canvas: Canvas) -> None:
         self._draw_title(canvas)

@@ -26,7 +26,7 @@ from game.flight.last_chance import LastChance
 from game.flight.logbook import Records
 from game.flight.networks import Network, Policy
 from game.flight.six_futures import SixFutures
-from game.panels.readouts import COLUMNS, PILOT, READOUTS, Readout, at_touch, draw_readouts, flight_readouts
+from game.panels.readouts import GAUGES, PILOT, READOUTS, at_touch, draw_flight, flight_readouts
 from game.scenes.play import captions
 from game.scenes.play.challenge import Challenge, DrawnFlight
 from game.scenes.play.cockpit import Cockpit
@@ -411,22 +411,16 @@ class FlownFlight:
         if self.challenge:
             self.challenge.draw(world, view, flight, self.moment(alpha))
         if low * canvas.scale < world.surface.get_height() - READOUTS * world.scale:
-            self._draw_readouts(world, whole=whole)
+            draw_flight(world, self._readouts, self._shown(whole=whole))
         head.write(canvas)
         if thinks and not self._behind_panel(canvas, view, pose):
             self.cockpit.copilot_panel.draw(canvas, flight.share)
 
-    def _draw_readouts(self, canvas: Canvas, *, whole: bool) -> None:
-        """Draw the read-outs: the four that a pilot needs, and what is left of a tank that is small; or all."""
+    def _shown(self, *, whole: bool) -> list[str]:
+        """Name the read-outs: the four that a pilot needs, and what is left of a tank that is small; or all."""
         if whole:
-            flown = self._readouts if self.flight.recording.shares else self._without_thrust()
-            draw_readouts(canvas, flown, COLUMNS if len(flown) == len(COLUMNS) else (*COLUMNS[:PILOT], *COLUMNS[-2:]))
-            return
-        fuel = [self._readouts[-2]] if self.flight.env.conditions.tank < math.inf else []
-        draw_readouts(canvas, [*self._readouts[:PILOT], *fuel], (*COLUMNS[:PILOT], COLUMNS[-1]))
-
-    def _without_thrust(self) -> list[Readout]:
-        return [*self._readouts[:PILOT], *self._readouts[-2:]]
+            return [name for name in GAUGES if name != "thrust" or self.flight.recording.shares]
+        return [*PILOT, *(["fuel"] if self.flight.env.conditions.tank < math.inf else [])]
 
     def _behind_panel(self, canvas: Canvas, view: View, pose: Doubles) -> bool:
         """Whether the craft is behind the panel, which happens only where the camera can't keep it clear."""

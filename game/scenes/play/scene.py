@@ -148,11 +148,11 @@ class PlayScene(Scene):
 
     def actions(self) -> Table:
         """What each key does at this moment: those of the card, once it is seen, and those of the flight."""
-        explain = Action(pygame.K_F1, self.show_thinking)
+        explain = [Action(key, self.show_thinking) for key in (pygame.K_F1, Command.MODE)]
         if self.ending.shown == 0:
-            return [*self._flight_actions(), Action(Command.CONFIRM, self.ending.hurry), explain]
+            return [*self._flight_actions(), Action(Command.CONFIRM, self.ending.hurry), *explain]
         space = [Action(pygame.K_SPACE, self._go_on)] if self.ending.shown >= 1 else []
-        return [*self._card_actions(), *self._flight_actions(), Action(Command.CONFIRM, self._go_on), *space, explain]
+        return [*self._card_actions(), *self._flight_actions(), Action(Command.CONFIRM, self._go_on), *space, *explain]
 
     def show_thinking(self) -> None:
         """Show what the network thinks, or no longer."""

@@ -112,7 +112,7 @@ def test_leaving_the_first_attempt_ends_it(open_game: Open, context: Context):
     driver = open_game(day_scene)
     driver.frames(2)
     assert isinstance(driver.top, DaysScene)
-    assert driver.top.items[0] == TODAY
+    assert driver.top.days[0] == TODAY
     assert driver.widget(texts.DAYS_FLY_AGAIN)
 
 

@@ -81,7 +81,7 @@ def test_whoever_flies_the_printed_limit_has_kept_it_and_a_tenth_more_is_too_muc
                     kept = mission.medal(float(env.fuel[0]), float(env.time[0])) >= medal
                     assert kept == (figures[texts.FUEL] <= most_fuel)
                     if env.conditions.tank == np.inf:
-                        (burnt,) = (each.figure for each in flight_readouts(env) if each.label == texts.FUEL_USED)
+                        burnt = flight_readouts(env)["fuel"].figure
                         assert float(burnt) == figures[texts.FUEL]
                 env.side_steps[:] = 0
                 for steps in range(round(60 * longest) - 9, round(60 * longest) + 10):
@@ -227,8 +227,7 @@ def test_on_a_pad_that_moves_its_own_middle_and_speed_count():
     env.steps[:] = 60 * 4
     env.outcome[:] = Outcome.LANDED
     assert landing_score(env) == 100
-    drift = next(readout for readout in flight_readouts(env) if readout.label == texts.DRIFT)
-    assert drift.figure == "0.0"
+    assert flight_readouts(env)["drift"].figure == "0.0"
 
 
 def test_what_surrounds_a_flight_is_told():
