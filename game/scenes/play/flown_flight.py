@@ -16,6 +16,7 @@ from game.core import texts
 from game.core.pace import SlowMotion
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import VIEW_SIZE
+from game.flight import networks
 from game.flight.assists import eased
 from game.flight.credit import Credit
 from game.flight.difficulty import Difficulty
@@ -37,6 +38,7 @@ from game.scenes.play.ladder import rung_of
 from game.scenes.play.sentence import sentence, surroundings
 from game.ui.hints import Hint, flight_hints
 from game.world.camera import ClearArea, View
+from game.world.landscape.backdrop import EARTH, EARTH_RADIUS
 from game.world.landscape.ground import begin_hills
 from game.world.path_preview import PathPreview, draw_futures
 from game.world.scenery import Scenery
@@ -48,6 +50,7 @@ if TYPE_CHECKING:
 _CRAFT: Final = 1.5  # metres from the middle of a craft to its ends
 _WAITING: Final = 196.0  # points at the head for the words over a craft that waits, before they are laid out
 _BELOW_HEAD: Final = 44.0  # and between the words and the craft
+_LARGE: Final = 1.15  # size of words beside that on a page from which they reach far across
 _SEARCH: Final = 6  # decisions in a frame, in the search for what would have saved a lost flight
 
 
@@ -57,7 +60,7 @@ class FlownFlight:
     Args:
         context: the shared services.
         seed: seed of the start.
-        policy: the network to hand over to, if there is one; unused where the player must fly alone.
+        network: the one to hand over to, if it can be read; unused where the player must fly alone.
         challenge: its start and rules; None for a free flight.
         pads: number of landing pads of a free flight.
         spawn: kind of start of a free flight.
@@ -82,7 +85,7 @@ class FlownFlight:
         self,
         context: Context,
         seed: int,
-        policy: Policy | None,
+        network: Network,
         challenge: Challenge | None = None,
         *,
         pads: int = 1,
@@ -97,7 +100,7 @@ class FlownFlight:
         self.begun = False
         self._was_over = False  # whether the flight was over before its latest step
         alone = challenge is not None and challenge.alone
-        self._policy = None if alone else policy
+        self._network, self._policy = network, None if alone else network.policy
         self.flight = self._begin(seed, spawn, pads)
         self.difficulty = Difficulty(self._settings, self.flight, free=not challenge)
         self.credit = Credit(self.flight, self.difficulty, challenge, hands)
@@ -108,7 +111,7 @@ class FlownFlight:
         self._looked = -1  # step of the moment whose six futures are known, or are being flown
         self.ghost = challenge.ghost(seed, self._policy) if challenge else None
         calm = self._settings.reduced_motion
-        self.clear = ClearArea()
+        self.clear, self._earth = ClearArea(), EARTH
         self.scenery = Scenery(self.flight, calm, ClearArea(head=_WAITING))
         self.pace = SlowMotion()
         self._heard = FlightSound(context.sound, self.flight.env, self.pace)
@@ -164,11 +167,12 @@ class FlownFlight:
         if calm:
             self.pace.hurry()
 
-    def change_network(self, policy: Policy | None) -> None:
+    def change_network(self, network: Network) -> None:
         """Change the network to hand over to, unless the player must fly alone."""
+        self._network = network
         if not self.credit.alone:
-            self._policy = policy
-            self.flight.change_network(policy)
+            self._policy = network.policy
+            self.flight.change_network(network.policy)
             self.path_preview.ask(self._guide)
 
     # Time
@@ -261,7 +265,7 @@ class FlownFlight:
             chance.look(_SEARCH)
         self.ending.make_card(self.cockpit, self.challenge, best, self.scenery, chance)
 
-    def write_down(self, records: Records, network: Network) -> Entry | None:
+    def write_down(self, records: Records) -> Entry | None:
         """Record the finished flight, and return its line; None if that was done before.
 
         It is saved as a demonstration if wished, and failures are reported.
@@ -279,7 +283,7 @@ class FlownFlight:
             time.time(),
             alone=credit.counts,
             barred=credit.bar,
-            network=network.name if network.policy else "",
+            network=self._network.name if self._network.policy else "",
             course=challenge.name if challenge else "",
             medal=credit.medal,
             pace=credit.pace,
@@ -314,11 +318,8 @@ class FlownFlight:
 
     # The picture
 
-    def head(self, hints: Sequence[Hint], network: Network, *, whole: bool) -> Head:
-        """Return the words at the head: all of them while there is time to read, which `whole` says, or the sentence.
-
-        `network` is the one whose name is told.
-        """
+    def head(self, hints: Sequence[Hint], *, whole: bool) -> Head:
+        """Return the words at the head: all while there is time to read, which `whole` says, or the sentence."""
         flight, challenge, controls, cockpit = self.flight, self.challenge, self._context.controls, self.cockpit
         waits, stuck = self.waiting and not flight.over, self.stuck
         told = challenge.sentence(flight, controls, waiting=waits, stuck=stuck) if challenge else None
@@ -329,7 +330,7 @@ class FlownFlight:
                 words, warns = words
             shown = helps if cockpit.help_words.shown else None
             return Head(words, warns, cockpit.lamp(), hints=hints, help=shown, means=cockpit.means)
-        caption, name = captions.title(flight, challenge, network, self.hands, whole=whole)
+        caption, name = captions.title(flight, challenge, self._network, self.hands, whole=whole)
         goal = challenge.goal if challenge else ""
         without = challenge is not None and challenge.kept and helps is not None and self.helped.assist == 0
         apart = texts.HELP_NOT_HERE if without and self._settings.assist > 0 and not self.begun else ""
@@ -361,6 +362,9 @@ class FlownFlight:
         """Keep the flight clear of its words, and of what the network thinks."""
         self.clear = self._clear_of(head)
         if not self.begun:
+            reading = self._context.reading()
+            if reading.scale > _LARGE * reading.whole.scale:  # the words reach over the Earth's usual place
+                self._earth = EARTH[0], max(EARTH[1], self.clear.head - _BELOW_HEAD + 1.3 * EARTH_RADIUS)
             self.scenery.clear = self.clear
             self.scenery.cut()
 
@@ -391,7 +395,7 @@ class FlownFlight:
         world, flight = canvas.whole, self.flight
         alpha = self.pace.between(alpha)
         view = self.scenery.view(world.scale, alpha).filling(world)
-        self.scenery.draw_land(world, alpha)
+        self.scenery.draw_land(world, alpha, self._earth)
         if self.challenge and self.challenge.ahead:
             begin_hills(self.challenge.ahead, view)
         if self.ghost:
@@ -414,7 +418,7 @@ class FlownFlight:
             draw_flight(world, self._readouts, self._shown(whole=whole))
         head.write(canvas)
         if thinks and not self._behind_panel(canvas, view, pose):
-            self.cockpit.copilot_panel.draw(canvas, flight.share)
+            self.cockpit.copilot_panel.draw(canvas, flight.share, networks.word(self._network.name))
 
     def _shown(self, *, whole: bool) -> list[str]:
         """Name the read-outs: the four that a pilot needs, and what is left of a tank that is small; or all."""

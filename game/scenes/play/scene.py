@@ -109,7 +109,7 @@ class PlayScene(Scene):
         self.flown.set_calm(self._settings.reduced_motion)
         if self._elsewhere != self._loaded_for:
             self._load_network()
-            self.flown.change_network(self.network.policy)
+            self.flown.change_network(self.network)
         self.flown.hang()
         challenge = self.challenge
         eases = (not challenge or challenge.eases) and eased(self._settings) != self.flight.recording.easing
@@ -174,7 +174,7 @@ class PlayScene(Scene):
         """The words at the head."""
         named = self._settings.show_hints or self._controls.mouse_in_use  # for the mouse, they are what it presses
         hints = hints_of(self._flight_actions(), self._controls) if named else []
-        return self.flown.head(hints, self.network, whole=False)
+        return self.flown.head(hints, whole=False)
 
     @property
     def _runs(self) -> dict[Command, Run]:
@@ -274,7 +274,7 @@ class PlayScene(Scene):
 
     def titles(self) -> Head:
         """Return the words at the head while it is paused."""
-        return self.flown.head((), self.network, whole=True)
+        return self.flown.head((), whole=True)
 
     # The flight
 
@@ -304,11 +304,10 @@ class PlayScene(Scene):
         if self._elsewhere != self._loaded_for:
             self._load_network()
         if self.challenge:
-            self.flown = FlownFlight(self.context, seed, self.network.policy, self.challenge)
+            self.flown = FlownFlight(self.context, seed, self.network, self.challenge)
             return
         self._begun_with = pads, hands, rung = self._chosen()
-        policy = self.network.policy
-        self.flown = FlownFlight(self.context, seed, policy, pads=pads, spawn=spawn or rung, hands=hands)
+        self.flown = FlownFlight(self.context, seed, self.network, pads=pads, spawn=spawn or rung, hands=hands)
 
     def _follow_flight(self) -> None:
         """Save what a step has brought the player in a challenge; after the end, go on to the card or the next try."""
@@ -330,7 +329,7 @@ class PlayScene(Scene):
                 self._write_down()
 
     def _write_down(self) -> None:
-        if entry := self.flown.write_down(self._records, self.network):
+        if entry := self.flown.write_down(self._records):
             self._best = max(self._best, best_alone([entry]))
 
     def _follow_end(self) -> None:
@@ -485,4 +484,4 @@ class PlayScene(Scene):
         self._settings.model = name
         self.context.apply_settings()
         self._load_network()
-        self.flown.change_network(self.network.policy)
+        self.flown.change_network(self.network)
