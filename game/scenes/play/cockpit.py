@@ -133,12 +133,9 @@ class Cockpit:
         return self.copilot_panel.box(canvas)
 
     def draw_beside(self, canvas: Canvas, view: View, pose: Doubles, clear: ClearArea) -> None:
-        """Draw beside the craft what the network did not fire, and the wind."""
-        if self._flight.over:
-            return
-        self.overrides.draw(canvas, view, pose)
+        """Draw the wind beside the craft."""
         push = wind(self._flight.env)
-        if abs(push) >= _CALM:
+        if abs(push) >= _CALM and not self._flight.over:
             _draw_wind(canvas, view, pose, push, clear)
 
     def lamp(self) -> Lamp:
