@@ -216,17 +216,6 @@ def test_nonsense_in_the_settings_flies_as_usual(open_game: Open, context: Conte
     assert driver.app.context.settings.copilot == "tolerance"
 
 
-def test_draw_changes_nothing_of_a_shared_flight(open_game: Open, context: Context):
-    driver = fly(open_game, context, assist=0.5, three_pads=True)
-    down(driver, pygame.K_RIGHT)
-    driver.frames(40)
-    pictures = []
-    for _ in range(2):
-        driver.top.draw(driver.app.canvas, 0.5)
-        pictures.append(pygame.surfarray.array3d(driver.app.canvas.surface))
-    assert np.array_equal(*pictures)
-
-
 @pytest.mark.parametrize(
     ("asked", "flown", "words"),
     [
