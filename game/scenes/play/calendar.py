@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from game.drawing.canvas import Canvas
     from game.ui.context import Context
     from game.ui.panel import Column, Panel
-    from game.ui.rows import ListRow
 
 _LEAST: Final = 320.0  # points of a column
 _COLUMNS: Final = (112.0, 0.0)  # from the right end of the list: where ends and points end
@@ -45,7 +44,6 @@ class DaysScene(PanelScene):
     def __init__(self, context: Context, today: date | None = None) -> None:
         super().__init__(context)
         self._today = self.chosen = today or date.today()
-        self._list: ListRow | None = None
         self.enter()
 
     def enter(self) -> None:
@@ -58,32 +56,34 @@ class DaysScene(PanelScene):
         self.build()
 
     def describe(self, panel: Panel) -> None:
-        """Add the list, and what there is to say of the chosen day and to do with it."""
+        """Add the list, and the chosen day."""
         panel.title(texts.DAILY)
         panel.aside(texts.DAYS_LINE)
         panel.gap(8)
-        left, right = panel.beside((5, 4), _LEAST)
+        left, self._beside = panel.beside((5, 4), _LEAST)
         rows, index = [self._row(day) for day in self.days], self.days.index(self.chosen)
-        self._list = left.listing(
-            rows, lambda _: self._fly(), around=_AROUND, index=index, first=self._list.first if self._list else 0,
-            on_choose=self._choose, columns=_COLUMNS,
-        )  # fmt: skip
+        left.listing(rows, lambda _: self._fly(), around=_AROUND, index=index, on_choose=self._choose, columns=_COLUMNS)
+        self._describe_day(self._beside)
+
+    def _describe_day(self, column: Column) -> None:
+        """Add what there is to say of the chosen day, and to do with it."""
         attempt, today = self._attempt(self.chosen), self.chosen == self._today
         self._flown = self._attempts.first_flight(self.chosen)
-        right.title(self._name(self.chosen), TITLE + 6)
-        right.text(attempt.line if attempt else texts.DAYS_ASKS if today else texts.DAYS_MISSED_LINE)
+        column.title(self._name(self.chosen), TITLE + 6)
+        column.text(attempt.line if attempt else texts.DAYS_ASKS if today else texts.DAYS_MISSED_LINE)
         if (attempt or not today) and self._attempts.best_flight(self.chosen):
-            right.aside(texts.DAYS_BESIDE)
-        right.gap(10)
-        self._add_calendar(right)
-        right.gap(10)
+            column.aside(texts.DAYS_BESIDE)
+        column.gap(10)
+        column.caption(texts.DAYS_WEEKS)
+        column.picture(_CELL[1] * (_WEEKS + 1), self._draw_weeks)
+        column.gap(10)
         fly = (texts.DAYS_FLY_AGAIN if attempt else texts.DAYS_FLY) if today else texts.DAYS_FLY_PAST
-        right.button(fly, self._fly, size=TITLE, colour=INK)
+        column.button(fly, self._fly, size=TITLE, colour=INK)
         if attempt:
-            right.button(texts.DAYS_COPY, self._copy_line)
+            column.button(texts.DAYS_COPY, self._copy_line)
         if self._flown:
-            right.button(texts.CODE_COPY, self._copy_code)
-            right.button(texts.LOGBOOK_WATCH, self._watch)
+            column.button(texts.CODE_COPY, self._copy_code)
+            column.button(texts.LOGBOOK_WATCH, self._watch)
 
     def actions(self) -> Table:
         """Move, choose, go back."""
@@ -91,7 +91,8 @@ class DaysScene(PanelScene):
 
     def _choose(self, index: int) -> None:
         self.chosen = self.days[index]
-        self.build()
+        self._beside.clear()
+        self._describe_day(self._beside)
 
     # In words
 
@@ -132,14 +133,8 @@ class DaysScene(PanelScene):
     def _watch(self) -> Transition:
         return push("replay", self._flown)
 
-    # The calendar
-
-    def _add_calendar(self, column: Column) -> None:
-        """Add the last weeks, Monday first: a disc for a landing, a ring for another end, a speck for none."""
-        column.caption(texts.DAYS_WEEKS)
-        column.picture(_CELL[1] * (_WEEKS + 1), self._draw_weeks)
-
     def _draw_weeks(self, canvas: Canvas, box: pygame.FRect) -> None:
+        """Draw the last weeks, Monday first: a disc for a landing, a ring for another end, a speck for none."""
         first = self._today - _DAY * (self._today.weekday() + 7 * (_WEEKS - 1))
         for column, word in enumerate(texts.DAYS_WEEKDAYS):
             spot = (box.left + _CELL[0] * (column + 0.3), box.top + LABEL)
