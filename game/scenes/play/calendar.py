@@ -74,9 +74,6 @@ class DaysScene(PanelScene):
         if (attempt or not today) and self._attempts.best_flight(self.chosen):
             column.aside(texts.DAYS_BESIDE)
         column.gap(10)
-        column.caption(texts.DAYS_WEEKS)
-        column.picture(_CELL[1] * (_WEEKS + 1), self._draw_weeks)
-        column.gap(10)
         fly = (texts.DAYS_FLY_AGAIN if attempt else texts.DAYS_FLY) if today else texts.DAYS_FLY_PAST
         column.button(fly, self._fly, size=TITLE, colour=INK)
         if attempt:
@@ -84,6 +81,9 @@ class DaysScene(PanelScene):
         if self._flown:
             column.button(texts.CODE_COPY, self._copy_code)
             column.button(texts.LOGBOOK_WATCH, self._watch)
+        column.gap(10)
+        column.caption(texts.DAYS_WEEKS)
+        column.picture(_CELL[1] * (_WEEKS + 1), self._draw_weeks)
 
     def actions(self) -> Table:
         """Move, choose, go back."""

@@ -63,7 +63,7 @@ def test_a_gif_shows_what_was_put_in(tmp_path: Path):
         for frame in (first, second, second, third):
             gif.add(frame)
     with Image.open(tmp_path / "a.gif") as picture:
-        assert picture.n_frames == 4
+        assert picture.n_frames == 4  # type: ignore[attr-defined]
         for number, frame in enumerate((first, second, second, third)):
             picture.seek(number)
             assert picture.info["duration"] == 50
