@@ -50,7 +50,7 @@ from ai.nn import (
 )
 from ai.nn.limits import MOST_LAYERS
 from ai.training.checkpoints import AGENTS, resume_run
-from ai.training.config import PRESETS, gym_config, load_agent
+from ai.training.config import PRESETS, gym_config
 from ai.training.demonstrations import Demonstration
 from ai.training.history import History
 from ai.training.loop import Training
