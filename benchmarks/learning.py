@@ -34,7 +34,7 @@ from typing import Any
 import numpy as np
 
 from ai.cli.command_line import configured
-from ai.common.environment import Floats, Ints
+from ai.environment import Floats, Ints
 from ai.lander.pilots import Pilot
 from ai.lander.spawns import CURRICULA
 from ai.sweep.cluster import MISSING, each, installed

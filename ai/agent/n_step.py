@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 
 from ai.agent.replay import Transition
-from ai.common.environment import Bools, Floats, Ints
+from ai.environment import Bools, Floats, Ints
 from ai.files import array_like, count_of
 
 _KEPT: Final = ("_states", "_actions", "_returns", "_ages", "_open")

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Final, NoReturn, TypeVar
 if TYPE_CHECKING:
     from tqdm import tqdm
 
-    from ai.common.knobs import Knobs
+    from ai.files.knobs import Knobs
 
     Settings = TypeVar("Settings", bound=Knobs)
 

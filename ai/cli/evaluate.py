@@ -43,9 +43,9 @@ def add_commands(commands: Any) -> None:
 
 
 def _evaluate(arguments: argparse.Namespace) -> int:
-    from ai.common.intervals import wilson
     from ai.lander.spawns import SPAWNS
     from ai.training.config import LANDER
+    from ai.training.statistics import wilson
 
     if problem := out_of_range(arguments, episodes=FLIGHTS, seed=SEEDS, workers=WORKERS):
         return fail(problem)

@@ -151,7 +151,7 @@ def _described(study: Study, trial: FinishedTrial) -> str:
 
 def _place(arguments: argparse.Namespace) -> Path:
     """Return the folder of the study; raises ValueError for a name that cannot be one."""
-    from ai.common.places import user_dir
+    from ai.files import user_dir
     from ai.sweep.study import find
 
     try:

@@ -9,12 +9,12 @@ from typing import Annotated, Any, Final
 
 import numpy as np
 
-from ai.common.knobs import nearest_preset
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS, DigitConfig
 from ai.digits.mnist import TEST, load_part
 from ai.digits.training import DigitTraining, accuracy
 from ai.files import Count, Duration, OneOf, Seed, Share, Sized, inside, problem_in, read_arrays, read_as, read_json
+from ai.files.knobs import nearest_preset
 from ai.nn import ModelFormatError
 
 TRAINING_FILE: Final = "training.json"

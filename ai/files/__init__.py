@@ -16,6 +16,7 @@ from ai.files.folder import (
     remove_state,
     state_folder,
     take_folder,
+    user_dir,
 )
 from ai.files.reading import (
     CONTROLS,
@@ -57,6 +58,6 @@ __all__ = [
     "Share", "Sized", "Within", "append_line", "array_like", "atomic_folder", "brief", "check_header", "claimed_folder",
     "count_of", "described", "free_path", "inside", "move_state", "new_folder", "number_of", "parse_json", "problem_in",
     "read_array", "read_arrays", "read_as", "read_bytes", "read_json", "read_lines", "read_text", "recover_all",
-    "recover_folder", "remove_state", "shown", "sound_fields", "state_folder", "take", "take_folder", "write_bytes",
-    "write_text",
+    "recover_folder", "remove_state", "shown", "sound_fields", "state_folder", "take", "take_folder", "user_dir",
+    "write_bytes", "write_text",
 ]  # fmt: skip

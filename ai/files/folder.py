@@ -63,6 +63,13 @@ class FolderKind:
 NETWORK: Final = FolderKind("tranquility network", ("layer-*-*.npy",))
 
 
+def user_dir() -> Path:
+    """Return the user's own folder for settings, scores, networks and studies."""
+    import platformdirs
+
+    return Path(platformdirs.user_data_dir("tranquility", appauthor=False))
+
+
 @contextmanager
 def new_folder(target: Path, kind: FolderKind | None = None) -> Iterator[Path]:
     """Yield a new empty folder that becomes `target` if the block succeeds; else nothing is left.

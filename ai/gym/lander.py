@@ -17,7 +17,7 @@ from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
-from ai.common.environment import Bools, Doubles, Floats, Ints, StepResult
+from ai.environment import Bools, Doubles, Floats, Ints, StepResult
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES, OBSERVATION_SCALE, LanderEnv
 from engine import DT
 

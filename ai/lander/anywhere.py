@@ -13,7 +13,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from ai.common.environment import Bools, Doubles, Floats, Ints
+from ai.environment import Bools, Doubles, Floats, Ints
 from ai.lander.conditions import Conditions
 from ai.lander.environment import LIMITS, NUM_FEATURES, PARAMS, LanderEnv
 from ai.lander.ground import Ground, Pad

@@ -12,7 +12,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from ai.common.environment import Bools, Doubles, Floats, Ints, StepResult
+from ai.environment import Bools, Doubles, Floats, Ints, StepResult
 from ai.lander import craft, moment
 from ai.lander.conditions import CALM, Conditions
 from ai.lander.free_flight import FreeFlight

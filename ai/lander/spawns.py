@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from ai.common.environment import Doubles
+from ai.environment import Doubles
 from ai.lander.craft import lowest
 from ai.lander.ground import Ground
 from ai.lander.rules import Limits

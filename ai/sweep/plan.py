@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Final, Self
 
-from ai.common.knobs import Knobs
 from ai.digits.config import DigitConfig
 from ai.files import Count, OneOf, Seed, Sized, Within
+from ai.files.knobs import Knobs
 from ai.sweep.metric import JUDGES, Metric
 from ai.sweep.space import Dimension
 from ai.training.config import ANYWHERE, LANDER, Config

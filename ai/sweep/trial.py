@@ -17,10 +17,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from ai.common.knobs import Knobs
 from ai.digits.config import DigitConfig
 from ai.digits.mnist import TRAIN, load_part
 from ai.digits.training import DigitTraining
+from ai.files.knobs import Knobs
 from ai.sweep.metric import Metric, Point
 from ai.sweep.plan import Plan
 from ai.sweep.study import Files, FinishedTrial, SeedResult, files_in, seed_folder, write_files

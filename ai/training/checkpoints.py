@@ -10,12 +10,12 @@ from typing import Any, Final
 from ai.agent.agent import DeepQAgent
 from ai.agent.normalizer import Normalizer
 from ai.agent.storage import KIND, LAST, write_agent
-from ai.common.knobs import nearest_preset
 from ai.digits.checkpoints import read_last, read_settings
 from ai.digits.checkpoints import snapshot as digit_snapshot
 from ai.digits.classifier import KIND as DIGITS_KIND
 from ai.digits.training import DigitTraining
 from ai.files import count_of, inside, number_of, problem_in, read_json
+from ai.files.knobs import nearest_preset
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.nn import ModelFormatError
 from ai.training.config import Config, load_agent, presets_of

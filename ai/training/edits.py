@@ -10,7 +10,7 @@ from typing import ClassVar, Final
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.network import make_optimizer
-from ai.common.environment import Floats
+from ai.environment import Floats
 from ai.nn import DuelingLayer, FullyConnectedLayer, NeuralNetwork
 
 EDITED: Final = "network"  # the name of the setting change that an edit is

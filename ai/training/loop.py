@@ -24,7 +24,7 @@ from ai.agent.normalizer import Normalizer
 from ai.agent.replay import ReplayBuffer, make_replay
 from ai.agent.schedule import exploration, exploration_of_each
 from ai.agent.storage import agent_state, load_agent_state
-from ai.common.environment import Env, Floats, StepResult
+from ai.environment import Env, Floats, StepResult
 from ai.files import array_like, count_of, number_of
 from ai.training.config import ANYWHERE, LANDER, Config
 from ai.training.gym_task import GymTask

@@ -10,8 +10,8 @@ from typing import Final, Protocol
 import numpy as np
 import pygame
 
-from ai.common.decision import in_points
-from ai.common.environment import Doubles
+from ai.agent.decision import in_points
+from ai.environment import Doubles
 from ai.training.edits import EDITED
 from ai.training.history import REVERTED, History, SettingChange
 from ai.training.lander_session import TAUGHT

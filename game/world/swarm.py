@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.common.environment import Bools, Doubles
+from ai.environment import Bools, Doubles
 from ai.lander.environment import PARAMS, Outcome
 from ai.training.lander_session import CAREFUL
 from ai.training.messages import SwarmState

@@ -6,7 +6,7 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.common.decision import Decision, decide
+from ai.agent.decision import Decision, decide
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.flight.flight import StickHolder

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
-from ai.common.environment import Doubles
+from ai.environment import Doubles
 from ai.flights.verification import landing_score
 from ai.lander.environment import Outcome
 from game.audio.flight_sounds import FlightSound

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Final
 
-from ai.common.environment import Doubles
+from ai.environment import Doubles
 from ai.lander.pilots import COAST
 from game.core import texts
 from game.drawing.canvas import Canvas

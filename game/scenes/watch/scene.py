@@ -9,7 +9,7 @@ from typing import Final
 
 import pygame
 
-from ai.common.decision import Decision
+from ai.agent.decision import Decision
 from ai.files import brief
 from game.core import texts
 from game.core.scene import Transition, push

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ai.common.environment import Bools, Floats, Ints
+from ai.environment import Bools, Floats, Ints
 
 Array = NDArray[Any]
 Real = TypeVar("Real", np.float32, np.float64)

@@ -14,7 +14,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from ai.files import shown
+from ai.files.reading import shown
 
 
 def knob(

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from ai.agent.agent import DeepQAgent
-from ai.common.decision import decide
+from ai.agent.decision import decide
 from ai.training.config import PRESETS
 
 SEEN = np.zeros((3, 9), np.float32)
