@@ -166,7 +166,9 @@ class Slider(Widget):
             low, value = self.limits[0], self.value
             steps = math.floor(direction * (value - low) / self._step + 1e-6) + 1
             stops = low + direction * steps * self._step, *self._ticks
-            self.set(min((stop for stop in stops if direction * (stop - value) > 0), key=lambda stop: abs(stop - value)))
+            self.set(
+                min((stop for stop in stops if direction * (stop - value) > 0), key=lambda stop: abs(stop - value))
+            )
         else:
             self._set_fraction(self.fraction + direction / 20)
         return True

@@ -128,9 +128,7 @@ class ChoicesScene(PanelScene):
         helped, settings = self._helped, self.context.settings
         words = HELP if helped.copilot == GUARDIAN else ["off"]
         ticks = {HELP[word]: texts.HELP[word] for word in words}
-        left.slider(
-            texts.CHOICES_ASSIST, helped.assist, (0.0, 1.0), self._turn, step=0.1, figure=_percent, ticks=ticks
-        )
+        left.slider(texts.CHOICES_ASSIST, helped.assist, (0.0, 1.0), self._turn, step=0.1, figure=_percent, ticks=ticks)
         index = MODES.index(helped.copilot) if helped.copilot in MODES else 0
         left.choice(texts.CHOICES_MODE, texts.CHOICES_MODES, index, self._choose_mode)
         left.aside(lambda: texts.CHOICES_MODES_HELP[MODES.index(helped.copilot)])

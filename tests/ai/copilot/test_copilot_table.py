@@ -6,6 +6,7 @@ import main
 from ai.agent.agent import DeepQAgent
 from ai.cli.copilot import MODEL
 from ai.copilot import measurement
+from ai.copilot.hands import HANDS
 from ai.copilot.measurement import ALONE, GUARD, TABLES, VALUES, rows
 from ai.lander.environment import LanderEnv
 from ai.training.statistics import wilson
@@ -46,7 +47,7 @@ def test_the_co_pilot_helps(agent, few):
 
 def test_every_table_has_pilots_that_there_are():
     for name, (_, names) in TABLES.items():
-        assert set(names) <= set(measurement.PILOTS), name
+        assert set(names) <= set(HANDS), name
 
 
 def test_an_interval_holds_the_share_and_shrinks_with_the_number_of_trials():
