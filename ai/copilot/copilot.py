@@ -180,7 +180,7 @@ class CoPilot:
         self.guardians, self._rules = other.guardians, other._rules
 
     def futures(self, env: LanderEnv, slots: Sequence[int] | None = None) -> Futures:
-        """Fly the network on from the present moment after each action, in some slots or all; return what comes of it."""
+        """Fly the network on from now after each action, in some slots or all; return what comes of it."""
         flying = env.outcome == Outcome.FLYING
         asked = [(slot, push) for slot in (range(env.num_envs) if slots is None else slots) if flying[slot]
                  for push in KEYS]  # fmt: skip
