@@ -244,12 +244,19 @@ class Lookahead:
             for first in range(0, len(left), _BATCH):
                 batch = left[first : first + _BATCH]
                 found = yield from self._fly(moment, [(*asked[index], pad) for index, pad in batch])
-                for (index, _), plan in zip(batch, found, strict=True):
-                    plans[index] = plans[index] or plan
+                for (index, _), (plan, landed) in zip(batch, found, strict=True):
+                    plans[index] = plans[index] or (plan if landed else None)
         return plans
 
-    def _fly(self, moment: Moment, asked: Sequence[tuple[int, Opening, int]]) -> Flying[Plan | None]:
-        """Fly landers with openings to pads; return the plans of those that land.
+    def ways(self, moment: Moment, asked: Sequence[tuple[int, Opening]]) -> Flying[tuple[Plan, bool]]:
+        """Fly each lander and opening in `asked` to its target; yield after each decision, return way and landing.
+
+        A way that does not land is written down like a plan, but is none.
+        """
+        return self._fly(moment, [(row, opening, int(moment.target[row])) for row, opening in asked])
+
+    def _fly(self, moment: Moment, asked: Sequence[tuple[int, Opening, int]]) -> Flying[tuple[Plan, bool]]:
+        """Fly landers with openings to pads; return what was flown, and whether it landed.
 
         Of many, those that are about to touch down wait until most are as far, and go on together: a step takes ten
         times as long with a single contact in it.
@@ -297,8 +304,8 @@ class Lookahead:
                 env, future = self._begin(Moment.of(env).take(left), future[left])
                 flies, waits, down = masks
         return [
-            Plan(int(start.steps[row]), start.fall(row), asked[row][2], actions[:end, row].copy(),
-                 shares[:end, row].copy(), states[: end + 1, row].copy()) if landed[row] else None
+            (Plan(int(start.steps[row]), start.fall(row), asked[row][2], actions[:end, row].copy(),
+                  shares[:end, row].copy(), states[: end + 1, row].copy()), bool(landed[row]))
             for row, end in enumerate(flown.tolist())
         ]  # fmt: skip
 

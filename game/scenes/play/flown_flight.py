@@ -16,9 +16,8 @@ from game.core import texts
 from game.core.pace import SlowMotion
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import VIEW_SIZE
-from game.flight.assists import eased
 from game.flight.credit import Credit
-from game.flight.difficulty import Difficulty
+from game.flight.difficulty import Difficulty, eased
 from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Record
 from game.flight.handicap import OWN
