@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from ai.agent.agent import DeepQAgent
     from ai.copilot.measurement import AssistedFlights
 
-ROW: Final = 4  # flights
+ROW: Final = 3  # flights
 _MODELS: Final = Path(__file__).parents[2] / "models" / "lander"
 MODEL: Final = _MODELS / "modern"
 ANYWHERE_MODEL: Final = _MODELS / "anywhere"

@@ -292,7 +292,7 @@ class Lookahead:
                 moves &= ~waits
             late = env.time > env.limits.time - SPARE
             ended = late | (env.outcome != Outcome.FLYING)
-            touched[future] = np.where(env.contacts.any(axis=1)[:n], touched[future] + 1, 0)
+            touched[future] = np.where(env.contacts[:n].any(axis=1), touched[future] + 1, 0)
             ended[:n] |= (flown[future] == _MOST) | (touched[future] >= _STUCK)
             over = np.flatnonzero(moves & ended)
             landed[future[over]] = (env.outcome == Outcome.LANDED)[over] & ~late[over]

@@ -202,7 +202,9 @@ class FlownFlight:
         self._held_before = self._held_before and bool(action)
         touched = bool(action) or (self.challenge is not None and not self.challenge.waits)
         holds = self.challenge is not None and self.challenge.holds
-        if self.flight.hand is StickHolder.NETWORK or (touched and not self._held_before and not holds):
+        guard = self.flight.guard
+        ready = guard is None or guard.ready  # or nobody would keep it from harm at first
+        if self.flight.hand is StickHolder.NETWORK or (touched and not self._held_before and not holds and ready):
             self.waiting = False
         return self.waiting
 
