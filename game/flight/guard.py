@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 _SHORT: Final = 8.0  # seconds before time is out, in which no network may be able to land
 _SOON: Final = 0.5  # seconds within which it must be known that no network lands, to be why no plan is held
-_PATIENCE: Final = 60  # steps for which a craft hangs on until a plan is found
+_PATIENCE: Final = 180  # steps for which a craft hangs on until a plan is found
 _NEAR: Final = 0.25  # shares of thrust between a position of the stick and one that is flown in its place
 
 

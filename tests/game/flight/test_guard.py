@@ -136,7 +136,7 @@ def test_a_craft_hangs_until_a_plan_is_found_but_not_for_long(agent):
     while not guard.ready:
         guard.hang(2)
         hung += 1
-    assert hung == 60
+    assert hung == 180
     guard = fly(guarded(agent), lambda _: (0, None), most=6).guard
     guard.ahead.late = None
     assert guard.ready  # between two decisions nothing can be found
