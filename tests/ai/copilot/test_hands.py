@@ -26,9 +26,8 @@ def doing(*actions):
     return Always()
 
 
-@pytest.mark.parametrize(
-    ("faults", "wish", "does"),
-    [
+def test_hands_have_the_faults_they_are_given():
+    for faults, wish, does in (
         (Faults(), 4, {4}),
         (Faults(inverted=True), 4, {5}),
         (Faults(one_key=True), 4, {1, 3}),
@@ -38,11 +37,9 @@ def doing(*actions):
         (Faults(change=1.0), 1, {0, 2}),
         (Faults(sticky=1.0), 4, {0}),
         (Faults(late=99), 4, {4}),  # nothing is later than what was first wished
-    ],
-)
-def test_hands_have_the_faults_they_are_given(faults, wish, does):
-    hands = ClumsyHands(doing(*[wish] * 40), 40, np.random.default_rng(0), faults)
-    assert {int(action) for _ in range(3) for action in hands.act(np.zeros((40, 9)))} == does
+    ):
+        hands = ClumsyHands(doing(*[wish] * 40), 40, np.random.default_rng(0), faults)
+        assert {int(action) for _ in range(3) for action in hands.act(np.zeros((40, 9)))} == does, faults
 
 
 def test_late_hands_do_what_was_wished_before():
