@@ -19,11 +19,6 @@ def eased(settings: Settings) -> Easing:
     return Easing(settings.wider_pads, settings.untimed)
 
 
-def sets_apart(settings: Settings) -> bool:
-    """Return whether the player's choices set their next flight apart from those flown without assists."""
-    return settings.one_switch or settings.wider_pads or settings.untimed or settings.pace != 1
-
-
 class Difficulty:
     """Difficulty of one flight, from the settings; call `heed` before every step.
 
