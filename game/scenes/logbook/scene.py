@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from functools import partial
 from itertools import pairwise
 from typing import TYPE_CHECKING, Final
@@ -108,14 +107,11 @@ class LogbookScene(PanelScene):
         """Add what can be done with the chosen flight, why it does not count, and the estimate."""
         entry = self.chosen
         if entry and self._replayable:
-            verbs: list[tuple[str, Callable[[], Transition | None]]] = [
-                (texts.LOGBOOK_WATCH, self._watch), (texts.LOGBOOK_RACE, self._race), (texts.CODE_COPY, self._copy),
-                (texts.LOGBOOK_THROW_AWAY, self._throw_away),
-            ]  # fmt: skip
-        else:
-            verbs = [(texts.LOGBOOK_BRING_BACK, self._bring_back)] if entry and entry.file in self._thrown else []
-        for number, (label, press) in enumerate(verbs):
-            column.button(label, press, size=SMALL if number else TITLE, colour=MUTE if number else INK)
+            column.button(texts.LOGBOOK_WATCH, self._watch, size=TITLE, colour=INK)
+            more = ((texts.LOGBOOK_RACE, self._race), (texts.CODE_COPY, self._copy))
+            column.words([*more, (texts.LOGBOOK_THROW_AWAY, self._throw_away)])
+        elif entry and entry.file in self._thrown:
+            column.button(texts.LOGBOOK_BRING_BACK, self._bring_back, size=TITLE, colour=INK)
         if entry:
             for words in filter(None, (why_in_brackets(entry), self._records.why_gone(entry))):
                 column.aside(words)

@@ -12,7 +12,7 @@ from ai.lander.missions import MISSIONS
 from game.core import texts
 from game.flight.logbook import Records, best
 from game.scenes.menus.menu import MenuScene
-from game.scenes.menus.settings import AssistsScene, SettingsScene
+from game.scenes.menus.settings import SettingsScene
 from game.scenes.play.challenge import FlownMission
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
@@ -44,7 +44,7 @@ def test_every_assist_is_switched_and_saved_by_each_device(open_game: Open, cont
 
 def test_the_mouse_switches_them_too(open_game: Open, context: Context):
     settle(context)
-    game = open_game(AssistsScene)
+    game = open_game(SettingsScene, "flights")
     game.click(game.widget(texts.SETTINGS["wider_pads"][0]).box.center)
     game.frames(2)
     assert context.settings.wider_pads
@@ -59,7 +59,7 @@ def test_it_is_reached_from_the_pause(open_game: Open, context: Context):
     player.frames(5)
     player.press("pause")
     player.choose(texts.ASSISTS_OPEN)
-    assert (player.top_name, player.top.group) == ("AssistsScene", "flights")
+    assert (player.top_name, player.top.group) == ("SettingsScene", "flights")
     player.press("back")
     assert "PauseScene" in player.top_name
 
@@ -208,7 +208,7 @@ def test_the_whole_way_with_one_switch(open_game: Open, context: Context):
 
 def test_one_switch_turns_a_slider_round_and_every_assist_off_again(open_game: Open, context: Context):
     settle(context, one_switch=True, pace=0.9)
-    game = open_game(AssistsScene)
+    game = open_game(SettingsScene, "flights")
     game.skip(20)
     switch = Switch(game, "keys")
     for pace in (1.0, 0.2):
@@ -224,7 +224,7 @@ def test_one_switch_turns_a_slider_round_and_every_assist_off_again(open_game: O
 
 def test_a_mouse_that_moves_still_clicks_beside_it(open_game: Open, context: Context):
     settle(context, one_switch=True)
-    game = open_game(AssistsScene)
+    game = open_game(SettingsScene, "flights")
     game.skip(20)
     game.click(game.widget(texts.SETTINGS["untimed"][0]).box.center)
     game.frames(2)

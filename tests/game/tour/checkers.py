@@ -293,8 +293,9 @@ NOT_AT = {
 }
 # Screens in rows and columns, which are laid out anew for every window.
 FLOWING = {
-    "MenuScene", "FlightsScene", "SettingsScene", "AssistsScene", "BindingsScene", "QuestionDialog", "NameDialog",
-    "ListDialog", "sound", "controls", "ChoicesScene", "PauseScene", "FlightPauseScene, of a flight",
+    "MenuScene", "FlightsScene", "SettingsScene", "BindingsScene", "QuestionDialog", "NameDialog",
+    "ListDialog", "sound", "controls", "ChoicesScene", "PauseScene", "FlightPauseScene, of a flight", "DaysScene",
+    "MissionsScene", "LogbookScene",
 }  # fmt: skip
 IN_FLIGHT = {
     "Play, in flight", "mission, in flight", "descent, in flight", "daily, in flight", "tutorial, in flight",
