@@ -216,24 +216,21 @@ def test_a_gamepad_alone_gets_there_flies_and_copies(open_game: Open, context: C
 def test_card_list_and_line_agree_on_who_comes_down_softly_beside_the_pad(
     open_game: Open, context: Context, clipboard: list[str]
 ):
-    driver = open_game(lambda context: PlayScene(context, 0, challenge=DailyStart(TODAY, Days(context.user_dir))))
+    day = date(2026, 11, 22)  # with level ground between two of its pads
+    driver = open_game(lambda context: PlayScene(context, 0, challenge=DailyStart(day, Days(context.user_dir))))
     driver.frames(3)
     scene, env = play(driver), play(driver).flight.env
     scene.flown.waiting = False
-    spots = np.linspace(-18.0, 18.0, 400)
-    level = [x for x in spots if np.ptp(env.ground.height(x + np.array([-1.2, 0.0, 1.2]))) < 0.02]
-    beside = next(x for x in level if all(abs(x - pad.x) > pad.width for pad in env.ground.pads))
-    env.place(
-        np.ones(1, bool), np.array([[beside, float(env.ground.height(np.array([beside]))[0]) + 1.05, 0, 0, 0, 0]])
-    )
+    height = float(env.ground.height(np.array([-4.95]))[0])
+    env.place(np.ones(1, bool), np.array([[-4.95, height + 1.1, 0.0, -0.1, 0.0, 0.0]]))
     while scene.ending.shown < 1:
         driver.skip()
     assert scene.flight.intact
     assert scene.ending.card.title == texts.BESIDE_TITLE
     driver.key(pygame.K_k)
-    told = Days(context.user_dir).attempts[TODAY.isoformat()]
-    assert clipboard[-1] == told.line == f"Tranquility {TODAY} · {texts.BESIDE_RESULT} · first attempt"
-    driver = open_game(day_scene)
+    told = Days(context.user_dir).attempts[day.isoformat()]
+    assert clipboard[-1] == told.line == f"Tranquility {day} · {texts.BESIDE_RESULT} · first attempt"
+    driver = open_game(lambda context: DaysScene(context, day))
     driver.frames(2)
     assert driver.the(ListRow).rows[0][1] == texts.BESIDE_RESULT
     assert replace(told, intact=False).result == texts.RIVAL_RESULTS["CRASHED"]

@@ -307,7 +307,9 @@ ONLY_AT = {
         "WatchScene", "ReplayScene", "Play", "swarm", "mission", "TrainScene", "PhysicsScene", "Play, in flight",
         "tutorial", "mission, card",
     },
-    at_first_sight_there_is_little_to_read_and_to_choose_from: FLOWING | {"Play", "mission", "daily", "descent"},
+    at_first_sight_there_is_little_to_read_and_to_choose_from: FLOWING
+    - {"MissionsScene", "LogbookScene"}  # whose lists are long
+    | {"Play", "mission", "daily", "descent"},
     in_flight_there_is_one_sentence: IN_FLIGHT,
 }  # fmt: skip
 
