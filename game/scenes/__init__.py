@@ -21,9 +21,9 @@ ROUTES: Final = {
     "physics_step": "physics.step_scene.PhysicsStepScene",
     "logbook": "logbook.scene.LogbookScene", "replay": "logbook.replay.ReplayScene",
     "settings": "menus.settings.SettingsScene", "bindings": "menus.keys.BindingsScene",
-    "choices": "play.choices.ChoicesScene", "pause": "play.pause.PauseScene", "flight_pause": "play.pause.FlightPauseScene",
-    "learn": "learn.LearnScene", "chapter": "chapter.ChapterScene", "lesson": "lesson.LessonScene",
-    "error_screen": "error_screen.ErrorScene", "study": "study.StudyScene",
+    "choices": "play.choices.ChoicesScene", "pause": "play.pause.PauseScene",
+    "flight_pause": "play.pause.FlightPauseScene", "learn": "learn.LearnScene", "chapter": "chapter.ChapterScene",
+    "lesson": "lesson.LessonScene", "error_screen": "error_screen.ErrorScene", "study": "study.StudyScene",
 }  # fmt: skip
 
 
