@@ -118,8 +118,8 @@ class LogbookScene(PanelScene):
         column.gap(14)
         column.caption(texts.BECOMING_TITLE)
         column.choice("", [texts.BECOMING_KINDS[kind] for kind in KINDS], self._kind, self._show_kind, size=SMALL)
-        column.picture(_CHART, self._draw_estimate)
         column.aside(lambda: said(self._becoming.estimate(KINDS[self._kind])))
+        column.picture(_CHART, self._draw_estimate)
 
     def _row(self, entry: Entry) -> Row:
         when, course, end, *more = entry_row(entry)
@@ -194,7 +194,9 @@ class LogbookScene(PanelScene):
     # The picture
 
     def _draw_estimate(self, canvas: Canvas, box: pygame.FRect) -> None:
-        """Draw of how many flights in ten the player would land, flight after flight, within what is likely."""
+        """Draw of how many flights in ten the player would land, flight after flight; nothing before that is known."""
+        if not self._becoming.estimate(KINDS[self._kind]).known:
+            return
         area = pygame.FRect(box.left, box.top + 12, box.width - 28, box.height - 24)
         for share in (0.0, 0.5, 1.0):
             y = area.bottom - area.height * share

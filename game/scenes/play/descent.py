@@ -72,7 +72,7 @@ class Descent(Challenge):
         self.legs = self.total = self.streak = 0
         self._landed = self._relieved = False
         self._counts = True
-        self._points, self._gained, self._since = 0, 0.0, 0
+        self._points, self._gained, self._since, self._bare = 0, 0.0, 0, False
 
     def _start_run(self, seed: int) -> None:
         """Begin a run; over the same ground as the last one, beside the longest so far."""
@@ -115,7 +115,7 @@ class Descent(Challenge):
             return
         spot, score = env.ground.pads[int(env.landed_on[0])], landing_score(env)
         self.streak = self.streak + 1 if own else 0
-        self._points = score * min(self.streak, _MOST)
+        self._points, self._bare = score * min(self.streak, _MOST), spot.bare
         self.total += self._points
         self.legs = self.start.number
         self._next = self.start.after(float(env.fuel[0]), score, bare=spot.bare)
@@ -224,7 +224,7 @@ class Descent(Challenge):
         words = texts.DESCENT_LANDED.format(count=self._points) if self._points else texts.DESCENT_RELIEVED
         rows.in_style(TEXT, HUMAN if self._points else NET).text(words, "centre")
         rows.gap(LEADING * TEXT)
-        fuel = texts.DESCENT_FUEL.format(seconds=self._gained) if self._gained > 0 else texts.DESCENT_NO_FUEL
+        fuel = texts.DESCENT_NO_FUEL if self._bare else texts.DESCENT_FUEL.format(seconds=self._gained)
         rows.in_style(SMALL, MUTE).text(fuel, "centre")
         rows.gap(LEADING * SMALL + 2)
         now = self._next.tank - (1 - filled) * self._gained
