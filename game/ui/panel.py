@@ -140,6 +140,7 @@ class Column:
     def words(self, words: Sequence[tuple[str, OnPress]]) -> list[ButtonRow]:
         """Add words to press, side by side on as many lines as they need."""
         buttons = [self._form.add(ButtonRow(self._form.manager, label, press)) for label, press in words]
+        self._widgets += buttons
         self.add(partial(_write_words, buttons))
         return buttons
 
