@@ -33,7 +33,7 @@ AI_FLOORS = (
 )  # fmt: skip
 GAME_FLOORS = (
     "game.core", "game.input", "game.audio", "game.drawing", "game.ui", "game.flight", "game.training",
-    "game.world", "game.panels", "game.lesson", "game.exhibits", "game.digits", "game.learn",
+    "game.world", "game.panels", "game.lesson", "game.digits", "game.learn",
     "game.export", "game.shell", "game.scenes", "game.start", "game.verify", "game.cli",
 )  # fmt: skip
 # These only describe what is handed to them from above, for the type checker.

@@ -9,7 +9,7 @@ import numpy as np
 from ai.digits.filters import FilterMoment
 from ai.training.history import History
 from game.core import texts
-from game.digits.answer import percent
+from game.digits import percent
 from game.digits.pictures import mosaic
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache

@@ -38,7 +38,7 @@ from game.learn.memory import MemoryChapter
 from game.learn.target import TargetChapter
 from game.scenes import scene_of
 from game.scenes.chapter import ChapterScene
-from game.scenes.digit_inside import DigitInsideScene
+from game.scenes.digits.inside import DigitInsideScene
 from game.scenes.error_screen import ErrorScene
 from game.scenes.lesson import LessonScene
 from game.scenes.menus.dialogs import QuestionDialog
