@@ -68,7 +68,7 @@ def test_limits_of_a_touch_are_those_of_each_site():
     assert env.intact.tolist() == [False, True]
     assert put(env, (18.0, 9.0)).observe()[0, 0] == pytest.approx(
         18 * OBSERVATION_SCALE[0]
-    )  # one pad is seen from afar
+    )
 
 
 def test_sites_are_of_the_kinds_asked_for():
