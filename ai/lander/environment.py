@@ -35,7 +35,7 @@ from ai.lander.rules import (
     Limits,
     Outcome,
 )
-from ai.lander.sensing import sensed, surroundings, terrain
+from ai.lander.sensing import sensed, surroundings
 from ai.lander.spawns import SPAWNS, Curriculum, checked_start
 from engine import DT
 
@@ -385,13 +385,9 @@ class LanderEnv:
         """Return every lander's observation of each pad, (n, pads, 9), or what `pilot` reads, (n, pads, features)."""
         return np.stack([self.observe_for(pilot, pad) for pad in range(len(self.ground.pads))], axis=1)
 
-    def surroundings(self, pad: Any = None) -> Floats:
+    def around(self, pad: Any = None) -> Floats:
         """Return the `ai.lander.sensing.SURROUNDINGS` of every lander, (n, k), for the target or another `pad`."""
         return surroundings(self, self.target if pad is None else pad)
-
-    def around(self, pad: Any = None) -> Floats:
-        """Return the surroundings and the ground beside every lander, (n, k): `ai.lander.sensing.AROUND` names them."""
-        return np.concatenate([self.surroundings(pad), terrain(self, self.target if pad is None else pad)], axis=1)
 
     def around_pads(self) -> Floats:
         """Return what is around every lander on its way to each pad, (n, pads, k)."""
