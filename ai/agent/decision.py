@@ -68,8 +68,11 @@ class Decision:
 
     def of(self, slot: int) -> Decision:
         """Return a copy of the decision for one of the landers, with n = 1."""
-        rows = {name: getattr(self, name) for name in _ROWS}
-        return replace(self, **{name: None if each is None else each[[slot]] for name, each in rows.items()})
+
+        def row(array: Any) -> Any:
+            return None if array is None else array[[slot]]
+
+        return replace(self, **{name: row(getattr(self, name)) for name in _ROWS})
 
 
 def decide(

@@ -73,7 +73,7 @@ class FinishedTrial:
 
     number: Count  # in its study
     params: dict[str, Any]  # values of the knobs that were searched
-    value: float | None  # of the metric, as the seeds are judged; None if one has none, or the settings made no sense
+    value: float | None  # the seeds' median; None if one has none, or the settings made no sense
     at: Count  # decisions or epochs that were trained
     stopped: bool  # early, because others were better
     seconds: Duration  # that it took, by the clock, with all measuring and saving

@@ -49,7 +49,7 @@ from ai.nn import (
     atomic_folder,
 )
 from ai.nn.limits import MOST_LAYERS
-from ai.training.checkpoints import resume_run, save_run
+from ai.training.checkpoints import AGENTS, resume_run
 from ai.training.config import PRESETS, gym_config
 from ai.training.demonstrations import Demonstration
 from ai.training.history import History
@@ -85,7 +85,7 @@ def saved(tmp_path_factory):
     folder = tmp_path_factory.mktemp("saved") / "run"
     training = Training(SMALL, validation_episodes=1)
     training.conclude()  # so that it has a score
-    save_run(training, folder)
+    AGENTS.save(training, folder, state=False)
     return folder
 
 
@@ -327,7 +327,7 @@ def test_a_file_never_starts_code(tmp_path, monkeypatch, capsys):
     monkeypatch.syspath_prepend(str(tmp_path))
     (tmp_path / "payload.py").write_text("from pathlib import Path\nPath('ran').touch()\n")
     training = Training(gym_config("CartPole-v1").changed(num_envs=2), validation_episodes=1)
-    save_run(training, "run")
+    AGENTS.save(training, "run", state=False)
     for folder in (Path("run"), Path("run", "last")):
         config = json.loads((folder / "config.json").read_text())["config"]
         edit(folder / "config.json", config=config | {"env": "payload:CartPole-v1"})
@@ -403,7 +403,7 @@ def test_training_replaces_only_what_is_its_own(saved, tmp_path, capsys, subtest
 
 def test_what_systems_leave_in_a_folder_is_no_obstacle(run):
     (run / ".DS_Store").write_bytes(b"\0")
-    save_run(Training(SMALL, validation_episodes=1), run)
+    AGENTS.save(Training(SMALL, validation_episodes=1), run, state=False)
 
 
 def test_places_that_cannot_be_written_are_told_in_a_sentence(tmp_path, monkeypatch, capsys, subtests):
