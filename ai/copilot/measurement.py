@@ -164,8 +164,8 @@ def fly(
                 rows = zip(action[mine].tolist(), *shares[mine].T.tolist(), strict=True)
                 asked[mine] = [Push(*row) for row in rows]
         known = copilot.foresee(env, asked) if copilot and foresees else None
-        for pilot, mine in hands if known else []:
-            if isinstance(pilot, Adversary):
+        for pilot, mine in hands:
+            if known and isinstance(pilot, Adversary):
                 action[mine] = pilot.act(wished[mine], passes=Futures(known[mine]).lasts)
                 shares[mine] = ACTION_SHARES[action[mine]]
         if copilot:
