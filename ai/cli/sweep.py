@@ -57,7 +57,7 @@ def add_commands(commands: Any) -> None:
     add("--preset", help="settings of all that is not searched, as for train or train-digits")
     add("--set", action="append", metavar="NAME=VALUE", dest="changes", help="change such a setting")
     add("--seed", type=int, help="of the search itself (default: 0)")
-    add("--address", metavar="HOST:PORT", help="join the Ray cluster there; auto for the one around")
+    add("--address", metavar="HOST:PORT", help="join the Ray cluster there")
     add("--workers", type=int, metavar="N", help="processes at once (default: all cores)")
     sweep.set_defaults(run=_sweep)
 
