@@ -9,7 +9,6 @@ import pytest
 ROOT = Path(__file__).parents[1]
 EXTRAS = {
     "pytest", "hypothesis", "torch", "gymnasium", "Box2D", "envpool", "pymunk", "stable_baselines3", "ray", "optuna",
-    "av",
 }  # fmt: skip
 
 # Starts each benchmark so, one after another, with everything of the extras made impossible to find.

@@ -25,8 +25,8 @@ from ai.files import (
     Seed,
     Share,
     Sized,
+    atomic_folder,
     brief,
-    new_folder,
     read_as,
     read_bytes,
     read_json,
@@ -206,7 +206,7 @@ class Study:
 
     def record(self, trial: FinishedTrial, runs: Files) -> None:
         """Keep a finished trial and the files of its runs, whole or not at all; raises OSError."""
-        with new_folder(self.trial_folder(trial.number)) as new:
+        with atomic_folder(self.trial_folder(trial.number), None) as new:
             write_files(runs, new)
             write_text(new / TRIAL_FILE, json.dumps(asdict(trial)) + "\n", flush=False)
         self.trials[trial.number] = trial
