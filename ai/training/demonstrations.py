@@ -31,8 +31,9 @@ from ai.files import (
     sound_fields,
     write_text,
 )
-from ai.lander.environment import NUM_ACTIONS, LanderEnv
+from ai.lander.environment import NUM_ACTIONS, LanderEnv, Outcome
 from ai.lander.ground import hilly
+from ai.lander.pilots import Pilot
 from ai.lander.spawns import SPAWNS
 from ai.training.config import Config
 
@@ -82,6 +83,28 @@ def takeover(hands: Sequence[bool]) -> int:
     while begins and hands[begins - 1]:
         begins -= 1
     return begins
+
+
+def demonstrate(pilot: Pilot, count: int, seed: int = 0, spawn: str = "random") -> list[Demonstration]:
+    """Let a pilot fly until it has landed `count` times, each flight from a seed of its own, and return those.
+
+    Raises ValueError for a pilot that crashes more than nine times out of ten.
+    """
+    found: list[Demonstration] = []
+    seeds = range(seed, seed + 10 * count)
+    env = LanderEnv(len(seeds), 0, spawn, frame_skip=4)
+    for slot, own in enumerate(seeds):
+        env.streams[slot] = _stream(own)
+    observation, flown = env.reset(), []
+    while (env.outcome == Outcome.FLYING).any():
+        flown.append(pilot.act(observation, held=env.actions))
+        observation = env.step(flown[-1]).observation
+    for slot in np.flatnonzero(env.outcome == Outcome.LANDED)[:count].tolist():
+        actions = np.repeat([row[slot] for row in flown], env.frame_skip)[: env.steps[slot]]
+        found.append(Demonstration(seeds[slot], tuple(actions.tolist()), spawn))
+    if len(found) < count:
+        raise ValueError(f"of {len(seeds)} flights, only {len(found)} landed, not {count}")
+    return found
 
 
 def relive(demonstrations: Sequence[Demonstration], config: Config) -> list[Transition | None]:
@@ -140,7 +163,7 @@ def read(path: Path) -> list[Demonstration]:
         raise ValueError(f"{path}: {brief(error)}") from error
 
 
-def stream(seed: int) -> np.random.Generator:
+def _stream(seed: int) -> np.random.Generator:
     """Return the random stream from which a lander that flies alone from this seed draws its start."""
     return np.random.default_rng(seed).spawn(1)[0]
 
@@ -155,7 +178,7 @@ def _fly_together(
     lengths = np.array([len(demonstration.actions) for demonstration in demonstrations])
     actions = np.zeros((-(-lengths.max() // skip) * skip, count), np.intp)
     for slot, demonstration in enumerate(demonstrations):
-        env.streams[slot] = stream(demonstration.seed)
+        env.streams[slot] = _stream(demonstration.seed)
         actions[: lengths[slot], slot] = demonstration.actions
     pads = np.array([demonstration.pad for demonstration in demonstrations])
     env.target[:] = np.minimum(pads, len(env.ground.pads) - 1)
