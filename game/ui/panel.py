@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from game.core.scene import Transition
     from game.drawing.canvas import Canvas, Now
-    from game.ui.form import Form
+    from game.ui.form import Form, Part
     from game.ui.listing import Row as Cells
     from game.ui.widget import OnPress, Widget
 
@@ -50,7 +50,7 @@ class Row:
 class Column:
     """Rows that are described one after another; each call adds one, and returns its widget if it has one."""
 
-    def __init__(self, form: Form) -> None:
+    def __init__(self, form: Form | Part) -> None:
         self.rows: list[Row] = []
         self._form = form
 
@@ -200,7 +200,7 @@ class Panel(Column):
 
     """
 
-    def __init__(self, form: Form) -> None:
+    def __init__(self, form: Form | Part) -> None:
         super().__init__(form)
         form.in_order = True
         self.box = pygame.FRect(0, 0, 0, 0)

@@ -21,7 +21,7 @@ from game.flight.skill import Skill
 from game.learn.path import FIRST, PATH
 from game.scenes.chapter import ChapterScene
 from game.scenes.digit_inside import DigitInsideScene
-from game.scenes.digit_training import DigitTrainingScene
+from game.scenes.train.digits import DigitTrainingScene
 from game.scenes.digits import DigitsScene
 from game.scenes.dream import DreamScene
 from game.scenes.learn import LearnScene
@@ -45,9 +45,9 @@ from game.scenes.play.pause import FlightPauseScene, PauseScene
 from game.scenes.play.scene import PlayScene
 from game.scenes.play.tutorial import Tutorial
 from game.scenes.quiz import QuizScene
-from game.scenes.runs import NetworksScene
-from game.scenes.study import StudyScene
-from game.scenes.train import TrainScene
+from game.scenes.train.networks import NetworksScene
+from game.scenes.train.study import StudyScene
+from game.scenes.train.scene import TrainScene
 from game.scenes.watch.scene import WatchScene
 from game.scenes.why_not import WhyNotScene
 from game.ui.context import Context

@@ -15,7 +15,7 @@ from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.prose import wrapped
 from game.drawing.tokens import SMALL
-from game.panels.advice import Advice
+from game.scenes.train.advice import Advice
 from game.ui.context import Context
 from game.ui.form import Form
 from tests.ai.training.test_hints import HEALTHY

@@ -10,7 +10,7 @@ from ai.lander.environment import ACTION_NAMES
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.panels.q_values import QValues, value_words
-from game.panels.training_charts import TrainingCharts
+from game.scenes.train.charts import TrainingCharts
 from game.scenes.play.scene import PlayScene
 from game.scenes.watch.scene import WatchScene
 from tests.support.driver import Driver

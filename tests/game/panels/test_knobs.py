@@ -9,9 +9,9 @@ from ai.training.config import PRESETS, in_force
 from game.core import texts
 from game.core.scene import Transition
 from game.drawing.canvas import Canvas
-from game.panels.knob import Knob, SliderKnob
-from game.panels.knobs import KnobsPanel
-from game.panels.seed_knob import SeedKnob
+from game.scenes.train.knob import Knob, SliderKnob
+from game.scenes.train.knobs import KnobsPanel
+from game.scenes.train.knob import SeedKnob
 from game.training.knob_descriptions import knob_descriptions, pages
 from game.ui.context import Context
 from game.ui.widgets import Choice, TextButton

@@ -9,7 +9,7 @@ from ai.training.lander_session import live
 from ai.training.messages import RunStarted
 from game.core import texts
 from game.core.worker import WorkerState
-from game.panels.training_charts import TrainingCharts
+from game.scenes.train.charts import TrainingCharts
 from game.training.beside import EarlierRun
 from game.training.library import Library
 from game.training.run import TrainingRun

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import pytest
 
 from game.core.scene import Scene
-from game.scenes.train import TrainScene
+from game.scenes.train.scene import TrainScene
 from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.small import LANDERS

@@ -10,7 +10,7 @@ from ai.training.history import History
 from game.core import texts
 from game.panels.run_legend import RunLegend
 from game.scenes.menus.dialogs import NameDialog, QuestionDialog
-from game.scenes.train import TrainScene
+from game.scenes.train.scene import TrainScene
 from game.training.beside import put_beside
 from game.ui.rows import EntryRow
 from tests.ai.training.test_hints import HEALTHY

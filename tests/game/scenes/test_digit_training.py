@@ -22,7 +22,7 @@ from ai.training.history import DigitPoint, Validation
 from game.core import texts
 from game.core.names import LibraryError
 from game.core.worker import WorkerState
-from game.scenes.digit_training import KNOBS, DigitTrainingScene
+from game.scenes.train.digits import KNOBS, DigitTrainingScene
 from game.training.digit_models import DigitModels
 from game.training.knob_descriptions import knob_descriptions
 from game.training.run import TrainingRun

@@ -8,9 +8,9 @@ from ai.explain.inspection import links
 from ai.training.edits import NetworkEdits, UndoEdit
 from game.core import texts
 from game.core.worker import WorkerState
-from game.panels.network_editing import NetworkEditing
-from game.panels.network_picking import Link, Unit
-from game.scenes.train import TrainScene
+from game.scenes.train.editing import NetworkEditing
+from game.scenes.train.picking import Link, Unit
+from game.scenes.train.scene import TrainScene
 from game.ui.virtual_pointer import VirtualPointer
 from game.ui.widgets import Slider
 from tests.support.driver import Driver

@@ -11,8 +11,8 @@ from ai.training.history import COLUMNS, PARTS, Checkpoint, Point
 from game.core import texts
 from game.core.worker import WorkerState
 from game.panels.run_timeline import RunTimeline
-from game.panels.training_status import lander_status
-from game.scenes.train import TrainScene
+from game.scenes.train.status import lander_status
+from game.scenes.train.scene import TrainScene
 from game.ui.scrubber import Scrubber
 from tests.support.driver import Driver
 

@@ -14,7 +14,7 @@ from ai.training.config import Config
 from game.core import texts
 from game.core.scene import Pop, Push
 from game.scenes.menus.menu import MenuScene
-from game.scenes.runs import NetworksScene
+from game.scenes.train.networks import NetworksScene
 from game.training.library import Library
 from game.ui.context import Context
 from game.ui.entry import Entry

@@ -15,9 +15,9 @@ from ai.training.history import History
 from ai.training.loop import Training
 from game.core import texts
 from game.core.worker import WorkerState
-from game.panels.knob import Knob
+from game.scenes.train.knob import Knob
 from game.panels.knob_page import MORE, TryButton
-from game.scenes.train import TrainScene
+from game.scenes.train.scene import TrainScene
 from game.training.knob_descriptions import knob_descriptions
 from game.training.library import Library
 from game.training.run import AHEAD

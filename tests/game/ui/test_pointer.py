@@ -13,7 +13,7 @@ from game.flight.flight import Flight
 from game.flight.logbook import Records
 from game.scenes.logbook.scene import LogbookScene
 from game.scenes.physics import PhysicsScene
-from game.scenes.train import TrainScene
+from game.scenes.train.scene import TrainScene
 from game.ui.context import Context
 from game.ui.virtual_pointer import VirtualPointer
 from tests.support.driver import Driver
