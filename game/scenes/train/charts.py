@@ -158,11 +158,10 @@ class TrainingCharts:
         compared = runs[:1] if column == SCORE and paid_otherwise else runs
         series = [self._series(column, each, emphasised) for each in compared]
         said = say(column)
-        if column == SCORE and len(compared) == 1 and len(history):
+        if column == SCORE and len(runs) == 1 and len(history):
             expected = self._series(EXPECTED, compared[0], emphasised)
             series.append(expected)
-            wide = self.charts.charts[number].box.width >= _WIDE
-            said = f"{_both(history)}\n{said if wide else ''}".strip()
+            said = f"{_both(history)}\n{said}".strip()
         self.charts.zoom.end = max([_SHORTEST[self.axis], *(float(np.max(each.x)) for each in series)])
         ticks = [Tick(self._place(tick.x), tick.text, tick.kind) for tick in ticks_of(history)] if number == 0 else ()
         self.charts.charts[number].set(series, self.charts.zoom.shown, ticks, said)
@@ -214,7 +213,8 @@ class TrainingCharts:
         for name, chart in zip(_CHARTS, self.charts.charts, strict=False):
             box = chart.box
             y = box.bottom + _DROP
-            for line in chart.painted_caption.split("\n"):
+            lines = chart.painted_caption.split("\n")
+            for line in lines if box.width >= _WIDE else lines[:1]:
                 y = draw_wrapped(canvas, line, (box.x, y), box.width - 8, size=_SIZE, colour=MUTE, leading=_LEADING,
                                  most=2)  # fmt: skip
             canvas.explain(chart.header, texts.EXPLAIN_CHARTS[name], partial(_latest, chart))

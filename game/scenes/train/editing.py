@@ -160,7 +160,7 @@ class NetworkEditing:
         """Add what is picked, and what can be done to it; where the network is not seen, what was edited alone."""
         edits, words = self._run.edits, list[tuple[str, Callable[[], None]]]()
         self._slider = None
-        changed = self.enabled and (edits.steps > 0 or edits.holds)
+        changed = self.enabled and (edits.steps > 0 or edits.holds or edits.way_back)
         if not opened and not changed:
             return
         if not opened:

@@ -158,12 +158,12 @@ class KnobsPanel:
 
     def describe_foot(self, column: Column) -> None:
         """Add what was refused, the question that waits, or the help of the knob in focus."""
-        run_settings, words = self._run_settings, column.text
+        run_settings = self._run_settings
+        column.add(self._write_help)  # above the words, which must not move when it goes
         if run_settings.waiting or run_settings.put_aside:
-            words(self._question, size=SMALL, colour=HUMAN)
+            column.text(self._question, size=SMALL, colour=HUMAN)
             apply = [(texts.KNOBS_APPLY, self._apply)] if run_settings.waiting else []
             column.words([*apply, (texts.KNOBS_UNDO, self._undo)])
-        column.add(self._write_help)
 
     def _knob(self, name: str) -> Knob | SeedKnob:
         """Return the widget of a setting: the same one as long as it is on the screen, so that a drag goes on."""
@@ -211,9 +211,8 @@ class KnobsPanel:
             cursor.y = small.y
             return
         if not isinstance(focused, Knob | SeedKnob):
-            if run_settings.waiting or run_settings.put_aside:
-                return
-            cursor.aside(self._run_kind.sentence(run_settings.holds))
+            if self.every and not (run_settings.waiting or run_settings.put_aside):
+                cursor.aside(self._run_kind.sentence(run_settings.holds))
             return
         cursor.aside(focused.help)
         if not isinstance(focused, Knob):

@@ -17,6 +17,7 @@ from game.scenes.train.inside import Inside
 from game.training.run import TrainingRun
 from game.ui.panel import Column
 from game.ui.rows import SliderRow
+from game.ui.widget import PointsManager
 from game.world.swarm import LearningSwarm
 
 _STEPS: Final = 100  # presses of an arrow from the beginning of a run to its end
@@ -148,14 +149,13 @@ class Rewind:
         """Add the moment, the word that leads back to now and, where no chart is seen, a timeline."""
         self._timeline = None
         if timeline and len(self._run.history):
-            self._timeline = column.slider(
-                texts.REWIND_TIMELINE, self.share, (0.0, 1.0), self.seek_share, step=1 / _STEPS, figure=self._figure
-            )
+            self._timeline = column.widget(_Timeline(column.form.manager, self))
         if self.moment is not None:
             column.text(lambda: self.words, size=SMALL, colour=HUMAN)
             column.button(texts.REWIND_NOW, self.clear, colour=HUMAN)
 
-    def _figure(self, share: float) -> str:
+    def seconds_at(self, share: float) -> str:
+        """Write the time at a share of the run."""
         return texts.REWIND_MARK.format(seconds=share * float(self._run.history["seconds"][-1]))
 
     def draw_swarm(self, canvas: Canvas, alpha: float) -> None:
@@ -163,3 +163,19 @@ class Rewind:
         self.swarm.draw(canvas, alpha, paused=True)
         if not self.swarm_kept:
             canvas.text(texts.REWIND_NO_LANDERS, self.swarm.box.center, size=SMALL, colour=MUTE, align="centre")
+
+
+class _Timeline(SliderRow):
+    """Slider over the whole run; the arrows go from one kept moment to the next."""
+
+    def __init__(self, manager: PointsManager, rewind: Rewind) -> None:
+        super().__init__(
+            manager, texts.REWIND_TIMELINE, rewind.share, (0.0, 1.0), rewind.seek_share, 0.0, rewind.seconds_at
+        )
+        self._rewind = rewind
+
+    def shift(self, direction: int) -> bool:
+        """Go a step back or on."""
+        self._rewind.shift(direction)
+        self.value = self._rewind.share
+        return True

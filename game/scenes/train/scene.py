@@ -102,9 +102,8 @@ class TrainScene(TrainingScene):
     @property
     def _key(self) -> Hashable:
         beside = tuple((each.name, each.style) for each in self.split_view.beside)
-        editing = self.inside.editing.key if self.inside.opened or self.lander_run.edits.steps else None
         return (
-            self.pages.page, self.laboratory.flies, self.moment is None, self._advice.key, beside, editing,
+            self.pages.page, self.laboratory.flies, self.moment is None, self._advice.key, beside, self.inside.editing.key,
             self.inside.opened and bool(len(self.lander_run.history)),
         )  # fmt: skip
 
@@ -416,7 +415,7 @@ class TrainScene(TrainingScene):
         else:
             self.lander_run.leave()
         self._clear()
-        self.pages.close()
+        self.pages.page = "result" if self.laboratory.flies else ""
 
     # The picture
 

@@ -13,6 +13,7 @@ from game.flight.flight import Flight
 from game.flight.logbook import Records
 from game.scenes.logbook.scene import LogbookScene
 from game.scenes.physics import PhysicsScene
+from game.scenes.train.base import INSIDE
 from game.scenes.train.scene import TrainScene
 from game.ui.context import Context
 from game.ui.virtual_pointer import VirtualPointer
@@ -118,6 +119,8 @@ def test_a_chart_says_what_is_under_the_pointer(take: Take, context: Context):
 
 def test_the_network_of_a_run_can_be_pointed_into(take: Take):
     player = take(TrainScene)
+    player.top.open(INSIDE)
+    player.frames(2)
     view = player.top.inside.view
     view.set(build_network(NUM_FEATURES, NUM_ACTIONS, Config(hidden=(8,)), np.random.default_rng(0)))
     bring(player, view.centres[1][3])
