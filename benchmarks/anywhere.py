@@ -19,13 +19,13 @@ from pathlib import Path
 import numpy as np
 
 from ai.agent.agent import DeepQAgent
-from ai.common.intervals import wilson
 from ai.lander.anywhere import AnywhereEnv
 from ai.lander.conditions import Conditions
 from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.ground import Ground, Pad
 from ai.lander.missions import MISSIONS
 from ai.lander.pilots import Pilot, ScriptedPilot
+from ai.training.statistics import wilson
 from ai.training.tasks import TEST_SEED
 from tests.support.missions import flown, fly
 

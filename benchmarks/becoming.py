@@ -16,13 +16,13 @@ from typing import Any, Final
 import numpy as np
 
 from ai.agent.agent import DeepQAgent
-from ai.common.environment import Bools, Doubles, Ints
-from ai.common.intervals import wilson
 from ai.copilot.alone import ASSISTS, CALM_SECONDS, LandingAlone
 from ai.copilot.copilot import CoPilot, Mode
 from ai.copilot.hands import ClumsyHands, Faults, OneOrOther, any_hands
+from ai.environment import Bools, Doubles, Ints
 from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.pilots import Gains, ScriptedPilot
+from ai.training.statistics import wilson
 
 MODEL: Final = Path("models/lander/modern")
 _SECONDS: Final = 1 / 15  # of a decision

@@ -29,7 +29,7 @@ from benchmarks.hand_styles import HANDS, UNSEEN, Styles
 from game.core.assets import MODELS_DIR
 from game.core.settings import Settings
 from game.scenes import scene_of
-from game.scenes.digits import DigitsScene
+from game.scenes.digits.scene import DigitsScene
 from game.shell.app import App
 from game.ui.context import Context
 

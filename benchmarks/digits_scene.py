@@ -30,7 +30,7 @@ import pygame
 
 from game.core.settings import Settings
 from game.scenes import scene_of
-from game.scenes.digits import DigitsScene
+from game.scenes.digits.scene import DigitsScene
 from game.shell.app import App
 from game.ui.context import Context
 from tests.support.digit_styles import template_strokes

@@ -50,30 +50,29 @@ from game.core.scene import Scene
 from game.core.settings import Settings
 from game.digits.kept import classifier_in
 from game.drawing.paint_cache import A_FRAME, idle, spread
-from game.exhibits import EXHIBITS
-from game.flight.skill import Skill
 from game.learn.path import PATH
 from game.scenes import scene_of
 from game.scenes.ahead import load
 from game.scenes.chapter import ChapterScene
-from game.scenes.digit_inside import DigitInsideScene
-from game.scenes.dream import DreamScene
+from game.scenes.digits.dream import DreamScene
+from game.scenes.digits.inside import DigitInsideScene
+from game.scenes.digits.quiz import QuizScene
+from game.scenes.digits.why_not import WhyNotScene
 from game.scenes.error_screen import ErrorScene
 from game.scenes.lesson import LessonScene
 from game.scenes.menus.background import LOADER
 from game.scenes.menus.dialogs import ListDialog, NameDialog, QuestionDialog
 from game.scenes.menus.menu import MenuScene
-from game.scenes.physics import PhysicsScene
-from game.scenes.physics_step import PhysicsStepScene
+from game.scenes.physics.exhibits import EXHIBITS
+from game.scenes.physics.scene import PhysicsScene
+from game.scenes.physics.step_scene import PhysicsStepScene
 from game.scenes.play.challenge import FlownMission
 from game.scenes.play.choices import ChoicesScene
 from game.scenes.play.descent import Descent
 from game.scenes.play.pause import PauseScene
 from game.scenes.play.scene import PlayScene
-from game.scenes.quiz import QuizScene
 from game.scenes.train.scene import TrainScene
 from game.scenes.watch.scene import COUNTS, WatchScene
-from game.scenes.why_not import WhyNotScene
 from game.shell.app import App
 from game.ui.context import Context
 from game.world.landscape.backdrop import forget_land
@@ -160,7 +159,7 @@ def rows() -> dict[str, Row]:
         "dialog, naming": over_play(lambda below: NameDialog(below, "?", "name", lambda _: "")),
         "dialog, picking": over_play(lambda below: ListDialog(below, "?", [("a",), ("b",)], print)),
         "choices": over_play(
-            lambda below: ChoicesScene(below.context, below, Skill(()), begun=False), (pygame.K_DOWN, pygame.K_RIGHT)
+            lambda below: ChoicesScene(below.context, below, begun=False), (pygame.K_DOWN, pygame.K_RIGHT)
         ),
         "fault": Row(lambda context: ErrorScene(context, ValueError(), Path("log"))),
         **{f"watch, {number}": Row(lambda context, n=number: WatchScene(context, n, seed=4)) for number in COUNTS},

@@ -36,9 +36,9 @@ from benchmarks.monkey import resident
 from game.core.scene import Pop, Push
 from game.core.settings import Settings
 from game.scenes import scene_of
-from game.scenes.digits import DigitsScene
+from game.scenes.digits.quiz import QuizScene
+from game.scenes.digits.scene import DigitsScene
 from game.scenes.error_screen import ErrorScene
-from game.scenes.quiz import QuizScene
 from game.shell.app import App
 from game.ui.context import Context
 from tests.support.monkey import playground

@@ -17,10 +17,10 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is imported, 
 import argparse
 from typing import Final
 
-from ai.common.intervals import mean_of_shares
 from ai.training.config import PRESETS
 from ai.training.experiments import MEASURED, SABOTAGES, sabotaged
 from ai.training.loop import Training
+from ai.training.statistics import mean_of_shares
 
 AFTER: Final = (50_000, 100_000, 150_000)
 

@@ -8,9 +8,9 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 
-from ai.common.intervals import mean_of_shares, wilson
 from ai.training.config import Config
 from ai.training.small_run import SMALL_RUN, Plan, SmallRun, SmallState
+from ai.training.statistics import mean_of_shares, wilson
 from game.learn.daring import DARING, PAY
 from game.learn.memory import LATEST, TODAY, YESTERDAY, MemoryChapter
 from game.learn.target import BOUND, EVERY, NORMALISED, config_of

@@ -32,14 +32,14 @@ from game.core.scene import Scene
 from game.core.settings import Settings
 from game.scenes import scene_of
 from game.scenes.chapter import ChapterScene
-from game.scenes.digits import DigitsScene
+from game.scenes.digits.scene import DigitsScene
 from game.scenes.lesson import LessonScene
 from game.scenes.menus.menu import MenuScene
-from game.scenes.physics import PhysicsScene
+from game.scenes.physics.scene import PhysicsScene
 from game.scenes.play.challenge import FlownMission
 from game.scenes.play.descent import Descent
 from game.scenes.play.scene import PlayScene
-from game.scenes.train import TrainScene
+from game.scenes.train.scene import TrainScene
 from game.scenes.watch.scene import WatchScene
 from game.shell.app import App
 from game.ui.context import Context

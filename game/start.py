@@ -38,8 +38,8 @@ def play(folder: Path | None = None, full_screen: bool | None = None, begin: Rou
     """
     tell_sdl()
     from ai.cli.command_line import stoppable
+    from ai.files import user_dir
     from game.core import texts
-    from game.core.assets import user_dir
     from game.core.settings import SettingsFile
     from game.drawing.paint_cache import A_FRAME, spread
     from game.scenes import ahead, scene_of

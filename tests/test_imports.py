@@ -17,7 +17,7 @@ LATE = {
     "ai.files.writing": {"filelock"},
     "ai.cli.command_line": {"tqdm"},
     "ai.training.gym_task": {"gymnasium"},
-    "ai.common.places": {"platformdirs"},
+    "ai.files.folder": {"platformdirs"},
     "ai.sweep.cluster": {"ray"},
 }
 # What is there for the users of an extra alone.
@@ -28,12 +28,12 @@ EXTRA = {
 }
 # The floors inside `ai` and `game`, from the bottom up: a package imports from itself and from those before it.
 AI_FLOORS = (
-    "ai.files", "ai.nn", "ai.common", "ai.lander", "ai.flights", "ai.agent", "ai.digits", "ai.explain", "ai.training",
-    "ai.copilot", "ai.gym", "ai.sweep", "ai.cli",
+    "ai.files", "ai.nn", "ai.environment", "ai.run", "ai.lander", "ai.flights", "ai.agent", "ai.digits", "ai.explain",
+    "ai.training", "ai.copilot", "ai.gym", "ai.sweep", "ai.cli",
 )  # fmt: skip
 GAME_FLOORS = (
     "game.core", "game.input", "game.audio", "game.drawing", "game.ui", "game.flight", "game.training",
-    "game.world", "game.panels", "game.lesson", "game.exhibits", "game.digits", "game.learn",
+    "game.world", "game.panels", "game.lesson", "game.digits", "game.learn",
     "game.export", "game.shell", "game.scenes", "game.start", "game.verify", "game.cli",
 )  # fmt: skip
 # These only describe what is handed to them from above, for the type checker.

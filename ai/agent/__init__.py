@@ -1,7 +1,7 @@
 """Deep Q-learning agent: its settings, network, replay buffers, schedules and files.
 
 To read in this order: config, network, replay, n_step, normalizer, symmetry, schedule, agent, storage. A field of a
-configuration is made by `ai.common.knobs.knob`, with its help and range; `ai.common.environment` has the contract of an
+configuration is made by `ai.files.knobs.knob`, with its help and range; `ai.environment` has the contract of an
 environment.
 """
 

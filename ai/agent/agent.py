@@ -44,6 +44,7 @@ from typing import Any, Final, Self
 import numpy as np
 
 from ai.agent.config import AgentConfig
+from ai.agent.decision import Decision, decide
 from ai.agent.n_step import Episodes, NStep
 from ai.agent.network import build_network, make_optimizer
 from ai.agent.normalizer import Normalizer
@@ -51,8 +52,7 @@ from ai.agent.replay import ReplayBuffer, Transition, make_replay
 from ai.agent.schedule import importance, learning_rate, target_rate
 from ai.agent.storage import read_agent, save_agent
 from ai.agent.symmetry import Symmetry
-from ai.common.decision import Decision, decide
-from ai.common.environment import Bools, Doubles, Env, Floats, Ints, StepResult
+from ai.environment import Bools, Doubles, Env, Floats, Ints, StepResult
 from ai.nn import NeuralNetwork, Optimizer
 
 TOGETHER: Final = 1024  # states that are judged at a time: fewer calls, and what layers make of them stays in the cache

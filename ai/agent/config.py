@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ai.common.knobs import Knobs, knob
+from ai.files.knobs import Knobs, knob
 from ai.nn import OPTIMIZERS
 from ai.nn.activations import ACTIVATIONS
 

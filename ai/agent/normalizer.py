@@ -6,7 +6,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from ai.common.environment import Doubles, Floats
+from ai.environment import Doubles, Floats
 from ai.files import count_of
 
 REACH: Final = 10.0  # standard deviations from the mean at which values are clipped

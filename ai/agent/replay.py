@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ai.agent.config import AgentConfig
-from ai.common.environment import Doubles, Floats, Ints
+from ai.environment import Doubles, Floats, Ints
 
 
 class Transition(NamedTuple):

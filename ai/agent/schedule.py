@@ -8,7 +8,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from ai.agent.config import AgentConfig
-    from ai.common.environment import Doubles
+    from ai.environment import Doubles
 
 
 def linear(start: float, end: float, done: int, total: int) -> float:

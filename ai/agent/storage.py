@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 import numpy as np
 
 from ai.agent.config import AgentConfig
-from ai.common.environment import Floats
+from ai.environment import Floats
 from ai.files import (
     NETWORK,
     FolderKind,

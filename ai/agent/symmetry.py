@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from ai.agent.replay import Transition
-from ai.common.environment import Floats, Ints
+from ai.environment import Floats, Ints
 
 
 @dataclass(frozen=True)

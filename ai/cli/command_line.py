@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Final, NoReturn, TypeVar
 if TYPE_CHECKING:
     from tqdm import tqdm
 
-    from ai.common.knobs import Knobs
+    from ai.files.knobs import Knobs
 
     Settings = TypeVar("Settings", bound=Knobs)
 
@@ -39,12 +39,6 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Say what is wrong with the arguments, and end the program with exit code 2."""
         self.exit(2, f"{self.prog}: {readable(' '.join(message.split()))} (see {self.prog} --help)\n")
-
-
-def add_where(command: argparse.ArgumentParser, workers: str) -> None:
-    """Add the options that say where the work is done; both need the extra `sweep`."""
-    command.add_argument("--address", metavar="HOST:PORT", help="join the Ray cluster there; auto for the one around")
-    command.add_argument("--workers", type=int, metavar="N", help=workers)
 
 
 def fail(message: str) -> int:

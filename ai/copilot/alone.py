@@ -17,7 +17,7 @@ from typing import Final
 
 import numpy as np
 
-from ai.common.environment import Doubles
+from ai.environment import Doubles
 
 DRIFT: Final = 0.12  # standard deviation of the step in log-odds from one flight to the next
 INTERVAL: Final = 0.8  # chance that the truth lies between an estimate's ends

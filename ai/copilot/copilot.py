@@ -12,11 +12,11 @@ import numpy as np
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.config import AgentConfig
-from ai.common.decision import in_points
-from ai.common.environment import Bools, Doubles, Floats, Ints
+from ai.agent.decision import in_points
 from ai.copilot.futures import DECISION_STEPS, KEYS, Future, Futures, Here, Lookahead, Push
 from ai.copilot.guardian import ActionSource, Choice, Guardian, decisions_of
 from ai.copilot.intent import Intent, in_question
+from ai.environment import Bools, Doubles, Floats, Ints
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES, LanderEnv, Outcome
 from ai.lander.moment import Moment
 from ai.lander.pilots import COAST

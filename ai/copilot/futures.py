@@ -13,7 +13,7 @@ from typing import Final, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
-from ai.common.environment import Bools, Doubles, Ints
+from ai.environment import Bools, Doubles, Ints
 from ai.lander.environment import LanderEnv, LanderParams, Outcome
 from ai.lander.moment import Moment
 from ai.lander.pilots import Pilot

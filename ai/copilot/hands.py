@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ai.common.environment import Bools, Doubles, Floats, Ints
+from ai.environment import Bools, Doubles, Floats, Ints
 from ai.lander.environment import ACTION_NAMES, NUM_ACTIONS, OBSERVATION_SCALE
 from ai.lander.pilots import COAST, GAINS, Gains, LaggyPilot, NoisyPilot, Pilot, ScriptedPilot, SensorPilot
 from ai.lander.rules import ACTION_SHARES

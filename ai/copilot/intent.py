@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from ai.common.environment import Bools, Doubles, Floats, Ints
+from ai.environment import Bools, Doubles, Floats, Ints
 from ai.lander.pilots import COAST
 
 _TEMPER: Final = 2.0  # temperature of the Boltzmann model of the pilot, in points of reward

@@ -10,17 +10,17 @@ from typing import Any, Final
 import numpy as np
 
 from ai.agent.agent import DeepQAgent
-from ai.common.environment import Bools, Doubles
-from ai.common.intervals import wilson
 from ai.copilot.copilot import CoPilot, Mode
 from ai.copilot.futures import KEYS, Future, Lookahead, Push
 from ai.copilot.hands import FAMILIES, STUBBORN, UNSEEN, Adversary, MakePilot
+from ai.environment import Bools, Doubles
 from ai.lander.anywhere import AnywhereEnv
 from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.ground import hilly
 from ai.lander.moment import Moment
 from ai.lander.pilots import Pilot
 from ai.lander.rules import ACTION_SHARES
+from ai.training.statistics import wilson
 
 PILOTS: Final[dict[str, MakePilot]] = {**FAMILIES, **UNSEEN, **STUBBORN}
 SOME: Final = ("good", "late", "inverted", "laggy", "holds right", "holds main", "a key each second", "thrust 0.3")

@@ -8,8 +8,8 @@ from typing import Final
 
 import numpy as np
 
-from ai.common.knobs import Knobs, knob
 from ai.digits.preprocessing import SIDE
+from ai.files.knobs import Knobs, knob
 from ai.nn import (
     OPTIMIZERS,
     ActivationLayer,

@@ -17,7 +17,7 @@ from ai.agent.config import AgentConfig
 from ai.agent.n_step import NStep
 from ai.agent.normalizer import Normalizer
 from ai.agent.replay import ReplayBuffer, Transition
-from ai.common.environment import Floats, Ints
+from ai.environment import Floats, Ints
 from ai.explain.learning_step import Step, recorded_step
 from ai.explain.recorder import RETURN, Function, Line
 from ai.nn import NeuralNetwork

@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from ai.common.environment import Floats
+from ai.environment import Floats
 from ai.nn import SGD, NeuralNetwork
 
 _PART: Final = 0.2  # of the way to the target that the first step would go, were the network a straight line

@@ -9,10 +9,10 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from ai.common.environment import Floats
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DigitConfig
 from ai.digits.training import DigitTraining
+from ai.environment import Floats
 from ai.explain.learning_step import Step, of_row, recorded_step, shown_lines
 from ai.explain.recorder import Function, Line, Recorder
 from ai.nn import OPTIMIZERS, NeuralNetwork

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from ai.common.environment import Floats
+from ai.environment import Floats
 from ai.explain.recorder import RETURN, Function, Line, Recorder, Row
 from ai.nn import NeuralNetwork
 from ai.nn.layer import Layer

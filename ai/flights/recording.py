@@ -8,7 +8,7 @@ from typing import Annotated, Any, Final, Self
 
 import numpy as np
 
-from ai.common.environment import Doubles
+from ai.environment import Doubles
 from ai.files import OneOf, Seed, Sized, Within
 from ai.lander.descent import MOST_LEGS, TANK, LegStart
 from ai.lander.environment import Outcome

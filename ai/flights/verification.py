@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from ai.common.environment import Doubles, Ints
+from ai.environment import Doubles, Ints
 from ai.flights.recording import AS_IT_IS, STEPS, End, Recording, SharedFlight, full
 from ai.lander.descent import can_begin, leg_of
 from ai.lander.environment import LIMITS, LanderEnv, Outcome

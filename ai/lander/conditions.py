@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from ai.common.environment import Bools, Doubles
+from ai.environment import Bools, Doubles
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from ai.common.environment import Doubles
+from ai.environment import Doubles
 from ai.lander.ground import Ground
 from ai.lander.rules import FOOT_CENTRE, FOOT_SIZE, HULL, LanderParams
 from engine import DT, Body, Polygon, World

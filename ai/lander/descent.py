@@ -13,7 +13,7 @@ from typing import Final
 
 import numpy as np
 
-from ai.common.environment import Doubles
+from ai.environment import Doubles
 from ai.lander.conditions import Conditions
 from ai.lander.environment import LIMITS, PARAMS, LanderEnv, Limits
 from ai.lander.ground import Ground, Hill, Pad, Roof, knoll

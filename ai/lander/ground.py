@@ -11,7 +11,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from ai.common.environment import Bools, Doubles
+from ai.environment import Bools, Doubles
 from ai.lander.rules import PARAMS, LanderParams
 from engine import Body, Polygon, World
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ai.common.environment import Bools
+from ai.environment import Bools
 from ai.lander.rewards import TILT_ALLOWED
 from ai.lander.rules import Cause, Outcome
 from engine import DT

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from ai.common.environment import Doubles, Ints
+from ai.environment import Doubles, Ints
 from ai.lander.conditions import Conditions
 from ai.lander.ground import Ground
 from ai.lander.rules import LanderParams, Limits

@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from ai.common.environment import Bools, Doubles, Floats, Ints, StepResult
+from ai.environment import Bools, Doubles, Floats, Ints, StepResult
 from ai.lander.environment import LanderEnv
 from ai.lander.rewards import RewardWeights
 

@@ -7,7 +7,7 @@ from typing import Any, Final, Protocol
 
 import numpy as np
 
-from ai.common.environment import Floats, Ints
+from ai.environment import Floats, Ints
 from ai.lander.environment import NUM_FEATURES, OBSERVATION_SCALE
 
 COAST: Final = 0

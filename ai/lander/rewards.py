@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, Final, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from ai.common.environment import Doubles, Ints
+from ai.environment import Doubles, Ints
 from ai.lander.rules import CRASHED, FLYING, LANDED, OUT, engines_switched
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from ai.common.environment import Bools, Doubles, Floats
+from ai.environment import Bools, Doubles, Floats
 from ai.lander.environment import LanderEnv
 from ai.lander.pilots import Pilot
 from ai.lander.sensing import sensed

@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from ai.common.environment import Ints
+from ai.environment import Ints
 
 NUM_ACTIONS: Final = 6
 NUM_FEATURES: Final = 9

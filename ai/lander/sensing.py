@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
 
-from ai.common.environment import Doubles, Floats
+from ai.environment import Doubles, Floats
 from ai.lander.rules import NUM_FEATURES, OBSERVATION_SCALE, Outcome
 
 if TYPE_CHECKING:

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from ai.common.knobs import Knobs, field_problem
 from ai.files import read_as, read_json
+from ai.files.knobs import Knobs, field_problem
 
 Space = dict[str, "Dimension"]
 

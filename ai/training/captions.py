@@ -13,7 +13,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from ai.common.decision import in_points
+from ai.agent.decision import in_points
 from ai.training.edits import EDITED
 from ai.training.hints import RULES, RecentCurves, returns
 from ai.training.history import PARTS

@@ -12,8 +12,8 @@ from ai.agent.agent import DeepQAgent
 from ai.agent.config import AgentConfig
 from ai.agent.schedule import exploration, exploration_of_each, importance, learning_rate, linear, target_rate
 from ai.agent.storage import AGENT_FILE
-from ai.common.knobs import is_number, knob
 from ai.files import brief, problem_in, shown
+from ai.files.knobs import is_number, knob
 from ai.lander.rewards import RewardWeights
 from ai.lander.spawns import CURRICULA, RUNGS, SPAWNS
 from ai.nn import ModelFormatError

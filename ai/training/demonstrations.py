@@ -18,7 +18,7 @@ import numpy as np
 from ai.agent.agent import DeepQAgent
 from ai.agent.n_step import NStep
 from ai.agent.replay import Transition
-from ai.common.environment import Bools, Floats
+from ai.environment import Bools, Floats
 from ai.files import (
     OneOf,
     SchemaError,

@@ -14,7 +14,7 @@ import numpy as np
 
 from ai.agent.n_step import NStep
 from ai.agent.replay import Transition
-from ai.common.environment import Floats, Ints, StepResult
+from ai.environment import Floats, Ints, StepResult
 from ai.explain.agent_lesson import Before, Flown, Lesson, explain
 from ai.explain.learning_step import shown_lines
 from ai.explain.recorder import Recorder

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from ai.agent.symmetry import Symmetry
-from ai.common.environment import SUCCESS, Bools, Doubles, Floats, Ints, StepResult
+from ai.environment import SUCCESS, Bools, Doubles, Floats, Ints, StepResult
 from ai.files import count_of
 from ai.lander.pilots import Pilot
 from ai.training.config import Config
@@ -55,7 +55,7 @@ class GymScore(Score):
 
 
 class GymEnv:
-    """Vectorised environment (`ai.common.environment.Env`) of several Gymnasium ones, stepped one by one.
+    """Vectorised environment (`ai.environment.Env`) of several Gymnasium ones, stepped one by one.
 
     Nothing of theirs can be stored. So that each can be brought to where it was, its random numbers before its last
     reset are kept, and its actions since: see `restore`.

@@ -12,7 +12,7 @@ from typing import Annotated, Any, ClassVar, Final
 import numpy as np
 
 from ai.agent.normalizer import Normalizer
-from ai.common.environment import Doubles, Floats
+from ai.environment import Doubles, Floats
 from ai.files import (
     MOST,
     Above,

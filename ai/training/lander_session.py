@@ -9,7 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from ai.common.environment import Ints, StepResult
+from ai.environment import Ints, StepResult
 from ai.files import count_of
 from ai.lander.environment import LanderEnv
 from ai.training.checkpoints import AGENTS, restore_checkpoint, resume_run

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ai.common.environment import Floats
+from ai.environment import Floats
 
 
 @dataclass(frozen=True)

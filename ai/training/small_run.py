@@ -10,10 +10,10 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from ai.agent.agent import DeepQAgent
+from ai.agent.decision import in_points
 from ai.agent.replay import PrioritisedReplayBuffer, ReplayBuffer, Transition
 from ai.agent.schedule import exploration
-from ai.common.decision import in_points
-from ai.common.environment import Bools, Doubles, Floats, Ints
+from ai.environment import Bools, Doubles, Floats, Ints
 from ai.lander.environment import Outcome
 from ai.lander.one_engine import OneEngineEnv
 from ai.lander.rewards import RewardWeights

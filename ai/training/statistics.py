@@ -1,15 +1,17 @@
-"""Statistics of the last hundred episodes of a training run."""
+"""Statistics of the last hundred episodes of a training run, and confidence intervals of a share and of a mean."""
 
 from __future__ import annotations
 
 from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from math import sqrt
+from statistics import mean, stdev
 from typing import Any, Final
 
 import numpy as np
 
-from ai.common.environment import SUCCESS, Doubles, StepResult
+from ai.environment import SUCCESS, Doubles, StepResult
 from ai.files import array_like, read_as
 
 RECENT: Final = 100
@@ -70,30 +72,23 @@ class EpisodeStatistics:
             self._paid[:, result.ended] = 0.0
         self._sum_up()
 
-    def to_json(self) -> dict[str, list[Any]]:
-        """Return the last hundred episodes' results for a file, so that a resumed run goes on counting from them."""
+    def state(self) -> dict[str, Any]:
+        """Return copies of all of it, so that a run goes on in the middle of its episodes."""
         outcomes, returns, parts = zip(*self._recent, strict=True) if self._recent else ((), (), ())
-        return {"outcomes": [*outcomes], "returns": [*returns], "parts": [part for part in parts if part]}
+        return {
+            "recent": {"outcomes": [*outcomes], "returns": [*returns], "parts": [part for part in parts if part]},
+            "earned": self.earned.copy(), "paid": None if self._paid is None else self._paid.copy(),
+        }  # fmt: skip
 
-    def load(self, told: Mapping[str, Any]) -> None:
-        """Take over what `to_json` gave; raises ValueError where it makes no sense."""
-        recent = read_as(_RecentFile, told)
+    def load_state(self, state: Mapping[str, Any]) -> None:
+        """Go on from what `state` returned; raises KeyError, TypeError or ValueError for anything else."""
+        recent = read_as(_RecentFile, state["recent"])
         count, parts = len(recent.outcomes), recent.parts
         if len(recent.returns) != count or len(parts) not in (0, count) or len({*map(len, parts)}) > 1:
             raise ValueError("the last flights have outcomes, returns and parts of different numbers")
         self._recent.extend(zip(recent.outcomes, recent.returns, parts or ((),) * count, strict=True))
         if count:
             self._sum_up()
-
-    def state(self) -> dict[str, Any]:
-        """Return copies of all of it, so that a run goes on in the middle of its episodes."""
-        return {"recent": self.to_json(), "earned": self.earned.copy(),
-                "paid": None if self._paid is None else self._paid.copy()}  # fmt: skip
-
-    def load_state(self, state: Mapping[str, Any]) -> None:
-        """Go on from what `state` returned; raises KeyError, TypeError or ValueError for anything else."""
-        self._recent.clear()
-        self.load(state["recent"])
         self.earned = array_like(self.earned, state["earned"], "earned")
         if (paid := state["paid"]) is not None:
             self._paid = array_like(np.empty((len(paid), len(self.earned))), paid, "paid")
@@ -103,3 +98,24 @@ class EpisodeStatistics:
         self.shares = tuple(outcomes.count(outcome + 1) / len(outcomes) for outcome in range(OUTCOMES))
         self.mean_return = sum(returns) / len(returns)
         self.parts = tuple(np.mean(parts, axis=0).tolist())
+
+
+# Student's t of a two-sided 95 % interval, by degrees of freedom from 1 on.
+_T: Final = (12.71, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160, 2.145, 2.131)
+
+
+def wilson(share: float, count: int) -> tuple[float, float]:
+    """Return the 95 % interval of a share that was found in `count` trials.
+
+    Wilson, "Probable Inference, the Law of Succession, and Statistical Inference" (1927).
+    """
+    z = 1.96  # standard deviations to each side
+    middle = (share + z * z / (2 * count)) / (1 + z * z / count)
+    half = z * sqrt(share * (1 - share) / count + z * z / (4 * count * count)) / (1 + z * z / count)
+    return max(0.0, middle - half), min(1.0, middle + half)
+
+
+def mean_of_shares(shares: Sequence[float]) -> tuple[float, float, float]:
+    """Return the mean of two or more shares, and its 95 % interval within 0 to 1 (Student's t)."""
+    half = _T[min(len(shares) - 1, len(_T)) - 1] * stdev(shares) / sqrt(len(shares))
+    return mean(shares), max(0.0, mean(shares) - half), min(1.0, mean(shares) + half)

@@ -13,7 +13,7 @@ from typing import Any, Final, Generic, TypeVar
 import numpy as np
 
 from ai.agent.symmetry import Symmetry
-from ai.common.environment import Doubles, Env, Ints
+from ai.environment import Doubles, Env, Ints
 from ai.files import MOST, array_like, read_as
 from ai.lander.anywhere import SITES, AnywhereEnv
 from ai.lander.environment import LIMITS, NUM_ACTIONS, NUM_FEATURES, LanderEnv, Outcome

@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from ai.common.environment import Doubles
+from ai.environment import Doubles
 from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.sensing import near_edges
 from game.audio.instruments import RUNGS, altitude_key

@@ -6,14 +6,7 @@ import sys
 from pathlib import Path
 from typing import Final
 
-from ai.common import places
-
 _ROOT: Final = Path(__file__).resolve().parents[2]
 ASSETS_DIR: Final = _ROOT / "assets"
 MODELS_DIR: Final = _ROOT / "models"
 PACKED: Final = bool(getattr(sys, "frozen", False))  # whether this is the app, to which nothing can be installed
-
-
-def user_dir() -> Path:
-    """Return the player's own folder for settings, scores, networks and screenshots."""
-    return places.user_dir()

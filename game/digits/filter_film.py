@@ -10,7 +10,7 @@ import pygame
 from ai.digits.filters import FilterMoment
 from ai.training.history import History
 from game.core import texts
-from game.digits.answer import percent
+from game.digits import percent
 from game.digits.pictures import mosaic
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
@@ -90,7 +90,9 @@ class FilterFilm:
         canvas.text(words, (left, top), size=LABEL, colour=MUTE, weight="medium", tabular=True, room=box.width)
         beside = _SAID if box.width > 2 * _SAID else 0.0
         room = (box.width - beside - (_APART if beside else 0.0), box.height - _HEADING)
-        self._painted.draw(canvas, (left, top + _HEADING, *room), (moment, room), lambda sheet: _paint(sheet, moment, room))
+        self._painted.draw(
+            canvas, (left, top + _HEADING, *room), (moment, room), lambda sheet: _paint(sheet, moment, room)
+        )
         if not beside:
             return
         scores = [score.success for score in self.history.validations if score.seconds <= moment.seconds]

@@ -11,7 +11,7 @@ from typing import Final, NamedTuple
 import numpy as np
 import pygame
 
-from ai.common.environment import Bools, Doubles
+from ai.environment import Bools, Doubles
 from game.drawing.canvas import Canvas, Stamp
 from game.drawing.paint import PIECE, Sheet, blocks
 from game.drawing.paint_cache import InPieces, Steps

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from ai.common.decision import Decision
-from ai.common.environment import Doubles, Floats
+from ai.agent.decision import Decision
+from ai.environment import Doubles, Floats
 from ai.flights.recording import AREA, AS_IT_IS, Easing, Recording, Shares, StickHolder, thrust
 from ai.flights.verification import begun
 from ai.lander.descent import LegStart, leg_of

@@ -13,7 +13,7 @@ from typing import Final
 
 import numpy as np
 
-from ai.common.environment import Doubles
+from ai.environment import Doubles
 from ai.lander.environment import PARAMS, LanderEnv
 from ai.lander.ground import Ground
 from engine import DT

@@ -17,8 +17,8 @@ from typing import Final, NamedTuple
 from ai.agent.agent import DeepQAgent
 from ai.agent.config import AgentConfig
 from ai.agent.normalizer import Normalizer
-from ai.common.environment import Floats
 from ai.copilot.futures import KEYS, Future, Lookahead, Opening, Push
+from ai.environment import Floats
 from ai.lander.moment import Moment
 from ai.lander.pilots import Pilot
 from ai.lander.route import Route

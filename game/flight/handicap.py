@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from ai.common.environment import Floats, Ints
+from ai.environment import Floats, Ints
 from ai.lander.pilots import LaggyPilot, NoisyPilot, Pilot
 
 OWN: Final = "own"

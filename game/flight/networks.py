@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final, Protocol, runtime_checkable
 
-from ai.common.decision import Decision
-from ai.common.environment import Floats, Ints
+from ai.agent.decision import Decision
+from ai.environment import Floats, Ints
 from ai.files import brief
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.lander.sensing import SURROUNDINGS

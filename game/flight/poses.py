@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ai.common.environment import Bools, Doubles
+from ai.environment import Bools, Doubles
 from ai.lander.environment import LanderEnv
 
 

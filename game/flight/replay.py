@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from ai.common.environment import Doubles
+from ai.environment import Doubles
 from ai.flights.recording import Shares
 from ai.flights.verification import Earned, earned
 from ai.lander.missions import STARTS

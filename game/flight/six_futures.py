@@ -6,8 +6,8 @@ from typing import Final
 
 import numpy as np
 
-from ai.common.environment import Doubles
 from ai.copilot.futures import LONGEST, roomy
+from ai.environment import Doubles
 from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.moment import Moment
 from ai.lander.route import Route

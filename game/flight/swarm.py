@@ -7,8 +7,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from ai.common.decision import Decision
-from ai.common.environment import Bools, Doubles, Floats, Ints
+from ai.agent.decision import Decision
+from ai.environment import Bools, Doubles, Floats, Ints
 from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.pilots import COAST
 from game.flight.networks import Policy, decide, decision_steps

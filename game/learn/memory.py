@@ -11,7 +11,7 @@ import pygame
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.replay import PrioritisedReplayBuffer, ReplayBuffer, SumTree
-from ai.common.environment import Doubles
+from ai.environment import Doubles
 from ai.lander.environment import OBSERVATION_SCALE
 from ai.training.config import Config
 from ai.training.small_run import SMALL_RUN, TESTED, Plan, SmallState

@@ -10,8 +10,8 @@ import numpy as np
 import pygame
 
 from ai.agent.agent import DeepQAgent
-from ai.common.decision import Decision, in_points
-from ai.common.environment import Floats
+from ai.agent.decision import Decision, in_points
+from ai.environment import Floats
 from ai.lander.environment import LanderEnv, Outcome
 from ai.nn import NeuralNetwork
 from ai.training.config import Config

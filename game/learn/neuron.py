@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from ai.common.environment import Floats
+from ai.environment import Floats
 from ai.lander.environment import LIMITS, LanderEnv, Outcome
 from ai.nn import ActivationFunctions, ActivationLayer, CostFunctions, FullyConnectedLayer, NeuralNetwork
 from engine import DT

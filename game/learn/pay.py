@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.common.environment import Bools, Doubles, Ints
+from ai.environment import Bools, Doubles, Ints
 from ai.lander.environment import PARAMS, LanderEnv, Outcome
 from ai.lander.rewards import REWARDS, RewardWeights
 from ai.training.checkpoints import agent_of

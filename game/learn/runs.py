@@ -10,7 +10,7 @@ from typing import ClassVar, Final
 import numpy as np
 import pygame
 
-from ai.common.environment import Doubles, Ints
+from ai.environment import Doubles, Ints
 from ai.lander.environment import PARAMS, Outcome
 from ai.training.config import Config
 from ai.training.small_run import Flown, Plan, SmallState, small_runs

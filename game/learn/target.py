@@ -10,7 +10,7 @@ import numpy as np
 import pygame
 
 from ai.agent.agent import DeepQAgent
-from ai.common.environment import Doubles
+from ai.environment import Doubles
 from ai.training.config import Config
 from ai.training.small_run import SMALL_RUN
 from game.core import texts

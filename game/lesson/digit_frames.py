@@ -8,10 +8,10 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.common.environment import Floats
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import build_digit_network
 from ai.digits.training import DigitTraining
+from ai.environment import Floats
 from ai.explain.digit_lesson import DigitLesson
 from ai.explain.learning_step import backward_functions, forward_functions
 from ai.explain.recorder import Function

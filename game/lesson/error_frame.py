@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.common.environment import Doubles
+from ai.environment import Doubles
 from ai.explain.agent_lesson import Lesson
 from ai.explain.recorder import Function
 from ai.nn.costs import COSTS, Cost

@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.common.environment import Doubles, Floats
+from ai.environment import Doubles, Floats
 from ai.explain.agent_lesson import Lesson
 from ai.explain.recorder import Function
 from ai.lander.environment import ACTION_NAMES, OBSERVATION_SCALE, PARAMS, Outcome

@@ -8,8 +8,8 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.common.decision import in_points
-from ai.common.environment import Floats
+from ai.agent.decision import in_points
+from ai.environment import Floats
 from ai.explain.agent_lesson import Lesson
 from ai.explain.recorder import Function
 from game.core import texts

@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from ai.common.decision import Decision
+from ai.agent.decision import Decision
 from ai.lander.environment import ACTION_NAMES
 from game.core import texts
 from game.drawing.canvas import Canvas

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
 
-from ai.common.knobs import Knobs
+from ai.files.knobs import Knobs
 from ai.training.config import PRESETS, InForce, idle
 from ai.training.experiments import SABOTAGES, sabotaged
 from game.core import texts

@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
-from ai.common.knobs import Knobs
 from ai.digits.config import DigitConfig
+from ai.files.knobs import Knobs
 from ai.training.config import Config
 from ai.training.digit_session import live_digits
 from ai.training.history import COLUMNS, DIGIT_COLUMNS

@@ -254,6 +254,13 @@ class Part:
         self.widgets.append(widget)
         return widget
 
+    def replace(self, old: Sequence[Widget], new: Sequence[Widget]) -> None:
+        """Replace some adjacent widgets by others, of the form as well."""
+        self._form.replace(old, new)
+        place = self.widgets.index(old[0]) if old else len(self.widgets)
+        self.widgets = [each for each in self.widgets if each not in old]
+        self.widgets[place:place] = new
+
 
 def _reading(widget: Widget | None) -> object:
     """Return the value, or the index, of a widget; None if it has neither."""

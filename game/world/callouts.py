@@ -7,7 +7,7 @@ from typing import Final
 
 import pygame
 
-from ai.common.environment import Doubles
+from ai.environment import Doubles
 from ai.lander.environment import LanderEnv, Outcome
 from game.core import texts
 from game.drawing.canvas import Canvas

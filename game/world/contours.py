@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from ai.common.environment import Doubles
+from ai.environment import Doubles
 
 # For each cell, by which of its corners are above the level (1 upper left, 2 upper right, 4 lower right, 8 lower
 # left): the sides between which a line runs (0 upper, 1 right, 2 lower, 3 left). Above lies to its left-hand side

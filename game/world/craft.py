@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.common.environment import Doubles
+from ai.environment import Doubles
 from ai.lander.environment import PARAMS
 from ai.lander.rules import FOOT_CENTRE, FOOT_SIZE
 from game.drawing.canvas import Canvas

@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.common.environment import Doubles
+from ai.environment import Doubles
 from game.drawing.paint import PIECE, light
 from game.drawing.paint_cache import InPieces, Steps
 from game.drawing.tokens import Colour

@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from ai.common.environment import Doubles
+from ai.environment import Doubles
 from ai.lander.environment import LanderEnv
 from ai.lander.sensing import NEAR, near_edges
 from game.drawing.tokens import VIEW_SIZE

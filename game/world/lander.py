@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.common.environment import Doubles
+from ai.environment import Doubles
 from ai.lander.rules import FOOT_CENTRE, FOOT_SIZE
 from engine import Sprite
 from game.drawing.tokens import Colour

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.common.environment import Doubles
+from ai.environment import Doubles
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK, NIGHT0
 from game.flight.flight import Flight

@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.common.environment import Bools, Doubles, Ints
+from ai.environment import Bools, Doubles, Ints
 from game.core.clock import STEP
 from game.drawing.paint import mix
 from game.drawing.tokens import Colour

@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.common.environment import Bools, Doubles, Ints
+from ai.environment import Bools, Doubles, Ints
 from ai.lander.environment import Outcome
 from game.drawing.canvas import Canvas, Point
 from game.drawing.tokens import NET, Colour

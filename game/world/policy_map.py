@@ -13,8 +13,8 @@ import numpy as np
 import numpy.typing as npt
 import pygame
 
-from ai.common.decision import Decision
-from ai.common.environment import Doubles, Floats
+from ai.agent.decision import Decision
+from ai.environment import Doubles, Floats
 from ai.lander.environment import LIMITS, LanderEnv
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache

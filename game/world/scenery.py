@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from ai.common.environment import Doubles
+from ai.environment import Doubles
 from ai.lander.environment import Outcome
 from game.core.clock import STEP
 from game.drawing.canvas import Canvas

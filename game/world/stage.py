@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.common.environment import Bools, Doubles
+from ai.environment import Bools, Doubles
 from ai.lander.environment import LanderEnv, Outcome
 from engine import Sprite
 from game.drawing.canvas import Canvas

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.common.environment import Bools, Doubles
+from ai.environment import Bools, Doubles
 from ai.lander.environment import PARAMS, Outcome
 from ai.training.lander_session import CAREFUL
 from ai.training.messages import SwarmState
@@ -111,7 +111,9 @@ class LearningSwarm:
         view = View(canvas.scale, self._centre, self._zoom)
         area = canvas.rect(*self.box)
         canvas.surface.set_clip(area)
-        canvas.surface.blit(_moon((area.width, round(area.height + _BELOW * VIEW_SIZE[1] * self._zoom * canvas.scale))), area)
+        canvas.surface.blit(
+            _moon((area.width, round(area.height + _BELOW * VIEW_SIZE[1] * self._zoom * canvas.scale))), area
+        )
         draw_pad(canvas, view, (0.0, PARAMS.pad_top), PARAMS.pad_width, self._time)
         if self.swarm_state is None:
             canvas.surface.set_clip(None)

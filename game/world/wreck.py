@@ -7,7 +7,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from ai.common.environment import Doubles
+from ai.environment import Doubles
 from ai.lander.environment import LanderEnv
 from ai.lander.rules import FOOT_CENTRE, FOOT_SIZE, HULL
 from engine import DT, Polygon, Sprite, World

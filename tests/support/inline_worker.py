@@ -9,8 +9,8 @@ from typing import Any
 
 from game.core.worker import Worker, WorkerState
 from game.core.worker_process import Function, MessageQueue
-from game.digits import fixing, measuring
 from game.learn import pay, runs
+from game.scenes.digits import fixing
 from game.training import run as training_run
 
 TURNS = 40  # taken for each poll: some 10 ms of a small training
@@ -83,5 +83,5 @@ class InlineWorker(Worker):
 
 def install(patch: Callable[[object, str, object], None]) -> None:
     """Let runs, fixes and measurements work without a process; `patch` sets an attribute, as `setattr` does."""
-    for module in (training_run, fixing, measuring, pay, runs):
+    for module in (training_run, fixing, pay, runs):
         patch(module, "Worker", InlineWorker)

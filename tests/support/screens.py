@@ -13,17 +13,16 @@ from ai.digits.preprocessing import Image, preprocess_strokes
 from ai.lander.missions import MISSIONS
 from game.core.assets import MODELS_DIR
 from game.core.scene import Push, Scene
-from game.exhibits import EXHIBITS, Exhibit
 from game.flight import sharing
 from game.flight.days import Days
 from game.flight.flight_file import Record
-from game.flight.skill import Skill
 from game.learn.path import FIRST, PATH
 from game.scenes.chapter import ChapterScene
-from game.scenes.digit_inside import DigitInsideScene
-from game.scenes.train.digits import DigitTrainingScene
-from game.scenes.digits import DigitsScene
-from game.scenes.dream import DreamScene
+from game.scenes.digits.dream import DreamScene
+from game.scenes.digits.inside import DigitInsideScene
+from game.scenes.digits.quiz import QuizScene
+from game.scenes.digits.scene import DigitsScene
+from game.scenes.digits.why_not import WhyNotScene
 from game.scenes.learn import LearnScene
 from game.scenes.lesson import LessonScene
 from game.scenes.logbook.replay import ReplayScene
@@ -33,8 +32,9 @@ from game.scenes.menus.flights import FlightsScene
 from game.scenes.menus.keys import BindingsScene
 from game.scenes.menus.menu import MenuScene
 from game.scenes.menus.settings import AssistsScene, SettingsScene
-from game.scenes.physics import PhysicsScene
-from game.scenes.physics_step import PhysicsStepScene
+from game.scenes.physics.exhibits import EXHIBITS, Exhibit
+from game.scenes.physics.scene import PhysicsScene
+from game.scenes.physics.step_scene import PhysicsStepScene
 from game.scenes.play.calendar import DaysScene
 from game.scenes.play.challenge import FlownMission
 from game.scenes.play.choices import ChoicesScene
@@ -44,12 +44,11 @@ from game.scenes.play.missions import MissionsScene
 from game.scenes.play.pause import FlightPauseScene, PauseScene
 from game.scenes.play.scene import PlayScene
 from game.scenes.play.tutorial import Tutorial
-from game.scenes.quiz import QuizScene
+from game.scenes.train.digits import DigitTrainingScene
 from game.scenes.train.networks import NetworksScene
-from game.scenes.train.study import StudyScene
 from game.scenes.train.scene import TrainScene
+from game.scenes.train.study import StudyScene
 from game.scenes.watch.scene import WatchScene
-from game.scenes.why_not import WhyNotScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import kept, landed, play
@@ -123,7 +122,7 @@ FLOWN: dict[str, Make] = {
 OVER_OTHERS: dict[str, Callable[[Scene], Scene]] = {
     "FlightPauseScene": lambda below: FlightPauseScene(below.context, below, retry=lambda: None),
     "PauseScene": lambda below: PauseScene(below.context, below, retry=lambda: None),
-    "ChoicesScene": lambda below: ChoicesScene(below.context, below, Skill([]), begun=False),
+    "ChoicesScene": lambda below: ChoicesScene(below.context, below, begun=False),
     "QuestionDialog": lambda below: QuestionDialog(below, "?", "", [("yes", lambda: None), ("no", lambda: None)]),
     "NameDialog": lambda below: NameDialog(below, "?", "name", lambda _: ""),
     "ListDialog": lambda below: ListDialog(below, "?", [("a",), ("b",)], lambda _: None),

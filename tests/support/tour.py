@@ -18,27 +18,27 @@ from ai.lander.missions import MISSIONS
 from ai.lander.pilots import ScriptedPilot
 from game.core.names import name_problem
 from game.core.scene import Scene
-from game.exhibits import EXHIBITS
 from game.flight.days import Attempt, Days
 from game.flight.flight import Flight
 from game.flight.logbook import Records
 from game.learn.path import PATH
 from game.scenes.chapter import ChapterScene
-from game.scenes.digit_inside import DigitInsideScene
-from game.scenes.dream import DreamScene
+from game.scenes.digits.dream import DreamScene
+from game.scenes.digits.inside import DigitInsideScene
+from game.scenes.digits.quiz import QuizScene
+from game.scenes.digits.why_not import WhyNotScene
 from game.scenes.lesson import LessonScene
 from game.scenes.logbook.replay import ReplayScene
 from game.scenes.menus.dialogs import ListDialog, NameDialog, QuestionDialog
-from game.scenes.physics import PhysicsScene
-from game.scenes.physics_step import PhysicsStepScene
+from game.scenes.physics.exhibits import EXHIBITS
+from game.scenes.physics.scene import PhysicsScene
+from game.scenes.physics.step_scene import PhysicsStepScene
 from game.scenes.play.challenge import FlownMission
 from game.scenes.play.daily import DailyStart
 from game.scenes.play.descent import Descent
 from game.scenes.play.scene import PlayScene
 from game.scenes.play.starts import race
-from game.scenes.quiz import QuizScene
 from game.scenes.watch.scene import COUNTS, WatchScene
-from game.scenes.why_not import WhyNotScene
 from game.ui.context import Context
 from tests.support.lessons import lesson_of
 

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from ai.agent.schedule import learning_rate
-from ai.common.environment import Doubles
+from ai.environment import Doubles
 from ai.training.config import Config
 from ai.training.edits import EDITED
 from ai.training.history import REVERTED, History, SettingChange

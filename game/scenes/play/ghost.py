@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.common.environment import Doubles
+from ai.environment import Doubles
 from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.rules import tenths
 from game.core import texts

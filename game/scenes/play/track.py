@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from ai.common.environment import Doubles
+from ai.environment import Doubles
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, NET, VIEW_SIZE
 from game.flight.flight import Flight, StickHolder

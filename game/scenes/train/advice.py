@@ -106,4 +106,3 @@ class Advice:
         """Keep the remedy, and close the hint."""
         self.adviser.undo()
         self._hint = None
-

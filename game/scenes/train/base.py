@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Hashable
+from collections.abc import Hashable
 from typing import TYPE_CHECKING, Any, Final
 
 import pygame
@@ -62,6 +62,7 @@ class TrainingScene(FormScene, ABC):
 
     flows = True
     knobs: KnobsPanel
+    panel: Panel
     start_button: ButtonRow
 
     def __init__(self, context: Context, run: TrainingRun) -> None:
@@ -137,7 +138,7 @@ class TrainingScene(FormScene, ABC):
         self.knobs.describe(column)
         self._describe_more(column)
 
-    def _describe_hint(self, column: Column) -> bool:  # noqa: ARG002
+    def _describe_hint(self, column: Column) -> bool:
         """Add a hint on what to do; return whether there is one."""
         return False
 
@@ -333,7 +334,7 @@ class TrainingScene(FormScene, ABC):
         assert self._layout is not None
         return min(max(_FIGURE[2] * self._layout.swarm.height, _FIGURE[0]), _FIGURE[1])
 
-    def draw_title(self, canvas: Canvas, title: str, status: TrainingStatus, explained: Callable[[], str] = str) -> None:
+    def draw_title(self, canvas: Canvas, title: str, status: TrainingStatus) -> None:
         """Draw the title over the display, and the share that succeeds, large."""
         left, top = _TITLE
         assert self._layout is not None
@@ -342,7 +343,7 @@ class TrainingScene(FormScene, ABC):
         self._write_title(measured, title, status)
         canvas.panel((left, top, width, measured.y - top + 8), _COVER)
         self._write_title(Cursor(left + 16, top + 10, width - 32, canvas.scale, canvas), title, status)
-        canvas.explain((left, top, width, measured.y - top + 8), texts.EXPLAIN_TRAINED, explained)
+        canvas.explain((left, top, width, measured.y - top + 8), texts.EXPLAIN_TRAINED)
         hints = HintRow(self.hints[:1], (left + width - 16, top + 30), from_right=True)
         hints.draw(canvas)
 

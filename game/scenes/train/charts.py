@@ -10,8 +10,8 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.common.decision import in_points
-from ai.common.environment import Doubles
+from ai.agent.decision import in_points
+from ai.environment import Doubles
 from ai.training.captions import Caption, caption
 from ai.training.config import Config
 from ai.training.edits import EDITED

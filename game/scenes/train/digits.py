@@ -115,7 +115,7 @@ class DigitTrainingScene(TrainingScene):
         if self.view:
             self._shown: Widget = Scrubber(manager, self.charts, self.film.choose, lambda: None, self.charts.zoom_by)
         else:
-            if not self.matrix.alive():
+            if self.matrix not in self.form.widgets:
                 cell, before = self.matrix.cell, self.matrix
                 self._shown = self.matrix = ConfusionMatrix(manager, before.box)
                 self.matrix.set(before.confusion)
@@ -130,9 +130,9 @@ class DigitTrainingScene(TrainingScene):
         area = place.swarm
         self._area = pygame.FRect(_LEFT, area.top + _HEAD, area.width - 2 * _LEFT, max(area.height - _HEAD - 8, 60))
         side = min(self._area.height - _NUMBERS, _LARGEST, self._area.width - _NUMBERS)
-        box = pygame.Rect(_LEFT + _NUMBERS, self._area.top + _NUMBERS, side, side)
-        self.matrix.relative_rect = self.matrix.rect = box
-        self._cell = pygame.FRect(box.right + 36, box.top, self._area.right - box.right - 36, side)
+        matrix = pygame.Rect(round(_LEFT + _NUMBERS), round(self._area.top + _NUMBERS), round(side), round(side))
+        self.matrix.rect = self.matrix.relative_rect = matrix
+        self._cell = pygame.FRect(matrix.right + 36, matrix.top, self._area.right - matrix.right - 36, side)
         if self.view:
             self._shown.relative_rect = self._shown.rect = pygame.Rect(self.charts.box)
 
@@ -285,7 +285,7 @@ class DigitTrainingScene(TrainingScene):
         super().draw(canvas, alpha)
         self.charts.draw(canvas)
 
-    def _draw_display(self, canvas: Canvas, alpha: float) -> None:  # noqa: ARG002
+    def _draw_display(self, canvas: Canvas, alpha: float) -> None:
         """Draw the figures, and what is misread or the filters."""
         self._sky.draw(canvas)
         self.draw_title(canvas, texts.DIGIT_RUN_TITLE, digit_status(self.digit_run))

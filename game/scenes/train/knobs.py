@@ -145,7 +145,9 @@ class KnobsPanel:
         if not self.every:
             names = self.first
         else:
-            presets = [base for base in self._run_kind.presets if self.changed or (base, "") != self._run_settings.holds]
+            presets = [
+                base for base in self._run_kind.presets if self.changed or (base, "") != self._run_settings.holds
+            ]
             column.words([(self._run_kind.word((base, "")), partial(self._load, base)) for base in presets])
             tabs = [texts.KNOB_PAGES.get(page, page.capitalize()) for page in self.pages]
             column.choice("", tabs, self._page, self._turn_page, LABEL)
@@ -168,7 +170,7 @@ class KnobsPanel:
     def _knob(self, name: str) -> Knob | SeedKnob:
         """Return the widget of a setting: the same one as long as it is on the screen, so that a drag goes on."""
         knob = self._knobs.get(name)
-        if knob is None or not knob.alive():
+        if knob is None or knob not in self._form.widgets:
             manager = self._form.manager
             if name == SEED:
                 knob = SeedKnob(manager, label(SEED), partial(self.turn, SEED))
@@ -236,7 +238,7 @@ class KnobsPanel:
 
     def _turn_page(self, page: int) -> None:
         seed = self._knobs.get(SEED)
-        if isinstance(seed, SeedKnob) and seed.alive():
+        if isinstance(seed, SeedKnob) and seed in self._form.widgets:
             seed.typing = False
             seed.commit()
         self._page = page

@@ -55,9 +55,7 @@ def layout(view: pygame.FRect, charts: int) -> Layout:
     top = display.bottom - rows * (height + CAPTION) - 8
     width = (display.width - 2 * _MARGIN - (_COLUMNS - 1) * _MARGIN) / _COLUMNS
     boxes = tuple(
-        pygame.FRect(
-            display.left + _MARGIN + column * (width + _MARGIN), top + row * (height + CAPTION), width, height
-        )
+        pygame.FRect(display.left + _MARGIN + column * (width + _MARGIN), top + row * (height + CAPTION), width, height)
         for row in range(rows)
         for column in range(_COLUMNS)
     )[:charts]

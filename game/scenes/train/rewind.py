@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from ai.common.environment import Doubles
+from ai.environment import Doubles
 from ai.training.messages import NetworkState
 from game.core import texts
 from game.core.worker import WorkerState

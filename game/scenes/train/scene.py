@@ -103,7 +103,8 @@ class TrainScene(TrainingScene):
     def _key(self) -> Hashable:
         beside = tuple((each.name, each.style) for each in self.split_view.beside)
         return (
-            self.pages.page, self.laboratory.flies, self.moment is None, self._advice.key, beside, self.inside.editing.key,
+            self.pages.page, self.laboratory.flies, self.moment is None, self._advice.key, beside,
+            self.inside.editing.key,
             self.inside.opened and bool(len(self.lander_run.history)),
         )  # fmt: skip
 
@@ -115,9 +116,10 @@ class TrainScene(TrainingScene):
         self.split_view.place(halves)
         self.training_charts.place(place.charts)
         self.inside.place(place.display)
-        boxes = (self.inside.view.box,) if self.inside.opened else (place.swarm, self.training_charts.charts.box)
+        inside, charts = pygame.Rect(self.inside.view.box), self.training_charts.charts.box
+        boxes = [inside] if self.inside.opened else [pygame.Rect(place.swarm), charts]
         for widget, box in zip(self._pointers_laid, boxes, strict=True):
-            widget.relative_rect = widget.rect = pygame.Rect(box)
+            widget.relative_rect = widget.rect = box
         if not self.inside.opened:
             self._scrubber.relative_rect = self._scrubber.rect = pygame.Rect(place.charts[0]).union(place.charts[1])
 

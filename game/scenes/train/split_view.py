@@ -109,7 +109,9 @@ class SplitView:
         for number, (swarm, picture) in enumerate(zip(self.swarms, self._pictures, strict=True)):
             if fresh or self._frame % 2 == number:
                 swarm.draw(picture, alpha, paused=paused)
-            canvas.surface.blit(picture.surface, canvas.rect(box.left + number * swarm.box.width, box.top, *swarm.box.size))
+            canvas.surface.blit(
+                picture.surface, canvas.rect(box.left + number * swarm.box.width, box.top, *swarm.box.size)
+            )
         canvas.line((box.centerx, box.top), (box.centerx, box.bottom), LINE)
         self._write(canvas, 0, texts.SPLIT_HEALTHY, texts.SPLIT_ALIKE, self._split, NET)
         self._write(canvas, 1, chosen.name, self._laboratory.differs, twin, RUN_STYLES[_STYLE][0])

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.common.decision import Decision
+from ai.agent.decision import Decision
 from ai.lander.environment import OBSERVATION_SCALE
 from game.core import texts
 from game.drawing.canvas import Canvas

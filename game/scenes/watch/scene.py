@@ -9,7 +9,7 @@ from typing import Final
 
 import pygame
 
-from ai.common.decision import Decision
+from ai.agent.decision import Decision
 from ai.files import brief
 from game.core import texts
 from game.core.scene import Transition, push
@@ -308,7 +308,8 @@ class WatchScene(FormScene):
         readouts.draw_hand(canvas, self._said, NET)
         middle.explain((VIEW_SIZE[0] / 2 - 110, 24, 220, 34), texts.EXPLAIN_FLIES, self._who)
         draw_landings(left, (MARGIN, 118), self.swarm.landed, self.swarm.lost)
-        readouts.draw_readouts(canvas, readouts.flight_readouts(self.swarm.env, self.shown), _READOUTS)
+        shown = readouts.flight_readouts(self.swarm.env, self.shown)
+        readouts.draw_readouts(canvas, [shown[name] for name in readouts.PILOT], _READOUTS)
         draw_legend(canvas, world, flown)
         self._draw_notice(middle)
         rows = (self._model_choice, self._count_choice, self._speed_choice, self._map_choice)

@@ -13,7 +13,7 @@ from typing import Final, Protocol
 import numpy as np
 import pygame
 
-from ai.common.environment import Doubles
+from ai.environment import Doubles
 from ai.lander.environment import LanderEnv
 from game.core import texts
 from game.drawing.canvas import PAGE, Align, Canvas, Point

@@ -6,8 +6,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from ai.common.decision import Decision
-from ai.common.environment import Bools, Doubles
+from ai.agent.decision import Decision
+from ai.environment import Bools, Doubles
 from ai.lander.environment import LanderEnv, Outcome
 from game.audio.flight_sounds import FlightSound
 from game.core.clock import STEP, TimeScale

@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from ai.common.environment import Doubles
+from ai.environment import Doubles
 from ai.lander.ground import Ground, Pad, half_plane
 from game.drawing.canvas import Canvas
 from game.drawing.paint import PIECE, Picture, Sheet, bell, slopes

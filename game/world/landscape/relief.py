@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from ai.common.environment import Doubles
+from ai.environment import Doubles
 from ai.lander.environment import LanderEnv
 from ai.lander.ground import Ground
 

@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 import pygame
 
-from ai.common.environment import Doubles, Ints
+from ai.environment import Doubles, Ints
 from game.drawing.paint import PIECE, Picture, Sheet, bell, blocks, clouds, light, mix, ramp
 from game.drawing.paint_cache import Steps
 from game.drawing.sky import beside

@@ -6,7 +6,7 @@ import pytest
 from ai.agent.agent import TOGETHER, DeepQAgent
 from ai.agent.replay import Transition
 from ai.agent.symmetry import Symmetry
-from ai.common.environment import StepResult
+from ai.environment import StepResult
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES, LanderEnv
 from ai.nn import SGD, ModelFormatError
 from ai.training.config import PRESETS, Config, load_agent

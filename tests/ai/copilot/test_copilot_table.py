@@ -5,10 +5,10 @@ import pytest
 import main
 from ai.agent.agent import DeepQAgent
 from ai.cli.copilot import MODEL
-from ai.common.intervals import wilson
 from ai.copilot import measurement
 from ai.copilot.measurement import ALONE, GUARD, TABLES, VALUES, rows
 from ai.lander.environment import LanderEnv
+from ai.training.statistics import wilson
 
 
 @pytest.fixture(scope="module")

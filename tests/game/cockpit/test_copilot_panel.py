@@ -2,7 +2,7 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.common.decision import Decision, decide
+from ai.agent.decision import Decision, decide
 from ai.copilot.copilot import Mode
 from game.core import texts
 from game.drawing.canvas import Canvas

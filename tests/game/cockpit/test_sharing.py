@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from ai.common.decision import Decision, decide
+from ai.agent.decision import Decision, decide
 from ai.copilot.copilot import Mode
 from ai.lander.environment import Outcome
 from game.flight.flight import DECISION_STEPS, Flight, StickHolder

@@ -23,9 +23,9 @@ from game.core import texts, worker
 from game.core.assets import MODELS_DIR
 from game.core.worker import Worker, WorkerState
 from game.core.worker_process import CREDIT, MOST_WAITING, MessageQueue
-from game.digits import fixing, measuring
-from game.digits.reader import Switches
 from game.export import export
+from game.scenes.digits import fixing
+from game.scenes.digits.reader import Switches
 from tests.support import chores
 from tests.support.chores import Echo, Latest, Tick, Trace
 
@@ -458,13 +458,13 @@ def test_whatever_ends_while_the_window_goes_on_is_not_waited_for(monkeypatch: p
         def close(self, grace: float = 0.5) -> None:
             graces.append(grace)
 
-    for module in (export, fixing, measuring):
+    for module in (export, fixing):
         monkeypatch.setattr(module, "Worker", Ending)
     export.Export(list, None, tmp_path / "film.gif").close()
     fix = fixing.FixRunner(tmp_path, MODELS_DIR)
     fix.begin("classic", np.ones((28, 28), np.float32), 3)
     fix.poll()
-    measured = measuring.AccuracyMeasurement(dict)
+    measured = fixing.AccuracyMeasurement(dict)
     measured.ask(Switches())
     measured.anew(Switches())
     assert graces == [0.0, 0.0, 0.0]

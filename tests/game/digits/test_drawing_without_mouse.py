@@ -3,8 +3,8 @@
 import pygame
 import pytest
 
-from game.scenes.digits import DigitsScene
-from game.scenes.quiz import QuizScene
+from game.scenes.digits.quiz import QuizScene
+from game.scenes.digits.scene import DigitsScene
 from game.ui.virtual_pointer import VirtualPointer
 from tests.support.player import DEVICES, Player
 from tests.support.screens import reader

@@ -8,8 +8,8 @@ import pytest
 
 from ai.digits.classifier import DigitClassifier, load_part
 from game.core.assets import MODELS_DIR
-from game.digits.fixing import FixRunner
-from game.digits.reader import Reader
+from game.scenes.digits.fixing import FixRunner
+from game.scenes.digits.reader import Reader
 
 
 @pytest.fixture(scope="module")

@@ -2,9 +2,8 @@ import numpy as np
 import pygame
 import pytest
 
-from game.digits.pad import DrawingPad
-from game.digits.stroke import PEN_WIDTH, Stroke
 from game.drawing.canvas import Canvas
+from game.scenes.digits.pad import PEN_WIDTH, DrawingPad, Stroke
 
 RECT = pygame.Rect(40, 70, 520, 520)
 

@@ -6,7 +6,7 @@ import pytest
 from ai.digits.classifier import DigitClassifier
 from ai.digits.mnist import TEST, bright, read_part
 from game.core.assets import MODELS_DIR
-from game.digits.quiz_rules import ROUNDS, QuizGame
+from game.scenes.digits.quiz_rules import ROUNDS, QuizGame
 
 
 @pytest.fixture(scope="module")

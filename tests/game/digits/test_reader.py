@@ -9,10 +9,10 @@ import pytest
 from ai.digits.preprocessing import redrawn
 from game.core import texts
 from game.core.assets import MODELS_DIR
-from game.digits.answer import draw_answer, draw_fix
-from game.digits.fixing import FixRunner
-from game.digits.reader import Reader, Reading, Switches, Verdict
 from game.drawing.canvas import Canvas
+from game.scenes.digits.answer import draw_answer, draw_fix
+from game.scenes.digits.fixing import FixRunner
+from game.scenes.digits.reader import Reader, Reading, Switches, Verdict
 
 
 @pytest.fixture(scope="module")
@@ -93,7 +93,9 @@ def test_the_digit_that_is_being_learnt_is_named(monkeypatch: pytest.MonkeyPatch
     fixing = FixRunner(tmp_path, MODELS_DIR)
     written: list[str] = []
     monkeypatch.setattr(Canvas, "text", lambda _, string, *__, **___: written.append(string) or pygame.FRect())
-    monkeypatch.setattr("game.digits.fixing.Worker", lambda *_, **__: SimpleNamespace(poll=list, close=lambda _: None))
+    monkeypatch.setattr(
+        "game.scenes.digits.fixing.Worker", lambda *_, **__: SimpleNamespace(poll=list, close=lambda _: None)
+    )
     for digit in (7, 3):
         assert fixing.begin("modern", np.zeros((28, 28), np.float32), digit)
         written.clear()

@@ -14,7 +14,7 @@ from game.scenes.train.advice import Advice
 from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.panel import Column
-from game.ui.rows import ButtonRow
+from game.ui.widget import Widget
 from tests.ai.training.test_hints import HEALTHY
 
 MODERN = PRESETS["modern"]
@@ -36,7 +36,7 @@ def test_every_hint_has_words() -> None:
     assert set(texts.HINTS) == {rule.name for rule in RULES}
 
 
-def words_of(advice: Advice, context: Context) -> dict[str, ButtonRow]:
+def words_of(advice: Advice, context: Context) -> dict[str, Widget]:
     form = Form(context)
     if advice.shown:
         advice.describe(Column(form))

@@ -186,7 +186,7 @@ def test_enter_leads_to_apply_and_undo_follows(panel: tuple[Driver, Panel]):
 
 
 def test_a_preset_is_a_word_and_a_sabotage_waits_under_its_own_name(panel: tuple[Driver, Panel]):
-    game, scene = panel
+    _, scene = panel
     scene.press("Classic")
     assert (scene.knobs.config, scene.knobs.name) == (PRESETS["classic"], "Classic")
     scene.press("Modern")
@@ -294,5 +294,3 @@ def words_drawn(game: Driver, monkeypatch: pytest.MonkeyPatch) -> list[str]:
         written = words_written(patch)
         game.frames(1)
     return written
-
-

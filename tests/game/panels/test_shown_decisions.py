@@ -9,7 +9,7 @@ import pygame
 import pytest
 
 from ai.agent.agent import DeepQAgent
-from ai.common.decision import Decision
+from ai.agent.decision import Decision
 from ai.copilot.copilot import Mode
 from ai.lander.environment import Outcome
 from game.core import texts

@@ -32,7 +32,9 @@ def run(config: Config, points: float) -> History:
     return history
 
 
-def test_what_is_expected_is_drawn_in_points_of_reward_whatever_the_networks_count_in(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_expected_is_drawn_in_points_whatever_networks_count_in(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     drawn: dict[str, list[Series]] = {}
     monkeypatch.setattr(Chart, "set", lambda chart, series, *_: drawn.update({chart.label: series}))
     modern, classic = (run(PRESETS[name], 80.0) for name in ("modern", "classic"))

@@ -10,10 +10,11 @@ import pytest
 from ai.lander.environment import Outcome
 from game.core import texts
 from game.core.worker import WorkerState
-from game.digits.answer import best_two, percent
+from game.digits import percent
 from game.flight import networks
+from game.scenes.digits.answer import best_two
+from game.scenes.digits.scene import DigitsScene
 from game.scenes.train.digits import DigitTrainingScene
-from game.scenes.digits import DigitsScene
 from game.scenes.train.scene import TrainScene
 from game.scenes.watch.scene import COUNTS, WatchScene
 from game.training.run import TrainingRun

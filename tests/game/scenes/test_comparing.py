@@ -70,7 +70,7 @@ def test_a_run_is_renamed_and_taken_away_without_a_mouse(train: Driver, device: 
 
 
 def test_the_mouse_over_a_name_emphasises_its_line_and_a_click_asks(train: Driver) -> None:
-    def colours() -> dict[int, object]:
+    def colours() -> dict[str, object]:
         train.frames(30)
         return {run.series.name: run.series.colour for run in train.top.training_charts.charts.charts[0].runs}
 

@@ -8,7 +8,7 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.common.decision import in_points
+from ai.agent.decision import in_points
 from ai.explain.agent_lesson import Lesson
 from ai.nn.costs import COSTS
 from game.core import texts

@@ -11,8 +11,8 @@ from game.core.worker import WorkerState
 from game.scenes.train.editing import NetworkEditing
 from game.scenes.train.picking import Link, Unit
 from game.scenes.train.scene import TrainScene
-from game.ui.virtual_pointer import VirtualPointer
 from game.ui.rows import SliderRow as Slider
+from game.ui.virtual_pointer import VirtualPointer
 from tests.support.driver import Driver
 from tests.support.networks import on_a_link
 from tests.support.small import LANDERS as SMALL

@@ -24,9 +24,9 @@ from game.core import texts
 from game.core.scene import Push
 from game.core.worker import WorkerState
 from game.flight.demonstrations import FILE_NAME
-from game.scenes.train.inside import SHOWN
 from game.panels.network_view import NetworkView
 from game.scenes.menus.dialogs import QuestionDialog
+from game.scenes.train.inside import SHOWN
 from game.scenes.train.scene import TrainScene
 from game.training.library import Library, SavedRun
 from game.training.run import TrainingRun

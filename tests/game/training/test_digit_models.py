@@ -10,8 +10,8 @@ import pytest
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS, build_digit_network
 from game.core.assets import MODELS_DIR
-from game.digits.reader import Reader
-from game.scenes.digits import DigitsScene
+from game.scenes.digits.reader import Reader
+from game.scenes.digits.scene import DigitsScene
 from game.training.digit_models import called, models_by_name, runs_dir
 from game.ui.context import Context
 from tests.support.driver import Driver

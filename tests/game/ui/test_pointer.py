@@ -12,7 +12,7 @@ from ai.training.config import Config
 from game.flight.flight import Flight
 from game.flight.logbook import Records
 from game.scenes.logbook.scene import LogbookScene
-from game.scenes.physics import PhysicsScene
+from game.scenes.physics.scene import PhysicsScene
 from game.scenes.train.base import INSIDE
 from game.scenes.train.scene import TrainScene
 from game.ui.context import Context

@@ -1,0 +1,106 @@
+"""Decision of a network: its observation, the value of each action, and the action taken."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ai.environment import Bools, Floats, Ints
+
+Array = NDArray[Any]
+Real = TypeVar("Real", np.float32, np.float64)
+
+
+@dataclass(frozen=True, eq=False)
+class Decision:
+    """Decision for n landers at once, with the observations and values behind it.
+
+    It is computed once, then both flown and drawn.
+
+    Attributes:
+        observation: (n, features) that it was made on.
+        action: (n,) to fly.
+        best: (n,) the action of the greatest value.
+        values: (n, actions) as the network gives them; None from a pilot that computes none.
+        steadiness: how far the value of a kept action may lie below the best, in the unit of `values`.
+        reward_scale: size of one point of reward in the unit of `values`.
+
+    """
+
+    observation: Floats
+    action: Ints
+    best: Ints
+    values: Floats | None = None
+    steadiness: float = 0.0
+    reward_scale: float = 1.0
+
+    @cached_property
+    def points(self) -> Floats | None:
+        """Values (n, actions) in points of reward: the expected score from here on, by the first action."""
+        return None if self.values is None else in_points(self.values, self.reward_scale)
+
+    @property
+    def margin(self) -> float:
+        """Points of reward by which the value of a kept action may lie below the best."""
+        return self.steadiness / self.reward_scale
+
+    @property
+    def kept(self) -> Bools:
+        """Whether an action was kept although another one is worth a little more, (n,)."""
+        kept: Bools = self.action != self.best
+        return kept
+
+    def updated(self, slots: Ints, newer: Decision) -> Decision:
+        """Return the decisions of all n landers, with those of `slots` (m,) replaced by `newer` ones."""
+
+        def put(old: Array, new: Array) -> Array:
+            both = old.copy()
+            both[slots] = new
+            return both
+
+        values = None if self.values is None or newer.values is None else put(self.values, newer.values)
+        return replace(
+            newer,
+            observation=put(self.observation, newer.observation),
+            values=values,
+            action=put(self.action, newer.action),
+            best=put(self.best, newer.best),
+        )
+
+    def of(self, slot: int) -> Decision:
+        """Return a copy of the decision for one of the landers, with n = 1."""
+        values = None if self.values is None else self.values[[slot]]
+        return replace(
+            self,
+            observation=self.observation[[slot]],
+            values=values,
+            action=self.action[[slot]],
+            best=self.best[[slot]],
+        )
+
+
+def decide(
+    observation: Floats,
+    values: Floats,
+    held: Ints | None = None,
+    *,
+    steadiness: float = 0.0,
+    reward_scale: float = 1.0,
+) -> Decision:
+    """Choose the best actions by `values` (n, actions); keep those `held` (n,) until now that are nearly as good."""
+    best: Ints = values.argmax(axis=1)
+    action = best
+    if held is not None and steadiness > 0.0:
+        rows = np.arange(len(best))
+        action = np.where(values[rows, held] >= values[rows, best] - steadiness, held, best)
+    return Decision(observation, action, best, values, steadiness, reward_scale)
+
+
+def in_points(values: NDArray[Real], reward_scale: float) -> NDArray[Real]:
+    """Return a network's values as points of reward: it learns from rewards times `reward_scale`."""
+    points: NDArray[Real] = values / values.dtype.type(reward_scale)
+    return points

@@ -1,1 +1,0 @@
-"""Shared parts of agents, environments and digit networks: environment protocol, decisions, settings."""

@@ -1,0 +1,187 @@
+"""Fixing: fine-tune a network on a misread drawing, in a process of its own; the last fix can be undone."""
+
+from __future__ import annotations
+
+import shutil
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import asdict
+from pathlib import Path
+from typing import Final
+
+from ai.digits.ablation import StageAccuracy, stage_accuracy
+from ai.digits.checkpoints import TRAINING_FILE, read_summary
+from ai.digits.fix import Fixed, FixStep, fix
+from ai.digits.preprocessing import Image
+from ai.files import CONFIG
+from game.core import texts
+from game.core.worker import Worker, WorkerState
+from game.digits import percent
+from game.scenes.digits.reader import Switches
+from game.training.digit_models import PATIENCE, called, models_by_name
+
+_UNDONE: Final = ".undone"  # suffix of an undone fix's folder until it is removed
+
+
+class FixRunner:
+    """Runs one fix at a time; call `poll` once a frame. Networks have their names in `game.training.digit_models`.
+
+    Every fix has a folder of its own, which only `undo` removes.
+
+    Attributes:
+        digit: digit taught by the current fix, or by the last one; None before the first.
+        step: progress of the current fix; None before its first message, and between fixes.
+        networks: all networks, by name.
+        fixed: result of the last fix, until the next begins or it is undone.
+        problem: why the last fix failed, in words; empty if it did not.
+
+    """
+
+    def __init__(self, user_dir: Path, models_dir: Path) -> None:
+        self._folders = models_dir, user_dir
+        self.refresh()
+        self._worker: Worker | None = None
+        self.name = ""
+        self.digit: int | None = None
+        self.step: FixStep | None = None
+        self.fixed: Fixed | None = None
+        self.problem = ""
+
+    @property
+    def busy(self) -> bool:
+        """Whether a fix is running."""
+        return self._worker is not None
+
+    def refresh(self) -> None:
+        """Reread the list of networks."""
+        self.networks = models_by_name(*self._folders)
+
+    def folder(self, name: str) -> Path:
+        """Return the folder of the named network with all its fixes."""
+        return self.networks[name].versions()[0]
+
+    def count(self, name: str) -> int:
+        """Return the number of fixes that can be undone."""
+        return len(self.networks[name].fixed())
+
+    def begin(self, name: str, image: Image, digit: int, source: Path | None = None) -> bool:
+        """Begin to teach a network that an image (28, 28) is that digit; return False while another fix runs.
+
+        `source` is the folder that the network was read from, where the last fix is damaged.
+        """
+        if self.busy:
+            return False
+        self.step = self.fixed = None
+        self.name, self.digit, self.problem = name, digit, ""
+        network, folder = self.networks[name], source or self.folder(name)
+        number = int(network.fixed()[-1].name) + 1 if network.fixed() else 1
+        self._worker = Worker(fix, folder, image, digit, network.fixes / f"{number:04}", before=_accuracy(folder))
+        self._worker.patience = PATIENCE
+        return True
+
+    def poll(self) -> Fixed | None:
+        """Receive the fix's progress; return its result once, when it is finished."""
+        if self._worker is None:
+            return None
+        done: Fixed | None = None
+        for told in self._worker.poll():
+            if isinstance(told, Fixed):
+                self.fixed = done = told
+            else:
+                self.step = told
+        if done or self._worker.state in (WorkerState.ENDED, WorkerState.FAILED):
+            self.problem = self._worker.problem or (
+                texts.FIX_NOT_KEPT.format(problem=done.problem) if done and done.problem else ""
+            )
+            self._let_go(0.0)  # it has said all it had to say: the window goes on
+        return done
+
+    def undo(self, name: str) -> bool:
+        """Undo the last fix of a network; return False if there is none, or it can't be removed."""
+        kept = self.networks[name].fixed()
+        if not kept or self.busy:
+            return False
+        self.fixed, self.problem = None, ""
+        aside = kept[-1].with_name(f"{_UNDONE}{time.time_ns()}")
+        try:
+            kept[-1].rename(aside)  # atomic, so that no half-removed fix is ever read
+            shutil.rmtree(aside, ignore_errors=True)
+        except OSError as error:
+            self.problem = texts.FIX_NOT_UNDONE.format(problem=error.strerror or error)
+            return False
+        return True
+
+    def close(self) -> None:
+        """End the running fix, if any; what it is just writing gets a moment to be whole."""
+        self._let_go(0.5)
+
+    def _let_go(self, grace: float) -> None:
+        if self._worker:
+            self._worker.close(grace)
+        self._worker, self.step = None, None
+
+
+def _accuracy(folder: Path) -> float | None:
+    """Return the test accuracy stored in a network's folder; None if there is none."""
+    for file in (CONFIG, TRAINING_FILE):  # of a fix, and of a training
+        with suppress(OSError, ValueError):
+            if (test := read_summary(folder, file).test) is not None:
+                return test
+    return None
+
+
+class AccuracyMeasurement:
+    """Measures the accuracy for each setting of the switches once; call `listen` once a frame.
+
+    `folders` gives networks by name.
+    """
+
+    def __init__(self, folders: Callable[[], dict[str, Path]]) -> None:
+        self._folders = folders
+        self._worker: Worker | None = None
+        self._asked: set[Switches] = set()
+        self.found: dict[Switches, StageAccuracy] = {}
+
+    def ask(self, switches: Switches) -> None:
+        """Request the accuracy with these switches, unless it is known."""
+        if self._worker is None:
+            self._worker = Worker(stage_accuracy, self._folders())
+            self._worker.patience = PATIENCE
+            self._worker.pause()  # it works on request only
+        if switches not in self._asked:
+            self._asked.add(switches)
+            self._worker.send(asdict(switches))
+
+    def anew(self, switches: Switches) -> None:
+        """Discard all results because the networks have changed; measure again if anything was measured before."""
+        if self._worker:
+            self.close()
+            self._worker = None
+            self._asked.clear()
+            self.found.clear()
+            self.ask(switches)
+
+    def listen(self) -> None:
+        """Receive finished measurements."""
+        if self._worker:
+            for told in self._worker.poll():
+                self.found[Switches(**dict(told.steps))] = told
+
+    def words(self, switches: Switches) -> str:
+        """Return the result for these switches in words, or how to get one."""
+        if self._worker is None:
+            return texts.DIGITS_HINT
+        told = self.found.get(switches)
+        if told is None:
+            failed = self._worker.state is WorkerState.FAILED
+            return texts.DIGITS_NOT_MEASURED.format(problem=self._worker.problem) if failed else texts.DIGITS_MEASURING
+        reads = ", ".join(
+            texts.DIGITS_READS_AS.format(name=called(name), percent=percent(part)) for name, part in told.read.items()
+        )
+        return texts.DIGITS_READS.format(count=told.count) + reads + "."
+
+    def close(self) -> None:
+        """End the process."""
+        if self._worker:
+            self._worker.close(0.0)  # there is nothing to be kept, and the window may go on

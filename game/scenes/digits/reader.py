@@ -1,0 +1,268 @@
+"""Digit reader: the networks' probabilities for a drawing, with preprocessing stages, activations and saliency."""
+
+from __future__ import annotations
+
+import logging
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+from enum import Enum, auto
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from ai.digits.filters import MOST_FILTERS, first_filters
+from ai.digits.preprocessing import SIDE, Image, Stages, redrawn, stages, stroke_stages
+from ai.files import brief
+from game.digits.kept import classifier_in
+from game.scenes.digits.pad import DrawingPad
+from game.training.digit_models import NAMES
+
+if TYPE_CHECKING:
+    from ai.digits.classifier import DigitClassifier
+
+
+SURE: Final = 0.9  # nine in ten rightly read test images have a higher probability
+LIKELY: Final = 0.75  # and 99 in a hundred of those that Modern reads
+LEAST_INK, MOST_INK = 18.0, 200.0  # pixels: test images have 25 to 257, 99 in a hundred up to 186, a dot has 5
+Numbers = npt.NDArray[np.float32]
+_log = logging.getLogger("tranquility")
+
+
+class Verdict(Enum):
+    """Confidence in an answer."""
+
+    EMPTY = auto()
+    SURE = auto()
+    LIKELY = auto()
+    DISPUTED = auto()  # another network reads another digit
+    UNSURE = auto()
+
+
+@dataclass(frozen=True)
+class Switches:
+    """Switches of the preprocessing steps; `ai.digits.preprocessing.stages` says what each means."""
+
+    crop: bool = True
+    fit: bool = True
+    width: bool = True
+    centre: bool = True
+
+    def prepare(self, strokes: Image, canvas: npt.ArrayLike) -> Stages:
+        """Return every stage, from strokes as `ai.digits.preprocessing.redrawn` draws them, or from the canvas."""
+        if self.crop and self.fit and self.width:
+            return stroke_stages(strokes, canvas, centre=self.centre)
+        return stages(canvas, **vars(self))
+
+
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """Reading of one drawing: `probabilities` (10,) by the name of each network that could be loaded."""
+
+    stages: Stages
+    probabilities: dict[str, Numbers]
+
+    def verdict(self, name: str) -> Verdict:
+        """Return the confidence in a network's answer: full only if the other networks agree."""
+        ink = float(self.stages.centred.sum())
+        if ink == 0 or name not in self.probabilities:
+            return Verdict.EMPTY
+        surest = round(float(self.probabilities[name].max()), 2)  # rounded as it is displayed beside the verdict
+        if surest < LIKELY or not LEAST_INK < ink < MOST_INK:
+            return Verdict.UNSURE
+        agreed = len({int(values.argmax()) for values in self.probabilities.values()}) == 1
+        if not agreed:
+            return Verdict.DISPUTED
+        return Verdict.SURE if surest >= SURE else Verdict.LIKELY
+
+
+@dataclass(frozen=True, eq=False)
+class Explanation:
+    """Explanation of a network's answer for one image.
+
+    Attributes:
+        saliency: (28, 28), evidence of each pixel's ink for the best answer against the second, -1 to 1.
+        filters: the first layer's weights, (n, height, width), the most active ones first if there are many.
+        layers: outputs of the activation layers: feature maps (n, height, width), or values (n,).
+
+    """
+
+    saliency: Image
+    filters: Numbers
+    layers: list[Numbers]
+
+
+@dataclass
+class Reader:
+    """The loaded networks. One that can't be loaded is left out; `problems` says why, by name."""
+
+    classifiers: dict[str, DigitClassifier] = field(default_factory=dict)
+    sources: dict[str, Path] = field(default_factory=dict)
+    problems: dict[str, str] = field(default_factory=dict)
+
+    def load(self, name: str, *folders: Path) -> bool:
+        """Load a network from the first folder with a sound one; `problems` tells what was wrong with earlier folders.
+
+        Never raises. Returns False if no folder has one; a network loaded before then stays.
+        """
+        self.problems.pop(name, None)
+        for folder in folders:
+            problem = self._load(name, folder)
+            if not problem:
+                self.sources[name] = folder
+                return True
+            self.problems.setdefault(name, problem)
+        return False
+
+    def _load(self, name: str, folder: Path) -> str:
+        """Load one network; return what is wrong with it, empty if nothing."""
+        from ai.nn import ModelFormatError
+
+        try:
+            self.classifiers[name] = classifier_in(folder)
+        except ModelFormatError as error:
+            return brief(error.problems[0] if error.problems else error)
+        except Exception as error:  # a damaged folder may fail in any way, and none may end the game
+            _log.exception("reading %s", folder)
+            return brief(str(error) or type(error).__name__)
+        return ""
+
+    def read(self, seen: Stages, names: Iterable[str] | None = None) -> Reading:
+        """Read a preprocessed drawing with the named networks; with all of them if `names` is None."""
+        wanted = self.classifiers if names is None else names
+        return Reading(seen, {name: self.classifiers[name].predict(seen.centred)[0] for name in wanted})
+
+    def explain(self, name: str, image: Image) -> Explanation:
+        """Return the explanation of a network's answer for an image (28, 28)."""
+        classifier = self.classifiers[name]
+        shaped = classifier.shaped(image)
+        outputs = classifier.network.activations(shaped)
+        first, second = np.argsort(outputs[-1][0])[[-1, -2]]
+        between = np.zeros((1, outputs[-1].shape[-1]), np.float32)
+        between[0, first], between[0, second] = 1, -1
+        spoken = classifier.network.input_gradient(shaped, between).reshape(SIDE, SIDE) * image
+        layers = _layers(classifier, outputs)
+        if not image.any():
+            layers = [np.zeros_like(layer) for layer in layers]
+        return Explanation(_normalised(spoken), _filters(classifier, outputs), layers)
+
+
+def _normalised(values: Numbers) -> Numbers:
+    """Return values scaled into -1 to 1 by signed square roots, so that small ones are visible too."""
+    parts = values / max(float(np.abs(values).max()), 1e-9)
+    return np.asarray(np.sign(parts) * np.sqrt(np.abs(parts)), np.float32)
+
+
+def _filters(classifier: DigitClassifier, outputs: list[Numbers]) -> Numbers:
+    """Return the first layer's weights as images, each in -1 to 1; of plain units, those most active here."""
+    number = next(at for at, layer in enumerate(classifier.network.layers) if layer.parameters)
+    images = first_filters(classifier.network, None)
+    if images.shape[-1] == SIDE:
+        active = np.argsort(-np.abs(outputs[min(number + 1, len(outputs) - 1)][0]), kind="stable")
+        images = images[active]
+    images = images[:MOST_FILTERS]
+    return np.asarray(images / np.abs(images).max(axis=(1, 2), keepdims=True).clip(1e-9), np.float32)
+
+
+def _layers(classifier: DigitClassifier, outputs: list[Numbers]) -> list[Numbers]:
+    """Return the outputs of the activation layers, feature maps channel by channel, each layer in -1 to 1."""
+    from ai.nn import ActivationLayer
+
+    values = [
+        out[0]
+        for layer, out in zip(classifier.network.layers, outputs, strict=True)
+        if isinstance(layer, ActivationLayer) and out.shape[-1] > len("0123456789")
+    ]
+    return [_normalised(value.transpose(2, 0, 1) if value.ndim == 3 else value) for value in values]
+
+
+class LiveReading:
+    """Reading of what is drawn on a pad, kept up to date.
+
+    Args:
+        pad: what is drawn on.
+        chosen: name of the network that is explained.
+        on_read: called after each reading.
+
+    Attributes:
+        reader: the networks that could be loaded.
+        switches: the preprocessing steps that are on.
+        reading: the latest reading.
+        why: explanation of the chosen network's answer; None if it could not be loaded.
+
+    """
+
+    def __init__(self, pad: DrawingPad, chosen: str, on_read: Callable[[], None]) -> None:
+        self._pad, self.chosen, self._on_read = pad, chosen, on_read
+        self.reader, self.switches = Reader(), Switches()
+        self._seen = -1  # revision of the drawing that was read last
+        self._looking: Iterator[None] = iter(())
+        self.why: Explanation | None = None
+
+    @property
+    def known(self) -> bool:
+        """Whether the chosen network could be loaded."""
+        return self.chosen in self.reader.classifiers
+
+    @property
+    def other(self) -> str:
+        """Name of the network to compare with: Modern, or Classic beside Modern; empty if it can't be loaded."""
+        return next((name for name in NAMES if name != self.chosen and name in self.reader.classifiers), "")
+
+    @property
+    def pair(self) -> list[str]:
+        """Names of both networks, as far as they could be loaded."""
+        return [name for name in (self.chosen, self.other) if name in self.reader.classifiers]
+
+    @property
+    def probabilities(self) -> Numbers | None:
+        """The chosen network's probabilities (10,); None while nothing is drawn, or it can't be loaded."""
+        self.catch_up()
+        return None if self.reading.verdict(self.chosen) is Verdict.EMPTY else self.reading.probabilities[self.chosen]
+
+    @property
+    def sources(self) -> dict[str, Path]:
+        """Folders of both networks."""
+        return {name: self.reader.sources[name] for name in self.pair}
+
+    def bars(self, digit: int) -> tuple[tuple[float, float], bool]:
+        """Return both networks' probabilities for a digit, and whether it is the chosen one's answer."""
+        drawn = bool(self.reading.stages.centred.any())
+        values = [self.reading.probabilities.get(name) for name in (self.chosen, self.other)]
+        one, other = (float(value[digit]) if drawn and value is not None else 0.0 for value in values)
+        return (one, other), drawn and values[0] is not None and int(values[0].argmax()) == digit
+
+    def update(self) -> None:
+        """Read the drawing if it has changed, a part per frame."""
+        if next(self._looking, True) and self._seen != self._pad.revision:
+            self._looking = self._look()
+            next(self._looking)
+
+    def catch_up(self) -> None:
+        """Finish reading the current drawing."""
+        if self._seen != self._pad.revision:
+            self._looking = self._look()
+        deque(self._looking, maxlen=0)
+
+    def anew(self) -> None:
+        """Read the current drawing again, by networks or with switches that have changed."""
+        self._seen = -1
+        self.catch_up()
+
+    def _look(self) -> Iterator[None]:
+        """Preprocess the drawing, read it with both networks, and explain the chosen one's answer.
+
+        A generator that does a part at a time: while the pen moves, all of it would take too long for one frame.
+        """
+        self._seen = self._pad.revision
+        strokes = redrawn(self._pad.strokes)
+        yield
+        seen = self.switches.prepare(strokes, self._pad.ink)
+        self.reading = self.reader.read(seen, self.pair)
+        self._on_read()
+        yield
+        known = self.chosen in self.reading.probabilities
+        self.why = self.reader.explain(self.chosen, seen.centred) if known else None
+        yield

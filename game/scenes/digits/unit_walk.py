@@ -1,0 +1,190 @@
+"""Walk through a network's stages for one digit: from a patch of it, unit by unit, to the answer."""
+
+from __future__ import annotations
+
+from types import FunctionType
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import pygame
+
+from ai.digits.classifier import DigitClassifier
+from ai.explain.unit_sums import Box, Place, Stage, UnitSum, receptive_field, stages
+from ai.nn import ActivationLayer, ConvolutionLayer, FullyConnectedLayer, MaxPoolingLayer
+from ai.nn.costs import softmax
+from game.core import texts
+from game.core.source import Source, source_of
+from game.drawing.canvas import Canvas
+from game.drawing.prose import draw_wrapped
+from game.drawing.tokens import MUTE, SMALL
+from game.panels.code_listing import draw_listing
+
+if TYPE_CHECKING:
+    from ai.digits.classifier import DigitClassifier
+    from ai.digits.preprocessing import Image
+
+
+class UnitWalk:
+    """One unit of each stage, linked by the largest products: what feeds a unit most, and what it feeds most.
+
+    Attributes:
+        stages: the network's layers with what they read and gave.
+        probabilities: (10,) the answer.
+        number: the stage looked at; `len(stages)` is the answer.
+        places: the unit of each stage; None where the chain is broken, because no unit reads the one before.
+        channel: of the stage's input, the map that is looked at.
+        unit: the sum of the unit looked at; None at the answer, and for a layer that is no sum.
+        field: the pixels of the digit that this unit depends on.
+
+    """
+
+    def __init__(self, classifier: DigitClassifier, image: Image) -> None:
+        self.stages: list[Stage] = stages(classifier.network, np.asarray(image, np.float32)[:, :, None])
+        self.probabilities = classifier.predict(image)[0]
+        self.logits = classifier.network.cost.logits
+        self.places: list[Place | None] = [None] * len(self.stages)
+        self.channel = 0
+        self.unit: UnitSum | None = None
+        self.field: Box = (0, 0, 0, 0)
+        self.number = len(self.stages)
+        self.look_at(self._loudest(self.number - 1))  # so that the chain is the one that leads to the answer
+        self.choose(0)
+
+    @property
+    def at_answer(self) -> bool:
+        """Whether the answer is looked at."""
+        return self.number == len(self.stages)
+
+    @property
+    def stage(self) -> Stage:
+        """The stage looked at; at the answer, the last one."""
+        return self.stages[min(self.number, len(self.stages) - 1)]
+
+    @property
+    def place(self) -> Place:
+        """The unit looked at."""
+        place = self.places[min(self.number, len(self.stages) - 1)]
+        assert place is not None, "the stage looked at has one"
+        return place
+
+    def value(self, number: int) -> float | None:
+        """Return what the unit of a stage gave, or at the answer its probability; None beyond a broken chain."""
+        place = self.places[min(number, len(self.stages) - 1)]
+        if place is None:
+            return None
+        if number < len(self.stages):
+            return float(self.stages[number].outputs[place])
+        return float(self.probabilities[place[2]]) if place[2] < len(self.probabilities) else None
+
+    def look_at(self, place: Place) -> None:
+        """Look at another unit of the stage, and link those before and after it anew."""
+        at = min(self.number, len(self.stages) - 1)
+        self.places = [None] * len(self.stages)
+        self.places[at] = place
+        for number in range(at, 0, -1):
+            later = self.places[number]
+            if later is None or self.stages[number].kind == "other":
+                break
+            self.places[number - 1] = self.stages[number].strongest_input(later)
+        for number in range(at + 1, len(self.stages)):
+            before = self.places[number - 1]
+            self.places[number] = None if before is None else self.stages[number].strongest_reader(before)
+        self._sum_up()
+
+    def choose(self, number: int) -> None:
+        """Look at another stage: at the unit of the chain there, or at its loudest where the chain is broken."""
+        self.number = min(max(number, 0), len(self.stages))
+        at = min(self.number, len(self.stages) - 1)
+        if self.places[at] is None:
+            self.look_at(self._loudest(at))
+        self._sum_up()
+
+    def look_into(self, channel: int) -> None:
+        """Look at another map of the stage's input; of a layer without sums, at the unit of that map."""
+        if 0 <= channel < self.stage.inputs.shape[2]:
+            self.channel = channel
+            if self.stage.kind in ("pooling", "activation"):
+                self.look_at((*self.place[:2], channel))
+
+    def slide(self) -> None:
+        """Move the window one pixel on, row by row, over and over."""
+        height, width, _ = self.stage.outputs.shape
+        row, column, channel = self.place
+        after = (row * width + column + 1) % (height * width)
+        kept = self.channel
+        self.look_at((after // width, after % width, channel))
+        self.channel = kept if self.stage.kind == "convolution" else self.channel
+
+    def _sum_up(self) -> None:
+        """Write the unit's sum out, and look at the input's map that has most say in it."""
+        self.field = receptive_field(self.stages[: self.number + 1], self.place)
+        self.unit = unit = None if self.stage.kind == "other" or self.at_answer else self.stage.unit(self.place)
+        if unit is None:
+            self.channel = min(self.channel, self.stage.inputs.shape[2] - 1)
+        elif unit.weights is None:
+            self.channel = self.place[2]
+        else:
+            self.channel = int(np.abs(unit.products.sum(axis=(0, 1))).argmax())
+
+    def _loudest(self, number: int) -> Place:
+        """Return the unit of a stage with the largest output."""
+        outputs = self.stages[number].outputs
+        row, column, channel = map(int, np.unravel_index(int(outputs.argmax()), outputs.shape))
+        return row, column, channel
+
+
+_BOX: Final = pygame.FRect(844, 150, 396, 420)
+_BELOW: Final = 600.0  # first baseline of what the case at hand is
+
+
+def code_of(walk: UnitWalk) -> tuple[Source, int] | None:
+    """Return the code of the stage looked at, and the number of its line that computes the sum; None without source."""
+    function, *line = _function(walk)
+    source = source_of(function)
+    if source is None:
+        return None
+    return source, source.line_of(*line) if line else source.lines[-1][0]
+
+
+def _function(walk: UnitWalk) -> tuple[Any, ...]:
+    """Return the function that computes a stage, and what the line is found by in which it does, if not its last."""
+    if walk.at_answer:
+        return DigitClassifier.probabilities, softmax if walk.logits else np.sum
+    match walk.stage.layer:
+        case ConvolutionLayer():
+            return ConvolutionLayer._convolve, np.matmul
+        case MaxPoolingLayer():
+            return MaxPoolingLayer._maximum, np.maximum, 1
+        case FullyConnectedLayer():
+            return FullyConnectedLayer.predict, np.dot
+        case ActivationLayer(activation=activation):
+            own = activation.function
+            return (own if isinstance(own, FunctionType) and own.__name__ != "<lambda>" else ActivationLayer.predict,)
+    return (type(walk.stage.layer).predict,)
+
+
+def draw_code(canvas: Canvas, walk: UnitWalk) -> None:
+    """Draw the code of the stage looked at, and which of its numbers are on the left."""
+    found = code_of(walk)
+    if found is None:
+        draw_wrapped(canvas, texts.PATCH_NO_CODE, (_BOX.left, 176), _BOX.width, size=SMALL, colour=MUTE)
+        return
+    source, line = found
+    draw_listing(canvas, _BOX, source, line)
+    if words := _said(walk):
+        draw_wrapped(canvas, words, (_BOX.left, _BELOW), _BOX.width, size=SMALL, colour=MUTE, most=4)
+
+
+def _said(walk: UnitWalk) -> str:
+    """Return what the lit line's arrays are in the case at hand."""
+    match walk.stage.layer:
+        case _ if walk.at_answer:
+            return ""
+        case ConvolutionLayer(filters=filters, outputs=outputs) as layer:
+            return texts.PATCH_CODE["convolution"].format(
+                filters=filters, rows=len(layer.weights), windows=outputs[0] * outputs[1], number=walk.place[2] + 1
+            )
+        case FullyConnectedLayer() as layer:
+            inputs, units = layer.weights.shape
+            return texts.PATCH_CODE["connected"].format(inputs=inputs, units=units, number=walk.place[2] + 1)
+    return ""

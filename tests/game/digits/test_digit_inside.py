@@ -1,0 +1,342 @@
+"""From patch to answer, and why not another digit: by keys, by mouse and by gamepad."""
+
+import dataclasses
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.digits.classifier import DigitClassifier
+from ai.digits.config import DIGIT_PRESETS, build_digit_network
+from ai.digits.mnist import load_part
+from ai.nn import CostFunctions, FullyConnectedLayer, LayerNormalisation, NeuralNetwork
+from game.core import source, texts
+from game.core.assets import MODELS_DIR
+from game.scenes.digits import unit_walk as patch_code
+from game.scenes.digits.answer import DigitRow
+from game.scenes.digits.inside import DigitInsideScene
+from game.scenes.digits.patch_sums import figure
+from game.scenes.digits.pickers import MapPicker, TilesPicker
+from game.scenes.digits.stage_row import StageRow
+from game.scenes.digits.unit_walk import code_of
+from game.scenes.digits.why_not import WhyNotScene, sentences
+from game.ui.context import Context
+from tests.support.driver import Driver
+from tests.support.player import Player
+from tests.support.screens import settle
+from tests.support.written import words_written
+
+Open = Callable[..., Driver]
+
+
+@pytest.fixture(scope="module")
+def modern():
+    return DigitClassifier.load(MODELS_DIR / "digits" / "modern")
+
+
+@pytest.fixture(scope="module")
+def nine():
+    return load_part("test")[0][7]
+
+
+@pytest.fixture
+def inside(open_game: Open, context: Context, modern, nine) -> Driver:
+    settle(context)
+    driver = open_game(DigitInsideScene, modern, nine)
+    driver.frames(3)
+    return driver
+
+
+def scene(driver: Driver) -> DigitInsideScene:
+    assert isinstance(driver.top, DigitInsideScene)
+    return driver.top
+
+
+def pickers(driver: Driver, kind):
+    return [each for each in driver.form.widgets if isinstance(each, kind)]
+
+
+def test_the_unit_that_is_followed_leads_from_a_patch_to_the_answer(inside: Driver, modern, nine):
+    walk = scene(inside).walk
+    assert walk.number == 0
+    probabilities = modern.predict(nine)[0]
+    assert walk.value(len(walk.stages)) == pytest.approx(probabilities.max(), abs=1e-6)
+    places = list(walk.places)
+    for number in range(1, len(walk.stages) + 1):
+        inside.key(pygame.K_n)
+        assert walk.number == number
+    assert walk.at_answer
+    assert walk.places == places, "looking on changes nothing of the way"
+    inside.key(pygame.K_n)
+    assert walk.at_answer
+    inside.key(pygame.K_b)
+    assert walk.number == len(walk.stages) - 1
+
+
+@pytest.mark.parametrize("number", [0, 1, 3, 6, 8])
+def test_all_figures_of_the_sum_are_written(inside: Driver, monkeypatch, number: int):
+    walk, words = scene(inside).walk, words_written(monkeypatch)
+    inside.keys(*[pygame.K_n] * (number + 1), pygame.K_b)
+    inside.frames(1)
+    unit = walk.unit
+    part: Any = unit.products
+    part = part[:, :, walk.channel if unit.weights is not None else 0]
+    for value in part.ravel():
+        assert figure(float(value)) in words
+    assert figure(unit.output, 3) in words
+    if unit.weights is not None:
+        for value in (*unit.patch[:, :, walk.channel].ravel(), *unit.weights[:, :, walk.channel].ravel()):
+            assert figure(float(value)) in words
+        assert figure(unit.bias, 3) in words
+        assert unit.total == pytest.approx(unit.output, abs=1e-4)
+
+
+def test_the_mouse_moves_the_window_and_lights_maps_and_patches(inside: Driver):
+    walk = scene(inside).walk
+    digit, given = pickers(inside, MapPicker)
+    inside.move(digit.place(10, 12).center)
+    assert walk.unit.corner == (8, 10), "the window's middle is where the mouse is"
+    assert digit.window == (8, 10, 13, 15)
+    inside.move(given.place(20, 3).center)
+    assert walk.place[:2] == (20, 3)
+    assert digit.window == (20, 3, 25, 8), "the patch of the pixel that is pointed at lights"
+    filters, maps = pickers(inside, TilesPicker)
+    inside.move(filters.place(1, 4).center)
+    assert walk.place == (20, 3, filters.columns + 4)
+    assert maps.cell == filters.cell == (1, 4)
+    assert given.values is not None
+    np.testing.assert_array_equal(np.sign(given.values), np.sign(walk.stage.outputs[:, :, walk.place[2]]))
+    row = inside.the(StageRow)
+    inside.click((row.box.left + 3.3 * row.pitch, row.box.centery))
+    assert walk.number == 3
+    read_maps = pickers(inside, TilesPicker)[0]
+    inside.move(read_maps.place(0, 5).center)
+    assert walk.channel == 5
+
+
+@pytest.mark.parametrize("device", ["keys", "pad"])
+def test_arrows_take_hold_of_the_window_and_let_go(inside: Driver, device: str):
+    walk, player = scene(inside).walk, Player(inside, device)
+    digit = pickers(inside, MapPicker)[0]
+    inside.form.focus(digit)
+    player.press("down", "up")  # from now on there is no mouse in use
+    inside.form.focus(digit)
+    row, column, channel = walk.place
+    player.press("confirm", "down", "down", "left")
+    assert digit.typing
+    assert walk.place == (row + 2, column - 1, channel)
+    player.hold("up", down=True)
+    inside.frames(60)
+    player.hold("up", down=False)
+    assert walk.place[0] < row - 5
+    player.press("back")
+    assert not digit.typing
+    assert inside.top_name == "DigitInsideScene"
+    at = walk.place
+    player.press("down")
+    assert walk.place == at
+    assert inside.form.focused is not digit
+
+
+@pytest.mark.parametrize("stage", [1, 2, 3, 5])
+def test_arrows_move_any_window_and_back(inside: Driver, stage: int):
+    walk = scene(inside).walk
+    inside.keys(*[pygame.K_n] * stage)
+    walk.look_at((3, 3, walk.place[2]))
+    inside.form.focus(pickers(inside, MapPicker)[0])
+    inside.keys(pygame.K_RETURN, pygame.K_RIGHT)
+    inside.keys(pygame.K_LEFT, pygame.K_LEFT)
+    there = walk.place
+    inside.keys(pygame.K_RIGHT, pygame.K_UP, pygame.K_RIGHT)
+    assert walk.place == (there[0] - 1, there[1] + 2, there[2])
+
+
+def test_the_window_slides_by_itself_until_it_is_touched(open_game: Open, modern, nine):
+    driver = open_game(DigitInsideScene, modern, nine)
+    walk = scene(driver).walk
+    assert scene(driver).sliding
+    driver.frames(110)
+    before = walk.place
+    driver.frames(30)
+    assert walk.place != before
+    assert walk.place[2] == before[2]
+    driver.key(pygame.K_SPACE)
+    before = walk.place
+    driver.frames(40)
+    assert walk.place == before
+    driver.button(pygame.CONTROLLER_BUTTON_Y)
+    assert scene(driver).sliding
+    driver.move(pickers(driver, MapPicker)[1].place(3, 3).center)
+    assert not scene(driver).sliding
+    assert walk.place[:2] == (3, 3)
+
+
+def test_with_reduced_motion_nothing_slides_unasked(inside: Driver):
+    before = scene(inside).walk.place
+    inside.frames(200)
+    assert scene(inside).walk.place == before
+    assert texts.PATCH_SLIDE in inside.hints()
+
+
+def test_the_code_beside_each_stage_is_that_of_its_layer(inside: Driver, monkeypatch):
+    inside.key(pygame.K_c)
+    walk, found = scene(inside).walk, []
+    for _ in walk.stages:
+        listing, line = code_of(walk) or pytest.fail("no code")
+        found.append(listing.name.rpartition(".")[2])
+        assert dict(listing.lines)[line].strip()
+        inside.frames(2)
+        inside.key(pygame.K_n)
+    assert found == ["_convolve", "_maximum", "_relu", "_convolve", "_maximum", "_relu", "predict", "_relu", "predict"]
+    listing, line = code_of(walk) or pytest.fail("no code")
+    assert "softmax" in dict(listing.lines)[line]
+    words = words_written(monkeypatch)
+    monkeypatch.setattr(patch_code, "source_of", lambda _: None)
+    inside.frames(2)
+    assert code_of(walk) is None
+    assert texts.PATCH_NO_CODE.split()[0] in " ".join(words)
+    assert source.source_of(len) is None
+
+
+def strange(kind: str) -> DigitClassifier:
+    if kind == "normalised":
+        network = NeuralNetwork(*CostFunctions.use_mse()).add_layer(FullyConnectedLayer(784, 12))
+        network.add_layer(LayerNormalisation(12)).add_layer(FullyConnectedLayer(12, 10)).add_layer(
+            LayerNormalisation(10)
+        )
+        return DigitClassifier(network)
+    changes = {
+        "deep": {"filters": (4, 5), "kernel": 3, "hidden": (300, 7), "activation": "leaky_relu"},
+        "wide": {"filters": (3,), "kernel": 9, "hidden": (17,), "activation": "sigmoid"},
+        "plain": {"convolutions": False, "hidden": (1100,), "activation": "tanh", "output_activation": True},
+    }
+    return DigitClassifier(
+        build_digit_network(DIGIT_PRESETS["modern"].changed(**changes[kind]), np.random.default_rng(1))
+    )
+
+
+@pytest.mark.parametrize("kind", ["deep", "wide", "plain", "normalised"])
+def test_networks_of_other_shapes_can_be_gone_through(open_game: Open, context: Context, nine, kind: str):
+    settle(context)
+    driver = open_game(DigitInsideScene, strange(kind), nine)
+    walk = scene(driver).walk
+    for _ in range(len(walk.stages)):
+        driver.frames(2)
+        driver.key(pygame.K_c)
+        driver.frames(1)
+        driver.key(pygame.K_c)
+        for picker in pickers(driver, (MapPicker, TilesPicker)):
+            driver.move(picker.place(0, 0).center)
+        assert (walk.unit is None) == (walk.stage.kind == "other")
+        driver.key(pygame.K_n)
+    assert walk.at_answer
+    driver.frames(2)
+
+
+# Why not
+
+
+@pytest.fixture
+def why_not(open_game: Open, context: Context, modern, nine) -> Driver:
+    settle(context)
+    return open_game(WhyNotScene, modern, nine)
+
+
+def measured(driver: Driver) -> WhyNotScene:
+    top = driver.top
+    assert isinstance(top, WhyNotScene)
+    while not top.contrast.done:
+        driver.skip()
+    driver.frames(2)
+    return top
+
+
+@pytest.mark.parametrize("device", ["keys", "mouse", "pad"])
+def test_another_digit_is_asked_about_and_its_ink_changed(why_not: Driver, modern, nine, device: str):
+    if device == "keys":
+        why_not.key(pygame.K_7)
+    elif device == "mouse":
+        row = next(each for each in why_not.form.widgets if isinstance(each, DigitRow) and each.digit == 7)
+        why_not.click(row.box.center)
+    else:
+        while why_not.top.asked != 7:
+            why_not.button(pygame.CONTROLLER_BUTTON_RIGHTSHOULDER)
+    top = measured(why_not)
+    take = top.seen.take
+    if device == "mouse":
+        why_not.click(why_not.widget(texts.WHY_NOT_TAKE_IT).box.center)
+    else:
+        why_not.form.focus(why_not.widget(texts.WHY_NOT_TAKE_IT))
+        Player(why_not, device).press("confirm")
+    assert top.image.sum() < nine.sum()
+    assert modern.predict(top.image)[0][7] > modern.predict(nine)[0][7]
+    assert top.contrast.scores[7] == pytest.approx(take.after, abs=1e-4)
+    if device == "pad":
+        why_not.button(pygame.CONTROLLER_BUTTON_X)
+    else:
+        why_not.key(pygame.K_r)
+    np.testing.assert_array_equal(top.image, nine)
+
+
+def test_what_is_said_of_ink_is_true(why_not: Driver, modern, monkeypatch):
+    why_not.key(pygame.K_7)
+    top, words = measured(why_not), words_written(monkeypatch)
+    why_not.resize((1600, 900))  # paints everything anew
+    said = " ".join(words)
+    for change in (top.seen.take, top.seen.put):
+        network = modern.network
+        after = network.predict(modern.shaped(top.contrast.changed(change.row, change.column, change.ink)))[0]
+        before = network.predict(modern.shaped(top.image))[0]
+        assert after[7] > before[7]
+        assert f"{figure(float(before[7]))} to {figure(float(after[7]))}" in said
+
+
+def test_places_are_named_within_the_ink(why_not: Driver):
+    why_not.key(pygame.K_7)
+    seen = measured(why_not).seen
+    assert seen
+    assert seen.take
+    for row, place in ((12, 1), (18, 4), (25, 7), (2, 1)):  # the last lies above the ink, nearest to its top
+        at = dataclasses.replace(seen, ink=((10, 27), (5, 22)), take=dataclasses.replace(seen.take, row=row, column=13))
+        assert texts.WHY_NOT_PLACES[place] in sentences(at)[0]
+    (top, bottom), (left, right) = seen.ink
+    image = why_not.top.image
+    assert image[top].any()
+    assert image[bottom].any()
+    assert image[top : bottom + 1, left : right + 1].sum() == image.sum()
+
+
+def test_the_score_of_the_answer_stands_beside_it(why_not: Driver, modern, monkeypatch):
+    top, words = measured(why_not), words_written(monkeypatch)
+    why_not.frames(1)
+    score = float(modern.network.predict(modern.shaped(top.image))[0][9])
+    assert any(each.endswith(texts.WHY_NOT_SCORE.format(score=figure(score))) for each in words)
+
+
+def test_its_own_answer_is_not_asked_about(why_not: Driver, monkeypatch):
+    words = words_written(monkeypatch)
+    why_not.key(pygame.K_9)
+    top = measured(why_not)
+    assert texts.WHY_NOT_SAME in " ".join(words)
+    image = top.image
+    why_not.press_on(texts.WHY_NOT_TAKE_IT)
+    assert top.image is image
+
+
+def test_a_network_that_cannot_be_asked_says_so(open_game: Open, context: Context, nine, monkeypatch):
+    settle(context)
+    words = words_written(monkeypatch)
+    driver = open_game(WhyNotScene, strange("normalised"), nine)
+    driver.frames(3)
+    driver.keys(pygame.K_3, pygame.K_r)
+    assert driver.top.contrast is None
+    assert texts.WHY_NOT_STRANGE.split(",")[0][:20] in " ".join(words)
+
+
+def test_from_one_question_to_the_other_and_back(why_not: Driver):
+    why_not.press_on(texts.WHY_NOT_INSIDE)
+    assert why_not.top_name == "DigitInsideScene"
+    why_not.key(pygame.K_ESCAPE)
+    assert why_not.top_name == "WhyNotScene"

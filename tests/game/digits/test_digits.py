@@ -1,0 +1,314 @@
+import shutil
+import time
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.digits.ablation import stage_accuracy
+from ai.digits.preprocessing import preprocess_strokes
+from game.core import texts
+from game.drawing.tokens import INK
+from game.scenes.digits.reader import Switches, Verdict
+from game.scenes.digits.scene import DigitsScene
+from game.ui.context import Context
+from tests.support.chores import biased_fix
+from tests.support.driver import Driver
+from tests.support.pen import draw, guess, strokes
+from tests.support.player import Player
+
+Open = Callable[..., Driver]
+
+
+@pytest.fixture
+def drawing(open_game: Open) -> Driver:
+    return open_game(DigitsScene)
+
+
+def scene(driver: Driver) -> DigitsScene:
+    assert isinstance(driver.top, DigitsScene)
+    return driver.top
+
+
+def wait_for(driver: Driver, done: Callable[[], object]) -> None:
+    started = time.monotonic()
+    while not done() and time.monotonic() - started < 120:
+        driver.frames(1)
+        time.sleep(0.005)
+    assert done(), scene(driver).measuring.words(scene(driver).live.switches)
+
+
+@pytest.mark.parametrize(
+    ("height", "at", "size"),
+    [(0.6, (0.3, 0.2), (1280, 720)), (0.12, (0.05, 0.8), (1280, 720)), (0.9, (0.1, 0.05), (900, 760))],
+)
+def test_all_ten_digits_are_read_at_any_size_and_place(drawing: Driver, height, at, size):
+    drawing.resize(size)
+    read = {}
+    for chosen in ("modern", "classic"):
+        read[chosen] = []
+        for digit in range(10):
+            draw(drawing, strokes(digit, 0, height, at))
+            read[chosen].append(guess(drawing) == digit)
+            drawing.key(pygame.K_c)
+        drawing.key(pygame.K_n)
+    assert sum(read["modern"]) == 10
+    assert sum(read["classic"]) >= 9
+
+
+def test_the_guess_follows_every_event_without_a_frame_in_between(drawing: Driver):
+    digits, (stroke,) = scene(drawing), strokes(0)
+    assert digits.probabilities is None
+    guesses = []
+    for number, point in enumerate(stroke * digits.pad.rect.size + digits.pad.rect.topleft):
+        kind = pygame.MOUSEMOTION if number else pygame.MOUSEBUTTONDOWN
+        digits.handle_event(pygame.event.Event(kind, pos=tuple(point), button=1))
+        guesses.append(digits.probabilities)
+    assert len({guess.tobytes() for guess in guesses}) == len(stroke)
+    assert guesses[-1].argmax() == 0
+
+
+def test_the_drawing_area_is_told_in_pixels_of_the_window(drawing: Driver):
+    assert scene(drawing).canvas_rect == (40, 70, 520, 520)
+    drawing.resize((900, 760))
+    scale = 900 / 1280
+    left, top, width, _ = scene(drawing).canvas_rect
+    assert (left, width) == (round(40 * scale), pytest.approx(520 * scale, abs=1))
+    assert top == pytest.approx(70 * scale + (760 - 900 * 9 / 16) / 2, abs=1)
+
+
+def test_a_resized_window_keeps_the_drawing(drawing: Driver):
+    draw(drawing, strokes(3))
+    before = scene(drawing).probabilities
+    drawing.resize((1600, 900))
+    assert np.array_equal(scene(drawing).probabilities, before)
+    rect = scene(drawing).canvas_rect
+    scene(drawing).draw(drawing.app.canvas, 1.0)
+    seen = pygame.surfarray.array3d(drawing.app.canvas.surface)[rect.left : rect.right, rect.top : rect.bottom]
+    assert (np.abs(seen.astype(int) - INK).max(axis=2) < 8).mean() > 0.05
+
+
+@pytest.mark.parametrize(
+    "drawn",
+    [
+        [np.array([(0.5, 0.5)])],
+        [np.array([(0.1, 0.5), (0.9, 0.5)])],
+        [np.array([(0.5, 0.5), (0.52, 0.51)])],
+        [np.random.default_rng(4).random((40, 2))],
+    ],
+    ids=["dot", "line across", "tick", "scribble"],
+)
+def test_what_is_no_digit_makes_it_unsure(drawing: Driver, drawn):
+    draw(drawing, drawn)
+    assert guess(drawing) in range(10)
+    for name in ("modern", "classic"):
+        assert scene(drawing).reading.verdict(name) is Verdict.UNSURE
+    drawing.frames(5)
+
+
+def test_strokes_beside_the_pad_are_nothing(drawing: Driver):
+    for point in ((700, 650), (-5, -5), (2000, 3000)):
+        drawing.post(pygame.MOUSEBUTTONDOWN, pos=point, button=1)
+        drawing.post(pygame.MOUSEMOTION, pos=(300, 300), rel=(0, 0), buttons=(1, 0, 0))
+        drawing.post(pygame.MOUSEBUTTONUP, pos=(300, 300), button=1)
+    assert scene(drawing).probabilities is None
+    assert scene(drawing).reading.verdict("modern") is Verdict.EMPTY
+
+
+def test_undo_and_clear_by_keys_words_and_pad(drawing: Driver):
+    pad = scene(drawing).pad
+    draw(drawing, strokes(4))
+    assert len(pad.strokes) == 2
+    drawing.key(pygame.K_z)
+    assert len(pad.strokes) == 1
+    drawing.click((60, 614))  # Undo
+    assert pad.empty
+    draw(drawing, strokes(4))
+    drawing.click((140, 614))  # Clear
+    assert scene(drawing).probabilities is None
+    drawing.button(pygame.CONTROLLER_BUTTON_Y)
+    assert len(pad.strokes) == 2
+    drawing.button(pygame.CONTROLLER_BUTTON_X)
+    assert pad.empty
+
+
+def test_the_network_that_is_looked_into_is_chosen_by_mouse_keys_and_pad(drawing: Driver):
+    draw(drawing, strokes(5))
+    filters = {}
+    for press in (lambda: drawing.key(pygame.K_RIGHT), lambda: drawing.button(pygame.CONTROLLER_BUTTON_RIGHTSHOULDER)):
+        press()
+        filters[scene(drawing).chosen] = scene(drawing).live.why.filters.shape
+    assert filters == {"classic": (32, 28, 28), "modern": (32, 5, 5)}
+    tabs = drawing.choice("Classic")
+    drawing.click((tabs.row.lefts[1] + 5, tabs.box.centery))
+    assert scene(drawing).chosen == "classic"
+
+
+def test_saliency_shows_what_ink_speaks_for_the_answer(drawing: Driver):
+    draw(drawing, strokes(2))
+    drawing.frames(2)  # it is read in the frame after, and then explained
+    why, seen = scene(drawing).live.why, scene(drawing).reading.stages.centred
+    assert np.abs(why.saliency).max() == pytest.approx(1)
+    assert np.abs(why.saliency[seen == 0]).max() == 0
+    assert [layer.shape for layer in why.layers] == [(32, 12, 12), (96, 4, 4), (128,)]
+
+
+def test_what_is_put_right_is_what_is_drawn_however_soon_that_is(drawing: Driver, monkeypatch):
+    digits, given = scene(drawing), []
+    monkeypatch.setattr(digits.fixing, "begin", lambda _, image, *others: given.append((image, *others)))
+    draw(drawing, strokes(2))
+    drawing.key(pygame.K_7)  # it has not been read yet
+    [(image, digit, _)] = given
+    assert digit == 7
+    assert np.array_equal(image, preprocess_strokes(digits.pad.strokes))
+
+
+def test_a_step_that_is_switched_off_changes_what_is_seen_and_its_price_is_measured(drawing: Driver, monkeypatch):
+    monkeypatch.setattr("game.scenes.digits.fixing.stage_accuracy", partial(stage_accuracy, count=60))
+    digits = scene(drawing)
+    draw(drawing, strokes(7, 0, 0.3, (0.05, 0.05)))
+    drawing.frames(1)
+    before = digits.reading.stages.centred
+    crop = next(widget for widget in digits.form.widgets if widget.label == "cropped")
+    drawing.click(crop.box.center)
+    assert digits.reading.stages.centred.sum() < 0.8 * before.sum()
+    frames = drawing.frames(3)
+    assert frames
+    off = Switches(crop=False)
+    wait_for(drawing, lambda: off in digits.measuring.found)
+    drawing.click(crop.box.center)
+    wait_for(drawing, lambda: Switches() in digits.measuring.found)
+    for name, more in (("modern", 0.2), ("classic", 0.3)):
+        assert digits.measuring.found[Switches()].read[name] > digits.measuring.found[off].read[name] + more
+    assert np.array_equal(digits.reading.stages.centred, before)
+
+
+@pytest.mark.parametrize("device", ["mouse", "keys", "pad"])
+def test_a_switch_shows_picture_and_answer_before_and_after_for_a_moment(drawing: Driver, device: str):
+    digits = scene(drawing)
+    draw(drawing, strokes(7, 0, 0.3, (0.05, 0.05)))
+    drawing.frames(3)
+    before, switch = digits.reading, drawing.widget("centred")
+    if device == "mouse":
+        drawing.click(switch.box.center)
+    else:
+        drawing.form.focus(switch)
+        Player(drawing, device).press("confirm")
+    compared = digits.before_after.compared
+    assert compared.images[0] is before.stages.centred
+    assert compared.images[1] is digits.reading.stages.centred
+    assert not np.array_equal(*compared.images)
+    for shown, reading in zip(compared.probabilities, (before, digits.reading), strict=True):
+        np.testing.assert_array_equal(shown, reading.probabilities[digits.chosen])
+    drawing.skip(400)
+    assert digits.before_after.compared is compared, "as long as the switch is held, it stays"
+    if device == "mouse":
+        drawing.move((300, 640))
+    else:
+        drawing.form.focus(drawing.widget("Undo"))
+    drawing.skip(310)
+    assert digits.before_after.compared is None
+
+
+def test_another_drawing_ends_the_comparison_and_no_ink_begins_none(drawing: Driver):
+    digits, switch = scene(drawing), drawing.widget("pen")
+    drawing.click(switch.box.center)
+    assert scene(drawing).before_after.compared is None
+    draw(drawing, strokes(3))
+    drawing.click(switch.box.center)
+    assert digits.before_after.compared
+    draw(drawing, strokes(1))
+    drawing.frames(2)
+    assert digits.before_after.compared is None
+
+
+@pytest.mark.parametrize(("word", "name"), [("Look inside", "DigitInsideScene"), ("Why not …?", "WhyNotScene")])
+def test_words_lead_further_in_once_there_is_a_drawing(drawing: Driver, word: str, name: str):
+    drawing.press_on(word)
+    assert drawing.top_name == "DigitsScene"
+    drawing.frames(2)
+    assert drawing.said == texts.DIGITS_EMPTY
+    draw(drawing, strokes(6))
+    drawing.click(drawing.widget(word).box.center)
+    assert drawing.top_name == name
+    drawing.frames(3)
+    drawing.key(pygame.K_ESCAPE)
+    assert drawing.top_name == "DigitsScene"
+
+
+def test_a_damaged_network_is_named_and_the_other_one_reads(open_game: Open, context: Context, tmp_path):
+    shutil.copytree(context.models_dir / "digits", tmp_path / "models" / "digits")
+    (tmp_path / "models" / "digits" / "modern" / "config.json").write_text("{", encoding="utf-8")
+    context.models_dir = tmp_path / "models"
+    driver = open_game(DigitsScene)
+    assert scene(driver).chosen == "classic"
+    assert "config.json" in scene(driver).live.reader.problems["modern"]
+    driver.key(pygame.K_n)
+    assert scene(driver).chosen == "classic"
+    draw(driver, strokes(3))
+    assert guess(driver) == 3
+    driver.frames(3)
+
+
+def test_without_any_network_there_is_a_pad_and_a_message(open_game: Open, context: Context, tmp_path):
+    context.models_dir = tmp_path
+    driver = open_game(DigitsScene)
+    draw(driver, strokes(3))
+    driver.keys(pygame.K_n, pygame.K_3)
+    assert scene(driver).probabilities is None
+    assert set(scene(driver).live.reader.problems) == {"modern", "classic"}
+    assert driver.top_name == "DigitsScene"
+
+
+def test_drawing_changes_nothing_but_pixels(drawing: Driver):
+    draw(drawing, strokes(8))
+    drawing.frames(30)
+    pictures = []
+    for _ in range(2):
+        scene(drawing).draw(drawing.app.canvas, 0.5)
+        pictures.append(pygame.surfarray.array3d(drawing.app.canvas.surface))
+    assert np.array_equal(*pictures)
+
+
+def test_a_fix_is_learnt_in_the_background_shown_and_undone(drawing: Driver, context: Context, monkeypatch):
+    monkeypatch.setattr("game.scenes.digits.fixing.fix", biased_fix)
+    digits = scene(drawing)
+    draw(drawing, strokes(1, 1))
+    assert guess(drawing) == 1
+    drawing.key(pygame.K_7)
+    assert digits.fixing.busy
+    wait_for(drawing, lambda: not digits.fixing.busy)
+    assert guess(drawing) == 7
+    assert digits.fixing.fixed.digit == 7
+    drawing.frames(2)
+    assert (context.user_dir / "digits" / "modern").is_dir()
+    word = next(widget for widget in digits.form.widgets if widget.label == "Undo the fix")
+    drawing.click(word.box.center)
+    assert guess(drawing) == 1
+    assert word not in digits.form.widgets
+
+
+def test_menu_leads_to_drawing_and_back(open_game: Open):
+    driver = open_game()
+    driver.keys(*[pygame.K_DOWN] * 3, pygame.K_RETURN)
+    assert driver.top_name == "DigitsScene"
+    driver.key(pygame.K_ESCAPE)
+    assert driver.top_name == "MenuScene"
+
+
+@pytest.mark.parametrize(
+    ("word", "name"), [("Quiz", "QuizScene"), ("Train", "DigitTrainingScene"), ("Dream", "DreamScene")]
+)
+def test_words_lead_to_the_other_screens_and_the_drawing_is_kept(drawing: Driver, word: str, name: str):
+    draw(drawing, strokes(6))
+    digits = scene(drawing)
+    widget = next(widget for widget in digits.form.widgets if widget.label == word)
+    drawing.click(widget.box.center)
+    assert drawing.top_name == name
+    drawing.key(pygame.K_ESCAPE)
+    while drawing.top is not digits and "PauseScene" in drawing.top_name:
+        drawing.keys(pygame.K_UP, pygame.K_RETURN)  # Leave
+    assert drawing.top is digits
+    assert guess(drawing) == 6

@@ -1,0 +1,187 @@
+"""The dream and the quiz, through real pygame events."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.digits.classifier import DigitClassifier
+from ai.digits.mnist import MnistError
+from game.core import texts
+from game.core.assets import MODELS_DIR
+from game.scenes.digits import quiz
+from game.scenes.digits.answer import DigitRow
+from game.scenes.digits.dream import DreamScene, DreamTile
+from game.scenes.digits.quiz import QuizScene
+from game.scenes.digits.quiz_rules import ROUNDS
+from game.ui.widget import Widget
+from game.ui.widgets import Slider
+from tests.support.driver import Driver
+from tests.support.pen import SEVEN, stroke
+
+
+@pytest.fixture(scope="module")
+def classifier():
+    return DigitClassifier.load(MODELS_DIR / "digits" / "classic")
+
+
+def tiles(driver: Driver) -> list[DreamTile]:
+    return [each for each in driver.form.widgets if isinstance(each, DreamTile)]
+
+
+def told(monkeypatch, driver: Driver) -> list[str]:
+    notes: list[str] = []
+    monkeypatch.setattr(driver.top.context, "note", notes.append)
+    return notes
+
+
+# Dream
+
+
+def test_the_digit_that_is_looked_at_is_dreamt_first_and_then_the_others(open_game: Callable[..., Driver], classifier):
+    game = open_game(DreamScene, classifier, 3)
+    while not game.top.dreams[3].done:
+        game.frames(1)
+    assert game.top.dreams[3].probabilities.argmax() == 3
+    assert game.top.dreams[5].step == 0
+    game.frames(20)
+    assert game.top.dreams[0].step > 0
+
+
+def test_keys_mouse_and_pad_choose_a_digit(open_game: Callable[..., Driver], classifier):
+    game = open_game(DreamScene, classifier, 3)
+    game.key(pygame.K_7)
+    assert game.top.digit == 7
+    game.click(tiles(game)[2].box.center)
+    assert game.top.digit == 2
+    game.click(next(row for row in game.form.widgets if isinstance(row, DigitRow) and row.digit == 9).box.center)
+    assert game.top.digit == 9
+    game.button(pygame.CONTROLLER_BUTTON_RIGHTSHOULDER)
+    assert game.top.digit == 0
+    game.button(pygame.CONTROLLER_BUTTON_LEFTSHOULDER)
+    assert game.top.digit == 9
+
+
+def test_other_settings_begin_another_dream(open_game: Callable[..., Driver], classifier):
+    drawing = np.zeros((28, 28), np.float32)
+    drawing[5:23, 12:16] = 1
+    game = open_game(DreamScene, classifier, 1, drawing)
+    game.frames(30)
+    game.form.focus(game.the(Slider))
+    before = game.top.dreams[1]
+    game.key(pygame.K_LEFT)
+    assert game.top.dreams[1] is not before
+    assert game.top.dreams[1].calm == pytest.approx(0.6)
+    game.choice(texts.DREAM_STARTS[1]).choose(1)
+    np.testing.assert_array_equal(game.top.dreams[1].image, drawing)
+    game.frames(30)
+    game.key(pygame.K_r)
+    assert game.top.dreams[1].step < 5
+    game.key(pygame.K_ESCAPE)
+    assert not game.app.scenes.running  # it was the only scene
+
+
+def test_an_empty_drawing_is_no_beginning(open_game: Callable[..., Driver], classifier):
+    game = open_game(DreamScene, classifier, 12, np.zeros((28, 28), np.float32))
+    game.frames(3)
+    assert game.top.digit == 0
+    assert not [each for each in game.form.widgets if getattr(each, "label", "") == texts.DREAM_START]
+
+
+# Quiz
+
+
+def test_a_drawing_is_read_and_a_strangers_digit_answered(open_game: Callable[..., Driver], classifier):
+    game = open_game(QuizScene, classifier)
+    game.frames(2)
+    scene = game.top
+    scene.contest.round.digit = 7
+    stroke(game, SEVEN)
+    game.key(pygame.K_RETURN)
+    assert scene.contest.rounds[0].answer == 7
+    assert scene.contest.score("draw") == (1, 1)
+    stroke(game, SEVEN)
+    assert len(scene.pad.strokes) == 1, "what was read stays as it is"
+    game.key(pygame.K_RETURN)
+    assert scene.contest.round.kind == "read"
+    game.click(scene.form.widgets[scene.contest.round.digit].box.center)
+    assert scene.contest.score("read") == (1, 1)
+    game.button(pygame.CONTROLLER_BUTTON_A)
+    assert scene.contest.place == 2
+    assert scene.pad.empty
+
+
+def test_words_that_have_done_their_work_are_gone(open_game: Callable[..., Driver], classifier):
+    game = open_game(QuizScene, classifier)
+    game.frames(2)
+    scene = game.top
+    elements = scene.form.manager.get_sprite_group()
+    for _ in range(3):
+        for _ in range(10):
+            current = scene.contest.round
+            if current.kind == "draw":
+                stroke(game, SEVEN[1:])
+                game.key(pygame.K_RETURN)
+            else:
+                game.key(pygame.K_0 + current.digit)
+            assert {*scene.form.widgets} == {each for each in elements.sprites() if isinstance(each, Widget)}
+            game.key(pygame.K_RETURN)
+        assert scene.contest.round is None
+        game.key(pygame.K_RETURN)
+    assert len(elements.sprites()) < 15
+
+
+def test_an_empty_pad_is_not_handed_in(open_game: Callable[..., Driver], classifier, monkeypatch):
+    game = open_game(QuizScene, classifier)
+    game.frames(2)
+    notes = told(monkeypatch, game)
+    game.key(pygame.K_RETURN)
+    assert notes == [texts.QUIZ_NOTHING]
+    assert game.top.contest.round.answer is None
+
+
+def test_strokes_are_undone_and_cleared_until_they_are_read(open_game: Callable[..., Driver], classifier):
+    game = open_game(QuizScene, classifier)
+    game.frames(2)
+    stroke(game, SEVEN)
+    stroke(game, [(100, 200), (150, 400)])
+    game.key(pygame.K_z)
+    assert len(game.top.pad.strokes) == 1
+    game.key(pygame.K_c)
+    assert game.top.pad.empty
+    game.button(pygame.CONTROLLER_BUTTON_Y)
+    assert len(game.top.pad.strokes) == 1
+    game.key(pygame.K_RETURN)
+    game.key(pygame.K_c)
+    assert not game.top.pad.empty
+
+
+def test_ten_rounds_and_again(open_game: Callable[..., Driver], classifier):
+    game = open_game(QuizScene, classifier)
+    game.frames(2)
+    scene = game.top
+    while current := scene.contest.round:
+        if current.kind == "draw":
+            stroke(game, SEVEN)
+            game.key(pygame.K_RETURN)
+        else:
+            game.key(pygame.K_0 + current.digit)
+        game.key(pygame.K_RETURN)
+    assert scene.contest.score("read") == (5, 5)
+    assert scene.contest.lead == 1
+    assert scene.contest.place == ROUNDS
+    game.resize((960, 540))
+    game.key(pygame.K_RETURN)
+    assert scene.contest.place == 0
+
+
+def test_without_the_test_images_everything_is_drawn(open_game: Callable[..., Driver], classifier, monkeypatch):
+    def damaged(_: Path) -> None:
+        raise MnistError("MNIST: test.npz is damaged")
+
+    monkeypatch.setattr(quiz, "mnist_test", damaged)
+    game = open_game(QuizScene, classifier)
+    game.frames(2)
+    assert {each.kind for each in game.top.contest.rounds} == {"draw"}

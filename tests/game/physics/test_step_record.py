@@ -1,0 +1,168 @@
+"""One step, taken to pieces: it ends as the engine's own step does, and the pieces add up to it, bit for bit."""
+
+import copy
+from functools import cache
+
+import numpy as np
+import pytest
+
+from engine import World
+from engine.contacts import MARGIN
+from game.core.source import source_of
+from game.scenes.physics.exhibits import EXHIBITS, Exhibit
+from game.scenes.physics.step_pieces import pieces_of, rows, sentence
+from game.scenes.physics.step_record import StepRecord
+from game.world.grip import Grip
+
+EARTH = 9.81
+# Exhibits and steps at which much happens: rest, fall, sliding, rebound, impacts, flight, a push.
+MOMENTS = {"stack": 40, "heap": 95, "slopes": 20, "bounce": 66, "impacts": 113, "drag": 20, "spin": 30}
+
+
+@cache
+def moment(name: str) -> tuple[Exhibit, StepRecord]:
+    exhibit = EXHIBITS[name](EARTH, {"count": 40.0} if name == "heap" else {})
+    for _ in range(MOMENTS[name]):
+        exhibit.step()
+    return exhibit, StepRecord(exhibit)
+
+
+def state(exhibit: Exhibit) -> bytes:
+    world = exhibit.world
+    contacts = world.contacts.impulse.tobytes() if world.contacts else b""
+    return world.state.pose.tobytes() + world.state.velocity.tobytes() + contacts
+
+
+def test_the_recorded_step_ends_as_the_unrecorded_one_bit_for_bit(subtests: pytest.Subtests):
+    for name in MOMENTS:
+        with subtests.test(name=name):
+            exhibit, record = moment(name)
+            before = state(exhibit)
+            twin = copy.deepcopy(exhibit)
+            twin.step()
+            assert state(record.exhibit) == state(twin)
+            assert record.after[0].tobytes() == twin.world.state.pose.tobytes()
+            assert record.after[1].tobytes() == twin.world.state.velocity.tobytes()
+            assert state(exhibit) == before  # the exhibit itself has not moved
+            for _ in range(3):  # and what both remember for the next steps is the same
+                twin.step()
+                record_twin = record.exhibit
+                record_twin.step()
+            assert state(record_twin) == state(twin)
+            moment.cache_clear()
+
+
+@pytest.mark.parametrize("name", MOMENTS)
+def test_impulses_lead_from_one_to_the_next_and_end_as_the_solver_left_them(name: str):
+    _, record = moment(name)
+    contacts = record.contacts
+    if contacts is None:
+        assert not record.impulses
+        return
+    # Iterations end once one has changed nothing.
+    assert 0 < len(record.impulses) <= len(contacts) * record.exhibit.world.iterations
+    assert len(record.impulses) % len(contacts) == 0
+    velocity = record.warm
+    assert velocity is not None
+    velocity = velocity.copy()
+    dynamic = record.exhibit.world.params.dynamic
+    total: dict[int, np.ndarray] = {}
+    for impulse in record.impulses:
+        before, after = impulse.motion
+        assert before[dynamic[impulse.bodies]].tobytes() == velocity[impulse.bodies][dynamic[impulse.bodies]].tobytes()
+        velocity[impulse.bodies] = after
+        if impulse.contact in total:
+            assert impulse.before.tobytes() == total[impulse.contact].tobytes()
+        total[impulse.contact] = impulse.after
+        assert (impulse.after[:2] >= 0).all()
+        assert abs(impulse.after[2]) <= float(impulse.value("cone"))
+    left = np.abs(velocity - record.after[1]).max()  # pushes out of overlaps take a little
+    assert left < 1e-3 if record.overlaps else left == 0.0
+    for contact, last in total.items():
+        assert last.tobytes() == np.ascontiguousarray(contacts.impulse[contact]).tobytes()
+
+
+def test_the_chosen_axis_is_the_one_of_least_overlap_and_gives_normal_and_depth(subtests: pytest.Subtests):
+    for name in MOMENTS:
+        with subtests.test(name=name):
+            _, record = moment(name)
+            for pair in record.pairs:
+                gaps = [axis.gap for axis in pair.axes]
+                assert gaps[pair.chosen] == pytest.approx(max(gaps), abs=1e-3)
+                if pair.contact is None:
+                    continue
+                assert gaps[pair.chosen] <= MARGIN + 1e-9
+                assert record.contacts is not None
+                manifold, row, axis = record.contacts, pair.contact, pair.axes[pair.chosen]
+                normal = axis.direction if axis.first else -axis.direction
+                assert manifold.normal[row] == pytest.approx(normal)
+                deepest = manifold.depth[row][manifold.valid[row]].max()
+                assert deepest <= -axis.gap + 1e-9  # the deepest corner may lie beside the other shape's face
+                assert pair.circles == 0 or deepest == pytest.approx(-axis.gap, abs=1e-9)
+            touching = [pair.contact for pair in record.pairs if pair.contact is not None]
+            assert sorted(touching) == list(range(len(record.contacts) if record.contacts else 0))
+
+
+def test_boxes_hold_their_bodies_and_only_overlapping_ones_make_pairs(subtests: pytest.Subtests):
+    for name in MOMENTS:
+        with subtests.test(name=name):
+            _, record = moment(name)
+            low, high = record.boxes[:, :2], record.boxes[:, 2:]
+            assert (low <= record.before[0][:, :2]).all() or name == "slopes"  # a wedge's own frame is its middle
+            assert (low < high).all()
+            for pair in record.pairs:
+                a, b = pair.bodies
+                assert (low[a] <= high[b]).all()
+                assert (low[b] <= high[a]).all()
+
+
+def test_every_piece_has_words_figures_and_a_line_of_its_function(subtests: pytest.Subtests):
+    for name in MOMENTS:
+        with subtests.test(name=name):
+            _, record = moment(name)
+            for followed in (None, *record.pairs[:12]):
+                pieces = pieces_of(record, followed)
+                kinds = list(dict.fromkeys(piece.kind for piece in pieces))
+                assert kinds[0] == "boxes"
+                assert kinds[-1] == "end"
+                assert ("impulses" in kinds) is any(
+                    piece.impulse is not None and piece.kind == "impulses" for piece in pieces
+                )
+                for piece in pieces[:40] + pieces[-10:]:
+                    source = source_of(piece.function)
+                    assert source is not None
+                    numbers = {number for number, _ in source.lines}
+                    assert piece.function is World.step or piece.line in numbers
+                    assert set(piece.notes or {}) <= numbers
+                    told = " ".join([sentence(record, piece), *(words for words, _ in rows(record, piece))])
+                    assert "nan" not in told
+                    assert "{" not in told
+
+
+def _size(record: StepRecord, contact: int) -> float:
+    assert record.contacts is not None
+    return float(record.contacts.impulse[contact, 0])
+
+
+def test_a_rebound_begins_with_nothing_and_ends_with_an_impulse():
+    _, record = moment("bounce")
+    pair = max(record.pairs, key=lambda pair: -1 if pair.contact is None else _size(record, pair.contact))
+    pieces = {piece.kind: piece for piece in reversed(pieces_of(record, pair))}
+    first = pieces["impulses"].impulse
+    assert first is not None
+    assert first.before[0] == 0
+    assert first.after[0] > 1
+    code = dict(source_of(pieces["impulses"].function).lines)
+    assert "velocity[self.index]" in code[pieces["impulses"].line or 0]
+    assert "colour.effect" in dict(source_of(pieces["memory"].function).lines)[pieces["memory"].line or 0]
+
+
+def test_a_hand_that_pulls_is_part_of_the_step():
+    exhibit = EXHIBITS["spin"](EARTH)
+    body = exhibit.bodies[0]
+    grip = Grip(body, body.position[0].copy())
+    grip.target = np.array((3.0, 3.0))
+    record = StepRecord(exhibit, grip)
+    exhibit.step(grip)
+    assert record.after[1].tobytes() == exhibit.world.state.velocity.tobytes()
+    assert record.fallen[body.index, 0] > 0.1
