@@ -237,4 +237,5 @@ class ExperimentPages:
             return ""
         if what == "why":
             return texts.SABOTAGE_WHY[sabotage]
-        return texts.SABOTAGES[sabotage][2] if laboratory.split.config == PRESETS[MEASURED] else ""
+        measured = f"{texts.LAB_MEASURED}: {texts.SABOTAGES[sabotage][2]}"
+        return measured if laboratory.split.config == PRESETS[MEASURED] else ""

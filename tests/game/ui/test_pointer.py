@@ -119,8 +119,11 @@ def test_a_chart_says_what_is_under_the_pointer(take: Take, context: Context):
 
 def test_the_network_of_a_run_can_be_pointed_into(take: Take):
     player = take(TrainScene)
+    player.press("back")
     player.top.open(INSIDE)
     player.frames(2)
+    player.form.focus(player.the(VirtualPointer))
+    player.press("confirm")
     view = player.top.inside.view
     view.set(build_network(NUM_FEATURES, NUM_ACTIONS, Config(hidden=(8,)), np.random.default_rng(0)))
     bring(player, view.centres[1][3])
