@@ -7,10 +7,11 @@ the room that there is.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import pygame
@@ -53,7 +54,7 @@ class Column:
 
     def __init__(self, form: Form | Part) -> None:
         self.rows: list[Row] = []
-        self.form, self._widgets = form, list[Widget]()
+        self._form, self._widgets = form, list[Widget]()
 
     def add(self, write: Write, what: str = "", now: Now = str) -> Row:
         """Add a row of one's own."""
@@ -62,7 +63,7 @@ class Column:
 
     def clear(self) -> None:
         """Take all rows away with their widgets, which are the last of the form, to describe others."""
-        self.form.replace(self._widgets, ())
+        self._form.replace(self._widgets, ())
         self._widgets.clear()
         self.rows.clear()
 
@@ -116,7 +117,7 @@ class Column:
         """Add a widget, as the next one of the form."""
         self.add(widget.lay, widget.label)
         self._widgets.append(widget)
-        return self.form.add(widget)
+        return self._form.add(widget)
 
     def button(
         self,
@@ -132,25 +133,25 @@ class Column:
         """Add a word to press, with words that explain it below, and a figure at its right."""
         return self.widget(
             ButtonRow(
-                self.form.manager, label, press, partial(_said, aside), partial(_said, figure), size, weight, colour
+                self._form.manager, label, press, partial(_said, aside), partial(_said, figure), size, weight, colour
             )
         )
 
     def words(self, words: Sequence[tuple[str, OnPress]]) -> list[ButtonRow]:
         """Add words to press, side by side on as many lines as they need."""
-        buttons = [self.form.add(ButtonRow(self.form.manager, label, press)) for label, press in words]
+        buttons = [self._form.add(ButtonRow(self._form.manager, label, press)) for label, press in words]
         self.add(partial(_write_words, buttons))
         return buttons
 
     def toggle(self, label: str, value: bool, change: Callable[[bool], None], aside: str = "") -> ToggleRow:
         """Add a switch."""
-        return self.widget(ToggleRow(self.form.manager, label, value, change, aside))
+        return self.widget(ToggleRow(self._form.manager, label, value, change, aside))
 
     def choice(
         self, label: str, options: Sequence[str], index: int, change: Callable[[int], None], size: float = TEXT
     ) -> ChoiceRow:
         """Add a choice of one word."""
-        return self.widget(ChoiceRow(self.form.manager, label, options, index, change, size))
+        return self.widget(ChoiceRow(self._form.manager, label, options, index, change, size))
 
     def slider(
         self,
@@ -162,27 +163,28 @@ class Column:
         step: float,
         figure: Callable[[float], str],
         aside: str = "",
+        ticks: Mapping[float, str] = MappingProxyType({}),
     ) -> SliderRow:
         """Add a slider."""
-        return self.widget(SliderRow(self.form.manager, label, value, limits, change, step, figure, aside))
+        return self.widget(SliderRow(self._form.manager, label, value, limits, change, step, figure, aside, ticks))
 
     def entry(
         self, text: str, accept: Callable[[str], Transition | None], cancel: OnPress, limit: int, fits: object
     ) -> EntryRow:
         """Add a line to type in."""
-        return self.widget(EntryRow(self.form.manager, text, accept, cancel, limit, fits))
+        return self.widget(EntryRow(self._form.manager, text, accept, cancel, limit, fits))
 
     def listing(
         self, rows: Sequence[Cells], press: Callable[[int], Transition | None], empty: str = "", **more: Any
     ) -> ListRow:
         """Add a list to choose from; `more` is as for a `ListRow`."""
-        return self.widget(ListRow(self.form.manager, rows, press, empty, **more))
+        return self.widget(ListRow(self._form.manager, rows, press, empty, **more))
 
     # Columns
 
     def beside(self, shares: Sequence[float], least: float, apart: float = 64.0) -> list[Column]:
         """Add columns side by side, each as wide as its share; below each other where one would lack `least`."""
-        columns = [Column(self.form) for _ in shares]
+        columns = [Column(self._form) for _ in shares]
         self.add(lambda cursor: cursor.beside([column.write for column in columns], shares, least, apart))
         return columns
 
@@ -226,10 +228,10 @@ class Panel(Column):
         """Lay the rows out in their room, at so many pixels a point, and scroll to the widget that got the focus."""
         same, self.box = box == self.box, box
         self._measure(scale)
-        focused = self.form.focused
+        focused = self._form.focused
         if focused is not self._shown or not same:
             self._shown = focused
-            if focused and self.overflows and not self.form.controls.mouse_in_use:  # nothing moves below the mouse
+            if focused and self.overflows and not self._form.controls.mouse_in_use:  # nothing moves below the mouse
                 self._reveal(pygame.FRect(focused.box), focused)
                 self._measure(scale)
         self.scroll(0.0)
@@ -244,9 +246,9 @@ class Panel(Column):
         return Cursor(box.left, box.top - self.scrolled, box.width, scale, canvas, pygame.FRect(box))
 
     def _reveal(self, widget: pygame.FRect, which: Widget) -> None:
-        if which is self.form.widgets[0]:
+        if which is self._form.widgets[0]:
             self.scrolled = 0.0  # with what stands above it
-        elif which is self.form.widgets[-1]:
+        elif which is self._form.widgets[-1]:
             self.scrolled = self.height
         elif widget.top < self.box.top + _ABOVE:
             self.scrolled += widget.top - self.box.top - _ABOVE

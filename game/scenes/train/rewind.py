@@ -145,11 +145,11 @@ class Rewind:
         words = texts.REWIND_AT_RUNNING if self._run.state is WorkerState.RUNNING else texts.REWIND_AT
         return words.format(seconds=float(seconds[self.row]), total=float(seconds[-1]))
 
-    def describe(self, column: Column, *, timeline: bool) -> None:
+    def describe(self, column: Column, manager: PointsManager, *, timeline: bool) -> None:
         """Add the moment, the word that leads back to now and, where no chart is seen, a timeline."""
         self._timeline = None
         if timeline and len(self._run.history):
-            self._timeline = column.widget(_Timeline(column.form.manager, self))
+            self._timeline = column.widget(_Timeline(manager, self))
         if self.moment is not None:
             column.text(lambda: self.words, size=SMALL, colour=HUMAN)
             column.button(texts.REWIND_NOW, self.clear, colour=HUMAN)

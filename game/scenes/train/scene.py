@@ -144,7 +144,7 @@ class TrainScene(TrainingScene):
             self.rewind.seek(self.training_charts.decisions_at(place))
 
     def _describe(self, column: Column) -> None:
-        self.rewind.describe(column, timeline=self.inside.opened)
+        self.rewind.describe(column, self.form.manager, timeline=self.inside.opened)
         if self.inside.opened:
             self.inside.describe(column)
             column.gap()
