@@ -18,7 +18,6 @@ from game.flight.days import Days
 from game.flight.flight_file import Record
 from game.learn.path import FIRST, PATH
 from game.scenes.chapter import ChapterScene
-from game.scenes.digit_training import DigitTrainingScene
 from game.scenes.digits.dream import DreamScene
 from game.scenes.digits.inside import DigitInsideScene
 from game.scenes.digits.quiz import QuizScene
@@ -45,9 +44,10 @@ from game.scenes.play.missions import MissionsScene
 from game.scenes.play.pause import FlightPauseScene, PauseScene
 from game.scenes.play.scene import PlayScene
 from game.scenes.play.tutorial import Tutorial
-from game.scenes.runs import NetworksScene
-from game.scenes.study import StudyScene
-from game.scenes.train import TrainScene
+from game.scenes.train.digits import DigitTrainingScene
+from game.scenes.train.networks import NetworksScene
+from game.scenes.train.scene import TrainScene
+from game.scenes.train.study import StudyScene
 from game.scenes.watch.scene import WatchScene
 from game.ui.context import Context
 from tests.support.driver import Driver

@@ -9,13 +9,13 @@ import pytest
 from game.core import texts
 from game.flight import sharing
 from game.flight.flight_file import Record
-from game.scenes.digit_training import DigitTrainingScene
 from game.scenes.logbook.replay import ReplayScene
 from game.scenes.logbook.scene import LogbookScene
 from game.scenes.menus.menu import MenuScene
 from game.scenes.play.challenge import ContinuedFlight, FlownMission, Race
 from game.scenes.play.scene import PlayScene
-from game.scenes.runs import NetworksScene
+from game.scenes.train.digits import DigitTrainingScene
+from game.scenes.train.networks import NetworksScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import kept, landed, play, scripted

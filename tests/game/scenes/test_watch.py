@@ -12,7 +12,7 @@ from game.core.settings import SettingsFile
 from game.drawing.canvas import Canvas
 from game.flight.flight import DECISION_STEPS
 from game.panels.run_status import draw_landings, draw_run_status
-from game.scenes.runs import NetworksScene
+from game.scenes.train.networks import NetworksScene
 from game.scenes.watch.scene import WatchScene
 from game.training.library import Library
 from game.ui.context import Context

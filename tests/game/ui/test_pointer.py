@@ -10,7 +10,8 @@ from ai.agent.network import build_network
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.training.config import Config
 from game.scenes.physics.scene import PhysicsScene
-from game.scenes.train import TrainScene
+from game.scenes.train.base import INSIDE
+from game.scenes.train.scene import TrainScene
 from game.ui.virtual_pointer import VirtualPointer
 from tests.support.driver import Driver
 from tests.support.player import DEVICES, Player
@@ -98,6 +99,11 @@ def test_who_looks_elsewhere_lets_go(take: Take):
 
 def test_the_network_of_a_run_can_be_pointed_into(take: Take):
     player = take(TrainScene)
+    player.press("back")
+    player.top.open(INSIDE)
+    player.frames(2)
+    player.form.focus(player.the(VirtualPointer))
+    player.press("confirm")
     view = player.top.inside.view
     view.set(build_network(NUM_FEATURES, NUM_ACTIONS, Config(hidden=(8,)), np.random.default_rng(0)))
     bring(player, view.centres[1][3])
