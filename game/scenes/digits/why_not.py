@@ -22,8 +22,9 @@ from game.drawing.prose import draw_wrapped
 from game.drawing.sky import NightSky
 from game.drawing.tokens import HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL, TEXT, TITLE, Colour
 from game.input.controls import Command
-from game.scenes.digits.answer import LEFT, DigitRow, best_two
+from game.scenes.digits.answer import LEFT, DigitRow
 from game.scenes.digits.patch_sums import figure
+from game.scenes.digits.reader import best_two
 from game.ui.actions import Action, Table, one_of_ten
 from game.ui.context import Context
 from game.ui.form_scene import FOOT, FormScene

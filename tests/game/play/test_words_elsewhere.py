@@ -13,7 +13,7 @@ from game.core.worker import WorkerState
 from game.digits import percent
 from game.flight import networks
 from game.scenes.digit_training import DigitTrainingScene
-from game.scenes.digits.answer import best_two
+from game.scenes.digits.reader import best_two
 from game.scenes.digits.scene import DigitsScene
 from game.scenes.train import TrainScene
 from game.scenes.watch.scene import COUNTS, WatchScene
