@@ -15,6 +15,7 @@ from game.ui.widgets import Slider, TextButton
 from game.world.bodies import scale_force
 from tests.support.driver import Driver
 from tests.support.screens import fallen
+from tests.support.written import words_written
 
 Open = Callable[..., Driver]
 MOON, EARTH = GRAVITIES
@@ -236,3 +237,47 @@ def test_pieces_are_chosen_and_followed_with_the_mouse(open_game: Open):
     driver.click(driver.hints()[texts.HINT_NEXT_PIECE])
     assert scene.piece is scene.pieces[scene.place]
     assert scene.piece.impulse.iteration == 2
+
+
+# What stands on the screen
+
+
+def test_f1_explains_one_thing_after_the_other(open_game: Open, monkeypatch: pytest.MonkeyPatch):
+    driver, words = open_game(PhysicsScene, "stack"), words_written(monkeypatch)
+    explained = gallery(driver).explained
+    driver.key(pygame.K_F1)
+    assert explained.stepping
+    told = set()
+    for _ in range(12):
+        words.clear()
+        driver.frames(1)
+        told |= {what for what in texts.EXPLAIN_PHYSICS.values() if what[:20] in " ".join(words)}
+        driver.key(pygame.K_F1)
+    assert told == set(texts.EXPLAIN_PHYSICS.values())
+    driver.key(pygame.K_ESCAPE)
+    assert not explained.stepping
+    assert driver.top is gallery(driver)
+
+
+def test_what_flies_behind_the_controls_is_not_gripped_there(open_game: Open):
+    driver = open_game(PhysicsScene, "stack")
+    scene = gallery(driver)
+    [box, *_] = scene.exhibit.bodies
+    for y, gripped in ((140.0, False), (170.0, True)):
+        place = (430.0, y)
+        box.position = scene.view(1.0).metres(place)
+        scene.playback.stopped = True
+        scene.playback.step()
+        driver.post(pygame.MOUSEBUTTONDOWN, pos=driver.to_window(place), button=1)
+        assert (scene.grip is not None) is gripped
+        driver.post(pygame.MOUSEBUTTONUP, pos=driver.to_window(place), button=1)
+
+
+def test_the_plot_follows_the_size_of_text(open_game: Open):
+    driver = open_game(PhysicsScene, "stack")
+    driver.key(pygame.K_g)
+    before = gallery(driver).bench.panel
+    driver.key(pygame.K_ESCAPE)
+    assert driver.top_name == "PauseScene"
+    driver.key(pygame.K_ESCAPE)
+    assert gallery(driver).bench.panel is not before
