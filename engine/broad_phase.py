@@ -16,7 +16,7 @@ import numpy as np
 
 from engine.shapes import ShapeTable
 from engine.state import ALL, BodyParams, BodyState, Span, span
-from engine.vector import Array, Bools, Ints
+from engine.vector import Array, Bools, Ints, length
 
 
 class BroadPhase:
@@ -27,21 +27,15 @@ class BroadPhase:
 
     def __init__(self, params: BodyParams, shapes: ShapeTable, batch: int, margin: float) -> None:
         self._shapes = shapes
-        self._moving = span(params.dynamic)
-        self._fixed = ~params.dynamic
+        self._moving, self._fixed = span(params.dynamic), ~params.dynamic
         self._shape_reach = shapes.reach + margin
         self._reach = np.zeros(len(params.group))  # of bodies, from the centre of mass
-        far = np.sqrt(shapes.centre[:, 0] ** 2 + shapes.centre[:, 1] ** 2) + self._shape_reach
-        np.maximum.at(self._reach, shapes.body, far)
+        np.maximum.at(self._reach, shapes.body, length(shapes.centre) + self._shape_reach)
         self._boxes = np.zeros((4, len(params.group), batch))
         self._shape_boxes = np.zeros((4, len(shapes), batch))  # only those of fixed bodies are filled
         self._stale = self._fixed.copy()  # fixed bodies (bodies,) whose boxes are to be computed anew
-        # For each pair of bodies, its pairs of shapes are `_count` rows of `_movers_first`, from row `_first` on.
-        self._movers_first, self._first, self._count = _meeting_pairs(params, shapes)
-        self._meet = self._count[..., None] > 0  # (moving, bodies, 1)
-        a, b = self._movers_first.T
-        turned = shapes.is_circle[a] & ~shapes.is_circle[b]
-        self.pairs = np.where(turned[:, None], self._movers_first[:, ::-1], self._movers_first)
+        self.pairs, self._rows = _meeting_pairs(params, shapes)
+        self._meet = self._rows[..., :1] >= 0  # (moving, bodies, 1)
 
     def forget_boxes(self, bodies: Span = ALL) -> None:
         """Discard the kept boxes of fixed bodies, which were put elsewhere."""
@@ -56,11 +50,9 @@ class BroadPhase:
         world, mover, other = self._bodies_near(boxes, state.active, awake)
         if not len(world):
             return world, world
-        # Each pair of bodies becomes a run of `count` pairs of shapes: the numbers up to `end`, from its first row on.
-        count = self._count[mover, other]
-        end = count.cumsum()
-        pair = np.arange(end[-1]) + (self._first[mover, other] - end + count).repeat(count)
-        world = world.repeat(count)
+        rows = self._rows[mover, other]
+        meet = rows >= 0
+        world, pair = world[meet.nonzero()[0]], rows[meet]
         near = self._shapes_near(state, world, pair)
         return world[near], pair[near]
 
@@ -97,17 +89,13 @@ class BroadPhase:
 
     def _shapes_near(self, state: BodyState, world: Ints, pair: Ints) -> Bools:
         """Whether the boxes of pairs of shapes overlap, (n,)."""
-        mine, other = self._movers_first[pair].T
-        theirs = self._shape_boxes[:, other, world]
-        loose = np.flatnonzero(~self._shapes.fixed[other])
-        if len(loose):
-            theirs[:, loose] = self._box_moving(state, world[loose], other[loose])
-        return _overlap(self._box_moving(state, world, mine), theirs)
-
-    def _box_moving(self, state: BodyState, world: Ints, shape: Ints) -> Array:
-        """Boxes (4, n) around the circles around moving shapes."""
-        centre, reach = self._shapes.centres(state, world, shape).T, self._shape_reach[shape]
-        return np.concatenate([centre - reach, centre + reach])
+        shape, world = self.pairs[pair].T.ravel(), np.concatenate([world, world])  # the first of all, then the second
+        boxes = self._shape_boxes[:, shape, world]
+        loose = np.flatnonzero(~self._shapes.fixed[shape])
+        centre = self._shapes.centres(state, world[loose], shape[loose]).T
+        reach = self._shape_reach[shape[loose]]
+        boxes[:2, loose], boxes[2:, loose] = centre - reach, centre + reach
+        return _overlap(boxes[:, : len(pair)], boxes[:, len(pair) :])
 
 
 def _overlap(a: Array, b: Array, meet: Bools | bool = True) -> Bools:
@@ -119,21 +107,23 @@ def _overlap(a: Array, b: Array, meet: Bools | bool = True) -> Bools:
     return overlap
 
 
-def _meeting_pairs(params: BodyParams, shapes: ShapeTable) -> tuple[Ints, Ints, Ints]:
-    """Return the table of shapes that may meet (pairs, 2), a moving body's first, and each body pair's rows in it.
+def _meeting_pairs(params: BodyParams, shapes: ShapeTable) -> tuple[Ints, Ints]:
+    """Return all pairs of shapes that may meet, (pairs, 2), and their rows by pair of bodies, (moving, bodies, most).
 
-    The rows are given as the first one and their number, (moving, bodies) each, for each moving body with each
-    other body. Two bodies may meet if one of them can move and their groups let them touch.
+    Two bodies may meet if one of them can move and their groups let them touch. Where two have fewer pairs of shapes
+    than the most, -1 stands in place of rows.
     """
     bodies = np.arange(len(params.group))
     moving = bodies[span(params.dynamic)]
     meet = (bodies > moving[:, None]) | ~params.dynamic  # of two that can move, each pair once
     meet &= (params.group == 0) | (params.group != params.group[moving, None])
     shapes_of = [np.flatnonzero(shapes.body == body).tolist() for body in bodies]
-    first, count = np.zeros((2, *meet.shape), dtype=np.intp)
+    parts = np.array([*map(len, shapes_of)], dtype=np.intp)
+    most = (parts[moving, None] * parts * meet).max(initial=1)
+    rows = np.full((*meet.shape, most), -1, dtype=np.intp)
     pairs: list[tuple[int, int]] = []
-    for row, other in np.argwhere(meet).tolist():
-        mine, theirs = shapes_of[moving[row]], shapes_of[other]
-        first[row, other], count[row, other] = len(pairs), len(mine) * len(theirs)
-        pairs += product(mine, theirs)
-    return np.array(pairs, dtype=np.intp).reshape(-1, 2), first, count
+    for mover, other in np.argwhere(meet).tolist():
+        both = list(product(shapes_of[moving[mover]], shapes_of[other]))
+        rows[mover, other, : len(both)] = np.arange(len(pairs), len(pairs) + len(both))
+        pairs += [(b, a) if shapes.is_circle[a] and not shapes.is_circle[b] else (a, b) for a, b in both]
+    return np.array(pairs, dtype=np.intp).reshape(-1, 2), rows

@@ -28,8 +28,11 @@ NARROWEST = 1e-3
 class Constraints:
     """Constraint rows of m contacts: normal at each point, and friction; every array ends with the contacts.
 
-    J is the Jacobian, M the masses and inertias of both bodies: rows respond to impulses p by speeds J·M⁻¹·Jᵀ·p. The
-    entries of that 3 × 3 matrix are called stiffness here; K is its part for the two pushes.
+    With J the Jacobian and M the masses and inertias of both bodies, impulses p change the velocities by M⁻¹·Jᵀ·p, and
+    so the speeds along the rows by J·M⁻¹·Jᵀ·p. K is the part of that 3 × 3 matrix for the two pushes:
+
+        K = | k₀  c |        K⁻¹ = |  k₁ -c | / (k₀·k₁ - c²)        a point without another: K = k, K⁻¹ = 1 / k
+            | c  k₁ |              | -c  k₀ |
 
     Scalar products are added up one after another by NumPy itself. The linear algebra library behind `@` adds in an
     order of its own on each kind of processor, and fuses additions on some: flights would differ.
@@ -38,36 +41,31 @@ class Constraints:
     index: Ints  # (6, m): where x, y and turn of A, then of B, stand among all velocities, laid flat
     jacobian: Array  # (3, 6, m): J; J · velocities is the speed along each row
     response: Array  # (3, 6, m): velocity change per unit of impulse: M⁻¹·Jᵀ, laid out as J is
-    mass: Array  # (3, m): effective mass, impulse per unit of speed; 0 for a point that is not there
-    coupling: Array  # (m,): K's entry beside the diagonal: speed at one point per unit of push at the other
+    mass: Array  # (3, m): effective mass, impulse per unit of speed: 1 / k; 0 for a point that does not count
+    coupling: Array  # (m,): c, speed at one point per unit of push at the other
     friction_coupling: Array  # (2, m): speed of sliding per unit of push at each point
     inverse: Array  # (2, m): diagonal of K⁻¹
     cross_inverse: Array  # (m,): K⁻¹'s entry beside the diagonal
 
     @classmethod
-    def build(cls, state: BodyState, inverse_mass: Array, contacts: Contacts, impulse: Array) -> Constraints:
-        """Return the rows of these contacts; where two points nearly coincide, one's `impulse` (3, m) is set to 0."""
+    def build(cls, state: BodyState, inverse_mass: Array, contacts: Contacts) -> Constraints:
+        """Return the rows of these contacts between bodies of `inverse_mass` (m, 2, 3)."""
         slots = contacts.world[:, None] * state.pose.shape[1] + contacts.body
         index = (slots[:, :, None] * 3 + np.arange(3)).reshape(-1, 6).T.copy()
         jacobian = _jacobian(state.pose.reshape(-1, 3)[slots, :2], contacts)
-        inverse_masses = inverse_mass.reshape(-1, 6).T.copy()
-        response = jacobian * inverse_masses
-        stiffness = _stiffness(jacobian, response)
-        spare = np.flatnonzero(_coincide(stiffness))
-        if len(spare):
-            # Points that nearly coincide can't share a push sensibly; the deeper one will do.
-            shallower = contacts.depth[spare].argmin(axis=1)
-            jacobian[shallower, :, spare] = impulse[shallower, spare] = 0.0
-            response = jacobian * inverse_masses
-            stiffness = _stiffness(jacobian, response)
-        first, second, _, coupling = stiffness[:4]  # K's diagonal, friction's own, K's entry beside the diagonal
-        mass = np.divide(1.0, stiffness[:3], out=np.zeros_like(stiffness[:3]), where=stiffness[:3] > 0)
-        alone = first * second == 0
-        # K⁻¹ is 1 / determinant times K with its diagonal swapped and the rest negated; a point alone has 1 / K.
-        determinant = np.where(alone, 1.0, first * second - coupling**2)
-        inverse = np.where(alone, mass[:2], stiffness[1::-1] / determinant)
-        cross_inverse = np.where(alone, 0.0, -coupling / determinant)
-        return cls(index, jacobian, response, mass, coupling, stiffness[4:], inverse, cross_inverse)
+        response = jacobian * inverse_mass.reshape(-1, 6).T.copy()
+        # J·M⁻¹·Jᵀ: k₀, k₁ and that of friction; c; what the pushes do to sliding.
+        speeds = (jacobian[[0, 1, 2, 0, 0, 1]] * response[[0, 1, 2, 1, 2, 2]]).sum(axis=1)
+        counts = _counting(contacts, *speeds[[0, 1, 3]])
+        both = counts.all(axis=0)
+        for table in (jacobian, response):
+            table[:2] *= counts[:, None]
+        k, c, sliding = speeds[:2], speeds[3] * both, speeds[4:] * counts
+        mass = 1.0 / speeds[:3]
+        mass[:2] *= counts
+        determinant = np.where(both, k[0] * k[1] - c**2, 1.0)
+        inverse = np.where(both, k[::-1] / determinant, mass[:2])
+        return cls(index, jacobian, response, mass, c, sliding, inverse, -c / determinant)
 
     def part(self, span: slice) -> Constraints:
         """Return the rows of some of the contacts."""
@@ -108,29 +106,28 @@ class Constraints:
     def push(self, lacking: Array, total: Array) -> Array:
         """Return impulses p (2, m) ≥ 0 in place of `total`, so that each point gains the speed it is `lacking`.
 
-        With K the 2 × 2 matrix of speed per push, that is p = total + K⁻¹·lacking. Where a point would be pulled, it
-        gets nothing, and may gain more than it lacked: the linear complementarity problem p ≥ 0, K·(p - total) ≥
-        lacking, with equality in one of the two at each point.
+        That is p = total + K⁻¹·lacking. Where a point would be pulled by it, that gets nothing, and may gain more than
+        it lacked: the linear complementarity problem p ≥ 0, K·(p - total) ≥ lacking, with equality in one of the two at
+        each point. The other point then does alone, without what the first has pushed at it until now.
         """
-        both = total + self.inverse * lacking + self.cross_inverse * lacking[::-1]
-        if both.min() >= 0:
-            return both
-        # The other point has to do alone, and without what the first has pushed at it until now.
+        together = total + self.inverse * lacking + self.cross_inverse * lacking[::-1]
+        if together.min() >= 0:
+            return together
         alone = total + self.mass[:2] * (lacking + self.coupling * total[::-1])
-        return np.maximum(np.where(both[::-1] >= 0, both, alone), 0.0)
+        other_pulls = together[::-1] < 0
+        return np.maximum(np.where(other_pulls, alone, together), 0.0)
 
 
-def _stiffness(jacobian: Array, response: Array) -> Array:
-    """J·M⁻¹·Jᵀ, speed per unit of impulse, (6, m): of each row (3), both pushes on each other, friction on each."""
-    products: Array = (jacobian[[0, 1, 2, 0, 0, 1]] * response[[0, 1, 2, 1, 2, 2]]).sum(axis=1)
-    return products
+def _counting(contacts: Contacts, first: Array, second: Array, coupling: Array) -> Bools:
+    """Return which points count, (2, m): those that are there, but of two that nearly coincide the deeper one alone.
 
-
-def _coincide(stiffness: Array) -> Bools:
-    """Whether a contact's two points are so near each other that no pair of pushes can tell them apart, (m,)."""
-    product = stiffness[0] * stiffness[1]
-    near: Bools = (product > 0) & (product - stiffness[3] ** 2 <= NARROWEST * product)
-    return near
+    No pair of pushes could tell such two apart: k₀·k₁ and c² are about the same.
+    """
+    product = first * second
+    coincide = contacts.valid.all(axis=1) & (product - coupling**2 <= NARROWEST * product)
+    shallower = contacts.depth.argmin(axis=1) == [[0], [1]]
+    counts: Bools = contacts.valid.T & ~(coincide & shallower)
+    return counts
 
 
 def _jacobian(positions: Array, contacts: Contacts) -> Array:
@@ -138,18 +135,16 @@ def _jacobian(positions: Array, contacts: Contacts) -> Array:
 
     A row along the unit vector u at the point q is (-u, -(q - A) × u, u, (q - B) × u). Times the velocities, it is the
     speed along u of B's point as seen from A's, so parting is above 0. For friction, u lies a quarter right of the
-    normal, and q half-way between the points. Rows of points that are not there are 0.
+    normal, and q half-way between the points.
     """
-    valid = contacts.valid
-    both = (valid[:, 0] & valid[:, 1])[:, None]
     first, second = contacts.points[:, 0], contacts.points[:, 1]
-    middle = np.where(both, (first + second) / 2, np.where(valid[:, :1], first, second))
+    both = contacts.valid.all(axis=1, keepdims=True)
+    middle = np.where(both, (first + second) / 2, np.where(contacts.valid[:, :1], first, second))
     points = np.stack([first, second, middle])
     along = np.stack([contacts.normal, contacts.normal, right_of(contacts.normal)])
-    rows = np.empty((3, 6, len(valid)))
+    rows = np.empty((3, 6, len(contacts)))
     rows[:, 3:5] = along.swapaxes(1, 2)
     rows[:, 0:2] = -rows[:, 3:5]
     rows[:, 2] = -cross(points - positions[:, 0], along)
     rows[:, 5] = cross(points - positions[:, 1], along)
-    rows[:2] *= valid.T[:, None]
     return rows

@@ -98,55 +98,44 @@ class NarrowPhase:
             self._coloured = (key, order, colours[order])
         return self._coloured[1:]
 
-    def warm_start(self, contacts: Contacts, last: Contacts | None, share: Array | None, pass_on: bool) -> None:
-        """Begin with the last step's impulses, or a `share` (batch,), at points that the same faces make as then.
+    def warm_start(self, contacts: Contacts, last: Contacts | None, pass_on: bool) -> None:
+        """Begin with the last step's impulses at points that the same faces make as then.
 
         A resting stack so starts solved. With `pass_on`, other points may take over impulses, too.
         """
         if not last:
             return
-        key, last_key = self._key(contacts.world, contacts.pair), self._key(last.world, last.pair)
-        # Look up each contact's key among those of the last step: `row` is where it stands there, if it does.
-        rising = np.argsort(last_key)
-        row = rising[np.minimum(last_key.searchsorted(key, sorter=rising), len(rising) - 1)]
-        known = last_key[row] == key  # pairs that touched in the last step, in its `row`
-        same = known[:, None] & last.valid[row] & contacts.valid & (last.feature[row] == contacts.feature)
+        keys = self._key(contacts.world, contacts.pair), self._key(last.world, last.pair)
+        _, now, then = np.intersect1d(*keys, assume_unique=True, return_indices=True)  # pairs that touched before, too
+        same = contacts.valid[now] & last.valid[then] & (contacts.feature[now] == last.feature[then])
         # There is one friction for both points: it stays if all of the points have.
-        all_same = same.all(axis=1) | (same.any(axis=1) & (contacts.valid.sum(axis=1) == 1))
-        impulse = last.impulse[row] if share is None else last.impulse[row] * share[contacts.world, None]
-        contacts.impulse = impulse * np.column_stack([same, all_same])
-        contacts.age = (last.age[row] + 1) * known
-        changed = np.flatnonzero(known & ~all_same)
-        if pass_on and len(changed):
-            _pass_on(contacts, changed, last.take(row[changed]), impulse[changed], same[changed])
+        unchanged = (same == contacts.valid[now]).all(axis=1)
+        contacts.impulse[now] = last.impulse[then] * np.column_stack([same, unchanged])
+        contacts.age[now] = last.age[then] + 1
+        if pass_on and not unchanged.all():
+            changed = np.flatnonzero(~unchanged)
+            _pass_on(contacts, now[changed], last.take(then[changed]), same[changed])
 
 
-def _pass_on(contacts: Contacts, rows: Ints, last: Contacts, impulse: Array, same: Bools) -> None:
-    """Let new points of contacts `rows` (n,) take over the impulse (n, 3) of the nearest of the `last` that is gone.
+def _pass_on(contacts: Contacts, rows: Ints, last: Contacts, same: Bools) -> None:
+    """Let new points of contacts `rows` (n,) take over the impulses of points of the `last` (n,) that are gone.
 
     Two boxes that lie face to face make the same points by one's face or the other's, whichever happens to be a little
     less deep. If their impulses were lost with it, a heap would start afresh here and there in every step, and never
     come to rest. `same` (n, 2) are points that kept theirs.
+
+        last   q0 ●            ● q1      a new point p and an old one q match if each is the other's nearest, and near;
+        now      p1 ○        ○ p0        here p0 takes over the impulse of q1, and p1 that of q0
     """
     alike = dot(last.normal, contacts.normal[rows]) > _ALIKE
     new, gone = contacts.valid[rows] & ~same, last.valid & ~same & alike[:, None]
-    source, passed = _nearest(contacts.points[rows], new, last.points, gone)
-    contacts.impulse[rows, :2] += np.where(passed, np.take_along_axis(impulse[:, :2], source, axis=1), 0.0)
-    pushed = alike & (passed | same).any(axis=1)  # friction stays if any push does
-    contacts.impulse[rows, 2] = np.where(pushed, impulse[:, 2], contacts.impulse[rows, 2])
-
-
-def _nearest(points: Array, new: Bools, last: Array, gone: Bools) -> tuple[Ints, Bools]:
-    """Match the new ones of `points` (n, 2, 2) with those of the `last` that are gone, straight or crosswise.
-
-    Of the two ways the shorter holds. Returns for each point which of the last it is matched with, (n, 2), and whether
-    both are there and lie near each other.
-    """
-    away = length(points[:, :, None] - last[:, None])  # (n, point, last)
-    away = np.where(new[:, :, None] & gone[:, None], np.minimum(away, _NEAR), _NEAR)
-    crossed = away[:, 0, 1] + away[:, 1, 0] < away[:, 0, 0] + away[:, 1, 1]
-    source = np.where(crossed[:, None], (1, 0), (0, 1))
-    return source, np.take_along_axis(away, source[:, :, None], axis=2)[..., 0] < _NEAR
+    away = length(contacts.points[rows][:, :, None] - last.points[:, None])  # (n, p, q)
+    away[~(new[:, :, None] & gone[:, None])] = np.inf
+    nearest = np.minimum(away.min(axis=1, keepdims=True), away.min(axis=2, keepdims=True))
+    match = (away == nearest) & (away < _NEAR)
+    contacts.impulse[rows, :2] += (match * last.impulse[:, None, :2]).sum(axis=2)
+    pushed = alike & (same | match.any(axis=2)).any(axis=1)  # friction stays if any push does
+    contacts.impulse[rows, 2] = last.impulse[:, 2] * pushed
 
 
 def _colours(slots: Ints, free: Bools) -> Ints:

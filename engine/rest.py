@@ -17,7 +17,7 @@ from typing import Final
 import numpy as np
 
 from engine.contacts import Contacts
-from engine.state import BodyParams, BodyState, span
+from engine.state import BodyParams, BodyState
 from engine.vector import Array, Bools, Ints
 
 STILL: Final = 0.01  # m/s and rad/s below which a body is still
@@ -35,12 +35,11 @@ class Rest:
     """
 
     def __init__(self, params: BodyParams, state: BodyState, gravity: Array, allowed: bool) -> None:
-        self._allowed = allowed
-        self._dynamic, self._moving = params.dynamic, span(params.dynamic)
+        self._allowed, self._dynamic = allowed, params.dynamic
         self.asleep: Bools = np.zeros(state.active.shape, dtype=bool)
         self.awake: Bools | None = None
-        self._place: Array = state.pose[:, self._moving].copy()  # where each moving body was when it came to be still
-        self._still: Ints = np.zeros(self._place.shape[:2], dtype=np.intp)  # for how many steps it has been
+        self._place: Array = state.pose.copy()  # where each body was when it came to be still
+        self._still: Ints = np.zeros(state.active.shape, dtype=np.intp)  # for how many steps it has been
         self._seen = state.pose, state.velocity, state.active, gravity  # after the last step in which a body slept
 
     def wake_disturbed(self, state: BodyState, gravity: Array, contacts: Contacts | None) -> None:
@@ -54,9 +53,9 @@ class Rest:
         differs = (state.pose != pose) | (state.velocity != velocity) | (state.force != 0)
         disturbed = differs.any(axis=2) | (state.active != active)
         disturbed |= self.asleep & np.any(gravity != gravity_before, axis=-1, keepdims=True)
-        self.wake(disturbed, state, contacts)
+        self.wake(disturbed, contacts)
 
-    def wake_touched(self, found: Contacts | None, state: BodyState, contacts: Contacts | None) -> bool:
+    def wake_touched(self, found: Contacts | None, contacts: Contacts | None) -> bool:
         """Wake sleeping bodies that this step has `found` to be touched; return whether there were any."""
         if self.awake is None or found is None:
             return False
@@ -64,53 +63,47 @@ class Rest:
         touched = np.zeros_like(self.asleep)
         touched[places] = self.asleep[places]
         if touched.any():
-            self.wake(touched, state, contacts)
+            self.wake(touched, contacts)
         return bool(touched.any())
 
-    def wake(self, chosen: Bools, state: BodyState, contacts: Contacts | None) -> None:
+    def wake(self, chosen: Bools, contacts: Contacts | None) -> None:
         """Wake the chosen bodies (batch, bodies) and their islands; a fixed body wakes what lies on it."""
-        self._still[chosen[:, self._moving]] = 0
-        self._find_sleepers(state, contacts, chosen)
+        self._still[chosen] = 0
+        self._find_sleepers(contacts)
 
     def fall_asleep(self, state: BodyState, gravity: Array, contacts: Contacts | None) -> None:
         """Let fall asleep what has been still for long enough."""
         if not self._allowed:
             return
-        pose, velocity = state.pose[:, self._moving], state.velocity[:, self._moving]
-        still = ((np.abs(velocity) < STILL) & (np.abs(pose - self._place) < DRIFT)).all(axis=2)
-        self._place[~still] = pose[~still]
+        still = ((np.abs(state.velocity) < STILL) & (np.abs(state.pose - self._place) < DRIFT)).all(axis=2)
+        self._place[~still] = state.pose[~still]
         self._still = (self._still + 1) * still
-        if ((self._still >= STEPS) & ~self.asleep[:, self._moving]).any():
-            self._find_sleepers(state, contacts, np.zeros_like(self.asleep))
+        if ((self._still >= STEPS) & self._dynamic & ~self.asleep).any():
+            self._find_sleepers(contacts)
             state.velocity[self.asleep] = 0.0
         if self.awake is not None:
             self._seen = state.pose.copy(), state.velocity.copy(), state.active.copy(), gravity
 
-    def _find_sleepers(self, state: BodyState, contacts: Contacts | None, disturbed: Bools) -> None:
-        """Let sleep every island that lies on something, and has no body that moves or is disturbed."""
-        # Both reach whole islands, along contacts: what holds them up, and what in them moves.
-        moves = disturbed | ~self._dynamic & state.velocity.any(axis=2)
-        moves[:, self._moving] |= self._still < STEPS
-        supports = ~self._dynamic & ~moves
-        if contacts is None:
-            self.asleep = np.zeros_like(moves)
-        else:
-            self.asleep = self._dynamic & _spread(supports, contacts, self._dynamic)
-            self.asleep &= ~_spread(moves, contacts, self._dynamic)
-        self.awake = ~self.asleep & (self._dynamic | moves) if self.asleep.any() else None
+    def _find_sleepers(self, contacts: Contacts | None) -> None:
+        """Let sleep every island that something fixed holds up, and that nothing restless touches."""
+        restless = self._still < STEPS
+        self.asleep = np.zeros_like(restless)
+        if contacts is not None:
+            held = _linked(~restless & ~self._dynamic, contacts, self._dynamic)
+            self.asleep = held & ~_linked(restless, contacts, self._dynamic) & self._dynamic
+        self.awake = ~self.asleep & (self._dynamic | restless) if self.asleep.any() else None
 
 
-def _spread(chosen: Bools, contacts: Contacts, dynamic: Bools) -> Bools:
-    """Return the chosen bodies (batch, bodies), and all that contacts link to them.
+def _linked(start: Bools, contacts: Contacts, dynamic: Bools) -> Bools:
+    """Return the bodies of `start` (batch, bodies), and all that contacts link to them: a flood fill.
 
-    Bodies that are not dynamic (bodies,) link to others only if they are chosen.
+    It does not pass through bodies that no force can move, `dynamic` (bodies,), but may start from them.
     """
     world, (a, b) = contacts.world, contacts.body.T
-    links = chosen | dynamic
-    reached, before = chosen.copy(), -1
-    while before < (count := int(reached.sum())):
-        before = count
-        met = np.flatnonzero(reached[world, a] | reached[world, b])
-        reached[world[met], a[met]] = reached[world[met], b[met]] = True
-        reached &= links
-    return reached
+    linked, count = start.copy(), -1
+    while count < (now := int(linked.sum())):
+        count = now
+        met = np.flatnonzero(linked[world, a] | linked[world, b])
+        linked[world[met], a[met]] = linked[world[met], b[met]] = True
+        linked &= start | dynamic
+    return linked

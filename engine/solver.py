@@ -35,7 +35,8 @@ class Solver:
         self._contacts = contacts
         self._inverse_mass = params.inverse_mass[contacts.body]  # (m, 2, 3)
         self._impulse = contacts.impulse.T.copy()  # (3, m): NumPy is quickest along the last axis
-        self._constraints = Constraints.build(state, self._inverse_mass, contacts, self._impulse)
+        self._constraints = Constraints.build(state, self._inverse_mass, contacts)
+        self._impulse[:2] *= self._constraints.mass[:2] > 0
         self._approach = self._constraints.speeds(state.velocity.reshape(-1))
         self._approach[:2] *= -1
         contacts.approach, contacts.impulse = self._approach.T, self._impulse.T  # views: the solver fills them
@@ -98,12 +99,15 @@ class Solver:
 def _keep_angular_momentum(state: BodyState, contacts: Contacts, inverse_mass: Array, push: Array) -> None:
     """Take back the angular momentum that pairs of free bodies gained as they were pushed apart across their motion.
 
-    A `push` p (m,), in kg·m along the normal n, has added p·(n × v), with v the velocity of B as seen from A.
+    A `push` p (m,), in kg·m along the normal n, has added p·(n × v), with v the velocity of B as seen from A. About the
+    centre of mass of a pair, with r from there, and sums over x, y and turn of both bodies:
 
-    The motion of a pair is that of its centre of mass, a turn as one body, and the rest, `own`, which has no angular
-    momentum. Of a turn by 1 rad/s, `turning` are the velocities and I (`inertia`) the angular momentum, so that the
-    pair turns at L/I. That is brought back to what it was, like that of a skater who spreads the arms: the bodies come
-    no nearer by it and do not slide on each other. Where it adds energy, ½L²/I, their own motion is slowed to make up.
+        mass    = (m, m, I)                         L = Σ mass · turning · velocity    angular momentum
+        turning = (-ry, rx, 1)   at 1 rad/s         J = Σ mass · turning²              inertia, as one rigid body
+        own     = velocity - that of the centre - L / J · turning                      what else moves: without any L
+
+    The turn L / J is brought back to what it was, like that of a skater who spreads the arms: the bodies come no nearer
+    by it and do not slide on each other. Where that adds energy, ½·L² / J, `own` is slowed to make up for it.
     """
     rows = np.flatnonzero((inverse_mass[:, :, 0] > 0).all(axis=1) & (push > 0))
     if not len(rows):
@@ -117,9 +121,8 @@ def _keep_angular_momentum(state: BodyState, contacts: Contacts, inverse_mass: A
     before = momentum - (push[rows] * cross(contacts.normal[rows], velocity[:, 1] - velocity[:, 0]))[:, None, None]
     own = velocity - momentum / inertia * turning
     own[..., :2] -= (share * velocity).sum(axis=1, keepdims=True)[..., :2]
-    twice_energy = _total(mass * own**2)
-    gain = (before**2 - momentum**2) / inertia
-    lost = np.divide(gain, twice_energy, out=np.zeros_like(gain), where=twice_energy > 0)
+    energy, gain = _total(mass * own**2), (before**2 - momentum**2) / inertia  # both doubled
+    lost = np.divide(gain, energy, out=np.zeros_like(gain), where=energy > 0)
     slower = np.sqrt(np.clip(1.0 - lost, 0.0, 1.0))
     np.add.at(state.velocity, places, (before - momentum) / inertia * turning + (slower - 1.0) * own)
 

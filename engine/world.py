@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -49,6 +50,7 @@ class World:
         if not restitution_threshold >= 0:
             raise ValueError(f"the speed from which bodies rebound must be 0 m/s or more, not {restitution_threshold}")
         self.batch = batch
+        self._impulses: Contacts | None = None  # those of the last step's contacts whose impulses begin the next one
         self.gravity = gravity
         self.iterations = iterations
         self.restitution_threshold = restitution_threshold
@@ -59,8 +61,6 @@ class World:
         self.shapes: list[Shape] = []
         self.contacts: Contacts | None = None
         self._shape_bodies: list[int] = []
-        self._impulses: Contacts | None = None  # those of the last step's contacts whose impulses begin the next one
-        self._gravity_before = self.gravity  # under which these were needed
         self._version = -1  # of `params`, for which the following were made
         self._movers: Span | None = None
 
@@ -75,7 +75,13 @@ class World:
         if gravity.shape not in ((2,), (self.batch, 2)):
             raise ValueError(f"gravity must be of shape (2,) or ({self.batch}, 2), not {gravity.shape}")
         gravity.flags.writeable = False
-        self._gravity = gravity
+        if self._impulses:
+            # Impulses that bore a stack under a stronger gravity would throw it up: they shrink to g·g' / g·g.
+            before, strength = self._gravity, dot(self._gravity, self._gravity)
+            share = np.where(strength > 0, dot(before, gravity) / np.maximum(strength, 1e-30), 1.0).clip(0.0, 1.0)
+            impulse = self._impulses.impulse * np.broadcast_to(share, self.batch)[self._impulses.world, None]
+            self._impulses = replace(self._impulses, impulse=impulse)
+        self._gravity: Array = gravity
 
     @property
     def iterations(self) -> int:
@@ -158,10 +164,10 @@ class World:
         while touching:
             world, pair = self._broad_phase.near(state, rest.awake)
             contacts = self._narrow_phase.touching(state, world, pair)
-            if not rest.wake_touched(contacts, state, self.contacts):
+            if not rest.wake_touched(contacts, self.contacts):
                 break  # else again: what has woken may touch others, which `near` left out as asleep
         if contacts:
-            self._narrow_phase.warm_start(contacts, self._impulses, self._impulse_share(), pass_on=self.sleeping)
+            self._narrow_phase.warm_start(contacts, self._impulses, pass_on=self.sleeping)
             solver = Solver(state, params, contacts)
         integrate_velocity(state, params, movers, gravity, DT, rest.awake)
         if solver:
@@ -182,20 +188,6 @@ class World:
             slept = self.contacts if kept.all() else self.contacts.take(np.flatnonzero(kept))
             slept.approach = np.zeros_like(slept.approach)
         self.contacts = self._impulses = contacts.with_others(slept) if contacts else slept or None
-        self._gravity_before = self.gravity
-
-    def _impulse_share(self) -> Array | None:
-        """Share of the last step's impulses that gravity, if it has changed, asks for now, (batch,) 0 to 1; None: all.
-
-        With gravity g before and g' now it is (g·g') / (g·g), kept within 0 to 1. Impulses that bore a stack under a
-        stronger gravity would throw it up, and a few iterations do not take that back.
-        """
-        before, now = self._gravity_before, self.gravity
-        if before is now:
-            return None
-        strength = dot(before, before)
-        share = np.where(strength > 0, dot(before, now) / np.where(strength > 0, strength, 1.0), 1.0)
-        return np.broadcast_to(np.clip(share, 0.0, 1.0), (self.batch,))
 
     def _prepare(self) -> None:
         """Make anew what depends on bodies and their parameters, if any has been added or replaced."""
@@ -238,7 +230,7 @@ class World:
         """Wake the chosen bodies (batch, bodies) and all that they lie with, or every body in every world."""
         self._prepare()
         every = np.ones(self.state.active.shape, dtype=bool)
-        self._rest.wake(every if chosen is None else chosen, self.state, self.contacts)
+        self._rest.wake(every if chosen is None else chosen, self.contacts)
 
     def moved(self, body: int, worlds: Bools | None = None) -> None:
         """Take note that a body was put elsewhere by hand, in these worlds or in all: its contacts no longer apply."""
@@ -260,7 +252,6 @@ class World:
     def untouched(self) -> None:
         """Take note that nothing touched in the latest step, which was not taken here."""
         self.contacts = self._impulses = None
-        self._gravity_before = self.gravity
 
     def memory(self) -> dict[str, Any]:
         """Return what the next step takes over from the last one, arrays that no step changes; `recall` puts it back.
@@ -271,14 +262,13 @@ class World:
         self._prepare()
         contacts = vars(self._impulses) if self._impulses else {}
         rest = {"rest": copy.deepcopy(vars(self._rest))} if self.sleeping else {}
-        return {"gravity": self._gravity_before, "contacts": dict(contacts), **rest}
+        return {"gravity": self.gravity, "contacts": dict(contacts), **rest}
 
     def recall(self, memory: Mapping[str, Any]) -> None:
         """Put back what a call of `memory` returned."""
         self._prepare()
         contacts = memory["contacts"]
         self.contacts = self._impulses = Contacts(**contacts) if contacts else None
-        self._gravity_before = memory["gravity"]
         vars(self._rest).update(copy.deepcopy(memory.get("rest", {})))
         self.forget_boxes()
 
