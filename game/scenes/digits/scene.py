@@ -221,7 +221,8 @@ class DigitsScene(FormScene):
 
     def _add_words(self) -> None:
         manager, add = self.form.manager, self.form.add
-        self._add_row(PAD.left + 120, _BELOW, (texts.DIGITS_UNDO, self.pad.undo), (texts.DIGITS_CLEAR, self.pad.clear))
+        below = (texts.DIGITS_UNDO, self.pad.undo), (texts.DIGITS_CLEAR, self.pad.clear)
+        self._add_row(PAD.left, _BELOW, *below, at=0.0)
         train = (texts.DIGITS_TRAIN, partial(push, "digit_training"))
         self._add_row(PAD.right, 24, (texts.DIGITS_QUIZ, self._quiz), train, (texts.DIGITS_DREAM, self._dream))
         self._add_row(END, 24, (texts.PATCH_WORD, partial(self._ask, "digit_inside")))
@@ -231,10 +232,10 @@ class DigitsScene(FormScene):
         for number, step in enumerate(STEPS):
             add(StageSwitch(manager, number, partial(self._switch, step)))
 
-    def _add_row(self, right: float, top: float, *words: tuple[str, OnPress]) -> None:
-        """Add words to press, in a row that ends at `right`."""
+    def _add_row(self, x: float, top: float, *words: tuple[str, OnPress], at: float = 1.0) -> None:
+        """Add words to press, in a row of which x is that share: 0 its left end, 1 its right one."""
         widths = [typeface.width(word, TEXT, "medium") for word, _ in words]
-        left = right - sum(widths) - _APART * (len(widths) - 1)
+        left = x - at * (sum(widths) + _APART * (len(widths) - 1))
         for (word, press), width in zip(words, widths, strict=True):
             self.form.add(TextButton(self.form.manager, (left, top, width, 28), word, press, weight="medium"))
             left += width + _APART

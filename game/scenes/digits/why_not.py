@@ -212,8 +212,10 @@ def shown(contrast: Contrast, asked: int) -> Shown:
     between = [each[..., asked] - each[..., contrast.answer] for each in (contrast.taken, contrast.put)]
     taken, put = (np.nan_to_num(each) for each in between)
     scale = max(float(np.abs(taken).max()), float(np.abs(put).max()), 1e-9)
-    return Shown(asked, contrast.answer, _inked(contrast.image), contrast.best(asked, 0), contrast.best(asked, 1),
-                 _clear(-taken / scale), _clear(put / scale), *_units(contrast, asked), contrast.done)  # fmt: skip
+    changes = [contrast.best(asked, ink) for ink in (0, 1)]
+    take, add = (each if each and figure(each.before) != figure(each.after) else None for each in changes)
+    return Shown(asked, contrast.answer, _inked(contrast.image), take, add, _clear(-taken / scale), _clear(put / scale),
+                 *_units(contrast, asked), contrast.done)  # fmt: skip
 
 
 def _inked(image: Image) -> tuple[tuple[int, int], tuple[int, int]]:

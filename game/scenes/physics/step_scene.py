@@ -24,7 +24,7 @@ from game.ui.panel import Panel
 from game.ui.panel_scene import PanelScene
 from game.world.grip import Grip
 
-_PICTURE, _LISTING = 340.0, 270.0  # heights
+_PICTURE, _LISTING = 410.0, 320.0  # heights
 _NOTES: Final = 164.0  # points for the numbers beside the code
 _LEAST: Final = 420.0  # width of a column
 
@@ -60,14 +60,13 @@ class PhysicsStepScene(PanelScene):
         words, chosen = [texts.STEP_PIECES[kind][0] for kind in self._kinds], self._kinds.index(self.piece.kind)
         self._tabs = panel.choice("", words, chosen, self._turn_to_kind)
         panel.text(lambda: sentence(self.record, self.piece, self.pair))
-        panel.gap()
-        left, right = panel.beside((1, 1), least=_LEAST, apart=40.0)
-        left.picture(_PICTURE, lambda canvas, box: self._view.draw(canvas, box, self.piece, self.pair))
         last = len(self.pieces) - 1
-        self._slider = left.slider(
+        self._slider = panel.slider(
             texts.STEP_PIECE, self.place, (0, last), self._turn_to, step=1,
             figure=lambda value: texts.STEP_PLACE.format(count=value + 1, total=last + 1),
         )  # fmt: skip
+        left, right = panel.beside((1, 1), least=_LEAST, apart=40.0)
+        left.picture(_PICTURE, lambda canvas, box: self._view.draw(canvas, box, self.piece, self.pair))
         right.picture(_LISTING, self._draw_code)
         right.add(self._write_figures)
 

@@ -24,7 +24,7 @@ _ARROW: Final = 84.0  # points of the longest arrow
 _NORMAL: Final = 46.0  # points of a normal
 _HEAD: Final = 6.0
 _INSIDE: Final = 44.0  # points from a contact to the letter of a body that cannot move
-_LEGEND: Final = 44.0  # points below the bodies
+_LEGEND: Final = 66.0  # points below the bodies
 Legend = list[tuple[Colour, float, str]]  # colour and length in points of an arrow, and what it means
 
 
