@@ -1,6 +1,6 @@
 """What each part of the modern recipe is worth: the same training with one thing changed at a time.
 
-    python -m benchmarks.ablations [--seeds 3] [--decisions 250000] [--only NAME ...] [--workers N] [--address A]
+    python -m benchmarks.ablations [--seeds 3] [--decisions 250000] [--only NAME ...] [--workers N]
 
 Every variant trains on the same seeds for the same number of decisions, so that a busy machine changes
 nothing but the seconds. Each is flown greedily from 300 random spawns every 25,000 decisions; the table gives the
@@ -14,7 +14,6 @@ import argparse
 import os
 import platform
 import statistics
-import sys
 import time
 from dataclasses import replace
 from functools import partial
@@ -25,7 +24,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is imported, 
 import numpy as np
 
 from ai.lander.rewards import RewardWeights
-from ai.sweep.cluster import MISSING, each, installed
+from ai.sweep.shards import results
 from ai.training.config import PRESETS, Config
 from ai.training.loop import Training
 from ai.training.tasks import VALIDATION_SEED, evaluate
@@ -99,10 +98,7 @@ def main() -> None:
     parser.add_argument("--decisions", type=int, default=250_000)
     parser.add_argument("--only", nargs="+", choices=VARIANTS, default=list(VARIANTS))
     parser.add_argument("--workers", type=int, default=1)
-    parser.add_argument("--address")
     arguments = parser.parse_args()
-    if (arguments.workers != 1 or arguments.address) and not installed():
-        sys.exit(MISSING)
     print(
         f"Python {platform.python_version()}, NumPy {np.__version__}; {arguments.seeds} seeds,"
         f" {arguments.decisions:,} decisions each, one thread\n"
@@ -110,10 +106,7 @@ def main() -> None:
     print("| | 95 % after | 99 % after | mean of the curve | at the end | worst seed | CPU s |")
     print("|---|---|---|---|---|---|---|")
     asked = [(name, seed, arguments.decisions) for name in arguments.only for seed in range(arguments.seeds)]
-    done = {
-        asked[index]: found
-        for index, found in each([partial(trained, one) for one in asked], arguments.address, arguments.workers)
-    }
+    done = dict(zip(asked, results([partial(trained, one) for one in asked], arguments.workers), strict=True))
     for name in arguments.only:
         runs = [done[name, seed, arguments.decisions] for seed in range(arguments.seeds)]
         curves = [landed for landed, _ in runs]

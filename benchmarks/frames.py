@@ -50,7 +50,6 @@ from game.core.scene import Scene
 from game.core.settings import Settings
 from game.digits.kept import classifier_in
 from game.drawing.paint_cache import A_FRAME, idle, spread
-from game.flight.skill import Skill
 from game.learn.path import PATH
 from game.scenes import scene_of
 from game.scenes.ahead import load
@@ -160,7 +159,7 @@ def rows() -> dict[str, Row]:
         "dialog, naming": over_play(lambda below: NameDialog(below, "?", "name", lambda _: "")),
         "dialog, picking": over_play(lambda below: ListDialog(below, "?", [("a",), ("b",)], print)),
         "choices": over_play(
-            lambda below: ChoicesScene(below.context, below, Skill(()), begun=False), (pygame.K_DOWN, pygame.K_RIGHT)
+            lambda below: ChoicesScene(below.context, below, begun=False), (pygame.K_DOWN, pygame.K_RIGHT)
         ),
         "fault": Row(lambda context: ErrorScene(context, ValueError(), Path("log"))),
         **{f"watch, {number}": Row(lambda context, n=number: WatchScene(context, n, seed=4)) for number in COUNTS},

@@ -21,7 +21,6 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 import argparse
 import platform
 import statistics
-import sys
 import time
 from collections.abc import Callable, Iterator
 from copy import deepcopy
@@ -37,7 +36,7 @@ from ai.cli.command_line import configured
 from ai.environment import Floats, Ints
 from ai.lander.pilots import Pilot
 from ai.lander.spawns import CURRICULA
-from ai.sweep.cluster import MISSING, each, installed
+from ai.sweep.shards import results
 from ai.training.config import PRESETS, Config
 from ai.training.loop import Training
 from ai.training.tasks import TEST_SEED, VALIDATION_SEED, Evaluation, LanderTask, evaluate
@@ -202,8 +201,7 @@ def compare(arguments: argparse.Namespace, config: Config) -> None:
     )
     print(f"| | {heads} | of test at the end, each seed |\n|---|---|---|---|")
     asked = [(seed, config, arguments.seconds) for seed in range(arguments.seeds)]
-    done = dict(each([partial(raced, one) for one in asked], arguments.address, arguments.workers))
-    runs = [done[seed] for seed in range(arguments.seeds)]
+    runs = results([partial(raced, one) for one in asked], arguments.workers)
     mine = row(f"ours, {arguments.preset}", runs, arguments.seconds)
     if not rival:
         print('\nto compare with stable-baselines3: pip install -e ".[bench]"')
@@ -244,10 +242,7 @@ def main() -> None:
     parser.add_argument("--preset", default="modern", choices=PRESETS)
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes")
     parser.add_argument("--workers", type=int, default=1, help="seeds of ours at once")
-    parser.add_argument("--address")
     arguments = parser.parse_args()
-    if (arguments.workers != 1 or arguments.address) and not installed():
-        sys.exit(MISSING)
     config = configured(PRESETS[arguments.preset], arguments.changes)
     versions = [f"Python {platform.python_version()}", f"NumPy {np.__version__}"]
     if not arguments.runs:

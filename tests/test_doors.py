@@ -27,7 +27,6 @@ OPENED = {
     "game.core.collection": ({"shutil.copytree"}, "of plain files alone, links as links"),
     "game.drawing.typeface": ({"pygame.font.Font"}, "comes with the program"),
     "game.export.gif": ({"path.open"}, "writes"),
-    "game.export.mp4": ({"av.open"}, "writes"),
     "game.lesson.door": ({"self.open"}, "a dialog"),
     "game.start": ({"context.sound.open"}, "the sound device"),
     "tranquility.__main__": ({"os.open"}, "the null device"),

@@ -11,7 +11,7 @@ from ai.agent.replay import Transition
 from ai.environment import Bools, Floats, Ints
 from ai.files import array_like, count_of
 
-_KEPT: Final = ("_states", "_actions", "_returns", "_ages", "_open")
+_KEPT: Final = ("_states", "_actions", "_returns", "_open")
 
 
 class NStep:
@@ -19,6 +19,12 @@ class NStep:
 
     From decision t on, a transition has the reward Σ γⁱ · r(t + i) over i = 0 … k - 1, and leads to state t + k. k is
     `n`, or less where the episode ended before. `discount` is γ, for each decision; it may be changed.
+
+    The last n decisions are rows, (n, slots), oldest first. Each begins a transition, which is open until complete:
+
+        row 0      begun n - 1 decisions ago    reward so far  r₀ + γ·r₁ + … + γⁿ⁻¹·rₙ₋₁   complete
+        …
+        row n - 1  begun now                                   r₀                          complete if the episode ended
     """
 
     def __init__(self, n: int, discount: float) -> None:
@@ -37,31 +43,20 @@ class NStep:
         if self._states is None or self._states.shape[1:] != state.shape:
             self._start(state)
         assert self._states is not None
-        # The last n decisions are a ring of rows, (n, slots). The newest begins a transition in each slot, and every
-        # transition that is open gets this reward, discounted by its age.
-        newest = self._count % self.n
-        self._states[newest], self._actions[newest] = state, action
-        self._returns[newest], self._ages[newest] = 0.0, 0
-        self._open[newest] = True
-        self._count += 1
-        self._returns += np.float32(self.discount) ** self._ages.astype(np.float32) * reward * self._open
-        self._ages += 1
-        # Complete are those of n rewards, all in the row that will be overwritten next, and those whose episode ended.
-        oldest = self._count % self.n
-        full = np.zeros_like(self._open)
-        full[oldest] = self._ages[oldest] >= self.n
-        complete = self._open & (full | ended)
+        for rows, newest in ((self._states, state), (self._actions, action), (self._returns, 0.0), (self._open, True)):
+            rows[:-1], rows[-1] = rows[1:], newest
+        age = np.arange(self.n - 1, -1, -1)[:, None]  # decisions ago
+        self._returns += np.float32(self.discount) ** age.astype(np.float32) * reward * self._open
+        complete = self._open & ((age == self.n - 1) | ended)
         self._open &= ~complete
-        row, slot = complete.nonzero()
-        order = np.argsort(-self._ages[row, slot], kind="stable")  # oldest first: a pruned buffer loses the oldest
-        row, slot = row[order], slot[order]
+        row, slot = complete.nonzero()  # oldest first: a pruned buffer loses the oldest
         transitions = Transition(
             self._states[row, slot],
             next_state[slot],
             self._actions[row, slot],
             self._returns[row, slot],
             terminal[slot],
-            self._ages[row, slot],
+            self.n - row,
         )
         return transitions, slot
 
@@ -69,7 +64,7 @@ class NStep:
         """Return copies of all that the next `add` depends on, besides the settings."""
         if self._states is None:
             return {}
-        return {"count": self._count} | {name: getattr(self, name).copy() for name in _KEPT}
+        return {name: getattr(self, name).copy() for name in _KEPT}
 
     def load_state(self, state: Mapping[str, Any], observation: Floats) -> None:
         """Go on from what `state` returned, for observations like this one (slots, features).
@@ -78,17 +73,16 @@ class NStep:
         """
         if state:
             self._start(observation)
+            oldest = count_of(state.get("count", 0)) % self.n  # earlier versions wrote rows in a ring
             for name in _KEPT:
-                setattr(self, name, array_like(getattr(self, name), state[name], name))
-            self._count = count_of(state["count"])
+                rows = array_like(getattr(self, name), state[name], name)
+                setattr(self, name, np.roll(rows, -oldest, axis=0))
 
     def _start(self, state: Floats) -> None:
         shape = (self.n, len(state))
-        self._count = 0
         self._states = np.zeros((*shape, state.shape[1]), dtype=np.float32)
         self._actions = np.zeros(shape, dtype=np.intp)
         self._returns = np.zeros(shape, dtype=np.float32)
-        self._ages = np.zeros(shape, dtype=np.intp)
         self._open = np.zeros(shape, dtype=bool)
 
 

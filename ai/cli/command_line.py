@@ -41,12 +41,6 @@ class Parser(argparse.ArgumentParser):
         self.exit(2, f"{self.prog}: {readable(' '.join(message.split()))} (see {self.prog} --help)\n")
 
 
-def add_where(command: argparse.ArgumentParser, workers: str) -> None:
-    """Add the options that say where the work is done; both need the extra `sweep`."""
-    command.add_argument("--address", metavar="HOST:PORT", help="join the Ray cluster there; auto for the one around")
-    command.add_argument("--workers", type=int, metavar="N", help=workers)
-
-
 def fail(message: str) -> int:
     """Say what went wrong, if anybody still listens, and return the exit code of a failure."""
     with suppress(OSError):

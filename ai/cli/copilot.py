@@ -13,7 +13,6 @@ from ai.cli.command_line import (
     REFUSED,
     SEEDS,
     WORKERS,
-    add_where,
     fail,
     folder,
     out_of_range,
@@ -53,7 +52,7 @@ def add_commands(commands: Any) -> None:
         help="whom the imperfect pilots are made of (default: the same network)",
     )
     table.add_argument("--json", action="store_true", help="print one JSON object")
-    add_where(table, "processes at once (default: this one alone)")
+    table.add_argument("--workers", type=int, default=1, metavar="N", help="processes at once (default: 1)")
     table.set_defaults(run=_table)
 
 
@@ -70,8 +69,7 @@ def _lander(model: Path, envs: tuple[str, ...]) -> DeepQAgent:
 def _table(arguments: argparse.Namespace) -> int:
     from ai.copilot.copilot import Mode
     from ai.copilot.measurement import HELPS, seconds
-    from ai.sweep.cluster import each
-    from ai.sweep.shards import PILOTS, parts_of
+    from ai.sweep.shards import PILOTS, parts_of, results
     from ai.training.config import ANYWHERE, LANDER
 
     if problem := out_of_range(arguments, episodes=EPISODES, seed=SEEDS, workers=WORKERS):
@@ -79,25 +77,22 @@ def _table(arguments: argparse.Namespace) -> int:
     if not all(0 <= assist <= 1 for assist in arguments.assist):
         return fail("the dial goes from 0 to 1")
     helps = [*HELPS, *((Mode.GUARDIAN, assist) for assist in arguments.assist)]
-    done: dict[int, list[AssistedFlights]] = {}
     try:
         agent = _lander(arguments.model, (LANDER,))
         agents = {"one_pad": agent, "three_pads": agent, "other_worlds": _lander(arguments.anywhere, (ANYWHERE,))}
         asked = parts_of(agents, arguments.good == "scripted", helps, arguments.episodes, arguments.seed)
         rounds = len(asked) * (1 + len(arguments.assist))
-        minutes = rounds * seconds(agent, PILOTS * arguments.episodes) / 60 / (arguments.workers or 1)
+        minutes = rounds * seconds(agent, PILOTS * arguments.episodes) / 60 / arguments.workers
         print(
             f"this takes about {minutes:.0f} minutes" if minutes > 1 else "this takes about a minute", file=sys.stderr
         )
         with progress_bar(len(asked), "flying", unit="part") as bar:
-            for index, rows in each([part for _, part in asked], arguments.address, arguments.workers or 1):
-                done[index] = rows
-                bar.update()
+            parts = results([part for _, part in asked], arguments.workers, bar.update)
     except REFUSED as error:
         return fail(reason(error))
     tables: dict[str, list[AssistedFlights]] = {}
-    for index, (name, _) in enumerate(asked):
-        tables.setdefault(name, []).extend(done[index])
+    for (name, _), rows in zip(asked, parts, strict=True):
+        tables.setdefault(name, []).extend(rows)
     if arguments.json:
         told = {name: [row.to_json() for row in table] for name, table in tables.items()}
         settings = {"good": arguments.good, "seed": arguments.seed, "episodes": arguments.episodes}

@@ -4,20 +4,10 @@ from __future__ import annotations
 
 import argparse
 import json
+from functools import reduce
 from typing import TYPE_CHECKING, Any, Final
 
-from ai.cli.command_line import (
-    EPISODES,
-    REFUSED,
-    SEEDS,
-    WORKERS,
-    add_where,
-    fail,
-    folder,
-    out_of_range,
-    progress_bar,
-    reason,
-)
+from ai.cli import command_line as cli
 
 if TYPE_CHECKING:
     from ai.agent.agent import DeepQAgent
@@ -35,9 +25,9 @@ def add_commands(commands: Any) -> None:
     land.add_argument("--episodes", type=int, help="default: 1000 flights, or 100 episodes of another environment")
     land.add_argument("--seed", type=int, default=0)
     land.add_argument("--spawn", help="random or hard (default: random)")
-    add_where(land, "processes at once (default: this one alone)")
+    land.add_argument("--workers", type=int, metavar="N", help="processes at once (default: 1)")
     for command, run in ((land, _evaluate), (read, _evaluate_digits)):
-        command.add_argument("--model", type=folder, required=True, metavar="DIR")
+        command.add_argument("--model", type=cli.folder, required=True, metavar="DIR")
         command.add_argument("--json", action="store_true", help="print one JSON object")
         command.set_defaults(run=run)
 
@@ -47,24 +37,23 @@ def _evaluate(arguments: argparse.Namespace) -> int:
     from ai.training.config import LANDER
     from ai.training.statistics import wilson
 
-    if problem := out_of_range(arguments, episodes=FLIGHTS, seed=SEEDS, workers=WORKERS):
-        return fail(problem)
+    if problem := cli.out_of_range(arguments, episodes=FLIGHTS, seed=cli.SEEDS, workers=cli.WORKERS):
+        return cli.fail(problem)
     if arguments.spawn not in (None, *SPAWNS):
-        return fail(f"--spawn is one of {', '.join(SPAWNS)}, not {arguments.spawn}")
+        return cli.fail(f"--spawn is one of {', '.join(SPAWNS)}, not {arguments.spawn}")
     try:
         agent, task, env = _agent_and_task(arguments)
         episodes = arguments.episodes or task.test_episodes
         if env == LANDER:
             score: Score = _flown(arguments, agent, episodes)
-        elif arguments.address is not None or arguments.workers is not None or episodes > EPISODES[1]:
-            most = f"{EPISODES[1]:,}"
-            return fail(f"--address, --workers and more than {most} episodes are for the lander on the moon")
+        elif arguments.workers is not None or episodes > cli.EPISODES[1]:
+            return cli.fail(f"--workers and more than {cli.EPISODES[1]:,} episodes are for the lander on the moon")
         elif arguments.spawn is not None:
-            return fail(f"--spawn is for the lander on the moon; this network is for {env}")
+            return cli.fail(f"--spawn is for the lander on the moon; this network is for {env}")
         else:
             score = task.evaluate(agent, episodes, arguments.seed)
-    except REFUSED as error:
-        return fail(reason(error))
+    except cli.REFUSED as error:
+        return cli.fail(cli.reason(error))
     told: dict[str, Any] = score.to_json()
     if score.success is not None:
         told["success_interval"] = wilson(score.success, score.episodes)
@@ -97,16 +86,13 @@ def _agent_and_task(arguments: argparse.Namespace) -> tuple[DeepQAgent, Task[Any
 
 
 def _flown(arguments: argparse.Namespace, agent: DeepQAgent, episodes: int) -> Score:
-    """Fly the flights, in shards; on several processes if that is asked for. Raises what `ai.sweep.cluster` raises."""
-    from ai.sweep.shards import flown_shards, shards
+    """Fly the flights, in shards; in several processes if that is asked for."""
+    from ai.sweep.shards import results, shards
 
     parts = shards(agent, episodes, arguments.seed, arguments.spawn or "random")
-    with progress_bar(episodes, "flying", unit="flight", disable=True if len(parts) == 1 else None) as bar:
-        for sums in flown_shards(parts, arguments.address, arguments.workers or 1):
-            if sums is not None:
-                return sums.evaluation()
-            bar.update(episodes / len(parts))
-    raise AssertionError("an evaluation has one part or more")
+    with cli.progress_bar(len(parts), "flying", unit="shard", disable=True if len(parts) == 1 else None) as bar:
+        sums = results(parts, arguments.workers or 1, bar.update)
+    return reduce(type(sums[0]).plus, sums).evaluation()
 
 
 def _evaluate_digits(arguments: argparse.Namespace) -> int:
@@ -117,8 +103,8 @@ def _evaluate_digits(arguments: argparse.Namespace) -> int:
     try:
         classifier = DigitClassifier.load(arguments.model)
         images, labels = load_part(TEST)
-    except REFUSED as error:
-        return fail(reason(error))
+    except cli.REFUSED as error:
+        return cli.fail(cli.reason(error))
     table = confusion(classifier, images, labels)
     right, shown = table.diagonal(), table.sum(axis=1)
     accuracy = int(right.sum()) / len(labels)

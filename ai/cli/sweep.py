@@ -9,23 +9,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from ai.cli.command_line import (
-    EPISODES,
-    REFUSED,
-    SEEDS,
-    WORKERS,
-    Unheard,
-    add_where,
-    exit_code,
-    fail,
-    folder,
-    out_of_range,
-    progress_bar,
-    readable,
-    reason,
-    say,
-    stoppable,
-)
+from ai.cli import command_line as cli
 
 if TYPE_CHECKING:
     from ai.sweep.plan import Plan
@@ -35,11 +19,11 @@ RUNS: Final = (1, 1000)  # seeds of a trial, members of a population
 BUDGET: Final = (1, 10**12)
 _RANGES: Final = {
     "trials": (1, 100_000), "seeds": RUNS, "population": RUNS, "decisions": BUDGET, "epochs": BUDGET, "every": BUDGET,
-    "validation": EPISODES, "seed": SEEDS, "workers": WORKERS,
+    "validation": cli.EPISODES, "seed": cli.SEEDS, "workers": cli.WORKERS,
 }  # fmt: skip
 # Options of a plan, which a study keeps: as they are, and what they are made into.
 _PLAN: Final = (
-    "seeds", "metric", "judge", "search", "population", "stop_early", "decisions", "every", "validation", "seed",
+    "seeds", "metric", "search", "population", "stop_early", "decisions", "every", "validation", "seed",
 )  # fmt: skip
 _OF_A_NEW_ONE: Final = (*_PLAN, "knobs", "space", "epochs", "preset", "changes", "digits")
 
@@ -56,7 +40,6 @@ def add_commands(commands: Any) -> None:
     add("--seeds", type=int, metavar="N", help="runs of each trial, seeds 0 to N-1 (default: 3)")
     add("--metric", metavar="NAME", help="what trials are compared by: time_to_99 or any percentage, in decisions;"
         " success, return, mean, accuracy (default: by what is trained)")  # fmt: skip
-    add("--judge", choices=("median", "worst"), help="how a trial's seeds are judged (default: median)")
     add("--knobs", metavar="NAMES", help="knobs or groups to search by their own ranges, with commas between"
         " (default: learning, the whole group)")  # fmt: skip
     add("--space", type=Path, metavar="FILE", help="knobs to search, with ranges, as JSON")
@@ -74,7 +57,8 @@ def add_commands(commands: Any) -> None:
     add("--preset", help="settings of all that is not searched, as for train or train-digits")
     add("--set", action="append", metavar="NAME=VALUE", dest="changes", help="change such a setting")
     add("--seed", type=int, help="of the search itself (default: 0)")
-    add_where(sweep, "processes at once (default: all cores)")
+    add("--address", metavar="HOST:PORT", help="join the Ray cluster there; auto for the one around")
+    add("--workers", type=int, metavar="N", help="processes at once (default: all cores)")
     sweep.set_defaults(run=_sweep)
 
     study = commands.add_parser("study", help="tell what a study found: the best settings, and which knobs matter")
@@ -89,26 +73,26 @@ def _sweep(arguments: argparse.Namespace) -> int:
     from ai.sweep.study import Study
 
     if not installed():
-        return fail(MISSING)
-    if problem := out_of_range(arguments, **_RANGES):
-        return fail(problem)
+        return cli.fail(MISSING)
+    if problem := cli.out_of_range(arguments, **_RANGES):
+        return cli.fail(problem)
     code = 0
     try:
         place = _place(arguments)
         if arguments.address is not None:
             answering(arguments.address)  # before there is a study
         study = _resumed(arguments, place) if arguments.resume else Study.create(place, _plan(arguments))
-        with study.claimed(), stoppable() as stop:
+        with study.claimed(), cli.stoppable() as stop:
             if not study.complete:
                 code = _run(arguments, study, stop)
-    except REFUSED as error:
-        return fail(reason(error))
+    except cli.REFUSED as error:
+        return cli.fail(cli.reason(error))
     _tell(study)
     if not study.complete:
         named = f" --env {arguments.env}" if ":" in (arguments.env or "") else ""
         kept = f"{len(study.trials)} of {study.plan.trials} trials are kept"
-        say(f"{kept}; to go on: sweep --study {arguments.study} --resume{named}")
-    return exit_code(stop) or code
+        cli.say(f"{kept}; to go on: sweep --study {arguments.study} --resume{named}")
+    return cli.exit_code(stop) or code
 
 
 def _run(arguments: argparse.Namespace, study: Study, stop: list[int]) -> int:
@@ -120,26 +104,26 @@ def _run(arguments: argparse.Namespace, study: Study, stop: list[int]) -> int:
             return 0
         from ai.sweep.driver import Driver
 
-        with progress_bar(study.plan.trials, study.folder.name, initial=len(study.trials), unit="trial") as bar:
+        with cli.progress_bar(study.plan.trials, study.folder.name, initial=len(study.trials), unit="trial") as bar:
             best = study.best()
 
             def told() -> None:
                 nonlocal best
                 new = study.best()
                 if new and new is not best and bar.disable:
-                    fail(f"{len(study.trials)} of {study.plan.trials} trials: best {_described(study, new)}")
+                    cli.fail(f"{len(study.trials)} of {study.plan.trials} trials: best {_described(study, new)}")
                 best = new
                 bar.set_postfix_str(f"{len(driver.jobs)} running{f', best {_described(study, new)}' if new else ''}")
                 bar.update(len(study.trials) - bar.n)
 
-            driver = Driver(study, workers, lambda line: bar.write(readable(line), file=Unheard()), told)
+            driver = Driver(study, workers, lambda line: bar.write(cli.readable(line), file=cli.Unheard()), told)
             driver.run(stop)
     with suppress(OSError):  # it is made from the rest
         study.importance = driver.search.importance()
         study.write()
     if driver.lost and not stop:
         numbers, why = ", ".join(map(str, sorted(driver.lost))), "; ".join(sorted(set(driver.lost.values())))
-        return fail(f"trials failed again and again: {numbers}: {why}")
+        return cli.fail(f"trials failed again and again: {numbers}: {why}")
     return 0
 
 
@@ -155,7 +139,7 @@ def _place(arguments: argparse.Namespace) -> Path:
     from ai.sweep.study import find
 
     try:
-        folder(arguments.study)
+        cli.folder(arguments.study)
     except argparse.ArgumentTypeError as error:
         raise ValueError(str(error)) from error
     return find(arguments.study, arguments.user_dir or user_dir())
@@ -223,8 +207,8 @@ def _study(arguments: argparse.Namespace) -> int:
         study = Study.load(_place(arguments))
         if arguments.html:
             write_text(arguments.html, page(study))
-    except REFUSED as error:
-        return fail(reason(error))
+    except cli.REFUSED as error:
+        return cli.fail(cli.reason(error))
     if arguments.json:
         print(json.dumps(report(study), indent=2))
     else:
@@ -235,5 +219,7 @@ def _study(arguments: argparse.Namespace) -> int:
 def _tell(study: Study) -> None:
     from ai.sweep.report import told
 
-    print("\n".join(readable(line, len(line)) for line in told(study).splitlines()))  # its texts may be a stranger's
+    print(
+        "\n".join(cli.readable(line, len(line)) for line in told(study).splitlines())
+    )  # its texts may be a stranger's
     sys.stdout.flush()

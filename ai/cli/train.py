@@ -7,40 +7,27 @@ from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
-from ai.cli.command_line import (
-    EPISODES,
-    REFUSED,
-    SECONDS,
-    SEEDS,
-    Unheard,
-    configured,
-    exit_code,
-    fail,
-    folder,
-    out_of_range,
-    progress_bar,
-    readable,
-    reason,
-    say,
-    stoppable,
-)
+from ai.cli import command_line as cli
 
 if TYPE_CHECKING:
     from ai.digits.config import DigitConfig
     from ai.digits.training import DigitProgress
+    from ai.run import Run
     from ai.training.config import Config
-    from ai.training.loop import Progress, Training
-    from ai.training.run import Limit, Run, RunKind
+    from ai.training.loop import Progress
+    from ai.training.run import Limit, RunKind
 
 DECISIONS: Final = (1, 10**12)
 _LINE_SECONDS: Final = 20.0  # between two lines where there is no terminal
 _PARTS: Final = 1000  # of the bar
 _BAR: Final = "{desc} {percentage:3.0f}%|{bar}| {elapsed}<{remaining} {postfix}"
+
+Preset = TypeVar("Preset")
 
 
 def add_commands(commands: Any) -> None:
@@ -60,8 +47,8 @@ def add_commands(commands: Any) -> None:
     for command, run, example in ((land, _train, "n_step=5"), (read, _train_digits, "dropout=0.5")):
         add = command.add_argument
         add("--seconds", type=float, help="stop when the whole run, resumed or not, has trained for so many seconds")
-        add("--output", type=folder, metavar="DIR", help="where to keep the network")
-        add("--resume", type=folder, metavar="DIR", help="go on with what an earlier run kept there, by its settings;"
+        add("--output", type=cli.folder, metavar="DIR", help="where to keep the network")
+        add("--resume", type=cli.folder, metavar="DIR", help="go on with the run that is kept there, by its settings;"
             " --set and --preset may change those that can change while a run goes on")  # fmt: skip
         add("--replace", action="store_true", help="put the new run in the place of an earlier one")
         add("--seed", type=int, help="what all chance follows from (default: 0)")
@@ -71,21 +58,8 @@ def add_commands(commands: Any) -> None:
 
 
 def _train(arguments: argparse.Namespace) -> int:
-    from ai.training.checkpoints import AGENTS, resume_run
+    from ai.training.checkpoints import AGENTS
     from ai.training.config import ANYWHERE, LANDER
-    from ai.training.loop import Training
-    from ai.training.run import Limit
-
-    if problem := out_of_range(arguments, decisions=DECISIONS, validation=EPISODES):
-        return fail(problem)
-
-    def begun() -> Training:
-        if arguments.resume is None:
-            return Training(lander_config(arguments), arguments.seed or 0, validation_episodes=arguments.validation)
-        training = resume_run(arguments.resume, env=arguments.env)
-        training.validation_episodes = arguments.validation or training.validation_episodes
-        _go_on(training, lander_config(arguments, training.config), arguments)
-        return training
 
     def shown(progress: Progress) -> str:
         best = f" best {progress.best.figure}" if progress.best else ""
@@ -93,21 +67,15 @@ def _train(arguments: argparse.Namespace) -> int:
         recent = f"landed {progress.success_rate:.0%}" if lander else f"return {progress.mean_return:.1f}, mean"
         return f"{recent} of the last 100, ε {progress.epsilon:.2f}, {progress.decisions:,} decisions{best}"
 
-    limit = Limit(arguments.seconds, arguments.decisions)
-    return _run(arguments, AGENTS, begun, limit, shown, lambda training, _: str(training.best))
+    if problem := cli.out_of_range(arguments, decisions=DECISIONS, validation=cli.EPISODES):
+        return cli.fail(problem)
+    if arguments.seconds is None and arguments.decisions is None and (arguments.output or arguments.resume):
+        return cli.fail("say when to stop: --seconds S or --decisions N")
+    return _run(arguments, AGENTS, lander_config, shown, lambda training, _: str(training.best))
 
 
 def _train_digits(arguments: argparse.Namespace) -> int:
-    from ai.digits.training import DigitTraining
-    from ai.training.checkpoints import DIGITS, resume_digit_run
-    from ai.training.run import Limit
-
-    def begun() -> DigitTraining:
-        if arguments.resume is None:
-            return DigitTraining(digit_config(arguments), arguments.seed or 0)
-        training = resume_digit_run(arguments.resume)
-        _go_on(training, digit_config(arguments, training.config), arguments)
-        return training
+    from ai.training.checkpoints import DIGITS
 
     def shown(progress: DigitProgress) -> str:
         best = f", held out {progress.best:.2%}" if progress.best is not None else ""
@@ -116,7 +84,7 @@ def _train_digits(arguments: argparse.Namespace) -> int:
     def verdict(_: Run, described: dict[str, Any]) -> str:
         return f"{described['test']:.2%} of MNIST's test images read right"
 
-    return _run(arguments, DIGITS, begun, Limit(arguments.seconds), shown, verdict)
+    return _run(arguments, DIGITS, digit_config, shown, verdict)
 
 
 def lander_config(arguments: argparse.Namespace, begun: Config | None = None) -> Config:
@@ -126,34 +94,71 @@ def lander_config(arguments: argparse.Namespace, begun: Config | None = None) ->
     """
     from ai.training.config import ANYWHERE, LANDER, LANDS_ANYWHERE, PRESETS, gym_config
 
-    presets, named = {**PRESETS, "anywhere": LANDS_ANYWHERE}, arguments.preset
-    if named is not None and named not in presets:
-        raise ValueError(f"--preset is one of {', '.join(presets)}, not {named}")
-    preset = begun if begun and named is None else presets[named or "modern"]
+    preset = _preset(arguments.preset, {**PRESETS, "anywhere": LANDS_ANYWHERE}, begun)
     env = (begun or preset).env if arguments.env is None else arguments.env
-    if not begun and named is None and env != LANDER:
+    if not begun and arguments.preset is None and env != LANDER:
         preset = LANDS_ANYWHERE if env == ANYWHERE else gym_config(env)
-    return configured(preset.changed(env=env), arguments.changes)
+    return cli.configured(preset.changed(env=env), arguments.changes)
 
 
 def digit_config(arguments: argparse.Namespace, begun: DigitConfig | None = None) -> DigitConfig:
-    """Return the preset, or the settings a run was begun with, with the changes asked for.
-
-    Raises ValueError for a change that makes no sense.
-    """
+    """Return the preset, or the settings a run was begun with, with the changes asked for, as `lander_config`."""
     from ai.digits.config import DIGIT_PRESETS
 
-    if arguments.preset is not None and arguments.preset not in DIGIT_PRESETS:
-        raise ValueError(f"--preset is one of {', '.join(DIGIT_PRESETS)}, not {arguments.preset}")
-    preset = begun if begun and arguments.preset is None else DIGIT_PRESETS[arguments.preset or "modern"]
-    config = configured(preset, arguments.changes)
+    config = cli.configured(_preset(arguments.preset, DIGIT_PRESETS, begun), arguments.changes)
     return config if arguments.epochs is None else config.changed(epochs=arguments.epochs)
+
+
+def _preset(named: str | None, presets: Mapping[str, Preset], begun: Preset | None) -> Preset:
+    """Return the preset of a name, or without one what a run was begun with; raises ValueError for other names."""
+    if named not in (None, *presets):
+        raise ValueError(f"--preset is one of {', '.join(presets)}, not {named}")
+    return begun if begun and named is None else presets[named or "modern"]
+
+
+def _run(
+    arguments: argparse.Namespace, kind: RunKind, config: Callable[..., Any], shown: Callable[[Any], str],
+    verdict: Callable[[Any, dict[str, Any]], str],
+) -> int:  # fmt: skip
+    """Train a run that is begun or resumed, keep what comes of it, and return the exit code.
+
+    `config` returns its settings, `shown` is what is written of the progress behind the bar, `verdict` how good the
+    saved run is.
+    """
+    from ai.files import claimed_folder
+    from ai.training.run import Limit
+
+    output = arguments.output or arguments.resume
+    limit = Limit(arguments.seconds, getattr(arguments, "decisions", None))
+    if output is None:
+        return cli.fail("say where to keep the network: --output DIR, or --resume DIR")
+    if problem := cli.out_of_range(arguments, seed=cli.SEEDS, seconds=cli.SECONDS):
+        return cli.fail(problem)
+    with ExitStack() as claims:
+        try:
+            if arguments.resume is None:
+                training = kind.begin(config(arguments), arguments.seed or 0)
+            else:
+                training = kind.resume(arguments.resume, env=getattr(arguments, "env", None))
+                _go_on(training, config(arguments, training.config), arguments)
+            if getattr(arguments, "validation", None):
+                training.validation_episodes = arguments.validation
+            if limit.share(training) >= 1.0:
+                spent = f"{training.seconds:,.1f} seconds, {training.moment:,} steps"
+                raise ValueError(f"this run has taken {spent} already; limits are of the whole run: ask for more")
+            claims.enter_context(claimed_folder(output, kind.folder))
+            another = output.is_dir() and any(output.iterdir())
+            if another and not arguments.replace and not (arguments.resume and output.samefile(arguments.resume)):
+                raise ValueError(f"{output} holds an earlier run: --resume {output} goes on with it, --replace ends it")
+        except cli.REFUSED as error:
+            return cli.fail(cli.reason(error))
+        return _train_and_keep(training, output, kind, limit, shown, verdict)
 
 
 def _go_on(training: Run, wanted: Any, arguments: argparse.Namespace) -> None:
     """Take over the live settings wanted for a resumed run; raises ValueError, with their names, for others."""
     if training.lost:
-        fail(f"{arguments.resume}: {training.lost}")
+        cli.fail(f"{arguments.resume}: {training.lost}")
     fixed = training.config.fixed_differences(wanted)
     if arguments.seed not in (None, training.seed):
         fixed.append("seed")
@@ -162,45 +167,13 @@ def _go_on(training: Run, wanted: Any, arguments: argparse.Namespace) -> None:
     training.apply_live(wanted)
 
 
-def _run(
-    arguments: argparse.Namespace, kind: RunKind, begun: Callable[[], Any], limit: Limit,
-    shown: Callable[[Any], str], verdict: Callable[[Any, Any], str],
-) -> int:  # fmt: skip
-    """Train a run that is begun or resumed, keep what comes of it, and return the exit code.
-
-    `shown` is what is written of the progress behind the bar, `verdict` how good the saved run is.
-    """
-    from ai.files import claimed_folder
-
-    output = arguments.output or arguments.resume
-    if output is None:
-        return fail("say where to keep the network: --output DIR, or --resume DIR")
-    if limit.seconds is None and limit.moment is None and "decisions" in arguments:
-        return fail("say when to stop: --seconds S or --decisions N")
-    if problem := out_of_range(arguments, seed=SEEDS, seconds=SECONDS):
-        return fail(problem)
-    with ExitStack() as claims:
-        try:
-            training = begun()
-            if limit.share(training) >= 1.0:
-                spent = f"{training.seconds:,.1f} seconds, {training.moment:,} steps"
-                raise ValueError(f"this run has taken {spent} already; limits are of the whole run: ask for more")
-            claims.enter_context(claimed_folder(output, kind.folder))
-            another = output.is_dir() and any(output.iterdir())
-            if another and not arguments.replace and not (arguments.resume and output.samefile(arguments.resume)):
-                raise ValueError(f"{output} holds an earlier run: --resume {output} goes on with it, --replace ends it")
-        except REFUSED as error:
-            return fail(reason(error))
-        return _train_and_keep(training, output, kind, limit, shown, verdict)
-
-
 def _train_and_keep(
     training: Run, output: Path, kind: RunKind, limit: Limit, shown: Callable[[Any], str],
     verdict: Callable[[Any, Any], str],
 ) -> int:  # fmt: skip
     stopped, saved = "", False
     try:
-        with stoppable() as stop:
+        with cli.stoppable() as stop:
             try:
                 _advance(training, output, kind, limit, shown, stop)
             except FloatingPointError as error:
@@ -212,14 +185,14 @@ def _train_and_keep(
         if not stopped:
             output, described = _kept(training, output, kind, final=True)
     except OSError as error:
-        return fail(f"{stopped}could not write to {output}: {error.strerror or error}")
+        return cli.fail(f"{stopped}could not write to {output}: {error.strerror or error}")
     except ValueError as error:
-        return fail(f"{stopped}{'' if saved else f'Nothing new is kept in {output}: '}{error}")
+        return cli.fail(f"{stopped}{'' if saved else f'Nothing new is kept in {output}: '}{error}")
     if stopped:
         what = "What was best until then" if training.best else "The last network, which has not been measured,"
-        return fail(f"{stopped}{what} is kept in {output}.")
-    say(f"kept in {output}: {verdict(training, described)}")
-    return exit_code(stop)
+        return cli.fail(f"{stopped}{what} is kept in {output}.")
+    cli.say(f"kept in {output}: {verdict(training, described)}")
+    return cli.exit_code(stop)
 
 
 def _advance(
@@ -233,19 +206,19 @@ def _advance(
     from ai.training.run import Keeper
 
     keeper, line_at = Keeper(training, kind, output), time.monotonic() + _LINE_SECONDS
-    with progress_bar(_PARTS, "training", bar_format=_BAR) as bar:
+    with cli.progress_bar(_PARTS, "training", bar_format=_BAR) as bar:
         for progress in limit.run(training):
             share, words = limit.share(training), shown(progress)
             bar.update(int(_PARTS * share) - bar.n)
             bar.set_postfix_str(words, refresh=False)
             if bar.disable and time.monotonic() >= line_at:
                 line_at = time.monotonic() + _LINE_SECONDS
-                print(f"training {share:.0%}: {words}", file=Unheard(), flush=True)
+                print(f"training {share:.0%}: {words}", file=cli.Unheard(), flush=True)
             if stop:
                 break
             for told in keeper.go_on(training.clock()):
                 said = f"could not write to {output}: {told.problem}; training goes on"
-                bar.write(readable(said), file=Unheard())
+                bar.write(cli.readable(said), file=cli.Unheard())
     keeper.wait()
 
 
@@ -259,6 +232,6 @@ def _kept(training: Run, output: Path, kind: RunKind, *, final: bool) -> tuple[P
     try:
         return output, kind.save(training, output, final=final)
     except FileExistsError as error:
-        fail(str(error))
+        cli.fail(str(error))
         beside = free_path(output.parent, output.name)
         return beside, kind.save(training, beside, final=final)

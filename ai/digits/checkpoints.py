@@ -7,20 +7,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Final
 
-import numpy as np
-
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS, DigitConfig
 from ai.digits.mnist import TEST, load_part
 from ai.digits.training import DigitTraining, accuracy
-from ai.files import Count, Duration, OneOf, Seed, Share, Sized, inside, problem_in, read_arrays, read_as, read_json
+from ai.files import Count, Duration, OneOf, Seed, Share, Sized, inside, problem_in, read_as, read_json
 from ai.files.knobs import nearest_preset
 from ai.nn import ModelFormatError
 
 TRAINING_FILE: Final = "training.json"
-LAST_FILE: Final = "last.npz"  # the state of runs that were kept before states were
-_OPTIMIZERS: Final = "optimizer."  # what the names of its arrays begin with
-_SLACK: Final = 1 << 16  # bytes of an archive beside its numbers
 
 
 @dataclass(frozen=True)
@@ -44,9 +39,6 @@ class _TrainingFile:
     changes: dict[str, Any]
     seed: Seed
     step: Count
-    seconds: Duration
-    held_out: float | None
-    history: tuple[dict[str, int | float | None], ...]
 
 
 def read_summary(folder: Path, file: str = TRAINING_FILE) -> DigitRunSummary:
@@ -87,29 +79,3 @@ def read_settings(folder: Path) -> tuple[DigitConfig, int, int]:
     except (ValueError, TypeError, ArithmeticError) as error:
         raise ModelFormatError(folder, [f"{TRAINING_FILE}: {problem_in(error)}"]) from error
     return config, described.seed, described.step
-
-
-def read_last(folder: Path, training: DigitTraining) -> dict[str, Any] | None:
-    """Return the state of a run that was kept before states were; None if there is none. Raises ModelFormatError."""
-    remembered = [f"{_OPTIMIZERS}{name}" for name in training.optimizer.remembers]
-    names = {"values", "average", *remembered}
-
-    def expect(name: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
-        steps = name == f"{_OPTIMIZERS}steps" and shape == () and dtype.kind in "iu"
-        if not steps and not (name in names and shape == training.average.shape and dtype == np.float32):
-            raise ValueError(f"{name} is no part of such a run")
-
-    try:
-        described = read_as(_TrainingFile, read_json(inside(folder, TRAINING_FILE)))
-        arrays = read_arrays(inside(folder, LAST_FILE), len(names) * training.average.nbytes + _SLACK, expect)
-        best = None if described.held_out is None else DigitClassifier.load(folder).network.values
-        optimizer = {name.removeprefix(_OPTIMIZERS): arrays[name] for name in arrays if name.startswith(_OPTIMIZERS)}
-        return {
-            "step": described.step, "seconds": described.seconds, "best": described.held_out, "best_values": best,
-            "history": [*described.history], "loss": 0.0, "accuracy": 0.0, "optimizer": optimizer,
-            "values": arrays["values"], "average": arrays["average"],
-        }  # fmt: skip
-    except FileNotFoundError:
-        return None
-    except (OSError, ValueError, KeyError) as error:
-        raise ModelFormatError(folder, [f"{LAST_FILE}: {problem_in(error)}"]) from error

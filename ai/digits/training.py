@@ -1,11 +1,10 @@
-"""Training of a digit network, as a generator like `ai.training.loop.run`, and its evaluation."""
+"""Training of a digit network, and its evaluation."""
 
 from __future__ import annotations
 
 import math
-import time
-from collections.abc import Callable, Generator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
@@ -18,6 +17,7 @@ from ai.digits.handwriting import drawings
 from ai.digits.mnist import TRAIN, Images, Labels, load_part
 from ai.files import array_like, count_of, number_of
 from ai.nn import OPTIMIZERS, Array
+from ai.run import Run
 
 SPLIT_SEED: Final = 28  # which images are held out does not depend on the run
 
@@ -37,35 +37,34 @@ class DigitProgress:
     best: float | None = None  # the highest of those
 
 
-@dataclass
-class DigitTraining:
-    """Digit training run: all state that changes as it goes on. `advance` takes one step of it."""
+class DigitTraining(Run):
+    """Digit training run: all state that changes as it goes on. `data` are images and labels in place of MNIST's.
+
+    Attributes:
+        step: learning steps so far.
+        best: the highest accuracy on the images held out; `best_values` are the weights that had it.
+        history: an entry for each epoch.
+
+    """
 
     config: DigitConfig
-    seed: int = 0
-    data: tuple[Images, Labels] | None = None  # training images and labels; None for MNIST's
-    clock: Callable[[], float] = time.monotonic
-    step: int = 0
-    seconds: float = 0.0  # spent, as the caller counts them
-    best: float | None = None
-    best_values: Array | None = None
-    history: list[dict[str, Any]] = field(default_factory=list)  # an entry for each epoch
-    lost: str = ""  # this and what follows is described in `ai.training.run.Run`
-    diverged: bool = False
-    around: dict[str, Any] = field(default_factory=dict)
-    states: Any = None
 
-    def __post_init__(self) -> None:
-        images, labels = self.data or load_part(TRAIN)
+    def __init__(self, config: DigitConfig, seed: int = 0, data: tuple[Images, Labels] | None = None) -> None:
+        super().__init__(config, seed)
+        self.step = 0
+        self.best: float | None = None
+        self.best_values: Array | None = None
+        self.history: list[dict[str, Any]] = []
+        images, labels = data or load_part(TRAIN)
         order = np.random.default_rng(SPLIT_SEED).permutation(len(images))
-        kept, held = np.split(order, [len(images) - self.config.held_out])
+        kept, held = np.split(order, [len(images) - config.held_out])
         if not len(kept):
             raise ValueError(f"held_out leaves none of {len(images)} images to learn from")
         self.images, self.labels = images[kept], labels[kept]
         self.held_images, self.held_labels = images[held], labels[held]
-        network = build_digit_network(self.config, np.random.default_rng(self.seed))
+        network = build_digit_network(config, np.random.default_rng(seed))
         self.classifier = DigitClassifier(network)
-        self.optimizer = OPTIMIZERS[self.config.optimizer](self.config.learning_rate)
+        self.optimizer = OPTIMIZERS[config.optimizer](config.learning_rate)
         self.average = network.values.astype(np.float32, copy=True)
         self._loss = self._accuracy = 0.0
         self._order = np.empty(0, np.intp)
@@ -77,26 +76,16 @@ class DigitTraining:
 
     @property
     def steps(self) -> int:
-        """Number of learning steps in the whole run."""
+        """Learning steps in the whole run."""
         return self.config.epochs * self.steps_per_epoch
-
-    @property
-    def done(self) -> bool:
-        """Whether all epochs are over."""
-        return self.step >= self.steps
 
     @property
     def moment(self) -> int:
         """Learning steps so far."""
         return self.step
 
-    @property
-    def buffers(self) -> dict[str, Any]:
-        """Replay buffers; there are none."""
-        return {}
-
     def state(self) -> dict[str, Any]:
-        """Return copies of all that the run goes on from, besides its settings; each step has its own randomness."""
+        """Return copies of what it goes on from; each step has its own randomness."""
         return {
             "step": self.step, "seconds": self.seconds, "best": self.best, "history": [*self.history],
             "best_values": None if self.best_values is None else self.best_values.copy(),
@@ -126,7 +115,7 @@ class DigitTraining:
         return rise * (config.final_learning_rate + (config.learning_rate - config.final_learning_rate) * fall)
 
     def apply_live(self, config: DigitConfig) -> None:
-        """Go on with other live knobs; the others stay as they are."""
+        """Take over the live knobs of another configuration."""
         self.config = self.config.with_live(config)
 
     def advance(self) -> DigitProgress:
@@ -211,7 +200,7 @@ class DigitTraining:
         self.optimizer = OPTIMIZERS[self.config.optimizer](self.config.learning_rate)
 
     def restore_best(self) -> None:
-        """Restore the best network so far, if there is one: training cannot go on from a diverged one."""
+        """Restore the best network so far."""
         if self.best_values is not None:
             self.restore(self.best_values)
 
@@ -221,20 +210,6 @@ class DigitTraining:
         if self.best_values is not None:
             classifier.network.values = self.best_values
         return classifier
-
-
-LIVE: Final = DigitConfig.live_names()  # the knobs that may change during a run
-
-
-def run_digits(
-    config: DigitConfig, seed: int = 0, **options: Any
-) -> Generator[DigitProgress, DigitConfig | None, None]:
-    """Train to the last epoch, yielding after each step; send a DigitConfig to change the live knobs."""
-    training = DigitTraining(config, seed, **options)
-    while not training.done:
-        changed = yield training.advance()
-        if changed is not None:
-            training.apply_live(changed)
 
 
 def accuracy(classifier: DigitClassifier, images: Images, labels: Labels) -> float:

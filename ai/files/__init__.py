@@ -10,7 +10,6 @@ from ai.files.folder import (
     atomic_folder,
     claimed_folder,
     move_state,
-    new_folder,
     recover_all,
     recover_folder,
     remove_state,
@@ -56,7 +55,7 @@ from ai.files.writing import append_line, free_path, take, write_bytes, write_te
 __all__ = [
     "CONFIG", "CONTROLS", "MOST", "NETWORK", "Above", "Count", "Duration", "FolderKind", "OneOf", "SchemaError", "Seed",
     "Share", "Sized", "Within", "append_line", "array_like", "atomic_folder", "brief", "check_header", "claimed_folder",
-    "count_of", "described", "free_path", "inside", "move_state", "new_folder", "number_of", "parse_json", "problem_in",
+    "count_of", "described", "free_path", "inside", "move_state", "number_of", "parse_json", "problem_in",
     "read_array", "read_arrays", "read_as", "read_bytes", "read_json", "read_lines", "read_text", "recover_all",
     "recover_folder", "remove_state", "shown", "sound_fields", "state_folder", "take", "take_folder", "user_dir",
     "write_bytes", "write_text",

@@ -71,40 +71,30 @@ def user_dir() -> Path:
 
 
 @contextmanager
-def new_folder(target: Path, kind: FolderKind | None = None) -> Iterator[Path]:
-    """Yield a new empty folder that becomes `target` if the block succeeds; else nothing is left.
-
-    Nothing may be there, or with a `kind` a folder of that kind, which is moved aside.
-    """
-    _clear_away(target)
-    new = beside(target, _NEW)
-    new.mkdir(parents=True)
-    try:
-        yield new
-        for path in [*new.rglob("*"), new]:
-            synchronise(path)
-        _put(new, target, kind)
-        synchronise(target.parent)
-    except BaseException:
-        recover_folder(target)
-        shutil.rmtree(new, ignore_errors=True)
-        raise
-
-
-@contextmanager
-def atomic_folder(target: str | Path, kind: FolderKind = NETWORK) -> Iterator[Path]:
+def atomic_folder(target: str | Path, kind: FolderKind | None = NETWORK) -> Iterator[Path]:
     """Yield a new empty folder that takes the place of `target` if the block succeeds.
 
     Until then, and if the block fails, `target` stays as it is and nothing is left beside it. A folder that is
-    replaced has to be empty or of the same `kind`: anything else raises FileExistsError, a sentence, so that no slip
-    of a path can delete what somebody keeps there. The old folder is moved aside before the new one stands, and
-    deleted only then.
+    replaced has to be empty or of the same `kind`, or with None there must be none: anything else raises
+    FileExistsError, a sentence, so that no slip of a path can delete what somebody keeps there. The old folder is
+    moved aside before the new one stands, and deleted only then.
     """
-    path = _checked(target, kind)
-    with new_folder(path, kind) as new:
+    path = _checked(target, kind) if kind else Path(target)
+    _clear_away(path)
+    new = beside(path, _NEW)
+    new.mkdir(parents=True)
+    try:
         yield new
+        for made in [*new.rglob("*"), new]:
+            synchronise(made)
+        _put(new, path, kind)
+        synchronise(path.parent)
+    except BaseException:
+        recover_folder(path)
+        shutil.rmtree(new, ignore_errors=True)
+        raise
     for old in _aside(path, _OLD):
-        if not any(old.iterdir()) or not kind.stranger(old):
+        if kind and (not any(old.iterdir()) or not kind.stranger(old)):
             shutil.rmtree(old, ignore_errors=True)
 
 

@@ -36,19 +36,8 @@ def knob(
     `offers` are a few values for a screen to propose, where the range says too little. `needs` names another field:
     while that is off or 0, this one has no effect. `formerly` is the field's name in older files.
     """
-    described = {
-        "help": help,
-        "group": group,
-        "low": low,
-        "high": high,
-        "choices": choices,
-        "log": log,
-        "live": live,
-        "offers": offers,
-        "needs": needs,
-        "formerly": formerly,
-    }
-    return field(default=default, metadata=described)
+    described = locals().copy()
+    return field(default=described.pop("default"), metadata=described)
 
 
 @dataclass(frozen=True)

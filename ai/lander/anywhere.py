@@ -51,28 +51,6 @@ def _side(rng: np.random.Generator) -> float:
     return 1.0 if rng.random() < 0.5 else -1.0
 
 
-def _mars(rng: np.random.Generator) -> Site:
-    return Site(3.71, 8.0, wind=rng.uniform(-0.15, 0.15), gust=rng.uniform(0.0, 0.25))
-
-
-def _earth(rng: np.random.Generator) -> Site:
-    air, speed = rng.uniform(0.04, 0.08), rng.uniform(2.8, 3.0)
-    return Site(9.81, rng.uniform(15.6, 16.4), air, speed, speed)
-
-
-def _windy(rng: np.random.Generator) -> Site:
-    return Site(wind=rng.uniform(-0.4, 0.4), gust=rng.uniform(0.0, 0.4), gust_period=rng.uniform(4.0, 7.0))
-
-
-def _moving(rng: np.random.Generator) -> Site:
-    return Site(swing=_side(rng) * rng.uniform(1.0, 4.2), swing_period=rng.uniform(13.0, 20.0))
-
-
-def _outage(rng: np.random.Generator) -> Site:
-    dead = rng.uniform(0.5, 4.0)
-    return Site(dead=dead, back=dead + rng.uniform(0.5, 2.6))
-
-
 def _any(rng: np.random.Generator) -> Site:
     """Draw a site of any gravity, and each of the other conditions for some of them."""
     gravity = PARAMS.gravity if rng.random() < 0.25 else math.exp(rng.uniform(math.log(0.8), math.log(11.0)))
@@ -99,13 +77,25 @@ def _any(rng: np.random.Generator) -> Site:
     return Site(gravity, spare * gravity, pad=pad)._replace(**changes)
 
 
+def _earth(rng: np.random.Generator) -> Site:
+    air, speed = rng.uniform(0.04, 0.08), rng.uniform(2.8, 3.0)
+    return Site(9.81, rng.uniform(15.6, 16.4), air, speed, speed)
+
+
+def _outage(rng: np.random.Generator) -> Site:
+    dead = rng.uniform(0.5, 4.0)
+    return Site(dead=dead, back=dead + rng.uniform(0.5, 2.6))
+
+
 SITES: Final[dict[str, Callable[[np.random.Generator], Site]]] = {
-    "moon": lambda _: Site(),
-    "mars": _mars,
+    "moon": lambda rng: Site(),  # noqa: ARG005
+    "mars": lambda rng: Site(3.71, 8.0, wind=rng.uniform(-0.15, 0.15), gust=rng.uniform(0.0, 0.25)),
     "earth": _earth,
-    "wind": _windy,
+    "wind": lambda rng: Site(
+        wind=rng.uniform(-0.4, 0.4), gust=rng.uniform(0.0, 0.4), gust_period=rng.uniform(4.0, 7.0)
+    ),
     "narrow": lambda rng: Site(pad=int(rng.choice(_NARROW))),
-    "moving": _moving,
+    "moving": lambda rng: Site(swing=_side(rng) * rng.uniform(1.0, 4.2), swing_period=rng.uniform(13.0, 20.0)),
     "tank": lambda rng: Site(tank=rng.uniform(2.8, 4.5)),
     "outage": _outage,
     "any": _any,
@@ -115,10 +105,9 @@ TRAINED: Final = (*SITES, "tank", "tank", "outage", "outage", *["any"] * 5)
 
 
 class AnywhereEnv(LanderEnv):
-    """Vectorised lander environment in which every flight is at a site of its own.
+    """LanderEnv in which every flight is at a site of its own, and observations, (n, 9 + k), tell of it.
 
-    Observations are those of `LanderEnv` with `surroundings` beside them, (n, 9 + k). `reset` draws sites from
-    distributions with names in `sites`, as often as they are named; `begin` sets them.
+    `reset` draws sites from distributions with names in `sites`, as often as they are named; `settle` sets them.
 
     Attributes:
         kind: the number in `sites` of the distribution that each slot's site was drawn from, (n,).
@@ -127,6 +116,7 @@ class AnywhereEnv(LanderEnv):
     """
 
     num_features = NUM_FEATURES + len(SURROUNDINGS)
+    wide = True
     kept = (*LanderEnv.kept, "kind", "settled")
 
     def __init__(
@@ -172,7 +162,3 @@ class AnywhereEnv(LanderEnv):
                                      site.swing, site.swing_period)  # fmt: skip
         self.target = np.array(site.pad, dtype=np.intp)
         self.world.state.active[:, self.pad_bodies] = self.target[:, None] == np.arange(len(_PADS))
-
-    def observe(self, pad: Any = None) -> Floats:
-        """Return every lander's observation and what is around it, (n, 9 + k)."""
-        return self.observe_wide(pad)

@@ -73,6 +73,7 @@ class LanderEnv:
 
     num_actions = NUM_ACTIONS
     num_features = NUM_FEATURES
+    wide = False  # whether observations tell of the surroundings
     kept: tuple[str, ...] = (*_BEGUN, "target")  # arrays that a snapshot keeps
 
     def __init__(
@@ -236,17 +237,10 @@ class LanderEnv:
         whole: Bools = np.all(kept, axis=0) & (self.outcome == Outcome.CRASHED)
         return whole
 
-    def _top(self, pad: Any) -> Doubles:
-        """Return the middle of the top of one pad, or of one for each slot, where it is now: (2,) or (n, 2)."""
-        middle: Doubles = self.ground.middles[pad]
-        if self.conditions.moves:
-            middle = middle + np.stack([self.pad_shift, np.zeros(self.num_envs)], axis=1)
-        return middle
-
-    def _standing(self, pad: Any) -> Doubles:
-        """Return where the centre of mass of a lander is that stands there, of that shape."""
-        place: Doubles = self._top(pad) + np.array([0.0, self.params.stand])
-        return place
+    def _top(self, pad: Any, above: float = 0.0) -> Doubles:
+        """Return the point above the middle of one pad, or of one for each slot, where it is now: (2,) or (n, 2)."""
+        middle: Doubles = self.ground.middles[pad] + np.array([0.0, above])
+        return middle + np.stack([self.pad_shift, np.zeros(self.num_envs)], axis=1) if self.conditions.moves else middle
 
     def reset(self, mask: Bools | None = None) -> Floats:
         """Begin a new flight in the slots of `mask` (n,), or in all; return every slot's observation."""
@@ -356,18 +350,23 @@ class LanderEnv:
         moment.restore(self, state)
         self._started = True
 
-    def observe(self, pad: Any = None) -> Floats:
-        """Return every lander's observation (n, 9) of its target, or of another `pad`, one number or (n,)."""
+    def observe(self, pad: Any = None, *, wide: bool | None = None) -> Floats:
+        """Return every lander's observation (n, 9) of its target, or of another `pad`, one number or (n,).
+
+        If `wide`, surroundings are beside it, (n, 9 + k); by default as this environment's observations are.
+        """
         pad = self.target if pad is None else pad
         pads = self.ground.at_once
         contacts = self.contacts if pads == 1 else self.contacts * np.equal(self.touched, pad)[:, None]
-        offset = self.position - self._standing(pad)
-        return sensed(offset, self.relative_velocity, *self.turned, contacts, pads=pads)
+        offset = self.position - self._top(pad, self.params.stand)
+        seen = sensed(offset, self.relative_velocity, *self.turned, contacts, pads=pads)
+        wide = self.wide if wide is None else wide
+        return np.concatenate([seen, surroundings(self, pad)], axis=1) if wide else seen
 
     def observe_at(self, slot: int, places: Doubles) -> Floats:
         """Return what lander `slot` would observe at other places (m, 2) in the air, moving as it does now: (m, 9)."""
         at = np.full(len(places), slot)
-        offset = places - self._standing(self.target)[at]
+        offset = places - self._top(self.target, self.params.stand)[at]
         sin, cos, spin = (part[at] for part in self.turned)
         nothing = np.zeros((len(places), 2), dtype=bool)
         return sensed(offset, self.relative_velocity[at], sin, cos, spin, nothing, pads=self.ground.at_once)
@@ -379,13 +378,8 @@ class LanderEnv:
         return state.sin[:, body], state.cos[:, body], self.angular_velocity
 
     def observe_for(self, pilot: Any, pad: Any = None) -> Floats:
-        """Return what a pilot reads: `observe_wide` if its network has inputs for that, else `observe`."""
-        wide = getattr(pilot, "num_features", NUM_FEATURES) > NUM_FEATURES
-        return self.observe_wide(pad) if wide else LanderEnv.observe(self, pad)
-
-    def observe_wide(self, pad: Any = None) -> Floats:
-        """Return every lander's observation and what is around it, side by side, (n, 9 + k)."""
-        return np.concatenate([LanderEnv.observe(self, pad), self.surroundings(pad)], axis=1)
+        """Return what a pilot reads: the surroundings as well if its network has inputs for them."""
+        return self.observe(pad, wide=getattr(pilot, "num_features", NUM_FEATURES) > NUM_FEATURES)
 
     def observe_pads(self, pilot: Any = None) -> Floats:
         """Return every lander's observation of each pad, (n, pads, 9), or what `pilot` reads, (n, pads, features)."""

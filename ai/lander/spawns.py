@@ -19,41 +19,35 @@ from ai.lander.rules import Limits
 
 Spawn = Callable[[np.random.Generator], Doubles]
 
-_MIDDLE: Final = np.array([0.0, 14.5, 0.0, -1.0, 0.0, 0.0])
-_REACH: Final = np.array([15.0, 5.5, 3.0, 2.0, np.radians(35), 0.5])
-_HARD_REACH: Final = np.array([15.0, 5.5, 3.0, 2.0, np.radians(90), 1.0])
-_WIDE_REACH: Final = np.array([17.0, 6.5, 4.0, 2.5, np.radians(50), 0.8])
-_EASY: Final = np.array([0.0, 4.0, 0.0, -0.3, 0.0, 0.0])
-_EASY_REACH: Final = np.array([1.0, 0.5, 0.3, 0.2, 0.05, 0.05])
-_NEAR: Final = np.array([0.0, 4.5, 0.0, -0.4, 0.0, 0.0])
-_NEAR_REACH: Final = np.array([5.0, 1.9, 1.2, 0.8, 0.35, 0.4])
+
+@dataclass(frozen=True, eq=False)
+class _Box:
+    """Starts spread evenly around one; `reach` is how far to each side."""
+
+    middle: Doubles
+    reach: Doubles
+
+    def __call__(self, rng: np.random.Generator) -> Doubles:
+        return self.middle + self.reach * (2.0 * rng.random(6) - 1.0)
+
+    def toward(self, other: _Box, share: float) -> _Box:
+        """Return the box that is `share` of the way to another."""
+        return _Box(self.middle + share * (other.middle - self.middle), self.reach + share * (other.reach - self.reach))
 
 
-_BOTTOM: Final = np.array([0.0, 7.0, 0.0, -0.3, 0.0, 0.0])
-_BOTTOM_REACH: Final = np.array([0.5, 0.5, 0.2, 0.2, 0.03, 0.03])
+def _box(height: float, rise: float, *reach: float) -> _Box:
+    """Return starts above the pad, `height` up and at `rise` m/s, and as far from that as each `reach`."""
+    return _Box(np.array([0.0, height, 0.0, rise, 0.0, 0.0]), np.array(reach))
+
+
+_RANDOM: Final = _box(14.5, -1.0, 15.0, 5.5, 3.0, 2.0, np.radians(35), 0.5)
+_EASY: Final = _box(4.0, -0.3, 1.0, 0.5, 0.3, 0.2, 0.05, 0.05)
+_BOTTOM: Final = _box(7.0, -0.3, 0.5, 0.5, 0.2, 0.2, 0.03, 0.03)
 _RUNGS: Final = 10
 
 
-def _around(middle: Doubles, reach: Doubles) -> Spawn:
-    def draw(rng: np.random.Generator) -> Doubles:
-        return middle + reach * (2.0 * rng.random(6) - 1.0)
-
-    return draw
-
-
 def _at(height: float) -> Spawn:
-    def draw(_: np.random.Generator) -> Doubles:
-        return np.array([0.0, height, 0.0, 0.0, 0.0, 0.0])
-
-    return draw
-
-
-def _graded(rng: np.random.Generator) -> Doubles:
-    """Draw any start between an easy one above the pad and a fully random one."""
-    difficulty = rng.random()
-    middle = _EASY + difficulty * (_MIDDLE - _EASY)
-    reach = _EASY_REACH + difficulty * (_REACH - _EASY_REACH)
-    return _around(middle, reach)(rng)
+    return lambda _: np.array([0.0, height, 0.0, 0.0, 0.0, 0.0])
 
 
 def _mixed(near: float, graded: float, others: str) -> Spawn:
@@ -85,22 +79,17 @@ def _far(rng: np.random.Generator) -> Doubles:
     return _away(rng) if kind < 0.15 else SPAWNS["hard" if kind < 0.3 else "thorough"](rng)
 
 
-def _rung(share: float) -> Spawn:
-    """Return starts that are `share` of the way from the bottom of the ladder to random ones."""
-    return _around(_BOTTOM + share * (_MIDDLE - _BOTTOM), _BOTTOM_REACH + share * (_REACH - _BOTTOM_REACH))
-
-
 # The ladder that a person learns on: above the pad at first, each rung a little farther from it.
-RUNGS: Final = {f"rung_{number}": _rung((number - 1) / _RUNGS) for number in range(1, _RUNGS + 1)}
+RUNGS: Final = {f"rung_{number}": _BOTTOM.toward(_RANDOM, (number - 1) / _RUNGS) for number in range(1, _RUNGS + 1)}
 SPAWNS: Final[dict[str, Spawn]] = {
     "fixed": _at(8.0),
     "higher": _at(12.0),
     "highest": _at(17.0),
-    "near": _around(_NEAR, _NEAR_REACH),
-    "graded": _graded,
-    "random": _around(_MIDDLE, _REACH),
-    "hard": _around(_MIDDLE, _HARD_REACH),
-    "wide": _around(_MIDDLE, _WIDE_REACH),
+    "near": _box(4.5, -0.4, 5.0, 1.9, 1.2, 0.8, 0.35, 0.4),
+    "graded": lambda rng: _EASY.toward(_RANDOM, rng.random())(rng),  # from easy ones above the pad to random ones
+    "random": _RANDOM,
+    "hard": _box(14.5, -1.0, 15.0, 5.5, 3.0, 2.0, np.radians(90), 1.0),
+    "wide": _box(14.5, -1.0, 17.0, 6.5, 4.0, 2.5, np.radians(50), 0.8),
     "practice": _mixed(0.25, 0.25, "random"),
     "thorough": _mixed(0.2, 0.2, "wide"),  # for a long run: most flights begin a little beyond what is tested
     "mixed": _mixed(0.35, 0.35, "wide"),  # for a quick run: most ways to the pad are short, and each ends in a touch

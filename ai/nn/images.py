@@ -6,35 +6,19 @@ and compares whole runs of examples at a time, however small the images are, and
 are gathered almost at the speed of memory (docs/adr/0009-images-batch-last-in-memory.md).
 """
 
-from collections.abc import Callable, Iterator
-from functools import wraps
+from collections.abc import Iterator
 from itertools import product
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from ai.nn.layer import HalvedLayer, Layer
+from ai.nn.layer import Layer
 from ai.nn.layers import FullyConnectedLayer, ones
 from ai.nn.limits import ImageShape, checked_size
 from ai.nn.parameter import Array
 
-L = TypeVar("L", bound=Layer)
-
 BLOCK = 1 << 20  # numbers at work at a time: 4 MB, which stay in the cache between one pass and the next
-
-
-def _also_one_image(predict: Callable[[L, Array], Array]) -> Callable[[L, Array], Array]:
-    """Let a layer's `predict` take one image without the batch axis as well."""
-
-    @wraps(predict)
-    def either(layer: L, input_data: Array) -> Array:
-        if input_data.ndim == 3:
-            one: Array = predict(layer, input_data[None])[0]
-            return one
-        return predict(layer, input_data)
-
-    return either
 
 
 class ConvolutionLayer(FullyConnectedLayer):
@@ -87,9 +71,8 @@ class ConvolutionLayer(FullyConnectedLayer):
         output = self.kept("output", (len(input_data), *self.outputs), self.dtype)
         return self._convolve(input_data, self.framed, output)
 
-    @_also_one_image
     def predict(self, input_data: Array) -> Array:
-        """Return the same as a new array, also for one image without the batch axis."""
+        """Return the same as a new array."""
         _check_images(self, input_data)
         framed = np.zeros(self._frame(len(input_data)), self.dtype, "F")
         return self._convolve(input_data, framed, np.empty((len(input_data), *self.outputs), self.dtype, "F"))
@@ -164,7 +147,7 @@ def _parts(size: int, most: int) -> list[slice]:
     return [slice(start, min(start + length, size)) for start in range(0, size, length)]
 
 
-class MaxPoolingLayer(HalvedLayer):
+class MaxPoolingLayer(Layer):
     """The largest of each `size` x `size` pixels, channel by channel; what does not fill a square is left out.
 
     On the way back the error goes to that one pixel: of equal ones to the first, row by row.
@@ -188,9 +171,8 @@ class MaxPoolingLayer(HalvedLayer):
         self.output = self.kept("output", (len(input_data), *self.outputs), input_data.dtype)
         return self._maximum(input_data, self.output)
 
-    @_also_one_image
     def predict(self, input_data: Array) -> Array:
-        """Return the same as a new array, also for one image without the batch axis."""
+        """Return the same as a new array."""
         _check_images(self, input_data)
         return self._maximum(input_data, np.empty((len(input_data), *self.outputs), input_data.dtype, "F"))
 
@@ -225,7 +207,7 @@ class MaxPoolingLayer(HalvedLayer):
         return [images[:, row : rows : self.size, column : columns : self.size] for row, column in squares]
 
 
-class FlattenLayer(HalvedLayer):
+class FlattenLayer(Layer):
     """Images as rows of numbers, (batch, height · width · channels), for fully connected layers.
 
     The numbers stay where they are in memory, so within an example the height varies fastest.
@@ -244,9 +226,8 @@ class FlattenLayer(HalvedLayer):
         _check_images(self, input_data)
         return input_data.reshape(-1, self.outputs, order="F")
 
-    @_also_one_image
     def predict(self, input_data: Array) -> Array:
-        """Return the same, also for one image without the batch axis."""
+        """Return the same."""
         return self.forward_propagate(input_data)
 
     def input_error(self, output_error: Array) -> Array:

@@ -18,12 +18,13 @@ from ai.nn.parameter import Array, Parameter
 class Layer(ABC):
     """One step of a network, on arrays of shape (batch, values), or images (batch, height, width, channels).
 
-    A custom layer has `forward_propagate`, `backward_propagate` and `predict`; if it learns, `shapes` and
-    `initial_value`; if it is to be saved and copied, `settings` and `ai.nn.register_layer`.
+    A custom layer has `forward_propagate`, `predict`, and `backward_propagate` or both its halves, `fill_gradients` and
+    `input_error`; if it learns, `shapes` and `initial_value`; if it is to be saved and copied, `settings` and
+    `ai.nn.register_layer`.
 
     What `forward_propagate` and `backward_propagate` return lasts until their next call: they may write into
     arrays that are kept while the batch size stays the same. `predict` returns a new array, or its input where
-    there is nothing to compute, and also takes one example without the batch axis.
+    there is nothing to compute, and also takes one vector without the batch axis.
     """
 
     settings: tuple[str, ...] = ()  # arguments of the constructor that are stored with the layer
@@ -92,34 +93,20 @@ class Layer(ABC):
         example = memory[:-1]
         return lambda: np.copyto(output, self.predict(example))
 
-    @abstractmethod
-    def backward_propagate(self, output_error: Array) -> Array:
-        """Fill the parameters' gradients and return the input error, both of the last forward pass."""
-
-    def fill_gradients(self, output_error: Array) -> None:
-        """Fill the gradients alone: all that is asked of the lowest layer."""
-        self.backward_propagate(output_error)
-
-    def input_error(self, output_error: Array) -> Array:
-        """Return the input error, and leave the gradients as they are."""
-        before = [parameter.gradient.copy() for parameter in self.parameters]
-        error = self.backward_propagate(output_error)
-        for parameter, gradient in zip(self.parameters, before, strict=True):
-            parameter.gradient[...] = gradient
-        return error
-
-
-class HalvedLayer(Layer):
-    """Layer whose backward pass has two separate halves, gradients and input error, so that either can be skipped."""
-
     def backward_propagate(self, output_error: Array) -> Array:
         """Fill the parameters' gradients and return the input error, both of the last forward pass."""
         self.fill_gradients(output_error)
         return self.input_error(output_error)
 
     def fill_gradients(self, output_error: Array) -> None:
-        """Fill the gradients alone: nothing, where there are no parameters."""
+        """Fill the gradients alone: all that is asked of the lowest layer."""
+        if self.shapes:
+            self.backward_propagate(output_error)
 
-    @abstractmethod
     def input_error(self, output_error: Array) -> Array:
-        """Return the input error alone."""
+        """Return the input error alone, and leave the gradients as they are."""
+        before = [parameter.gradient.copy() for parameter in self.parameters]
+        error = self.backward_propagate(output_error)
+        for parameter, gradient in zip(self.parameters, before, strict=True):
+            parameter.gradient[...] = gradient
+        return error

@@ -1,19 +1,19 @@
 """Layers on vectors: fully connected, dueling, activation, normalisation, dropout."""
 
 from collections.abc import Callable
-from functools import lru_cache, partial
+from functools import cached_property, lru_cache, partial
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from ai.nn.activations import Activation, Function
-from ai.nn.layer import HalvedLayer
+from ai.nn.layer import Layer
 from ai.nn.limits import checked_size
 from ai.nn.parameter import INITIALISATIONS, Array
 
 
-class FullyConnectedLayer(HalvedLayer):
+class FullyConnectedLayer(Layer):
     """Each output is a weighted sum of all inputs, plus a bias: y = x W + b.
 
     `initialisation` is "glorot" or "he"; by default it suits the activation that follows in the network.
@@ -100,16 +100,17 @@ class DuelingLayer(FullyConnectedLayer):
     the error E of Q is E·Mᵀ for the streams.
     """
 
-    single_step = HalvedLayer.single_step  # by `predict`, not as a fully connected layer
+    single_step = Layer.single_step  # by `predict`, not as a fully connected layer
 
     def __init__(self, inputs: int, outputs: int, **options: Any) -> None:
         super().__init__(inputs, outputs, **options)
         self.shapes = {"weights": (inputs, outputs + 1), "bias": (outputs + 1,)}
 
-    @property
+    @cached_property
     def mixture(self) -> Array:
         """Matrix that makes Q-values of the streams, (1 + outputs, outputs)."""
-        return _mixture(self.shapes["bias"][0] - 1, np.dtype(self.dtype))
+        count = self.shapes["bias"][0] - 1
+        return np.vstack([np.ones(count), np.eye(count) - 1 / count]).astype(self.dtype)
 
     def forward_propagate(self, input_data: Array) -> Array:
         """Return Q, (batch, outputs)."""
@@ -130,7 +131,7 @@ class DuelingLayer(FullyConnectedLayer):
         return super().input_error(output_error.dot(self.mixture.T))
 
 
-class ActivationLayer(HalvedLayer):
+class ActivationLayer(Layer):
     """An elementwise function: `ActivationLayer(*ActivationFunctions.use_tanh())`, or a pair of your own.
 
     A plain pair (function, derivative), both of the input, works too, but cannot be saved.
@@ -163,15 +164,19 @@ class ActivationLayer(HalvedLayer):
         return error
 
 
-class LayerNormalisation(HalvedLayer):
+class LayerNormalisation(Layer):
     """Each example to mean 0 and variance 1 over its values, then a learned gain and bias (Ba et al. 2016).
 
-    y = gain · n + bias, with n = (x - mean x) / deviation and deviation = √(variance + epsilon). `centred` is
-    x - mean x and `stretch` is gain / deviation, so y = centred · stretch + bias.
+    With means over the values of an example, E the output error, and ε the `epsilon`:
+
+        centred = x - mean x                        D      = E · stretch
+        inverse = 1 / √(mean centred² + ε)          gain'  = Σ E · centred · inverse   over the batch
+        stretch = inverse · gain                    bias'  = Σ E
+        y       = centred · stretch + bias          x'     = D - mean D - centred · inverse² · mean(centred · D)
 
     Means are products with a constant vector, because BLAS sums rows several times faster than `mean` does.
-    Likewise gain / deviation is made by an outer product, and then one plain product of two arrays does for two
-    that would have to repeat a row or a column.
+    Likewise `stretch` is made by an outer product, and then one plain product of two arrays does for two that would
+    have to repeat a row or a column.
     """
 
     settings = ("size", "epsilon")
@@ -190,8 +195,8 @@ class LayerNormalisation(HalvedLayer):
         self.output, self.centred, self.stretch, self.error, self.scratch = self.kept(
             "buffers", (5, *input_data.shape), self.dtype
         )
-        self.inverse_deviation = self._centre(np.asarray(input_data, self.dtype), self.centred)
-        self.inverse_deviation.dot(gain.value[None], self.stretch)
+        self.inverse = self._centre(np.asarray(input_data, self.dtype), self.centred)
+        self.inverse.dot(gain.value[None], self.stretch)
         np.multiply(self.centred, self.stretch, out=self.output)
         self.output += bias.value
         return self.output
@@ -211,26 +216,23 @@ class LayerNormalisation(HalvedLayer):
 
         def step() -> None:
             centred = example - example.dot(average)
-            inverse_deviation = 1 / np.sqrt(centred.dot(centred) / self.size + self.epsilon)
-            np.multiply(centred, inverse_deviation * gain, out=output)
+            inverse = 1 / np.sqrt(centred.dot(centred) / self.size + self.epsilon)
+            np.multiply(centred, inverse * gain, out=output)
             np.add(output, bias, out=output)
 
         return step
 
     def fill_gradients(self, output_error: Array) -> None:
-        """Set the gradients of gain, Σ n E, and bias, Σ E over the batch, with n the normalised input."""
+        """Set the gradients of gain, Σ E · centred · inverse, and bias, Σ E over the batch."""
         gain, bias = self.parameters
-        self.inverse_deviation.T.dot(np.multiply(self.centred, output_error, out=self.scratch), gain.gradient[None])
+        self.inverse.T.dot(np.multiply(self.centred, output_error, out=self.scratch), gain.gradient[None])
         ones(len(output_error), self.dtype).dot(output_error, bias.gradient)
 
     def input_error(self, output_error: Array) -> Array:
-        """Return D - mean D - n · mean(n D), with D = gain · E / deviation and means over the values.
-
-        n is centred / deviation and occurs twice, hence the square in `along`.
-        """
+        """Return D - mean D - centred · inverse² · mean(centred · D), with D = E · stretch."""
         error: Array = np.multiply(output_error, self.stretch, out=self.error)
         along = np.vecdot(self.centred, error)[:, None]
-        along *= self.inverse_deviation**2 / self.size
+        along *= self.inverse**2 / self.size
         error -= error.dot(self._average)[:, None]
         error -= np.multiply(self.centred, along, out=self.scratch)
         return error
@@ -241,8 +243,8 @@ class LayerNormalisation(HalvedLayer):
         variance = np.vecdot(out, out)[..., None]
         variance /= self.size
         variance += self.epsilon
-        inverse_deviation: Array = np.divide(1, np.sqrt(variance, out=variance), out=variance)
-        return inverse_deviation
+        inverse: Array = np.divide(1, np.sqrt(variance, out=variance), out=variance)
+        return inverse
 
     @property
     def _average(self) -> Array:
@@ -253,7 +255,7 @@ class LayerNormalisation(HalvedLayer):
         return (np.ones if name == "gain" else np.zeros)(self.shapes[name])
 
 
-class DropoutLayer(HalvedLayer):
+class DropoutLayer(Layer):
     """Sets each value to 0 with probability `rate` while training, and divides the others by 1 - rate.
 
     After Srivastava et al. 2014, inverted: sums keep their mean, so that `predict` has nothing to do. What is
@@ -300,11 +302,3 @@ def _constant(size: int, value: float, dtype: np.dtype[Any]) -> Array:
     vector: Array = np.full(size, value, dtype)
     vector.setflags(write=False)
     return vector
-
-
-@lru_cache(maxsize=64)
-def _mixture(outputs: int, dtype: np.dtype[Any]) -> Array:
-    identity = np.eye(outputs)
-    mixture: Array = np.vstack([np.ones(outputs), identity - 1 / outputs]).astype(dtype)
-    mixture.setflags(write=False)
-    return mixture

@@ -89,6 +89,9 @@ class NeuralNetwork:
         data: Array = np.asarray(input_data, self.dtype)
         if data.shape == self._single.shape:
             return self._single.predict(data)
+        if data.ndim == 3:
+            one: Array = self.predict(data[None])[0]
+            return one
         if data.ndim == 4 and len(data) > IMAGES:
             return np.concatenate([self.predict(part) for part in np.split(data, range(IMAGES, len(data), IMAGES))])
         for layer in self.layers:
@@ -96,7 +99,7 @@ class NeuralNetwork:
         return data
 
     def activations(self, input_data: npt.ArrayLike) -> list[Array]:
-        """Return what each layer gives for a batch or one example; the last is what `predict` returns."""
+        """Return what each layer gives for a batch; the last is what `predict` returns."""
         data: Array = np.asarray(input_data, self.dtype)
         return [data := layer.predict(data) for layer in self.layers]
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ai.files import array_like
 from ai.nn.parameter import Array
 
 
@@ -81,28 +82,17 @@ class Optimizer(ABC):
         Raises ValueError, and changes nothing, if the state is not of this kind of optimizer, or not one of these
         parameters.
         """
-        kind = type(self).__name__
         steps = np.asarray(state.get("steps", -1))
         if steps.shape != () or steps.dtype.kind not in "iu" or not 0 <= steps < 1 << 53:
-            raise ValueError(f"not a state of {kind}: it does not say after how many steps")
+            raise ValueError(f"not a state of {type(self).__name__}: it does not say after how many steps")
         names = self.remembers if steps else ()
         if set(state) != {"steps", *names}:
-            raise ValueError(f"not a state of {kind}: it holds {', '.join(sorted(state))}")
-        memory = {name: self._checked(name, np.asarray(state[name]), values) for name in names}
+            raise ValueError(f"not a state of {type(self).__name__}: it holds {', '.join(sorted(state))}")
+        memory = {name: array_like(values, np.asarray(state[name]), name) for name in names}
+        for name in self.never_negative:
+            if name in memory and (memory[name] < 0).any():
+                raise ValueError(f"{name} holds numbers below 0, and is a sum of squares")
         self.steps, self.memory, self.scratch = int(steps), memory, np.empty(0)
-
-    def _checked(self, name: str, kept: npt.NDArray[Any], values: Array) -> Array:
-        """Return what a state keeps of each parameter as a new array of the parameters' type."""
-        if kept.dtype.kind != "f" or kept.shape != values.shape:
-            held = f"{kept.dtype.name} {list(kept.shape)}"
-            raise ValueError(f"{name} holds {held}, and should hold {values.dtype.name} {list(values.shape)}")
-        with np.errstate(over="ignore"):
-            checked: Array = kept.astype(values.dtype)
-        if not np.isfinite(checked).all():
-            raise ValueError(f"{name} holds numbers that are not finite")
-        if name in self.never_negative and (checked < 0).any():
-            raise ValueError(f"{name} holds numbers below 0, and is a sum of squares")
-        return checked
 
     @abstractmethod
     def _fill_step(self, gradients: Array, number: int) -> None:

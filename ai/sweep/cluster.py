@@ -12,11 +12,11 @@ import signal
 import socket
 import sys
 import threading
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any, Final, TypeVar
+from typing import Any, Final
 
 from ai.files import brief
 
@@ -33,8 +33,6 @@ _TOKEN: Final = {"RAY_AUTH_MODE": "token", "RAY_AUTH_TOKEN": secrets.token_hex(3
 _PATIENCE: Final = 5.0  # seconds in which a cluster has to answer; Ray itself waits for minutes
 # How a client of HTTP/2 begins, with settings that are empty; a server, as all of Ray's are, answers with its own.
 _PREFACE: Final = b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n" + bytes([0, 0, 0, 4, 0, 0, 0, 0, 0])
-
-Result = TypeVar("Result")
 
 
 def installed() -> bool:
@@ -146,32 +144,3 @@ def _tell(news: Mapping[str, Any], ignore_prefix: bool = False) -> None:  # noqa
     """Tell what Ray has to tell of workers and nodes that die, a line each: it would print pages among our results."""
     for text in news["lines"]:
         print(f"Ray: {brief(text.strip().partition('. ')[0].replace(chr(10), ' '))}", file=sys.stderr)
-
-
-def each(
-    tasks: Sequence[Callable[[], Result]], address: str | None = None, workers: int | None = None
-) -> Iterator[tuple[int, Result]]:
-    """Yield the place of each task and what it returns, as they are done, on many cores.
-
-    On one core of this machine they are simply called: Ray is started for more, or with an address. A call whose
-    worker or node dies is made again elsewhere, so a task depends on nothing else.
-    """
-    if address is None and (workers or cores()) == 1:
-        yield from ((index, task()) for index, task in enumerate(tasks))
-        return
-    with joined(address, workers) as count:
-        import ray
-
-        call = ray.remote(num_cpus=1, max_retries=4)(_call)
-        waiting: dict[Any, int] = {}
-        left = list(enumerate(tasks))[::-1]
-        while left or waiting:
-            while left and len(waiting) < 2 * count:
-                index, task = left.pop()
-                waiting[call.remote(task)] = index
-            for done in ray.wait(list(waiting))[0]:
-                yield waiting.pop(done), ray.get(done)
-
-
-def _call(task: Callable[[], Result]) -> Result:
-    return task()

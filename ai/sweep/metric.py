@@ -8,13 +8,11 @@ from __future__ import annotations
 
 import re
 import statistics
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Final, Self
+from typing import Self
 
 from ai.files import Count, Share
-
-JUDGES: Final = ("median", "worst")
 
 
 @dataclass(frozen=True)
@@ -68,13 +66,6 @@ class Metric:
         reached = (point.at for point, share in zip(curve, shares, strict=True) if share >= self.share)
         return float(next(reached, budget * (1 + self.share - max(shares))))
 
-    def judged(self, values: Sequence[float | None], judge: str) -> float | None:
-        """Return the value of a trial from those of its seeds: their median or the worst; None if one has none."""
-        known = [value for value in values if value is not None]
-        if not known or len(known) < len(values):
-            return None
-        return statistics.median(known) if judge == "median" else max(known, key=lambda value: self.sign * value)
-
     def shown(self, value: float | None, budget: int) -> str:
         """Return a value as a table shows it."""
         if value is None:
@@ -83,3 +74,10 @@ class Metric:
             return "not reached"
         kinds = {"time": ",.0f", "return": ".1f"}
         return format(value, ".3g" if abs(value) >= 1e12 else kinds.get(self.kind, ".2%"))
+
+
+def median(values: Iterable[float | None]) -> float | None:
+    """Return the value of a trial from those of its seeds; None if one has none."""
+    every = list(values)
+    known = [value for value in every if value is not None]
+    return statistics.median(known) if known and len(known) == len(every) else None

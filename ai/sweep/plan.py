@@ -10,7 +10,7 @@ from typing import Annotated, Any, Final, Self
 from ai.digits.config import DigitConfig
 from ai.files import Count, OneOf, Seed, Sized, Within
 from ai.files.knobs import Knobs
-from ai.sweep.metric import JUDGES, Metric
+from ai.sweep.metric import Metric
 from ai.sweep.space import Dimension
 from ai.training.config import ANYWHERE, LANDER, Config
 
@@ -30,7 +30,6 @@ class Plan:
     budget: Annotated[int, Within(1, 10**12)]  # decisions or epochs of a run; in a population, of all generations
     every: Annotated[int, Within(1, 10**12)]  # decisions or epochs between two measurements
     metric: str  # what trials are compared by
-    judge: Annotated[str, OneOf(JUDGES)] = "median"  # of a trial's seeds, or the worst
     search: Annotated[str, OneOf((TPE, RANDOM, POPULATION))] = TPE  # how settings are proposed
     stop_early: bool = False  # whether trials that fall behind are ended
     trials: Annotated[int, Within(1, 100_000)] = 64

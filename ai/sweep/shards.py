@@ -1,17 +1,19 @@
-"""Evaluation of very many flights in shards, and the co-pilot's tables in parts, on many cores or nodes.
+"""Evaluation of very many flights in shards, the co-pilot's tables in parts: tasks for many processes of this machine.
 
 Flight i begins as the i-th of one large batch of the same seed would, whichever shard flies it. A shard is always the
-same number of flights. So the counts are the same bit for bit, however many workers there are, and whether Ray is
-there or not; and sums are taken in the order of the shards.
+same number of flights. So the counts are the same bit for bit, however many processes there are; and sums are taken in
+the order of the shards.
 """
 
 from __future__ import annotations
 
+import multiprocessing
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import partial, reduce
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from functools import partial
 from pathlib import Path
-from typing import Final
+from typing import Final, TypeVar
 
 import numpy as np
 
@@ -21,13 +23,35 @@ from ai.copilot import measurement
 from ai.copilot.measurement import AssistedFlights, Help
 from ai.lander.environment import LanderEnv
 from ai.lander.pilots import Pilot, ScriptedPilot
-from ai.sweep.cluster import each
 from ai.sweep.study import Files, files_in, write_files
 from ai.training.config import Config
 from ai.training.tasks import FlightSums, finished, flown
 
 SHARD: Final = 10_000  # flights at once, in 5 KB each
 PILOTS: Final = 32  # of a part of a table: the more fly at once, the less time each takes
+
+Result = TypeVar("Result")
+
+
+def results(
+    tasks: Sequence[Callable[[], Result]], processes: int = 1, told: Callable[[], object] = lambda: None
+) -> list[Result]:
+    """Return what each task returns, in their order, from so many processes; `told` is called as each is done.
+
+    One process is this one. Raises BrokenProcessPool, a RuntimeError, if one dies.
+    """
+    done: dict[int, Result] = {}
+    if processes == 1:
+        for index, task in enumerate(tasks):
+            done[index] = task()
+            told()
+    else:
+        with ProcessPoolExecutor(processes, multiprocessing.get_context("spawn")) as pool:
+            places = {pool.submit(task): index for index, task in enumerate(tasks)}
+            for future in as_completed(places):
+                done[places[future]] = future.result()
+                told()
+    return [done[index] for index in range(len(tasks))]
 
 
 def packed(agent: DeepQAgent) -> Files:
@@ -56,20 +80,9 @@ def fly(files: Files, flights: range, seed: int, spawn: str) -> FlightSums:
 
 
 def shards(agent: DeepQAgent, episodes: int, seed: int, spawn: str) -> list[partial[FlightSums]]:
-    """Return the shards of an evaluation of an agent, as `ai.sweep.cluster.each` takes them."""
+    """Return the shards of an evaluation of an agent, as tasks; their sums add up."""
     files, parts = packed(agent), [range(first, min(episodes, first + SHARD)) for first in range(0, episodes, SHARD)]
     return [partial(fly, files, flights, seed, spawn) for flights in parts]
-
-
-def flown_shards(
-    parts: Sequence[Callable[[], FlightSums]], address: str | None, workers: int | None
-) -> Iterator[FlightSums | None]:
-    """Fly all shards; yield None as each is done, and the sums of all at the end."""
-    done: dict[int, FlightSums] = {}
-    for index, sums in each(parts, address, workers):
-        done[index] = sums
-        yield None
-    yield reduce(FlightSums.plus, (done[index] for index in range(len(parts))))
 
 
 def fly_part(

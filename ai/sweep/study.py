@@ -25,8 +25,8 @@ from ai.files import (
     Seed,
     Share,
     Sized,
+    atomic_folder,
     brief,
-    new_folder,
     read_as,
     read_bytes,
     read_json,
@@ -73,7 +73,7 @@ class FinishedTrial:
 
     number: Count  # in its study
     params: dict[str, Any]  # values of the knobs that were searched
-    value: float | None  # of the metric, as the seeds are judged; None if one has none, or the settings made no sense
+    value: float | None  # the seeds' median; None if one has none, or the settings made no sense
     at: Count  # decisions or epochs that were trained
     stopped: bool  # early, because others were better
     seconds: Duration  # that it took, by the clock, with all measuring and saving
@@ -206,7 +206,7 @@ class Study:
 
     def record(self, trial: FinishedTrial, runs: Files) -> None:
         """Keep a finished trial and the files of its runs, whole or not at all; raises OSError."""
-        with new_folder(self.trial_folder(trial.number)) as new:
+        with atomic_folder(self.trial_folder(trial.number), None) as new:
             write_files(runs, new)
             write_text(new / TRIAL_FILE, json.dumps(asdict(trial)) + "\n", flush=False)
         self.trials[trial.number] = trial

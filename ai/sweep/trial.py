@@ -19,14 +19,14 @@ import numpy as np
 
 from ai.digits.config import DigitConfig
 from ai.digits.mnist import TRAIN, load_part
-from ai.digits.training import DigitTraining
 from ai.files.knobs import Knobs
-from ai.sweep.metric import Metric, Point
+from ai.sweep.metric import Metric, Point, median
+from ai.sweep.plan import DIGITS as OF_DIGITS
 from ai.sweep.plan import Plan
 from ai.sweep.study import Files, FinishedTrial, SeedResult, files_in, seed_folder, write_files
-from ai.training.checkpoints import AGENTS, DIGITS, resume_digit_run, resume_run
+from ai.training.checkpoints import AGENTS, DIGITS
 from ai.training.config import Config
-from ai.training.loop import Training, task_of
+from ai.training.loop import task_of
 from ai.training.run import Limit
 from ai.training.tasks import VALIDATION_SEED
 
@@ -51,20 +51,18 @@ class SeedRun:
     """
 
     def __init__(self, plan: Plan, params: dict[str, Any], seed: int, parent: Path | None) -> None:
-        self.run: Any
-        config = type(plan.config).from_json(plan.settings | params)
-        if isinstance(config, DigitConfig):
-            if not config.held_out:
-                raise ValueError("a study of digits needs images held out: held_out was 0")
-            self.run = DigitTraining(config, seed) if parent is None else resume_digit_run(parent)
-            self.kind, self.pace = DIGITS, self.run.steps_per_epoch  # steps to a unit of the budget
+        config: Any = type(plan.config).from_json(plan.settings | params)
+        self.kind = DIGITS if plan.kind == OF_DIGITS else AGENTS
+        if self.kind is DIGITS and not config.held_out:
+            raise ValueError("a study of digits needs images held out: held_out was 0")
+        if parent is None:
+            self.run: Any = self.kind.begin(config, seed)
         else:
-            assert isinstance(config, Config)
-            self.run = Training(config, seed) if parent is None else resume_run(parent, env=config.env)
-            self.run.validation_episodes = plan.validation or self.run.validation_episodes
-            self.kind, self.pace = AGENTS, 1
-        if parent is not None:
+            self.run = self.kind.resume(parent, env=getattr(config, "env", None))
             self.run.apply_live(config)
+        self.pace = self.run.steps_per_epoch if self.kind is DIGITS else 1  # steps to a unit of the budget
+        if self.kind is AGENTS:
+            self.run.validation_episodes = plan.validation or self.run.validation_episodes
 
     def advance(self, mark: int) -> Point:
         """Train up to so many decisions or epochs, and measure; raises FloatingPointError if it diverges."""
@@ -129,7 +127,7 @@ class Trial:
                        round(run.run.seconds, 3), (figures or {}).get(seed, {}))
             for seed, curve, problem, run in zip(self.plan.seeds, self.curves, self.problems, self.runs, strict=True)
         )  # fmt: skip
-        value = self.metric.judged([seed.value for seed in seeds], self.plan.judge)
+        value = median(seed.value for seed in seeds)
         parent = self.asked.parent.number if self.asked.parent else None
         seconds = round(time.monotonic() - self._began, 3)
         return FinishedTrial(

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.normalizer import Normalizer
 from ai.agent.storage import KIND, LAST, write_agent
-from ai.digits.checkpoints import read_last, read_settings
+from ai.digits.checkpoints import read_settings
 from ai.digits.checkpoints import snapshot as digit_snapshot
 from ai.digits.classifier import KIND as DIGITS_KIND
 from ai.digits.training import DigitTraining
@@ -47,7 +46,6 @@ def snapshot(training: Training, final: bool = False) -> tuple[dict[str, Any], C
         "landings": training.env.landings,
         "seconds": round(training.seconds, 3),
         "best": training.best.to_json() if training.best else None,
-        "flights": training.statistics.to_json(),
     }
     best, last = training.best_agent(), training.last_agent()
 
@@ -58,12 +56,6 @@ def snapshot(training: Training, final: bool = False) -> tuple[dict[str, Any], C
     if final:
         described["evaluation"] = training.task.evaluate(best, training.task.test_episodes, TEST_SEED).to_json()
     return described, write
-
-
-AGENTS: Final = RunKind(KIND, snapshot)
-DIGITS: Final = RunKind(DIGITS_KIND, digit_snapshot)
-save_run: Final = partial(AGENTS.save, state=False)  # the networks alone
-save_digit_run: Final = DIGITS.save
 
 
 def resume_run(folder: str | Path, *, env: str | None = None) -> Training:
@@ -105,13 +97,11 @@ def _begun(config: Config, best: DeepQAgent, last: DeepQAgent, described: Any) -
         training.best_values, training.best_normalizer = best.network.values.copy(), best.normalizer
     training.episodes, training.env.landings = count_of(described["episodes"]), count_of(described["landings"])
     training.seconds = float(number_of(described["seconds"], 0))
-    if "flights" in described:  # older runs do not have them
-        training.statistics.load(described["flights"])
     training.agent.copy_from(last)
     return training
 
 
-def resume_digit_run(folder: str | Path, **options: Any) -> DigitTraining:
+def resume_digit_run(folder: str | Path, *, env: str | None = None, **options: Any) -> DigitTraining:  # noqa: ARG001
     """Resume an unfinished run that was kept, the very same; raises ModelFormatError for anything else."""
     folder = Path(folder)
     config, seed, step = read_settings(folder)
@@ -119,15 +109,17 @@ def resume_digit_run(folder: str | Path, **options: Any) -> DigitTraining:
         training = DigitTraining(config, seed, **options)
     except (ValueError, OverflowError) as error:
         raise ModelFormatError(folder, [str(error)]) from error
-    kept = read_state(folder, step)
-    state = kept or read_last(folder, training)
+    state = read_state(folder, step)
     if state is None:
         raise ModelFormatError(folder, ["there is nothing to go on with: the run is finished, or its state is gone"])
     with going_on(folder):
         training.load_state(state)
-    if kept:
-        training.around, training.states = kept.get("around", {}), StateWriter(folder, kept)
+        training.around, training.states = state.get("around", {}), StateWriter(folder, state)
     return training
+
+
+AGENTS: Final = RunKind(Training, resume_run, KIND, snapshot)
+DIGITS: Final = RunKind(DigitTraining, resume_digit_run, DIGITS_KIND, digit_snapshot)
 
 
 def agent_of(config: Config, checkpoint: Checkpoint) -> DeepQAgent:

@@ -36,6 +36,7 @@ class SetWeight:
 
 
 Edit = SilenceUnit | SetWeight
+Parameters = tuple[Floats, Floats]  # of the online and the target network
 
 
 @dataclass(frozen=True)
@@ -91,23 +92,20 @@ class NetworkEditor:
 
     def __init__(self, agent: DeepQAgent) -> None:
         self._agent = agent
-        self._steps: list[Edit] = []  # those in force since it has learnt last
-        self._before: tuple[Floats, Floats] | None = None  # all parameters, before the first edit of all
-        self._learnt: tuple[Floats, Floats] | None = None  # and as it had learnt, before the first of the steps
+        self._steps: list[tuple[Edit, Parameters]] = []  # since it has learnt last, with all parameters before each
+        self._before: Parameters | None = None  # before the first edit of all
         self._learnt_on = 0  # edits from which it has learnt on
 
     @property
     def edits(self) -> NetworkEdits:
         """What is in force."""
-        silenced = ((each.layer, each.unit) for each in self._steps if isinstance(each, SilenceUnit))
-        weights = ((each.layer, each.start, each.end) for each in self._steps if isinstance(each, SetWeight))
+        edits = dict.fromkeys(edit for edit, _ in self._steps)
+        silenced = ((each.layer, each.unit) for each in edits if isinstance(each, SilenceUnit))
+        weights = ((each.layer, each.start, each.end) for each in edits if isinstance(each, SetWeight))
         return NetworkEdits(
-            tuple(dict.fromkeys(silenced)),
-            tuple(dict.fromkeys(weights)),
-            len(self._steps),
-            self._agent.paused,
+            tuple(silenced), tuple(dict.fromkeys(weights)), len(self._steps), self._agent.paused,
             self._before is not None,
-        )
+        )  # fmt: skip
 
     @property
     def count(self) -> int:
@@ -122,8 +120,10 @@ class NetworkEditor:
                 self.apply(edit, amends=amends)
             case UndoEdit(everything):
                 self.restore() if everything else self.undo()
-            case LearnOn():
-                self.learn_on()
+            case LearnOn():  # `restore` still leads back
+                self._learnt_on = self.count
+                self._agent.paused = False
+                self._steps.clear()
 
     def apply(self, edit: Edit, *, amends: bool = False) -> None:
         """Carry out an edit in both networks, and hold learning.
@@ -133,23 +133,25 @@ class NetworkEditor:
         """
         agent = self._agent
         check(agent.online, edit)
-        if not self._steps:
-            self._learnt = agent.online.values.copy(), agent.target.values.copy()
-            self._before = self._before or self._learnt
-        if amends and self._steps and _same_place(self._steps[-1], edit):
-            self._steps.pop()
-        self._steps.append(edit)
-        self._set(edit)
+        values = agent.online.values.copy(), agent.target.values.copy()
+        if amends and self._steps and _same_place(self._steps[-1][0], edit):
+            values = self._steps.pop()[1]
+        self._before = self._before or values
+        self._steps.append((edit, values))
+        for network in (agent.online, agent.target):
+            network.values  # noqa: B018 - packs the parameters, so that the weights are views of them
+            weights: Floats = _layers(network)[edit.layer].weights
+            if isinstance(edit, SilenceUnit):
+                weights[edit.unit] = 0.0
+            else:
+                weights[edit.start, edit.end] = edit.value
         agent.paused = True
 
     def undo(self) -> None:
         """Undo the last step; after the last one, the agent learns again."""
-        if not self._steps or self._learnt is None:
+        if not self._steps:
             return
-        self._steps.pop()
-        self._agent.online.values, self._agent.target.values = self._learnt
-        for edit in self._steps:
-            self._set(edit)
+        self._agent.online.values, self._agent.target.values = self._steps.pop()[1]
         if not self._steps and not self._learnt_on:
             self.forget()
         self._agent.paused = bool(self._steps)
@@ -166,26 +168,11 @@ class NetworkEditor:
             self._agent.optimizer = make_optimizer(self._agent.config)
         self.forget()
 
-    def learn_on(self) -> None:
-        """Let the agent learn again, from the network as it is; `restore` still leads back."""
-        self._learnt_on = self.count
-        self._agent.paused = False
-        self._steps.clear()
-
     def forget(self) -> None:
         """Let the agent learn, and keep no way back: its networks have been replaced, or are as they were."""
         self._agent.paused = False
         self._before, self._learnt_on = None, 0
         self._steps.clear()
-
-    def _set(self, edit: Edit) -> None:
-        for network in (self._agent.online, self._agent.target):
-            network.values  # noqa: B018 - packs the parameters, so that the weights are views of them
-            weights: Floats = _layers(network)[edit.layer].weights
-            if isinstance(edit, SilenceUnit):
-                weights[edit.unit] = 0.0
-            else:
-                weights[edit.start, edit.end] = edit.value
 
 
 def check(network: NeuralNetwork, edit: Edit) -> None:

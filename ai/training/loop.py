@@ -7,11 +7,10 @@ around it: schedules of the environment, episodes that end and begin, statistics
 
 from __future__ import annotations
 
-import time
 from collections import deque
-from collections.abc import Callable, Generator, Mapping
+from collections.abc import Callable, Mapping
 from copy import deepcopy
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import repeat
 from pathlib import Path
 from typing import Any
@@ -26,9 +25,10 @@ from ai.agent.schedule import exploration, exploration_of_each
 from ai.agent.storage import agent_state, load_agent_state
 from ai.environment import Env, Floats, StepResult
 from ai.files import array_like, count_of, number_of
+from ai.run import Run
 from ai.training.config import ANYWHERE, LANDER, Config
 from ai.training.gym_task import GymTask
-from ai.training.state import State, StateWriter, restore_buffer
+from ai.training.state import State, restore_buffer
 from ai.training.statistics import EpisodeStatistics
 from ai.training.tasks import VALIDATION_SEED, AnywhereTask, LanderTask, Score, Task, Trial
 
@@ -55,43 +55,45 @@ class Progress:
     env: str = LANDER
 
 
-@dataclass
-class Training:
-    """Training run of the lander, or of another task (`ai.training.run.Run`): all state that changes as it goes on."""
+class Training(Run):
+    """Training run of the lander, or of another task: all state that changes as it goes on.
+
+    Attributes:
+        evaluate_every: decisions between two validations, 0 for never; by default, as often as suits the task.
+        validation_episodes: episodes of one; by default, as many as suit the task.
+        validation_pace: decisions of its flights after one of the run's; None for all at once.
+        evaluated: how many decisions the network had taken that was measured last.
+        on_step: is shown every step, before ended slots begin anew.
+
+    """
 
     config: Config
-    seed: int = 0
-    evaluate_every: int | None = None  # decisions; 0 for never, None for as often as suits the task
-    validation_episodes: int | None = None  # None for as many as suit the task
-    task: Task[Any] = field(init=False)
-    agent: DeepQAgent = field(init=False)
-    env: Env = field(init=False)
-    best: Score | None = None
-    best_values: Floats | None = None
-    best_normalizer: Normalizer | None = None
-    evaluated: int | None = None  # how many decisions the network had taken that was measured last
-    validation_pace: int | None = None  # decisions of its flights after one of the run's; None for all at once
-    seconds: float = 0.0  # spent, as the caller counts them
-    clock: Callable[[], float] = time.monotonic
-    on_step: Callable[[StepResult], None] | None = None  # is shown every step, before ended slots begin anew
-    lost: str = ""  # what could not be restored of a run that goes on, in words; empty for the very same run
-    diverged: bool = False  # whether its networks were put back after that: then there is no state to go on from
-    around: State = field(default_factory=dict)  # what whoever led it has kept in the state that it goes on from
-    states: StateWriter | None = None  # has the blocks of the state that it goes on from
 
-    def __post_init__(self) -> None:
-        self.task = task_of(self.config)
-        if self.evaluate_every is None:
-            self.evaluate_every = self.task.evaluate_every
-        if self.validation_episodes is None:
-            self.validation_episodes = self.task.validation_episodes
-        agent_rng, env_rng = np.random.default_rng(self.seed).spawn(2)
-        replay, optimizer = make_replay(self.config, self.task.num_features), make_optimizer(self.config)
-        self.agent = self._new_agent(self.config, agent_rng, replay=replay, optimizer=optimizer)
-        self.env = self.task.make_env(env_rng)
+    def __init__(
+        self,
+        config: Config,
+        seed: int = 0,
+        *,
+        evaluate_every: int | None = None,
+        validation_episodes: int | None = None,
+    ) -> None:
+        super().__init__(config, seed)
+        self.task = task = task_of(config)
+        self.evaluate_every = task.evaluate_every if evaluate_every is None else evaluate_every
+        self.validation_episodes = task.validation_episodes if validation_episodes is None else validation_episodes
+        self.validation_pace: int | None = None
+        self.evaluated: int | None = None
+        self.on_step: Callable[[StepResult], None] | None = None
+        agent_rng, env_rng = np.random.default_rng(seed).spawn(2)
+        replay, optimizer = make_replay(config, task.num_features), make_optimizer(config)
+        self.agent = self._new_agent(config, agent_rng, replay=replay, optimizer=optimizer)
+        self.env: Env = task.make_env(env_rng)
         self.observation = self.env.reset()
         self.episodes = 0
         self.statistics = EpisodeStatistics(self.env.num_envs)
+        self.best: Score | None = None
+        self.best_values: Floats | None = None
+        self.best_normalizer: Normalizer | None = None
         self._moments: deque[float] = deque(maxlen=100)
         self._held = np.zeros(self.env.num_envs, dtype=np.intp)
         self._validated: DeepQAgent | None = None  # while its flights are under way
@@ -100,14 +102,9 @@ class Training:
     def _new_agent(self, config: Config, rng: np.random.Generator | None = None, **parts: Any) -> DeepQAgent:
         task = self.task
         return DeepQAgent(
-            task.num_features,
-            task.num_actions,
-            config,
-            rng,
-            symmetry=task.symmetry,
-            action_chances=task.action_chances,
-            **parts,
-        )
+            task.num_features, task.num_actions, config, rng,
+            symmetry=task.symmetry, action_chances=task.action_chances, **parts,
+        )  # fmt: skip
 
     @property
     def epsilon(self) -> float:
@@ -148,7 +145,7 @@ class Training:
         return steps / spent if spent > 0 else 0.0
 
     def apply_live(self, config: Config) -> None:
-        """Take over the live knobs of another configuration; the others stay as they are."""
+        """Take over the live knobs of another configuration."""
         self.config = config = self.config.with_live(config)
         self.task.apply_live(config, self.env)
         self.agent.apply_live(config)
@@ -158,14 +155,13 @@ class Training:
 
     def _measure(self, before: int) -> Score | None:
         """Begin the validation that is due, and go on with it; return the score once there is one."""
-        if not passed(before, self.agent.decisions, self.evaluate_every or 0):
+        if not passed(before, self.agent.decisions, self.evaluate_every):
             return self.validate(self.validation_pace)
         score = self.validate()  # of the one before, if it is still under way
         self._begin_validation(self.last_agent())
         return score if self.validation_pace else self.validate()
 
     def _begin_validation(self, agent: DeepQAgent) -> None:
-        assert self.validation_episodes is not None
         self._validated = agent
         self._flights = self.task.trial(agent, self.validation_episodes, VALIDATION_SEED)
 
@@ -218,7 +214,7 @@ class Training:
         return agent
 
     def restore_best(self) -> None:
-        """Restore the best networks so far, if there are any: training cannot go on from diverged ones."""
+        """Restore the best networks so far."""
         self.diverged = True
         if self.best_values is not None:
             self.agent.restore(self.best_values, deepcopy(self.best_normalizer))
@@ -231,22 +227,13 @@ class Training:
         return self.agent.decisions
 
     @property
-    def steps(self) -> None:
-        """How many decisions there will be in all: it goes on without end."""
-
-    @property
-    def done(self) -> bool:
-        """Whether there is nothing left to train; there always is."""
-        return False
-
-    @property
     def buffers(self) -> dict[str, ReplayBuffer]:
         """Replay buffers that belong to its state."""
         agent = self.agent
         return {name: getattr(agent, name) for name in ("replay", "successes") if name in vars(agent)}
 
     def state(self) -> State:
-        """Return copies of all that the run goes on from, besides its settings and replay buffers."""
+        """Return copies of what it goes on from, besides its replay buffers."""
         best, validated = None, self._validated
         if self.best is not None and self.best_values is not None:
             best = {"score": self.best.to_json(), **_network(self.best_values, self.best_normalizer)}
@@ -287,7 +274,7 @@ class Training:
         self.evaluated = None if state["evaluated"] is None else count_of(state["evaluated"])
         self._load_best(state["best"])
         self.around = state.get("around", {})
-        self._load_validation(state["validation"] if "validation" in state else self.around.get("validation"))
+        self._load_validation(state["validation"])
         return True
 
     def _load_best(self, told: Any) -> None:
@@ -297,7 +284,7 @@ class Training:
             self.best_values, self.best_normalizer = self._read_network(told, "best")
 
     def _load_validation(self, told: Any) -> None:
-        """Begin the flights anew that were under way; of runs from before, they were among what was `around`."""
+        """Begin the flights anew that were under way."""
         if told is not None:
             agent = self.last_agent()
             agent.restore(*self._read_network(told, "validated network"))
@@ -333,16 +320,3 @@ def passed(before: int, now: int, every: int) -> bool:
     a run was interrupted.
     """
     return every > 0 and now // every > before // every
-
-
-def run(config: Config, seed: int = 0, **options: Any) -> Generator[Progress, Config | None, None]:
-    """Train without end, yielding after each decision of all landers; send a Config to change the live knobs.
-
-    `options` are those of `Training`. Raises what `task_of` raises, and DivergenceError when a number is no longer
-    finite.
-    """
-    training = Training(config, seed, **options)
-    while True:
-        changed = yield training.advance()
-        if changed is not None:
-            training.apply_live(changed)

@@ -1,27 +1,22 @@
-"""A run: what learns, of any kind, as everything around it knows it; when it ends, and how it is kept.
-
-Landers and environments of Gymnasium are trained by `ai.training.loop.Training`, digits by
-`ai.digits.training.DigitTraining`. Each says how it steps and what it goes on from. What is around a run is there
-once: here, in `ai.training.history`, and in a session that is watched and steered (`ai.training.session`).
-"""
+"""What is around a run of any kind (`ai.run.Run`): its kind, when it ends, and how it is kept."""
 
 from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Protocol
+from typing import TYPE_CHECKING, Any, Final
 
 from ai.files import FolderKind
 from ai.nn import atomic_folder
+from ai.run import Run
 from ai.training.messages import Saved, problem_of
 from ai.training.state import State, StateWriter
 
 if TYPE_CHECKING:
-    from ai.agent.replay import ReplayBuffer
     from ai.training.history import History
 
 TRAINING_FILE: Final = "training.json"
@@ -30,75 +25,21 @@ KEEP_SECONDS: Final = 10.0  # between two times
 SHARE: Final = 0.01  # of a run's time that it may stand still for it, at most
 
 
-class Run(Protocol):
-    """A run of training.
-
-    Attributes:
-        config, seed: what all of it follows from.
-        seconds: spent in training, as the caller counts them.
-        lost: what could not be restored of a run that goes on, in words; empty for the very same run.
-        diverged: whether what it remembers may be broken: then there is no state to go on from.
-        around: what whoever led it has kept in the state that it goes on from.
-        states: has the blocks of that state; None for a new run.
-
-    """
-
-    config: Any
-    seed: int
-    seconds: float
-    lost: str
-    diverged: bool
-    around: dict[str, Any]
-    states: Any
-
-    @property
-    def clock(self) -> Callable[[], float]:
-        """Counts seconds."""
-
-    @property
-    def moment(self) -> int:
-        """Steps so far: decisions of single landers, or batches of images."""
-
-    @property
-    def steps(self) -> int | None:
-        """How many there will be in all; None for a run without end."""
-
-    @property
-    def done(self) -> bool:
-        """Whether there is nothing left to train."""
-
-    @property
-    def best(self) -> Any:
-        """Score of the best network so far; None if none has been measured."""
-
-    @property
-    def buffers(self) -> Mapping[str, ReplayBuffer]:
-        """Replay buffers that belong to its state."""
-
-    def advance(self) -> Any:
-        """Take one step; return the progress. Raises FloatingPointError when a number is no longer finite."""
-
-    def apply_live(self, config: Any) -> None:
-        """Take over the live knobs of another configuration; the others stay as they are."""
-
-    def restore_best(self) -> None:
-        """Restore the best networks so far, if there are any: training cannot go on from diverged ones."""
-
-    def state(self) -> dict[str, Any]:
-        """Return copies of all that the run goes on from, besides its settings and replay buffers."""
-
-
 @dataclass(frozen=True)
 class RunKind:
     """Kind of run.
 
     Attributes:
+        begin: begins a run with a configuration and a seed.
+        resume: goes on with the run that is kept in a folder; `env` as `ai.training.config.load_agent` has it.
         folder: what its folder may hold.
         snapshot: returns what a run's training file says now, and what writes its networks as they are now into a new
             folder. A final one is measured on what neither trained nor chose it.
 
     """
 
+    begin: Callable[..., Any]
+    resume: Callable[..., Any]
     folder: FolderKind
     snapshot: Callable[[Any, bool], tuple[dict[str, Any], Callable[[Path], None]]]
 

@@ -13,9 +13,10 @@ from operator import attrgetter
 from pathlib import Path
 from typing import Any, ClassVar, Final, Generic, TypeVar
 
+from ai.run import Run
 from ai.training.history import Entry, History, SettingChange
 from ai.training.messages import AutosaveTo, ChangeSetting, Finish, Refused, RunStarted, Save
-from ai.training.run import Keeper, Run, RunKind, step
+from ai.training.run import Keeper, RunKind, step
 from ai.training.state import State, going_on
 
 TURNING_SECONDS: Final = 1.0  # between two changes of a knob that is still being turned

@@ -72,30 +72,23 @@ class EpisodeStatistics:
             self._paid[:, result.ended] = 0.0
         self._sum_up()
 
-    def to_json(self) -> dict[str, list[Any]]:
-        """Return the last hundred episodes' results for a file, so that a resumed run goes on counting from them."""
+    def state(self) -> dict[str, Any]:
+        """Return copies of all of it, so that a run goes on in the middle of its episodes."""
         outcomes, returns, parts = zip(*self._recent, strict=True) if self._recent else ((), (), ())
-        return {"outcomes": [*outcomes], "returns": [*returns], "parts": [part for part in parts if part]}
+        return {
+            "recent": {"outcomes": [*outcomes], "returns": [*returns], "parts": [part for part in parts if part]},
+            "earned": self.earned.copy(), "paid": None if self._paid is None else self._paid.copy(),
+        }  # fmt: skip
 
-    def load(self, told: Mapping[str, Any]) -> None:
-        """Take over what `to_json` gave; raises ValueError where it makes no sense."""
-        recent = read_as(_RecentFile, told)
+    def load_state(self, state: Mapping[str, Any]) -> None:
+        """Go on from what `state` returned; raises KeyError, TypeError or ValueError for anything else."""
+        recent = read_as(_RecentFile, state["recent"])
         count, parts = len(recent.outcomes), recent.parts
         if len(recent.returns) != count or len(parts) not in (0, count) or len({*map(len, parts)}) > 1:
             raise ValueError("the last flights have outcomes, returns and parts of different numbers")
         self._recent.extend(zip(recent.outcomes, recent.returns, parts or ((),) * count, strict=True))
         if count:
             self._sum_up()
-
-    def state(self) -> dict[str, Any]:
-        """Return copies of all of it, so that a run goes on in the middle of its episodes."""
-        return {"recent": self.to_json(), "earned": self.earned.copy(),
-                "paid": None if self._paid is None else self._paid.copy()}  # fmt: skip
-
-    def load_state(self, state: Mapping[str, Any]) -> None:
-        """Go on from what `state` returned; raises KeyError, TypeError or ValueError for anything else."""
-        self._recent.clear()
-        self.load(state["recent"])
         self.earned = array_like(self.earned, state["earned"], "earned")
         if (paid := state["paid"]) is not None:
             self._paid = array_like(np.empty((len(paid), len(self.earned))), paid, "paid")

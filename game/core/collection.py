@@ -15,10 +15,10 @@ from typing import Final, Generic, TypeVar
 import platformdirs
 
 from ai.files import (
+    atomic_folder,
     brief,
     free_path,
     move_state,
-    new_folder,
     recover_all,
     recover_folder,
     remove_state,
@@ -278,5 +278,5 @@ def _copy(source: Path, target: Path) -> None:
             files, size = files + 1, size + said.st_size
             if files > MOST_FILES or size > MOST_BYTES:
                 raise LibraryError(texts.LIBRARY_TOO_LARGE.format(name=source.name))
-    with new_folder(target) as new:
+    with atomic_folder(target, None) as new:
         shutil.copytree(source, new, symlinks=True, dirs_exist_ok=True)

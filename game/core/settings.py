@@ -45,9 +45,6 @@ class Settings:
     copilot: str = "tolerance"  # mode of the co-pilot, a Mode of ai.copilot.copilot
     three_pads: bool = False  # three pads among hills, instead of one on a plain
     hands: str = "own"  # handicap of the hands, a name of game.flight.handicap.HANDS
-    check_flights: bool = False  # check flights: now and then a flight is flown without help
-    fade: bool = False  # whether help fades as the player improves, with check flights
-    faded_to: float = 0.0  # assist at which fading has left the dial; at another one, it was turned by hand
     more_flights: bool = False  # whether all choices of flights are shown, and not four
     teach: bool = False  # whether good landings are kept for a network to learn from
     show_thinking: bool = False  # whether what the network thinks is shown in flight

@@ -1,1 +1,1 @@
-"""Export of replays as GIF or MP4."""
+"""Export of replays as GIF."""

@@ -1,7 +1,4 @@
-"""Export of a flight as GIF or MP4 in a process of its own, so that the window neither waits nor slows down.
-
-A GIF can always be made; an MP4 needs the optional dependencies of the extra `export`.
-"""
+"""Export of a flight as GIF in a process of its own, so that the window neither waits nor slows down."""
 
 from __future__ import annotations
 
@@ -10,8 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from game.core.worker import Worker, WorkerState
-from game.export.film import Filmed, film
-from game.export.kinds import unfinished
+from game.export.film import Filmed, film, unfinished
 from game.flight.flight_file import Record
 from game.ui.context import Context
 

@@ -1,4 +1,4 @@
-"""Video export of a flight: its replay without text, drawn off screen and written frame by frame.
+"""Film of a flight: its replay without text, drawn off screen and written frame by frame, as a GIF.
 
 It runs in a process of its own, which `game.export.export` controls.
 """
@@ -7,25 +7,23 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Generator, Iterable, Iterator
-from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Protocol
 
 import numpy as np
 import pygame
-from numpy.typing import NDArray
 
 from game.core.clock import STEP
 from game.core.settings import Settings
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import COLOUR_SAFE, PALETTE
-from game.export.kinds import KINDS, VideoKind, unfinished
+from game.export.gif import Frame, GifWriter
 from game.flight.flight_file import Record
 from game.ui.context import Context
 
-Frame = NDArray[np.uint8]  # (height, width, 3)
-
+SIZE: Final = (640, 360)  # pixels
+EVERY: Final = 3  # steps per frame
 _AFTER: Final = 120  # updates shown after the end, while fire and dust settle
 _LINGER: Final = 60  # steps that the last frame then stays on screen
 _SAMPLE: Final = 40  # steps between the frames sampled for the palette
@@ -50,35 +48,27 @@ class Filmed(Protocol):
         """Draw the world without text."""
 
 
-class _Writer(Protocol):
-    def add(self, frame: Frame) -> None:
-        """Append a frame (height, width, 3)."""
-
-
 def film(
     make: Callable[[Context, Record], Filmed], record: Record, path: Path, colour_safe: bool = False
 ) -> Generator[list[FrameDrawn], None, None]:
-    """Write a flight, drawn by the scene from `make`, to a video file, whole or not at all; yield after each frame.
-
-    The suffix of the path selects the kind of file.
+    """Write a flight, drawn by the scene from `make`, to a GIF, whole or not at all; yield after each frame.
 
     Raises:
         OSError: the file can't be written, or the disk is full.
 
     """
-    kind = KINDS[path.suffix]
     last = len(record.recording.actions) + _AFTER
-    steps = [*range(0, last, kind.every), last]
+    steps = [*range(0, last, EVERY), last]
     temporary = unfinished(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     try:
-        with _writer(temporary, kind, frames(make, record, kind, range(0, last, _SAMPLE), colour_safe)) as writer:
+        sample = frames(make, record, range(0, last, _SAMPLE), colour_safe)
+        with GifWriter(temporary, SIZE, sample, EVERY * STEP) as writer:
             yield [FrameDrawn(0.0)]
-            shown = frames(make, record, kind, steps, colour_safe)
-            for number, frame in enumerate(shown, 1):
+            for number, frame in enumerate(frames(make, record, steps, colour_safe), 1):
                 writer.add(frame)
                 yield [FrameDrawn(number / (len(steps) + 1))]
-            for _ in range(0, _LINGER, kind.every):
+            for _ in range(0, _LINGER, EVERY):
                 writer.add(frame)
         temporary.replace(path)
     finally:
@@ -86,38 +76,26 @@ def film(
 
 
 def frames(
-    make: Callable[[Context, Record], Filmed],
-    record: Record,
-    kind: VideoKind,
-    steps: Iterable[int],
-    colour_safe: bool = False,
+    make: Callable[[Context, Record], Filmed], record: Record, steps: Iterable[int], colour_safe: bool = False
 ) -> Iterator[Frame]:
-    """Yield the frames at these rising update numbers of a replay; one update is one step, up to the flight's end."""
-    _need_no_screen()
-    settings = Settings(reduced_motion=kind.still, colour_safe=colour_safe)
-    scene = make(Context(Path(), settings), record)
-    canvas = Canvas(pygame.Surface(kind.size), COLOUR_SAFE if colour_safe else PALETTE)
+    """Yield the frames at these rising update numbers of a replay; one update is one step, up to the flight's end.
+
+    The camera stands still, as only pixels that change take room in a GIF.
+    """
+    os.environ["SDL_VIDEODRIVER"] = "dummy"
+    pygame.display.init()
+    pygame.font.init()
+    scene = make(Context(Path(), Settings(reduced_motion=True, colour_safe=colour_safe)), record)
+    canvas = Canvas(pygame.Surface(SIZE), COLOUR_SAFE if colour_safe else PALETTE)
     flown = 0
     for step in steps:
         while flown < step:
             scene.update()
             flown += 1
         scene.draw_world(canvas, 1.0)
-        yield np.frombuffer(pygame.image.tobytes(canvas.surface, "RGB"), np.uint8).reshape(*kind.size[::-1], 3)
+        yield np.frombuffer(pygame.image.tobytes(canvas.surface, "RGB"), np.uint8).reshape(*SIZE[::-1], 3)
 
 
-def _writer(path: Path, kind: VideoKind, sample: Iterable[Frame]) -> AbstractContextManager[_Writer]:
-    seconds = kind.every * STEP
-    if kind is KINDS[".mp4"]:
-        from game.export.mp4 import Mp4Writer
-
-        return Mp4Writer(path, kind.size, round(1 / seconds))
-    from game.export.gif import GifWriter
-
-    return GifWriter(path, kind.size, sample, seconds)
-
-
-def _need_no_screen() -> None:
-    os.environ["SDL_VIDEODRIVER"] = "dummy"
-    pygame.display.init()
-    pygame.font.init()
+def unfinished(path: Path) -> Path:
+    """Return the path of a file while it is incomplete."""
+    return path.with_name(f".{path.name}.part")

@@ -3,21 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Final, NamedTuple
+from typing import Final
 
 from ai.copilot.alone import Estimate, LandingAlone
+from game.core import texts
 from game.flight.flight_file import Entry
 
 KINDS: Final = ("plain", "ladder", "hills", "missions")  # keys of `texts.BECOMING_KINDS`
 _MOST: Final = 300  # latest flights of a kind that are looked at: older ones are forgotten anyway
-
-
-class Change(NamedTuple):
-    """What a flight has shown: its kind of start, and the estimates before and after it."""
-
-    kind: str
-    before: Estimate
-    after: Estimate
 
 
 def kind_of(entry: Entry) -> str:
@@ -54,24 +47,30 @@ class Becoming:
         told = [entry for entry in entries if tells(entry)]
         for kind in KINDS:
             for entry in [entry for entry in told if kind_of(entry) == kind][-_MOST:]:
-                self.add(entry)
+                self._add(entry)
 
     def estimate(self, kind: str) -> Estimate:
         """Return the latest estimate for a kind of start."""
         return self._beliefs[kind].estimate
 
-    def add(self, entry: Entry) -> Change | None:
-        """Learn from a flight; return what it has changed, None if it tells nothing."""
-        if not tells(entry):
-            return None
+    def _add(self, entry: Entry) -> None:
+        """Learn from a flight that tells something."""
         kind = kind_of(entry)
-        belief, before = self._beliefs[kind], self.estimate(kind)
+        belief = self._beliefs[kind]
         if entry.alone:
             belief.add_alone(landed=entry.landed)
         else:
             changed = (1.0 - entry.human) * entry.seconds
             belief.add_helped(landed=entry.landed, changed=changed, assist=entry.guarded)
-        after = belief.estimate
         self.flights[kind].append(entry)
-        self.curves[kind].append(after)
-        return Change(kind, before, after)
+        self.curves[kind].append(belief.estimate)
+
+
+def said(estimate: Estimate) -> str:
+    """Return an estimate in words, with its uncertainty."""
+    if not estimate.known:
+        return texts.BECOMING_TOO_FEW.format(count=estimate.alone)
+    low, mean, high = (round(10 * share) for share in (estimate.low, estimate.mean, estimate.high))
+    if low == high:
+        return texts.BECOMING_SURE.format(share=mean)
+    return texts.BECOMING_ESTIMATE.format(share=mean, low=low, high=high)

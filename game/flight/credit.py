@@ -53,7 +53,6 @@ class Credit:
         difficulty: its changes of gravity, and its assists.
         challenge: the challenge it belongs to; None for a free flight.
         hands: handicap of its keys, a name of `game.flight.handicap.HANDS`.
-        check: whether it is a check flight.
 
     """
 
@@ -63,11 +62,8 @@ class Credit:
         difficulty: Difficulty,
         challenge: CreditRules | None = None,
         hands: str = OWN,
-        *,
-        check: bool = False,
     ) -> None:
         self._flight, self._difficulty, self._challenge, self._hands = flight, difficulty, challenge, hands
-        self._check = check
         self._shared = False
 
     def follow(self) -> None:
@@ -90,14 +86,9 @@ class Credit:
         return self._shared or (self._flight.shared and not self._flight.over)
 
     @property
-    def check(self) -> bool:
-        """Whether it is a check flight."""
-        return self._check
-
-    @property
     def alone(self) -> bool:
-        """Whether the person must fly alone: in a check flight, and in some challenges."""
-        return self._check or (self._challenge is not None and self._challenge.alone)
+        """Whether the person must fly alone, as in some challenges."""
+        return self._challenge is not None and self._challenge.alone
 
     @property
     def header(self) -> str:
@@ -110,7 +101,7 @@ class Credit:
             return texts.YOU_SHARE[flight.copilot.mode]
         if not self.alone:
             return words
-        return texts.JOINED.format(words=texts.CHECK_FLIGHT if self._check else words, more=texts.WITHOUT_HELP)
+        return texts.JOINED.format(words=words, more=texts.WITHOUT_HELP)
 
     # What it counts for
 

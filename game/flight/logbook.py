@@ -29,7 +29,6 @@ BEST: Final = 5  # best landings of each mission, whose files are kept too, as a
 _LARGEST: Final = 16_000_000  # last bytes of the logbook that are read: 50,000 flights
 SLACK: Final = 25  # surplus files before they are cleared
 MOST_THROWN: Final = 50  # deleted files that can be restored
-RECENT_OWN: Final = 10  # number of last flights by the person alone that measure their skill
 
 
 def describe(flight: Flight, when: float, **more: Any) -> Entry:
@@ -230,3 +229,11 @@ def best_descent(entries: Iterable[Entry]) -> tuple[int, int]:
     """Return the most legs landed in one descent by the player alone, and its points; (0, 0) without any."""
     own = ((e.leg, e.total) for e in entries if e.course == DESCENT and e.landed and not e.bar)
     return max(own, default=(0, 0))
+
+
+def best_alone(entries: Iterable[Entry]) -> int:
+    """Return the highest score of the player's own free flights from anywhere; 0 before any landing."""
+    return max(
+        (entry.score for entry in entries if entry.alone and not (entry.course or entry.practice or entry.on_ladder)),
+        default=0,
+    )

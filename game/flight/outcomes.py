@@ -19,17 +19,7 @@ TIPPED: Final = math.radians(45)  # tilt from which on no engine can brake the f
 
 @dataclass(frozen=True)
 class OutcomeCard:
-    """Contents of an outcome card: good or not, the reason, figures as label, value, unit, and advice.
-
-    For a shared flight, `stepped_in` is how often the co-pilot intervened, and `saved` how often it saved the
-    person; None for a flight without a guardian that could tell, or without a landing. `medal` is 3 for gold, 2, 1,
-    0 for none. `assists` says what made the flight easier, and `bare` why help did not save a lost one, and what
-    would have. `place` is where the card stands across the window, 0 to 1. `growth` are lines on what the flight has
-    shown of the person's own skill. `intact` is whether the craft came down whole beside the pad. `rung` is the place
-    on the ladder of starts, None off it, and `climb` what the flight has changed there. `ring` is whether it was
-    landed together with the network. `quality` says how well it was landed, and `compared` are other scores from the
-    same start, in words and a figure.
-    """
+    """Contents of an outcome card; `figures` are label, value and unit, `human` the person's share of the steps."""
 
     good: bool
     title: str
@@ -37,20 +27,19 @@ class OutcomeCard:
     figures: tuple[tuple[str, str, str], ...]
     human: float
     advice: str = ""
-    assists: str = ""
-    bare: str = ""
+    assists: str = ""  # what made the flight easier
+    bare: str = ""  # why help did not save a lost flight, and what would have
     score: str = ""
-    medal: int = 0
-    ring: bool = False
-    stepped_in: int | None = None
-    saved: int | None = None
-    place: float = 0.5
-    growth: tuple[str, ...] = ()
-    intact: bool = False
-    rung: int | None = None
-    climb: str = ""
-    quality: str = ""
-    compared: tuple[tuple[str, str], ...] = ()
+    medal: int = 0  # 3 for gold, 2, 1, 0 for none
+    ring: bool = False  # whether it was landed together with the network
+    stepped_in: int | None = None  # how often the co-pilot intervened; None where nobody could
+    saved: int | None = None  # how often a guardian saved the person; None where none could tell, or without a landing
+    place: float = 0.5  # where the card stands across the window, 0 to 1
+    intact: bool = False  # whether the craft came down whole beside the pad
+    rung: int | None = None  # place on the ladder of starts, None off it
+    climb: str = ""  # what the flight has changed there
+    quality: str = ""  # how well it was landed
+    compared: tuple[tuple[str, str], ...] = ()  # other scores from the same start, in words and a figure
 
     @property
     def told(self) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from typing import Final
@@ -37,10 +37,8 @@ from game.flight import outcomes
 
 Lamp = tuple[Shape, Colour, float]  # shape, colour and strength of the glow
 
-# Four columns on the left, three on the right: the landing pad stands in the middle.
-COLUMNS: Final = (64.0, 194.0, 324.0, 454.0, 880.0, 1002.0, 1124.0)
 READOUTS: Final = 80.0  # points at the foot of a page that they take
-PILOT: Final = 4  # read-outs that a pilot needs in flight
+PILOT: Final = ("altitude", "descent", "drift", "tilt")  # what a pilot needs in flight, of `GAUGES`
 LITTLE_TIME: Final = 5.0  # seconds left, below which a pilot is warned
 LITTLE_FUEL: Final = 0.2  # share of the tank left, likewise
 _LABEL_LINE: Final = 663.0
@@ -55,10 +53,9 @@ _ASIDE, _ABOVE = 4.0, 28.0
 _WORDS: Final = (180.0, 78.0)
 _LABEL_ROOM: Final = 112.0  # points from one column to the next, without a gap
 _FIGURES: Final = PaintCache(64)
-_NAMED: Final = {Cause.HARD: 1, Cause.SLIDING: 2, Cause.TILTED: 3}  # which of the read-outs a crash is named by
 _PLENTY_OF_TIME: Final = 120.0
 _STILL: Final = 0.05  # m/s, and half a degree, below which a figure has no direction
-_LEAN: Final = math.radians(0.5)
+_LEAN: Final = 0.5
 
 
 @dataclass(frozen=True)
@@ -85,101 +82,143 @@ class Readout:
     now: Now = str
 
 
-def flight_readouts(env: LanderEnv, slot: int = 0) -> list[Readout]:
-    """Return the read-outs of a flight: the four that a pilot needs, then thrust, fuel and time."""
-    limits = env.limits
-    across, up = env.velocity[slot].tolist()
+def _altitude(env: LanderEnv, slot: int) -> Readout:
+    altitude = float(env.altitude[slot])
+    return Readout(texts.ALTITUDE, f"{max(0.0, altitude):.1f}", "m", now=partial(_now, "altitude", altitude))
+
+
+def _descent(env: LanderEnv, slot: int) -> Readout:
+    descent = -float(env.velocity[slot, 1])
+    shown = descent if abs(descent) >= _STILL else 0.0
+    return _limited("descent", texts.DESCENT, shown, env.limits.touch_speed, descent)
+
+
+def _drift(env: LanderEnv, slot: int) -> Readout:
+    across = float(env.velocity[slot, 0])
     if env.conditions.moves:  # on a moving pad, the speed relative to the pad counts
         across -= float(env.pad_velocity[slot])
-    tilt, lean = float(env.tilt[slot]), math.sin(float(env.angle[slot]))
-    altitude = max(0.0, float(env.altitude[slot]))
-    descent = -up if abs(up) >= _STILL else 0.0
+    towards = 0 if abs(across) < _STILL else 1 if across > 0 else -1
+    return _limited("drift", texts.DRIFT, abs(across), env.limits.slide_speed, towards=towards)
 
-    def against(label: str, figure: str, unit: str, value: float, limit: float, towards: int = 0) -> Readout:
-        return Readout(label, figure, unit, abs(value) / (1.8 * limit), 1 / 1.8, abs(value) <= limit, towards)
 
-    drifts = 0 if abs(across) < _STILL else 1 if across > 0 else -1
-    leans = 0 if tilt < _LEAN else -1 if lean > 0 else 1
+def _tilt(env: LanderEnv, slot: int) -> Readout:
+    tilt = math.degrees(float(env.tilt[slot]))
+    towards = 0 if tilt < _LEAN else -1 if math.sin(float(env.angle[slot])) > 0 else 1
+    return _limited("tilt", texts.TILT, tilt, math.degrees(env.limits.touch_tilt), towards=towards, unit="°")
+
+
+def _limited(
+    name: str, label: str, value: float, limit: float, said: float | None = None, *, towards: int = 0, unit: str = "m/s"
+) -> Readout:
+    """Return a read-out of what a touchdown limits; `said` is its value in words, if that is another."""
+    figure = f"{value:.0f}" if unit == "°" else f"{value:.1f}".replace("-", "−")
+    reach, now = max(0.0, value), partial(_now, name, value if said is None else said, limit)
+    return Readout(label, figure, unit, reach / (1.8 * limit), 1 / 1.8, reach <= limit, towards, now=now)
+
+
+def _thrust(env: LanderEnv, slot: int) -> Readout:
     share = float(env.thrust[slot, 0])
-    rows = [
-        (Readout(texts.ALTITUDE, f"{altitude:.1f}", "m"), altitude, math.inf),
-        (
-            against(texts.DESCENT, _signed(descent), "m/s", max(0.0, descent), limits.touch_speed),
-            -up,
-            limits.touch_speed,
-        ),
-        (
-            against(texts.DRIFT, f"{abs(across):.1f}", "m/s", across, limits.slide_speed, drifts),
-            abs(across),
-            limits.slide_speed,
-        ),
-        (
-            against(texts.TILT, f"{math.degrees(tilt):.0f}", "°", tilt, limits.touch_tilt, leans),
-            math.degrees(tilt),
-            math.degrees(limits.touch_tilt),
-        ),
-        (_fuel(env, slot), float(env.fuel[slot]), math.inf),
-        (_time(env, slot), float(env.time[slot]), math.inf),
-    ]
-    told = [
-        replace(readout, what=texts.EXPLAIN_READOUTS[number], now=partial(_now, number, value, limit, limits.time))
-        for number, (readout, value, limit) in enumerate(rows)
-    ]
-    return [*told[:PILOT], Readout(texts.THRUST, f"{100 * share:.0f}", "%", share), *told[PILOT:]]
-
-
-def _now(number: int, value: float, limit: float, time: float) -> str:
-    """Say what a read-out means now."""
-    if number == 1 and value < 0:
-        return texts.EXPLAIN_CLIMBING.format(value=-value)
-    said = texts.EXPLAIN_READOUTS_NOW[number].format(value=value, limit=time if number == 5 else limit)
-    return f"{said} {texts.EXPLAIN_BEYOND}" if value > limit else said
-
-
-def at_touch(readouts: list[Readout], env: LanderEnv) -> list[Readout]:
-    """Return the last read-outs before a crash, with the figure marked that the reason of the crash names.
-
-    On level ground it becomes what the foot felt, which a turning craft puts down faster than it falls itself.
-    """
-    cause = outcomes.cause_of(env)
-    if env.outcome[0] != Outcome.CRASHED or cause not in _NAMED:
-        return readouts
-    speed, slide, tilt = env.impact[0].tolist()
-    felt = {Cause.HARD: f"{speed:.1f}", Cause.SLIDING: f"{slide:.1f}", Cause.TILTED: f"{math.degrees(tilt):.0f}"}
-    named, figure = _NAMED[cause], felt[cause]
-    if outcomes.struck_side(env):  # neither down nor across, but the faster of the two is nearer to it
-        named = max(_NAMED[Cause.HARD], _NAMED[Cause.SLIDING], key=lambda row: readouts[row].fill or 0.0)
-        figure = readouts[named].figure
-    marked = replace(readouts[named], figure=figure, within=False)
-    return [*readouts[:named], marked, *readouts[named + 1 :]]
-
-
-def _time(env: LanderEnv, slot: int) -> Readout:
-    """Return the read-out of the time left, or, where there is plenty, of the time flown."""
-    flown, limit = float(env.time[slot]), env.limits.time
-    if limit > _PLENTY_OF_TIME:
-        return Readout(texts.TIME_FLOWN, f"{flown:.0f}", "s")
-    left = max(0.0, limit - flown)
-    return Readout(texts.TIME_LEFT, f"{left:.0f}", "s", left / limit, within=None if left > LITTLE_TIME else False)
+    return Readout(texts.THRUST, f"{100 * share:.0f}", "%", share)
 
 
 def _fuel(env: LanderEnv, slot: int) -> Readout:
     """Return the read-out of the fuel used, or, where the tank is limited, of the fuel left."""
     burnt, tank = tenths(float(env.fuel[slot])), env.conditions.tank  # rounded as on the card and for medals
+    now = partial(_now, "fuel", float(env.fuel[slot]))
     if tank == math.inf:
-        return Readout(texts.FUEL_USED, f"{burnt:.1f}", "s")
+        return Readout(texts.FUEL_USED, f"{burnt:.1f}", "s", now=now)
     left = max(0.0, tank - burnt)
     within = None if left > LITTLE_FUEL * tank else False
-    return Readout(texts.FUEL_LEFT, f"{left:.1f}", "s", left / tank, within=within)
+    return Readout(texts.FUEL_LEFT, f"{left:.1f}", "s", left / tank, within=within, now=now)
 
 
-def draw_readouts(canvas: Canvas, readouts: Sequence[Readout], columns: Sequence[float] = COLUMNS) -> None:
+def _time(env: LanderEnv, slot: int) -> Readout:
+    """Return the read-out of the time left, or, where there is plenty, of the time flown."""
+    flown, limit = float(env.time[slot]), env.limits.time
+    now = partial(_now, "time", flown, limit)
+    if limit > _PLENTY_OF_TIME:
+        return Readout(texts.TIME_FLOWN, f"{flown:.0f}", "s", now=now)
+    left = max(0.0, limit - flown)
+    return Readout(
+        texts.TIME_LEFT, f"{left:.0f}", "s", left / limit, within=None if left > LITTLE_TIME else False, now=now
+    )
+
+
+def _now(name: str, value: float, limit: float = math.inf) -> str:
+    """Say what a read-out means now."""
+    if name == "descent" and value < 0:
+        return texts.EXPLAIN_CLIMBING.format(value=-value)
+    said = texts.EXPLAIN_READOUTS_NOW[name].format(value=value, limit=limit)
+    return f"{said} {texts.EXPLAIN_BEYOND}" if value > limit else said
+
+
+@dataclass(frozen=True)
+class Gauge:
+    """What a read-out reads, and its place.
+
+    Attributes:
+        column: its left end, in points.
+        read: makes it, given an environment and a slot.
+        cause: the crash that is named by it, if any.
+        felt: which of an impact's figures that crash has.
+
+    """
+
+    column: float
+    read: Callable[[LanderEnv, int], Readout]
+    cause: Cause | None = None
+    felt: int = 0
+
+
+# Four on the left, three on the right: the landing pad stands in the middle. A name is its key in the texts.
+GAUGES: Final = {
+    "altitude": Gauge(64.0, _altitude),
+    "descent": Gauge(194.0, _descent, Cause.HARD, 0),
+    "drift": Gauge(324.0, _drift, Cause.SLIDING, 1),
+    "tilt": Gauge(454.0, _tilt, Cause.TILTED, 2),
+    "thrust": Gauge(880.0, _thrust),
+    "fuel": Gauge(1002.0, _fuel),
+    "time": Gauge(1124.0, _time),
+}
+
+
+def flight_readouts(env: LanderEnv, slot: int = 0) -> dict[str, Readout]:
+    """Return the read-outs of a flight, by their names in `GAUGES`."""
+    explained = texts.EXPLAIN_READOUTS
+    return {name: replace(gauge.read(env, slot), what=explained.get(name, "")) for name, gauge in GAUGES.items()}
+
+
+def at_touch(readouts: dict[str, Readout], env: LanderEnv) -> dict[str, Readout]:
+    """Return the last read-outs before a crash, with the figure marked that the reason of the crash names.
+
+    On level ground it becomes what the foot felt, which a turning craft puts down faster than it falls itself.
+    """
+    cause = outcomes.cause_of(env)
+    named = next((name for name, gauge in GAUGES.items() if gauge.cause is cause), "")
+    if env.outcome[0] != Outcome.CRASHED or not named:
+        return readouts
+    if outcomes.struck_side(env):  # neither down nor across, but the faster of the two is nearer to it
+        named = max(("descent", "drift"), key=lambda name: readouts[name].fill or 0.0)
+        figure = readouts[named].figure
+    else:
+        felt = float(env.impact[0, GAUGES[named].felt])
+        figure = f"{math.degrees(felt):.0f}" if cause is Cause.TILTED else f"{felt:.1f}"
+    return {**readouts, named: replace(readouts[named], figure=figure, within=False)}
+
+
+def draw_flight(canvas: Canvas, readouts: dict[str, Readout], names: Iterable[str] = GAUGES) -> None:
+    """Draw those of a flight's read-outs that are named, each in its own column."""
+    shown = [name for name in names if name in readouts]
+    draw_readouts(canvas, [readouts[name] for name in shown], [GAUGES[name].column for name in shown])
+
+
+def draw_readouts(canvas: Canvas, readouts: Sequence[Readout], columns: Sequence[float]) -> None:
     """Draw read-outs side by side: the bar shows the distance from the limit, a mark by the label on which side."""
     if canvas.whole is canvas:  # a page has no world behind it
         width, height = canvas.surface.get_width(), canvas.size[1] - canvas.px(_SHADE_TOP)
         corner = 0, canvas.surface.get_height() - height
         canvas.surface.blit(_shade((width, height)), corner, special_flags=pygame.BLEND_PREMULTIPLIED)
-    for x, readout in zip(columns, readouts, strict=False):
+    for x, readout in zip(columns, readouts, strict=True):
         below = canvas.at(-1 if x < VIEW_SIZE[0] / 2 else 1, 1)
         _draw_readout(below, x, readout)
         if readout.what:
@@ -305,7 +344,3 @@ def draw_share(canvas: Canvas, left: float, top: float, width: float, human: flo
         canvas.pill((left, top + 9, max(0.0, edge - 1), 3), HUMAN)
     if human < 1:
         canvas.pill((left + edge + 1, top + 9, width - edge - 1, 3), NET)
-
-
-def _signed(value: float) -> str:
-    return f"{value:.1f}".replace("-", "−")

@@ -6,7 +6,6 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, Final
 
-from ai.digits.checkpoints import LAST_FILE
 from ai.digits.filters import FilterMoment
 from ai.digits.validation import Confusion
 from ai.explain.agent_lesson import Lesson
@@ -120,8 +119,7 @@ class TrainingRun(OneAfterAnother):
         """Whether a run without a name was left that can be resumed; false while another runs or is ending."""
         if self.alive or (self._worker and not self._worker.gone):  # to look there repairs what it writes
             return False
-        unsaved = self.collection.unsaved
-        return self.collection.left_behind and (state_folder(unsaved).is_dir() or (unsaved / LAST_FILE).exists())
+        return self.collection.left_behind and state_folder(self.collection.unsaved).is_dir()
 
     @property
     def measured(self) -> bool:

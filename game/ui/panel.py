@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import TYPE_CHECKING, Final, TypeVar
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import pygame
 
@@ -19,6 +19,7 @@ from game.drawing.cursor import Cursor
 from game.drawing.tokens import FAINT, INK, MUTE, NET, SMALL, STEP, TEXT, Colour
 from game.drawing.typeface import Weight
 from game.ui.rows import ButtonRow, ChoiceRow, EntryRow, ListRow, RowWidget, SliderRow, ToggleRow
+from game.ui.widget import Widget
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     from game.drawing.canvas import Canvas, Now
     from game.ui.form import Form
     from game.ui.listing import Row as Cells
-    from game.ui.widget import OnPress, Widget
+    from game.ui.widget import OnPress
 
 W = TypeVar("W", bound=RowWidget)
 Write = Callable[[Cursor], None]
@@ -52,12 +53,18 @@ class Column:
 
     def __init__(self, form: Form) -> None:
         self.rows: list[Row] = []
-        self._form = form
+        self._form, self._widgets = form, list[Widget]()
 
     def add(self, write: Write, what: str = "", now: Now = str) -> Row:
         """Add a row of one's own."""
         self.rows.append(Row(write, what, now))
         return self.rows[-1]
+
+    def clear(self) -> None:
+        """Take all rows away with their widgets, which are the last of the form, to describe others."""
+        self._form.replace(self._widgets, ())
+        self._widgets.clear()
+        self.rows.clear()
 
     # Words and figures
 
@@ -108,6 +115,7 @@ class Column:
     def widget(self, widget: W) -> W:
         """Add a widget, as the next one of the form."""
         self.add(widget.lay, widget.label)
+        self._widgets.append(widget)
         return self._form.add(widget)
 
     def button(
@@ -164,9 +172,11 @@ class Column:
         """Add a line to type in."""
         return self.widget(EntryRow(self._form.manager, text, accept, cancel, limit, fits))
 
-    def listing(self, rows: Sequence[Cells], press: Callable[[int], Transition | None], empty: str = "") -> ListRow:
-        """Add a list to choose from."""
-        return self.widget(ListRow(self._form.manager, rows, press, empty))
+    def listing(
+        self, rows: Sequence[Cells], press: Callable[[int], Transition | None], empty: str = "", **more: Any
+    ) -> ListRow:
+        """Add a list to choose from; `more` is as for a `ListRow`."""
+        return self.widget(ListRow(self._form.manager, rows, press, empty, **more))
 
     # Columns
 

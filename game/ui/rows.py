@@ -27,6 +27,7 @@ _LABELS: Final = 150.0  # points for the label before a slider or a choice
 _FIGURES: Final = 56.0
 _TRACK: Final = 120.0  # the shortest track beside its label
 _WORDS: Final = 24.0  # between two options
+_ROWS: Final = 8  # of a list, at most
 
 
 class RowWidget(Widget):
@@ -274,7 +275,11 @@ class EntryRow(RowWidget, Entry):
 
 
 class ListRow(RowWidget, Listing):
-    """List to choose from, as high as its rows, `most` of them; `more` is as for a `Listing`."""
+    """List to choose from, as high as its rows: at most eight of them, or as many as a window has room for.
+
+    `around` is the height of all else in that window, in points, and `first` the row at which the list begins; `more`
+    is as for a `Listing`.
+    """
 
     def __init__(
         self,
@@ -282,14 +287,24 @@ class ListRow(RowWidget, Listing):
         rows: Sequence[Row],
         press: Callable[[int], Transition | None],
         empty: str = "",
-        most: int = 8,
+        around: float = 0.0,
+        first: int = 0,
         **more: Any,
     ) -> None:
         super().__init__(manager, _NOWHERE, rows, on_press=press, empty=empty, **more)
-        self._most = most
+        self._around, self._most, self.first = around, _ROWS, first
+
+    def lay(self, cursor: Cursor) -> None:
+        """Lay it out, with the chosen row in view once the height is another."""
+        before = self.room
+        super().lay(cursor)
+        if self.room != before:
+            self._show_chosen()
 
     def write(self, cursor: Cursor) -> None:
         """Draw the rows."""
+        if self._around and cursor.seen and cursor.canvas is None:
+            self._most = max(4, int((cursor.seen.height - self._around) / self._pitch))
         cursor.take(self._pitch * min(max(len(self.rows), 1), self._most))
         if cursor.canvas:
             Listing.paint(self, cursor.canvas)

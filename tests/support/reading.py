@@ -37,7 +37,6 @@ class OnlyFlies:
 
 WHO = {
     texts.YOU_FLY: "person",
-    texts.JOINED.format(words=texts.CHECK_FLIGHT, more=texts.WITHOUT_HELP): "person",
     texts.JOINED.format(words=texts.YOU_FLY, more=texts.WITHOUT_HELP): "person",
     **dict.fromkeys(texts.YOU_SHARE.values(), "both"),
     texts.NETWORK_FLIES: "network",

@@ -17,7 +17,7 @@ from ai.digits.training import DigitTraining
 from ai.nn import FullyConnectedLayer, ModelFormatError, NeuralNetwork
 from ai.nn.costs import CostFunctions
 from ai.training import demonstrations
-from ai.training.checkpoints import resume_digit_run, resume_run, save_digit_run, save_run
+from ai.training.checkpoints import AGENTS, DIGITS, resume_digit_run, resume_run
 from ai.training.config import PRESETS
 from ai.training.demonstrations import Demonstration
 from ai.training.history import Checkpoint, History, Point, SettingChange, Validation
@@ -80,7 +80,7 @@ def _run(folder: Path, version: int) -> None:
     history.append(Checkpoint(0.0, 0, 0.0, training.agent.network.values.copy(), None))
     history.append(Validation(0, 0.5, 1.0, best=True))
     history.append(SettingChange(0, "discount", 0.9, 0.99))
-    save_run(training, folder / "models" / "run")
+    AGENTS.save(training, folder / "models" / "run", state=False)
     history.write(folder / "models" / "run")
 
 
@@ -101,7 +101,7 @@ def _digits(folder: Path, version: int) -> None:
     training = DigitTraining(config, 0, _data())
     training.advance()
     training.seconds = float(version)
-    save_digit_run(training, folder / "run")
+    DIGITS.save(training, folder / "run")
 
 
 def _read_digits(folder: Path) -> Any:

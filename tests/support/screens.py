@@ -16,7 +16,6 @@ from game.core.scene import Push, Scene
 from game.flight import sharing
 from game.flight.days import Days
 from game.flight.flight_file import Record
-from game.flight.skill import Skill
 from game.learn.path import FIRST, PATH
 from game.scenes.chapter import ChapterScene
 from game.scenes.digit_training import DigitTrainingScene
@@ -123,7 +122,7 @@ FLOWN: dict[str, Make] = {
 OVER_OTHERS: dict[str, Callable[[Scene], Scene]] = {
     "FlightPauseScene": lambda below: FlightPauseScene(below.context, below, retry=lambda: None),
     "PauseScene": lambda below: PauseScene(below.context, below, retry=lambda: None),
-    "ChoicesScene": lambda below: ChoicesScene(below.context, below, Skill([]), begun=False),
+    "ChoicesScene": lambda below: ChoicesScene(below.context, below, begun=False),
     "QuestionDialog": lambda below: QuestionDialog(below, "?", "", [("yes", lambda: None), ("no", lambda: None)]),
     "NameDialog": lambda below: NameDialog(below, "?", "name", lambda _: ""),
     "ListDialog": lambda below: ListDialog(below, "?", [("a",), ("b",)], lambda _: None),

@@ -21,7 +21,7 @@ def tiny_plan(**changes):
     space = knob_space(config, ["learning_rate", "tau"])
     told = {
         "kind": "agent", "settings": json.loads(json.dumps(config.to_json())), "space": space, "seeds": (0, 1),
-        "budget": 400, "every": 200, "metric": "return", "judge": "median", "search": "tpe", "stop_early": False,
+        "budget": 400, "every": 200, "metric": "return", "search": "tpe", "stop_early": False,
         "trials": 4, "validation": 5,
     }  # fmt: skip
     return Plan(**(told | changes))
@@ -65,7 +65,7 @@ def shown_study(folder, trials=9):
     space = knob_space(PRESETS["modern"], ["learning_rate", "tau", "optimizer"])
     plan = Plan(
         "agent", json.loads(json.dumps(PRESETS["modern"].to_json())),
-        space, (0, 1), 160, 40, "time_to_99", "median", "tpe", True,
+        space, (0, 1), 160, 40, "time_to_99", "tpe", True,
         trials + 3,
     )  # fmt: skip
     study = Study.create(folder, plan)

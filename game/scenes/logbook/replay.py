@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 from typing import Final
 
@@ -16,18 +14,16 @@ from ai.flights.recording import SharedFlight
 from ai.lander.environment import Outcome
 from game.audio.flight_sounds import FlightSound
 from game.core import texts
-from game.core.assets import PACKED
 from game.core.clock import STEP
 from game.core.collection import exports_dir
 from game.core.names import LONGEST_NAME, fitting
 from game.core.pace import SlowMotion
-from game.core.scene import Pop, Push, Transition, push
+from game.core.scene import Pop, Transition, push
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.shapes import Shape
 from game.drawing.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, VIEW_SIZE
 from game.export.export import Export
-from game.export.kinds import KINDS
 from game.flight import networks, sharing
 from game.flight.flight import StickHolder
 from game.flight.flight_file import Record
@@ -95,7 +91,7 @@ class ReplayScene(FormScene):
         self._scenery = Scenery(self.flight_replay.flight, context.settings.reduced_motion, self._clear)
         self._heard = FlightSound(context.sound, self.flight_replay.flight.env, self._pace, warns=False)
         self._build()
-        self._readouts: list[readouts.Readout] = []
+        self._readouts: dict[str, readouts.Readout] = {}
         self._look()
 
     def enter(self) -> None:
@@ -280,31 +276,19 @@ class ReplayScene(FormScene):
         code = code_of(self.claimed.flight) if self.claimed else sharing.code(self.record)
         give(self.context, code, texts.CODE_COPIED.format(count=len(code)))
 
-    def _begin_or_stop_export(self) -> Transition | None:
-        """Ask for the film's format and start the export, or cancel the running one."""
-        from game.scenes.menus.dialogs import QuestionDialog
-
-        if self.export is None:
-            answers: list[tuple[str, Callable[[], None]]] = [
-                (suffix[1:].upper(), partial(self._begin_export, suffix))
-                for suffix, kind in KINDS.items()
-                if not kind.missing
-            ]
-            less = texts.EXPORT_GIF_PACKED if PACKED else texts.EXPORT_GIF_ONLY
-            more = less if KINDS[".mp4"].missing else texts.EXPORT_MORE
-            return Push(QuestionDialog(self, texts.EXPORT_AS, more, [*answers, (texts.EXPORT_CANCEL, lambda: None)]))
-        self._stop_export()
-        return None
+    def _begin_or_stop_export(self) -> None:
+        """Start the export, or cancel the running one."""
+        if self.export:
+            self._stop_export()
+            return
+        name = fitting(Path(self.record.entry.file).stem).strip(" .")[:LONGEST_NAME]  # which a file can say anything of
+        path = free_path(exports_dir(), name or texts.REPLAY_TITLE, ".gif")
+        self.export = Export(ReplayScene, self.record, path, colour_safe=self.context.settings.colour_safe)
 
     def _stop_export(self) -> None:
         assert self.export is not None
         self.export.close()
         self._end_export(texts.EXPORT_STOPPED)
-
-    def _begin_export(self, suffix: str) -> None:
-        name = fitting(Path(self.record.entry.file).stem).strip(" .")[:LONGEST_NAME]  # which a file can say anything of
-        path = free_path(exports_dir(), name or texts.REPLAY_TITLE, suffix)
-        self.export = Export(ReplayScene, self.record, path, colour_safe=self.context.settings.colour_safe)
 
     def _follow_export(self, export: Export) -> None:
         """Show the progress of the export, or its result."""
@@ -339,7 +323,7 @@ class ReplayScene(FormScene):
                 canvas, self._scenery.view(canvas.scale, between).filling(canvas), self._futures, self._clear.head
             )
         self._scenery.draw_craft(canvas, between)
-        readouts.draw_readouts(canvas, self._readouts)
+        readouts.draw_flight(canvas, self._readouts)
 
     def _draw_words(self, canvas: Canvas) -> None:
         self._draw_title(canvas)

@@ -15,12 +15,11 @@ from game.drawing.canvas import Canvas
 from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import HUMAN, LABEL, MARGIN, MUTE, SMALL, TITLE, VIEW_SIZE
 from game.flight import sharing
-from game.flight.becoming import KINDS, Becoming, kind_of, tells
+from game.flight.becoming import KINDS, Becoming, kind_of, said, tells
 from game.flight.flight_file import Entry, Record
 from game.flight.friend import paste
 from game.flight.logbook import Records, Totals, best, totals
 from game.flight.outcomes import ending_word
-from game.flight.skill import said
 from game.panels.becoming_band import draw_band
 from game.ui.actions import Action, Table
 from game.ui.chart import Chart, Series

@@ -3,62 +3,101 @@
 from __future__ import annotations
 
 from datetime import date, timedelta
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import pygame
 
 from ai.lander.environment import Outcome
 from game.core import texts
 from game.core.scene import Transition, push
-from game.drawing.canvas import Canvas
-from game.drawing.prose import draw_wrapped
-from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, MARGIN, MUTE, SMALL, TEXT, TITLE, VIEW_SIZE
+from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, MUTE, TITLE
 from game.flight import sharing
 from game.flight.days import Attempt, Days
 from game.scenes.play.daily import DailyStart
+from game.ui.actions import Table
 from game.ui.clipboard import give
-from game.ui.context import Context
-from game.ui.list_scene import ListLayout, ListScene
 from game.ui.listing import Row
-from game.ui.widget import OnPress, Widget
+from game.ui.panel_scene import PanelScene
 
-_LEFT: Final = 720
-_WIDTH: Final = VIEW_SIZE[0] - MARGIN - _LEFT
-_LAYOUT: Final = ListLayout(
-    box=pygame.Rect(MARGIN, 164, 560, 416),
-    columns=(112.0, 0.0),
-    headings=texts.DAYS_COLUMNS,
-    pitch=32,
-    verbs=(_LEFT, 504),
-    foot=608,
-)
+if TYPE_CHECKING:
+    from game.drawing.canvas import Canvas
+    from game.ui.context import Context
+    from game.ui.panel import Column, Panel
+
+_LEAST: Final = 320.0  # points of a column
+_COLUMNS: Final = (112.0, 0.0)  # from the right end of the list: where ends and points end
+_AROUND: Final = 100.0  # points above and below the list
 _SHOWN: Final = 60  # days in the list
 _WEEKS: Final = 5
-_CALENDAR: Final = (_LEFT + 10.0, 340.0)  # middle of its first day
 _CELL: Final = (34.0, 26.0)
 _DAY: Final = timedelta(days=1)
 
 
-class DaysScene(ListScene[date]):
-    """Days scene: days on the left, today first; on the right the chosen one and the last weeks."""
+class DaysScene(PanelScene):
+    """Days scene: days in a list, today first; beside it, or below, the chosen one and the last weeks.
+
+    Attributes:
+        days: what is listed.
+
+    """
 
     def __init__(self, context: Context, today: date | None = None) -> None:
-        super().__init__(context, texts.DAILY, _LAYOUT)
-        self._today = today or date.today()
-        self._line = texts.DAYS_LINE
-        self._reload()
+        super().__init__(context)
+        self._today = self.chosen = today or date.today()
+        self.enter()
 
-    def _reload(self) -> None:
+    def enter(self) -> None:
         """Read the attempts again."""
-        self._days = Days(self.context.user_dir)
-        if self._days.problem:
-            self.context.note(self._days.problem)
-        recent = {self._today, self._today - _DAY}
-        known = recent | {day for each in self._days.attempts if (day := date.fromisoformat(each)) <= self._today}
-        self._show(sorted(known, reverse=True)[:_SHOWN], self.chosen)
+        self._attempts = Days(self.context.user_dir)
+        if self._attempts.problem:
+            self.context.note(self._attempts.problem)
+        known = {date.fromisoformat(day) for day in self._attempts.attempts} | {self._today, self._today - _DAY}
+        self.days = sorted((day for day in known if day <= self._today), reverse=True)[:_SHOWN]
+        self.build()
+
+    def describe(self, panel: Panel) -> None:
+        """Add the list, and the chosen day."""
+        panel.title(texts.DAILY)
+        panel.aside(texts.DAYS_LINE)
+        panel.gap(8)
+        left, self._beside = panel.beside((5, 4), _LEAST)
+        rows, index = [self._row(day) for day in self.days], self.days.index(self.chosen)
+        left.listing(rows, lambda _: self._fly(), around=_AROUND, index=index, on_choose=self._choose, columns=_COLUMNS)
+        self._describe_day(self._beside)
+
+    def _describe_day(self, column: Column) -> None:
+        """Add what there is to say of the chosen day, and to do with it."""
+        attempt, today = self._attempt(self.chosen), self.chosen == self._today
+        self._flown = self._attempts.first_flight(self.chosen)
+        column.title(self._name(self.chosen), TITLE + 6)
+        column.text(attempt.line if attempt else texts.DAYS_ASKS if today else texts.DAYS_MISSED_LINE)
+        if (attempt or not today) and self._attempts.best_flight(self.chosen):
+            column.aside(texts.DAYS_BESIDE)
+        column.gap(10)
+        fly = (texts.DAYS_FLY_AGAIN if attempt else texts.DAYS_FLY) if today else texts.DAYS_FLY_PAST
+        column.button(fly, self._fly, size=TITLE, colour=INK)
+        if attempt:
+            column.button(texts.DAYS_COPY, self._copy_line)
+        if self._flown:
+            column.button(texts.CODE_COPY, self._copy_code)
+            column.button(texts.LOGBOOK_WATCH, self._watch)
+        column.gap(10)
+        column.caption(texts.DAYS_WEEKS)
+        column.picture(_CELL[1] * (_WEEKS + 1), self._draw_weeks)
+
+    def actions(self) -> Table:
+        """Move, choose, go back."""
+        return [self.form.moves, *super().actions()]
+
+    def _choose(self, index: int) -> None:
+        self.chosen = self.days[index]
+        self._beside.clear()
+        self._describe_day(self._beside)
+
+    # In words
 
     def _attempt(self, day: date) -> Attempt | None:
-        return self._days.attempts.get(day.isoformat())
+        return self._attempts.attempts.get(day.isoformat())
 
     def _row(self, day: date) -> Row:
         attempt = self._attempt(day)
@@ -74,71 +113,35 @@ class DaysScene(ListScene[date]):
         attempt = self._attempt(day)
         if attempt is None:
             return texts.DAYS_NOT_FLOWN if day == self._today else texts.DAYS_MISSED
-        if attempt.outcome == Outcome.FLYING.name:
-            return texts.DAYS_LEFT
-        return attempt.result
-
-    def _make_verbs(self) -> list[Widget]:
-        if self.chosen is None:
-            return []
-        self._first = self._days.first_flight(self.chosen)
-        today, attempt = self.chosen == self._today, self._attempt(self.chosen)
-        self._beside_ghost = (attempt is not None or not today) and self._days.best_flight(self.chosen) is not None
-        fly = (texts.DAYS_FLY_AGAIN if attempt else texts.DAYS_FLY) if today else texts.DAYS_FLY_PAST
-        rows: list[tuple[str, OnPress]] = [(fly, self._fly)]
-        if attempt:
-            rows.append((texts.DAYS_COPY, self._copy_line))
-        if self._first:
-            rows += [(texts.CODE_COPY, self._copy_code), (texts.LOGBOOK_WATCH, self._watch)]
-        return self._buttons(rows)
+        return texts.DAYS_LEFT if attempt.outcome == Outcome.FLYING.name else attempt.result
 
     # What can be done
 
-    def _press_row(self) -> Transition | None:
-        return self._fly()
-
-    def _fly(self) -> Transition | None:
-        if self.chosen is None:
-            return None
-        challenge = DailyStart(self.chosen, self._days, past=self.chosen != self._today)
+    def _fly(self) -> Transition:
+        challenge = DailyStart(self.chosen, self._attempts, past=self.chosen != self._today)
         return push("play", challenge.seed, challenge=challenge)
 
     def _copy_line(self) -> None:
-        if self.chosen and (attempt := self._attempt(self.chosen)):
+        if attempt := self._attempt(self.chosen):
             give(self.context, attempt.line, texts.CODE_LINE_COPIED.format(line=attempt.line))
 
     def _copy_code(self) -> None:
-        if self._first:
-            code = sharing.code(self._first)
-            give(self.context, code, texts.CODE_COPIED.format(count=len(code)))
+        assert self._flown
+        code = sharing.code(self._flown)
+        give(self.context, code, texts.CODE_COPIED.format(count=len(code)))
 
-    def _watch(self) -> Transition | None:
-        return push("replay", self._first) if self._first else None
+    def _watch(self) -> Transition:
+        return push("replay", self._flown)
 
-    # The picture
-
-    def _draw_chosen(self, canvas: Canvas) -> None:
-        """Draw the chosen day, and the calendar."""
-        if self.chosen is None:
-            return
-        canvas.text(self._name(self.chosen), (_LEFT, 190), size=TITLE + 6, weight="light")
-        attempt = self._attempt(self.chosen)
-        told = attempt.line if attempt else texts.DAYS_ASKS if self.chosen == self._today else texts.DAYS_MISSED_LINE
-        y = draw_wrapped(canvas, told, (_LEFT, 224), _WIDTH, size=TEXT, leading=22)
-        if self._beside_ghost:
-            draw_wrapped(canvas, texts.DAYS_BESIDE, (_LEFT, y + 4), _WIDTH, size=SMALL, colour=MUTE, leading=19)
-        self._draw_calendar(canvas)
-
-    def _draw_calendar(self, canvas: Canvas) -> None:
+    def _draw_weeks(self, canvas: Canvas, box: pygame.FRect) -> None:
         """Draw the last weeks, Monday first: a disc for a landing, a ring for another end, a speck for none."""
-        left, top = _CALENDAR
-        canvas.text(texts.DAYS_WEEKS, (_LEFT, top - 34), size=LABEL, weight="medium", colour=MUTE)
-        for column, word in enumerate(texts.DAYS_WEEKDAYS):
-            canvas.text(word, (left + _CELL[0] * column, top - 14), size=LABEL, colour=MUTE, align="centre")
         first = self._today - _DAY * (self._today.weekday() + 7 * (_WEEKS - 1))
+        for column, word in enumerate(texts.DAYS_WEEKDAYS):
+            spot = (box.left + _CELL[0] * (column + 0.3), box.top + LABEL)
+            canvas.text(word, spot, size=LABEL, colour=MUTE, align="centre")
         for number in range((self._today - first).days + 1):
             day, (row, column) = first + _DAY * number, divmod(number, 7)
-            spot = (left + _CELL[0] * column, top + _CELL[1] * row + 4)
+            spot = (box.left + _CELL[0] * (column + 0.3), box.top + _CELL[1] * (row + 1.1))
             attempt = self._attempt(day)
             if attempt is None:
                 canvas.dot(spot, 2, FAINT)
@@ -147,4 +150,4 @@ class DaysScene(ListScene[date]):
             else:
                 canvas.outline((spot[0] - 6, spot[1] - 6, 12, 12), 6, HUMAN)
             if day == self.chosen:
-                canvas.line((spot[0] - 8, spot[1] + 12), (spot[0] + 8, spot[1] + 12), INK)
+                canvas.line((spot[0] - 8, spot[1] + 11), (spot[0] + 8, spot[1] + 11), INK)

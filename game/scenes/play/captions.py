@@ -33,14 +33,12 @@ def title(flight: Flight, challenge: Challenge | None, network: Network, hands: 
     return texts.THREE_PADS if flight.recording.pads > 1 else texts.FREE_FLIGHT, flown
 
 
-def opening(flight: Flight, challenge: Challenge | None, *, begun: bool, stuck: bool, check: bool) -> str:
+def opening(flight: Flight, challenge: Challenge | None, *, begun: bool, stuck: bool) -> str:
     """Return the words over a craft that waits: for the first touch, for the next one, or until all is let go."""
     if begun:
         return texts.TUTORIAL_LET_GO if stuck else texts.WAITS_AGAIN
     if challenge:
         return challenge.opening
-    if check:
-        return texts.CHECK_BEGIN
     return texts.BEGIN if rung_of(flight) is None else texts.LADDER_BEGIN
 
 

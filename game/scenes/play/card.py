@@ -105,9 +105,6 @@ class ShownCard:
             small.pair(words, figure, INK)
             rows.y = small.y
         self._write_share(rows)
-        for words in card.growth:
-            _small(rows, words, HUMAN)
-            rows.gap(4)
         if card.rung is not None and card.climb:
             beside = replace(rows, left=rows.left + LADDER_WIDTH + 8, width=rows.width - LADDER_WIDTH - 8)
             beside = beside.in_style(SMALL)

@@ -20,7 +20,6 @@ from game.flight.flight import Flight
 from game.flight.handicap import OWN
 from game.flight.outcomes import OutcomeCard, outcome_card
 from game.flight.rescues import Rescues
-from game.input.controls import Command, translate
 from game.panels.landings import Landings
 from game.panels.readouts import Lamp, draw_arrow
 from game.scenes.play.copilot_panel import CopilotPanel
@@ -72,13 +71,8 @@ class Cockpit:
         return self._flight.shares and not self.credit.alone
 
     def take(self, event: pygame.event.Event, boxes: dict[str, pygame.FRect]) -> bool:
-        """Choose the help, or switch the co-pilot's mode; return whether the event meant that."""
-        if not self.helps:
-            return False
-        if translate(event) is Command.MODE:
-            self._settings.copilot = MODES[1 - MODES.index(self._settings.copilot)]
-            return True
-        return self.help_words.take(event, boxes)
+        """Choose the help; return whether the event meant that."""
+        return self.helps and self.help_words.take(event, boxes)
 
     @property
     def lacks(self) -> str:
@@ -139,12 +133,9 @@ class Cockpit:
         return self.copilot_panel.box(canvas)
 
     def draw_beside(self, canvas: Canvas, view: View, pose: Doubles, clear: ClearArea) -> None:
-        """Draw beside the craft what the network did not fire, and the wind."""
-        if self._flight.over:
-            return
-        self.overrides.draw(canvas, view, pose)
+        """Draw the wind beside the craft."""
         push = wind(self._flight.env)
-        if abs(push) >= _CALM:
+        if abs(push) >= _CALM and not self._flight.over:
             _draw_wind(canvas, view, pose, push, clear)
 
     def lamp(self) -> Lamp:

@@ -22,6 +22,7 @@ from game.panels.landings import Landing, Landings, RecentLandings, draw_landing
 from game.panels.q_values import HEIGHT, QValues, decision_words, draw_q_values
 from game.panels.readouts import draw_share
 from game.scenes.play.guardian_words import Why, why_saved
+from game.ui.listing import shortened
 
 if TYPE_CHECKING:
     from ai.copilot.copilot import SharedDecision
@@ -108,14 +109,17 @@ class CopilotPanel:
         top = max(0.0, min(_TOP, view.bottom - high - 90))
         return pygame.FRect(view.right - side - width, top, width, high)
 
-    def draw(self, canvas: Canvas, share: float) -> None:
-        """Draw the panel; `share` is the person's share of the flight so far."""
+    def draw(self, canvas: Canvas, share: float, network: str = "") -> None:
+        """Draw the panel; `share` is the person's share of the flight so far, and `network` the name of the network."""
         pads = self._likely if len(self._likely) > 1 else []
         box = self.box(canvas)
         left, top = box.left + _LEFT, box.top
         canvas.panel(box)
         looks = isinstance(self.values, Landings)
-        canvas.text(texts.LANDINGS_TITLE if looks else texts.DECISION_TITLE, (left, top + 34), room=_WIDTH)
+        title = canvas.text(texts.LANDINGS_TITLE if looks else texts.DECISION_TITLE, (left, top + 34), room=_WIDTH - 60)
+        room = left + _WIDTH - title.right - 12
+        name = shortened(canvas, network, SMALL, room)
+        canvas.text(name, (left + _WIDTH, top + 34), size=SMALL, colour=NET, align="right", room=room)
         if isinstance(self.values, Landings):
             draw_landings(canvas, self.values, left, top + _VALUES, _WIDTH)
         elif self.values is not None:

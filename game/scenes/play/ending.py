@@ -11,7 +11,6 @@ from game.core.pace import SlowMotion
 from game.flight import outcomes
 from game.flight.flight import Flight
 from game.flight.last_chance import LastChance
-from game.flight.skill import Skill
 from game.scenes.play.card import PLACES, ShownCard
 from game.scenes.play.challenge import Challenge
 from game.scenes.play.cockpit import Cockpit
@@ -80,14 +79,14 @@ class FlightEnding:
         self,
         cockpit: Cockpit,
         challenge: Challenge | None,
-        skill: Skill,
+        best: int,
         scenery: Scenery,
         last_chance: LastChance | None = None,
     ) -> None:
-        """Make the outcome card; the best score to compare with is that of free flights."""
+        """Make the outcome card; `best` is the score to beat in free flights."""
         self._whole = scenery.shot_of(cockpit.track.path)
         unranked = rung_of(self._flight) is not None or (challenge and challenge.name)
-        card = cockpit.card(0 if unranked else skill.best, last_chance)
+        card = cockpit.card(0 if unranked else best, last_chance)
         card = replace(card, place=cockpit.track.beside(PLACES, self._whole.view(1.0)))
         self.card = challenge.card(card, self._flight, cockpit.credit) if challenge else card
 

@@ -16,18 +16,18 @@ from game.core import texts
 from game.core.pace import SlowMotion
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import VIEW_SIZE
+from game.flight import networks
 from game.flight.assists import eased
 from game.flight.credit import Credit
 from game.flight.difficulty import Difficulty
 from game.flight.flight import Flight, StickHolder
-from game.flight.flight_file import Record
+from game.flight.flight_file import Entry, Record
 from game.flight.handicap import OWN
 from game.flight.last_chance import LastChance
 from game.flight.logbook import Records
 from game.flight.networks import Network, Policy
 from game.flight.six_futures import SixFutures
-from game.flight.skill import Skill
-from game.panels.readouts import COLUMNS, PILOT, READOUTS, Readout, at_touch, draw_readouts, flight_readouts
+from game.panels.readouts import GAUGES, PILOT, READOUTS, at_touch, draw_flight, flight_readouts
 from game.scenes.play import captions
 from game.scenes.play.challenge import Challenge, DrawnFlight
 from game.scenes.play.cockpit import Cockpit
@@ -38,6 +38,7 @@ from game.scenes.play.ladder import rung_of
 from game.scenes.play.sentence import sentence, surroundings
 from game.ui.hints import Hint, flight_hints
 from game.world.camera import ClearArea, View
+from game.world.landscape.backdrop import EARTH, EARTH_RADIUS
 from game.world.landscape.ground import begin_hills
 from game.world.path_preview import PathPreview, draw_futures
 from game.world.scenery import Scenery
@@ -49,6 +50,7 @@ if TYPE_CHECKING:
 _CRAFT: Final = 1.5  # metres from the middle of a craft to its ends
 _WAITING: Final = 196.0  # points at the head for the words over a craft that waits, before they are laid out
 _BELOW_HEAD: Final = 44.0  # and between the words and the craft
+_LARGE: Final = 1.15  # size of words beside that on a page from which they reach far across
 _SEARCH: Final = 6  # decisions in a frame, in the search for what would have saved a lost flight
 
 
@@ -58,12 +60,11 @@ class FlownFlight:
     Args:
         context: the shared services.
         seed: seed of the start.
-        policy: the network to hand over to, if there is one; unused where the player must fly alone.
+        network: the one to hand over to, if it can be read; unused where the player must fly alone.
         challenge: its start and rules; None for a free flight.
         pads: number of landing pads of a free flight.
         spawn: kind of start of a free flight.
         hands: handicap of a free flight, a name of `game.flight.handicap.HANDS`.
-        check: whether it is a check flight.
 
     Attributes:
         flight: the flight itself.
@@ -84,26 +85,25 @@ class FlownFlight:
         self,
         context: Context,
         seed: int,
-        policy: Policy | None,
+        network: Network,
         challenge: Challenge | None = None,
         *,
         pads: int = 1,
         spawn: str = "random",
         hands: str = OWN,
-        check: bool = False,
     ) -> None:
         self._context, self._settings = context, context.settings
         self.challenge, self.hands = challenge, hands
         self.waiting = self._held_before = True
-        self._written, self._age = False, 0
+        self._age = 0
         self.record: Record | None = None
         self.begun = False
         self._was_over = False  # whether the flight was over before its latest step
-        alone = check or (challenge is not None and challenge.alone)
-        self._policy = None if alone else policy
+        alone = challenge is not None and challenge.alone
+        self._network, self._policy = network, None if alone else network.policy
         self.flight = self._begin(seed, spawn, pads)
         self.difficulty = Difficulty(self._settings, self.flight, free=not challenge)
-        self.credit = Credit(self.flight, self.difficulty, challenge, hands, check=check)
+        self.credit = Credit(self.flight, self.difficulty, challenge, hands)
         self.helped = challenge.dial(self._settings) if challenge else self._settings
         self.cockpit = Cockpit(self.flight, self.helped, self.credit)
         self._last_chance: LastChance | None = None
@@ -111,7 +111,7 @@ class FlownFlight:
         self._looked = -1  # step of the moment whose six futures are known, or are being flown
         self.ghost = challenge.ghost(seed, self._policy) if challenge else None
         calm = self._settings.reduced_motion
-        self.clear = ClearArea()
+        self.clear, self._earth = ClearArea(), EARTH
         self.scenery = Scenery(self.flight, calm, ClearArea(head=_WAITING))
         self.pace = SlowMotion()
         self._heard = FlightSound(context.sound, self.flight.env, self.pace)
@@ -167,11 +167,12 @@ class FlownFlight:
         if calm:
             self.pace.hurry()
 
-    def change_network(self, policy: Policy | None) -> None:
+    def change_network(self, network: Network) -> None:
         """Change the network to hand over to, unless the player must fly alone."""
+        self._network = network
         if not self.credit.alone:
-            self._policy = policy
-            self.flight.change_network(policy)
+            self._policy = network.policy
+            self.flight.change_network(network.policy)
             self.path_preview.ask(self._guide)
 
     # Time
@@ -257,18 +258,20 @@ class FlownFlight:
             rows.append((texts.CARD_NETWORK, texts.SCORE.format(count=score) if score else texts.CARD_NO_LANDING))
         return tuple(rows)
 
-    def make_card(self, skill: Skill) -> None:
-        """Make the outcome card of the finished flight."""
+    def make_card(self, best: int) -> None:
+        """Make the outcome card of the finished flight; `best` is the score to beat in free flights."""
         chance = self._last_chance if self.credit.helped else None
         while chance and not (chance.known or self.flight.outcome is Outcome.LANDED):
             chance.look(_SEARCH)
-        self.ending.make_card(self.cockpit, self.challenge, skill, self.scenery, chance)
+        self.ending.make_card(self.cockpit, self.challenge, best, self.scenery, chance)
 
-    def write_down(self, records: Records, skill: Skill, network: Network) -> None:
-        """Record the finished flight, once; save it as a demonstration if wished, and report failures."""
-        if self._written:
-            return
-        self._written = True
+    def write_down(self, records: Records) -> Entry | None:
+        """Record the finished flight, and return its line; None if that was done before.
+
+        It is saved as a demonstration if wished, and failures are reported.
+        """
+        if self.record:
+            return None
         context, credit, challenge = self._context, self.credit, self.challenge
         told = (
             ""
@@ -280,7 +283,7 @@ class FlownFlight:
             time.time(),
             alone=credit.counts,
             barred=credit.bar,
-            network=network.name if network.policy else "",
+            network=self._network.name if self._network.policy else "",
             course=challenge.name if challenge else "",
             medal=credit.medal,
             pace=credit.pace,
@@ -290,9 +293,9 @@ class FlownFlight:
         x, y, angle = self.flight.poses.now[0].tolist()
         self.record = Record(self.flight.recording, entry, (x, y, angle))
         told = told or (challenge.written(entry) if challenge else "")
-        skill.add(entry)
         if told or records.problem:
             context.note(told or records.problem)
+        return entry
 
     def _note_chance(self) -> None:
         """Keep moments of a helped flight, to tell what would have saved it if it is lost."""
@@ -315,11 +318,8 @@ class FlownFlight:
 
     # The picture
 
-    def head(self, hints: Sequence[Hint], network: Network, *, whole: bool) -> Head:
-        """Return the words at the head: all of them while there is time to read, which `whole` says, or the sentence.
-
-        `network` is the one whose name is told.
-        """
+    def head(self, hints: Sequence[Hint], *, whole: bool) -> Head:
+        """Return the words at the head: all while there is time to read, which `whole` says, or the sentence."""
         flight, challenge, controls, cockpit = self.flight, self.challenge, self._context.controls, self.cockpit
         waits, stuck = self.waiting and not flight.over, self.stuck
         told = challenge.sentence(flight, controls, waiting=waits, stuck=stuck) if challenge else None
@@ -330,7 +330,7 @@ class FlownFlight:
                 words, warns = words
             shown = helps if cockpit.help_words.shown else None
             return Head(words, warns, cockpit.lamp(), hints=hints, help=shown, means=cockpit.means)
-        caption, name = captions.title(flight, challenge, network, self.hands, whole=whole)
+        caption, name = captions.title(flight, challenge, self._network, self.hands, whole=whole)
         goal = challenge.goal if challenge else ""
         without = challenge is not None and challenge.kept and helps is not None and self.helped.assist == 0
         apart = texts.HELP_NOT_HERE if without and self._settings.assist > 0 and not self.begun else ""
@@ -346,7 +346,7 @@ class FlownFlight:
             return Head(hints=hints) if self.ending.shown else replace(head, sentence=told or "")
         if not waits:
             return replace(head, sentence=self.credit.header, lamp=cockpit.lamp())
-        opening = captions.opening(flight, challenge, begun=self.begun, stuck=stuck, check=self.credit.check)
+        opening = captions.opening(flight, challenge, begun=self.begun, stuck=stuck)
         keys = flight_hints(controls) if opening and told is None else ()
         paths = (
             path_words(texts.PATH_YOURS, texts.PATH_NETWORK if self.path_preview.asks else "")
@@ -362,6 +362,9 @@ class FlownFlight:
         """Keep the flight clear of its words, and of what the network thinks."""
         self.clear = self._clear_of(head)
         if not self.begun:
+            reading = self._context.reading()
+            if reading.scale > _LARGE * reading.whole.scale:  # the words reach over the Earth's usual place
+                self._earth = EARTH[0], max(EARTH[1], self.clear.head - _BELOW_HEAD + 1.3 * EARTH_RADIUS)
             self.scenery.clear = self.clear
             self.scenery.cut()
 
@@ -392,7 +395,7 @@ class FlownFlight:
         world, flight = canvas.whole, self.flight
         alpha = self.pace.between(alpha)
         view = self.scenery.view(world.scale, alpha).filling(world)
-        self.scenery.draw_land(world, alpha)
+        self.scenery.draw_land(world, alpha, self._earth)
         if self.challenge and self.challenge.ahead:
             begin_hills(self.challenge.ahead, view)
         if self.ghost:
@@ -412,22 +415,16 @@ class FlownFlight:
         if self.challenge:
             self.challenge.draw(world, view, flight, self.moment(alpha))
         if low * canvas.scale < world.surface.get_height() - READOUTS * world.scale:
-            self._draw_readouts(world, whole=whole)
+            draw_flight(world, self._readouts, self._shown(whole=whole))
         head.write(canvas)
         if thinks and not self._behind_panel(canvas, view, pose):
-            self.cockpit.copilot_panel.draw(canvas, flight.share)
+            self.cockpit.copilot_panel.draw(canvas, flight.share, networks.word(self._network.name))
 
-    def _draw_readouts(self, canvas: Canvas, *, whole: bool) -> None:
-        """Draw the read-outs: the four that a pilot needs, and what is left of a tank that is small; or all."""
+    def _shown(self, *, whole: bool) -> list[str]:
+        """Name the read-outs: the four that a pilot needs, and what is left of a tank that is small; or all."""
         if whole:
-            flown = self._readouts if self.flight.recording.shares else self._without_thrust()
-            draw_readouts(canvas, flown, COLUMNS if len(flown) == len(COLUMNS) else (*COLUMNS[:PILOT], *COLUMNS[-2:]))
-            return
-        fuel = [self._readouts[-2]] if self.flight.env.conditions.tank < math.inf else []
-        draw_readouts(canvas, [*self._readouts[:PILOT], *fuel], (*COLUMNS[:PILOT], COLUMNS[-1]))
-
-    def _without_thrust(self) -> list[Readout]:
-        return [*self._readouts[:PILOT], *self._readouts[-2:]]
+            return [name for name in GAUGES if name != "thrust" or self.flight.recording.shares]
+        return [*PILOT, *(["fuel"] if self.flight.env.conditions.tank < math.inf else [])]
 
     def _behind_panel(self, canvas: Canvas, view: View, pose: Doubles) -> bool:
         """Whether the craft is behind the panel, which happens only where the camera can't keep it clear."""

@@ -72,11 +72,10 @@ class HelpWords:
         return True
 
     def _step(self, by: int) -> None:
-        """Go to the next word that helps more, or less."""
-        now, mine = self._settings.assist, list(HELP.values())
-        beyond = [assist for assist in mine if (assist > now if by > 0 else assist < now)]
-        if beyond or word_of(self._settings) == OTHER:
-            self._choose(list(HELP)[mine.index(beyond[0] if by > 0 else beyond[-1]) if beyond else -1])
+        """Choose the nearest word that helps more, or less."""
+        beyond = [word for word, assist in HELP.items() if by * (assist - self._settings.assist) > 0]
+        if beyond:
+            self._choose(beyond[0] if by > 0 else beyond[-1])
 
     def _choose(self, word: str) -> None:
         choose(self._settings, word)

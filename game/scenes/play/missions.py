@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from game.ui.panel import Panel
 
 _LEAST: Final = 320.0  # points of a column
-_PITCH, _AROUND = 30.0, 200.0  # points of a row of the list, and above and below the list
+_PITCH, _AROUND = 30.0, 100.0  # points of a row of the list, and above and below the list
 _COLUMNS: Final = (88.0, 0.0)  # from the right end of the list: where medals and fuel end
 _RING: Final = 14.0  # from a ring to its words
 _LAMP, _LAMPS = 13.0, 62.0  # from one lamp of a medal to the next, and from the last to the end of its column
@@ -82,15 +82,10 @@ class MissionsScene(PanelScene):
         panel.aside(self._line)
         panel.gap(8)
         left, right = panel.beside((5, 4), _LEAST)
-        self._shown = self._most
-        first = self._list.first if self._list else 0
-        self._list = left.widget(
-            ListRow(
-                self.form.manager, [self._row(name) for name in _NAMES], lambda _: self._fly(), most=self._most,
-                index=self._index, on_choose=self._choose, columns=_COLUMNS, pitch=_PITCH,
-            )
+        self._list = left.listing(
+            [self._row(name) for name in _NAMES], lambda _: self._fly(), around=_AROUND, index=self._index,
+            first=self._list.first if self._list else 0, on_choose=self._choose, columns=_COLUMNS, pitch=_PITCH,
         )  # fmt: skip
-        self._list.first = first
         right.title(lambda: texts.MISSIONS[self.chosen][0], 28.0)
         right.text(lambda: texts.MISSIONS[self.chosen][1])
         right.gap(10)
@@ -117,18 +112,6 @@ class MissionsScene(PanelScene):
             small = cursor.in_style(SMALL, HUMAN)
             small.text(words)
             cursor.y = small.y
-
-    @property
-    def _most(self) -> int:
-        """Number of rows of the list that a window has room for."""
-        return min(len(_NAMES), max(4, int((self.context.reading().view.height - _AROUND) / _PITCH)))
-
-    def update(self) -> Transition | None:
-        """Animate the rows, and follow a change of the window."""
-        outcome = super().update()
-        if self._shown != self._most:
-            self.build()
-        return outcome
 
     def _choose(self, index: int) -> None:
         self._index = index

@@ -129,7 +129,7 @@ class FlightPauseScene(PauseScene):
 
     def hint_rows(self, canvas: Canvas) -> Sequence[HintRow]:
         """Return the hints above the read-outs."""
-        low = (READOUTS + 12) * canvas.whole.scale / canvas.scale
+        low = READOUTS * canvas.whole.scale / canvas.scale + 20
         left, _ = self._between(canvas)
         return hint_lines(self.hints, canvas, (left, canvas.view.bottom - low), self.most)
 

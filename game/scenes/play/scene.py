@@ -11,21 +11,19 @@ from typing import Final
 import pygame
 
 from ai.flights.verification import landing_score
-from ai.lander.missions import MISSIONS
 from game.core import texts
 from game.core.scene import Pop, Push, Scene, Transition, push
 from game.drawing.canvas import Canvas
-from game.flight import fading, networks
-from game.flight.assists import eased, sets_apart
+from game.flight import networks
+from game.flight.assists import eased
 from game.flight.credit import Credit
 from game.flight.flight import Flight, StickHolder
 from game.flight.handicap import HANDS, OWN
-from game.flight.logbook import Records
+from game.flight.logbook import Records, best_alone
 from game.flight.outcomes import OutcomeCard
-from game.flight.skill import Skill
 from game.input.controls import Command, translate
 from game.panels.explained import Explained
-from game.scenes.play import captions, growth
+from game.scenes.play import captions
 from game.scenes.play.card import ShownCard
 from game.scenes.play.challenge import Challenge, Duel
 from game.scenes.play.ending import FlightEnding
@@ -96,7 +94,7 @@ class PlayScene(Scene):
             self.challenge = Tutorial()
         self._records = Records(context.user_dir)
         entries = self._records.entries()
-        self._skill, self._ladder = Skill(entries), Ladder(context.settings, entries)
+        self._best, self._ladder = best_alone(entries), Ladder(context.settings, entries)
         self._offer = RescueOffer()
         self._landed_before = any(entry.landed and not entry.bar for entry in entries)
         self._best_here: dict[tuple[int, str, int], int] = {}  # scores of one's own landings by their starts
@@ -108,11 +106,10 @@ class PlayScene(Scene):
 
     def enter(self) -> None:
         """Return to the paused flight, which hangs until a touch; choices made meanwhile may require a new one."""
-        self._follow_help()
         self.flown.set_calm(self._settings.reduced_motion)
         if self._elsewhere != self._loaded_for:
             self._load_network()
-            self.flown.change_network(self.network.policy)
+            self.flown.change_network(self.network)
         self.flown.hang()
         challenge = self.challenge
         eases = (not challenge or challenge.eases) and eased(self._settings) != self.flight.recording.easing
@@ -142,7 +139,6 @@ class PlayScene(Scene):
             self.flown.hang()
         if self.flown.cockpit.take(event, self._head.help_boxes(self.context.reading())):
             self._name_what_lacks()
-            self._follow_help()
             return None
         self._stick.take(event)
         if translate(event) is Command.UNPLUGGED and not (self.waiting or self.flight.over):
@@ -152,11 +148,11 @@ class PlayScene(Scene):
 
     def actions(self) -> Table:
         """What each key does at this moment: those of the card, once it is seen, and those of the flight."""
-        explain = Action(pygame.K_F1, self.show_thinking)
+        explain = [Action(key, self.show_thinking) for key in (pygame.K_F1, Command.MODE)]
         if self.ending.shown == 0:
-            return [*self._flight_actions(), Action(Command.CONFIRM, self.ending.hurry), explain]
+            return [*self._flight_actions(), Action(Command.CONFIRM, self.ending.hurry), *explain]
         space = [Action(pygame.K_SPACE, self._go_on)] if self.ending.shown >= 1 else []
-        return [*self._card_actions(), *self._flight_actions(), Action(Command.CONFIRM, self._go_on), *space, explain]
+        return [*self._card_actions(), *self._flight_actions(), Action(Command.CONFIRM, self._go_on), *space, *explain]
 
     def show_thinking(self) -> None:
         """Show what the network thinks, or no longer."""
@@ -178,7 +174,7 @@ class PlayScene(Scene):
         """The words at the head."""
         named = self._settings.show_hints or self._controls.mouse_in_use  # for the mouse, they are what it presses
         hints = hints_of(self._flight_actions(), self._controls) if named else []
-        return self.flown.head(hints, self.network, whole=False)
+        return self.flown.head(hints, whole=False)
 
     @property
     def _runs(self) -> dict[Command, Run]:
@@ -206,16 +202,7 @@ class PlayScene(Scene):
     def _flight_actions(self) -> list[Action]:
         runs, calm = self._runs, self.waiting or self.flight.over
         named = runs.keys() if calm else captions.IN_FLIGHT if self._controls.mouse_in_use else ()
-        actions = captions.flight_actions(runs, self.flight, self.challenge, leaves=self._leaves, named=named)
-        if not (self.credit.check and self.waiting):
-            return actions
-        skip = Action(Command.NEXT, self._skip_check, texts.CHECK_SKIP)
-        return [skip, *(action for action in actions if action.key is not Command.NEXT)]
-
-    def _skip_check(self) -> None:
-        """Fly the same start with help, and be asked again only after as many flights as usual."""
-        self._skill.skip_check()
-        self.retry()
+        return captions.flight_actions(runs, self.flight, self.challenge, leaves=self._leaves, named=named)
 
     def _card_actions(self) -> list[Action]:
         card = self.ending.card
@@ -287,7 +274,7 @@ class PlayScene(Scene):
 
     def titles(self) -> Head:
         """Return the words at the head while it is paused."""
-        return self.flown.head((), self.network, whole=True)
+        return self.flown.head((), whole=True)
 
     # The flight
 
@@ -311,27 +298,16 @@ class PlayScene(Scene):
         """Whether the craft still hangs until the pilot's first touch."""
         return self.flown.waiting
 
-    def _follow_help(self) -> None:
-        """Switch fading off once the player has chosen the help, and say so."""
-        if fading.follow_hand(self._settings):
-            self.context.apply_settings()
-            self.context.note(texts.FADE_ENDS)
-
     def _begin(self, seed: int, spawn: str = "") -> None:
         """Begin a flight, from the kind of start that `spawn` names or, if empty, from the player's rung."""
         self._stick.begin()
         if self._elsewhere != self._loaded_for:
             self._load_network()
         if self.challenge:
-            self.flown = FlownFlight(self.context, seed, self.network.policy, self.challenge)
+            self.flown = FlownFlight(self.context, seed, self.network, self.challenge)
             return
         self._begun_with = pads, hands, rung = self._chosen()
-        checks = self._settings.check_flights or self._settings.fade
-        check = checks and self._skill.check_due and not self._eased
-        hands = OWN if check else hands
-        self.flown = FlownFlight(
-            self.context, seed, self.network.policy, pads=pads, spawn=spawn or rung, hands=hands, check=check
-        )
+        self.flown = FlownFlight(self.context, seed, self.network, pads=pads, spawn=spawn or rung, hands=hands)
 
     def _follow_flight(self) -> None:
         """Save what a step has brought the player in a challenge; after the end, go on to the card or the next try."""
@@ -343,15 +319,18 @@ class PlayScene(Scene):
         ending.follow()
         if challenge and challenge.again():
             if challenge.kept:
-                self.flown.write_down(self._records, self._skill, self.network)
+                self._write_down()
             if ending.due:
                 self.retry()
         elif ending.card is None:
-            self.flown.make_card(self._skill)
+            self.flown.make_card(self._best)
             self._follow_end()
             if challenge is None or challenge.kept:
-                self.flown.write_down(self._records, self._skill, self.network)
-                self._grow()
+                self._write_down()
+
+    def _write_down(self) -> None:
+        if entry := self.flown.write_down(self._records):
+            self._best = max(self._best, best_alone([entry]))
 
     def _follow_end(self) -> None:
         """Let the ladder and the offer of help answer the ending, on its card."""
@@ -384,26 +363,10 @@ class PlayScene(Scene):
         self.context.apply_settings()
         self._go_on()
 
-    def _grow(self) -> None:
-        """Let help fade after a free flight, and tell on the card what the flight has shown."""
-        card = self.ending.card
-        if self.challenge or card is None:
-            return
-        before = self._settings.assist
-        lines = growth.follow(self._skill.change, self._settings, check=self.credit.check, landed=card.good)
-        self.ending.card = replace(card, growth=lines)
-        if before != self._settings.assist:
-            self.context.apply_settings()
-
     def _chosen(self) -> tuple[int, str, str]:
         """Return the number of pads, the handicap and the kind of start, as chosen by the player."""
         hands, three = self._settings.hands, self._settings.three_pads
         return 3 if three else 1, hands if hands in HANDS else OWN, "random" if three else self._ladder.spawn
-
-    @property
-    def _eased(self) -> bool:
-        """Whether gravity is changed or assists are chosen; such flights do not count towards the player's skill."""
-        return self._settings.gravity != 1 or sets_apart(self._settings)
 
     @property
     def _elsewhere(self) -> bool:
@@ -510,12 +473,8 @@ class PlayScene(Scene):
 
     def _choose(self) -> Transition | None:
         """Open the choices for the next flights; in a challenge, few can be changed."""
-        challenge = self.challenge
-        curve = challenge is None or challenge.name in MISSIONS
-        return push(
-            "choices", self, self._skill, begun=self.flown.begun, challenge=challenge is not None, curve=curve,
-            helped=self.flown.helped,
-        )  # fmt: skip
+        begun, challenge = self.flown.begun, self.challenge is not None
+        return push("choices", self, begun=begun, challenge=challenge, helped=self.flown.helped)
 
     def _open_networks(self) -> Transition:
         return push("runs", choose=self.choose_network)
@@ -525,4 +484,4 @@ class PlayScene(Scene):
         self._settings.model = name
         self.context.apply_settings()
         self._load_network()
-        self.flown.change_network(self.network.policy)
+        self.flown.change_network(self.network)

@@ -18,7 +18,6 @@ from ai.agent.storage import write_agent
 from ai.cli.command_line import configured
 from ai.training.config import PRESETS
 from ai.training.loop import Training
-from ai.training.state import StateWriter
 from ai.training.tasks import VALIDATION_SEED, Evaluation, LanderTask
 from main import main
 
@@ -114,85 +113,6 @@ def test_whoever_ends_a_run_by_a_signal_keeps_the_work(tmp_path, name, code, cap
     assert described["best"]["episodes"] == 4, "what is kept is measured"
     assert (tmp_path / "run" / "last" / "config.json").exists()
     assert signal.getsignal(getattr(signal, name)) == before
-
-
-TELLING = """
-import sys
-from ai.training.state import StateWriter
-from ai.training.loop import Training
-from main import main
-
-def first(training, advance=Training.advance):
-    Training.advance = advance
-    print("under way", flush=True)
-    return advance(training)
-
-Training.advance = first
-sys.exit(main(sys.argv[1:]))
-"""
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(sys.platform == "win32", reason="signals")
-def test_a_request_to_end_reaches_a_process_and_its_work_is_kept(tmp_path):
-    arguments = ["train", "--seconds", "600", "--output", str(tmp_path / "run"), "--validation", "4", *SMALL]
-    process = subprocess.Popen(
-        [sys.executable, "-c", TELLING, *arguments], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
-    assert process.stdout is not None
-    assert process.stdout.readline() == "under way\n"
-    process.send_signal(signal.SIGTERM)
-    out, err = process.communicate(timeout=60)
-    assert process.returncode == 143, err
-    assert "kept in" in out
-    assert (tmp_path / "run" / "last" / "config.json").exists()
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("preset", ["modern", "classic"])
-def test_a_pause_past_a_checkpoint_changes_nothing_that_is_kept(tmp_path, monkeypatch, preset):
-    """Same seed, same network: when the clock asks for a checkpoint, that saves, and chooses nothing."""
-    changes = ["num_envs=8", "hidden=[8]", "batch_size=16", "learning_starts=32", "gradient_steps=1"]
-    monkeypatch.setattr(LanderTask, "evaluate_every", 320)
-    saves = []
-    written = StateWriter.write
-
-    def write(states, prepared):
-        saves.append(prepared.name)
-        written(states, prepared)
-
-    monkeypatch.setattr(StateWriter, "write", write)
-
-    def kept(name, decisions, pauses):
-        now, folder = [0.0], tmp_path / name
-        advance, begin = Training.advance, Training.__post_init__
-
-        def clocked(training):
-            begin(training)
-            training.clock = lambda: now[0]
-
-        def slow(training):
-            now[0] += 25.0 if training.agent.decisions in pauses else 0.001
-            return advance(training)
-
-        with monkeypatch.context() as patch:
-            patch.setattr(Training, "advance", slow)
-            patch.setattr(Training, "__post_init__", clocked)
-            arguments = ["train", "--preset", preset, "--decisions", str(decisions), "--validation", "6", "--seed", "4"]
-            assert main([*arguments, "--output", str(folder), *(f"--set={change}" for change in changes)]) == 0
-        files = {str(file.relative_to(folder)): file.read_bytes() for file in folder.rglob("*.npy")}
-        described = json.loads((folder / "training.json").read_text())
-        del described["seconds"]
-        return files, described
-
-    for decisions in (240, 800):  # before the first measurement, and after two
-        straight = kept(f"straight-{decisions}", decisions, ())
-        count = len(saves)
-        paused = kept(f"paused-{decisions}", decisions, (80, 160, 480))
-        assert len(saves) - count > count, "the pauses asked for checkpoints"
-        assert paused == straight
-        assert straight[1]["best"] is not None
-        saves.clear()
 
 
 def test_the_network_of_the_last_moment_stands_for_election_too(tmp_path, monkeypatch):
@@ -302,38 +222,10 @@ def test_numbers_that_run_away_on_a_bad_day_end_in_a_sentence(tmp_path, capsys, 
         assert json.loads((run / "training.json").read_text())["best"] is not None
 
 
-def test_a_gradient_that_is_not_finite_ends_the_run_with_the_reason_and_keeps_the_work(tmp_path, capsys, monkeypatch):
-    learn = DeepQAgent.learn
-
-    def blow_up(agent):
-        if agent.gradient_steps == 20:
-            agent.replay.transitions.reward[:] = np.inf
-        return learn(agent)
-
-    monkeypatch.setattr(DeepQAgent, "learn", blow_up)
-    with np.errstate(all="ignore"):
-        assert main(["train", "--decisions", "4000", "--output", str(tmp_path / "run"), *SMALL]) == 1
-    told = capsys.readouterr().err
-    assert "learning step 21" in told
-    assert "learning rate" in told
-    assert DeepQAgent.load(tmp_path / "run").gradient_steps == 20
-
-
 def test_weights_of_the_reward_that_are_not_named_stay_the_presets():
     for preset in PRESETS.values():
         changed = configured(preset, ['reward_weights={"time": -0.3}', 'weights={"feet": 2.0}'])
         assert changed.reward_weights == replace(preset.reward_weights, time=-0.3, feet=2.0)
-
-
-def test_an_unknown_part_of_the_reward_is_named_with_those_there_are(tmp_path, capsys):
-    where = ["--output", str(tmp_path / "run"), "--decisions", "1"]
-    for given, told in (
-        ('{"tim": 1}', "reward_weights has no 'tim', only distance, speed, alignment, tilt, feet, engine, switch"),
-        ('{"time": null}', "reward_weights.time is a finite number, not null"),
-        ("3", "reward_weights are numbers by name, of distance, "),
-    ):
-        assert main(["train", *where, "--set", f"reward_weights={given}"]) == 1
-        assert capsys.readouterr().err.startswith(told), given
 
 
 def test_an_earlier_run_is_replaced_only_by_who_says_so(tmp_path, capsys):

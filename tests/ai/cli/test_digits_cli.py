@@ -58,7 +58,6 @@ def test_train_resume_evaluate(tmp_path, capsys):
     assert described["changes"] == {"hidden": [16], "held_out": 100, "epochs": 3, "label_smoothing": 0.1}
     assert described["epochs"] == 3
     assert len(described["history"]) == 3
-    assert not (tmp_path / "run" / "last.npz").exists(), "there is nothing to go on with"
     assert main(["train-digits", "--resume", run]) == 1
     assert "finished" in capsys.readouterr().err
     assert main(["evaluate-digits", "--model", run, "--json"]) == 0
@@ -114,19 +113,6 @@ def test_what_is_put_into_a_run_meanwhile_is_kept_and_so_is_the_run(tmp_path, ca
     assert (tmp_path / "run" / "diary").read_text() == "dear"
     assert DigitClassifier.load(tmp_path / "run 2")
     assert "run 2" in capsys.readouterr().out
-
-
-@pytest.mark.usefixtures("few")
-@pytest.mark.parametrize("output", ["letters", "letters/dear.txt/run"])
-def test_a_folder_that_cannot_be_written_is_named_before_anything_is_learnt(tmp_path, capsys, monkeypatch, output):
-    (tmp_path / "letters").mkdir()
-    (tmp_path / "letters" / "dear.txt").write_text("you")
-    monkeypatch.delattr(DigitTraining, "advance")
-    options = ["--preset", "classic", "--epochs", "1", "--set", "held_out=100"]
-    assert main(["train-digits", *options, "--output", str(tmp_path / output)]) == 1
-    assert "letters" in capsys.readouterr().err
-    assert (tmp_path / "letters" / "dear.txt").read_text() == "you"
-    assert [path.name for path in tmp_path.iterdir()] == ["letters"]
 
 
 @pytest.mark.slow

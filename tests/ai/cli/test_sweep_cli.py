@@ -37,9 +37,6 @@ def test_without_the_extra_the_command_says_what_to_install(tmp_path, capsys, mo
     said = refused(capsys, "--user-dir", tmp_path, "sweep", "--study", "new")
     assert 'pip install -e ".[sweep]"' in said
     assert not (tmp_path / "studies").exists()
-    model = shown_study(tmp_path / "s").run_folder(Study.load(tmp_path / "s").best(), 0)
-    said = refused(capsys, "evaluate", "--model", model, "--episodes", 10, "--workers", 2)
-    assert 'pip install -e ".[sweep]"' in said
 
 
 @pytest.mark.skipif(find_spec("ray") is None, reason="needs the extra: sweep")
@@ -57,7 +54,6 @@ def test_without_the_extra_the_command_says_what_to_install(tmp_path, capsys, mo
         (["--set", "n_step=many"], "n_step"),
         (["--epochs", "3"], "--digits"),
         (["--digits", "--env", "CartPole-v1"], "--env"),
-        (["--judge", "best"], "--judge"),
         (["--resume"], "no study"),
     ],
 )

@@ -70,21 +70,12 @@ def one_pixel_off(path):
 
 DAMAGE = {
     "missing": lambda path: None,
-    "empty": lambda path: path.write_bytes(b""),
     "cut short": lambda path: path.write_bytes((FOLDER / "test.npz").read_bytes()[:5000]),
-    "text": lambda path: path.write_text("not an archive"),
-    "flipped bytes": lambda path: path.write_bytes((FOLDER / "test.npz").read_bytes().replace(b"\x55", b"\x54")),
     "another array": lambda path: np.savez(path, images=np.zeros(3), labels=np.zeros(3)),
     "no labels": lambda path: np.savez(path, images=np.zeros(3)),
-    "a bare array": lambda path: path.write_bytes(bare_array(path)),
     "one pixel off": one_pixel_off,
     "a folder": lambda path: path.mkdir(),
 }
-
-
-def bare_array(path):
-    np.save(path.with_suffix(".npy"), np.zeros(3))
-    return path.with_suffix(".npy").read_bytes()
 
 
 @pytest.mark.parametrize("damage", DAMAGE)

@@ -1,5 +1,7 @@
 """Why not another digit: what is said of ink and of units is what the network itself answers."""
 
+from itertools import product
+
 import numpy as np
 import pytest
 
@@ -36,17 +38,14 @@ def test_ink_that_is_named_really_raises_the_score_when_it_is_taken_away_or_put_
     for image in images[[0, 3, 8, 61]]:
         contrast = measured(classifier, image)
         assert contrast.answer == int(classifier.predict(image).argmax())
-        for asked in set(range(10)) - {contrast.answer}:
-            for ink in (0, 1):
-                change = contrast.best(asked, ink)
-                if change is None:
-                    continue
+        before = scores(classifier, image)
+        for asked, ink in product(set(range(10)) - {contrast.answer}, (0, 1)):
+            if change := contrast.best(asked, ink):
                 named += 1
                 other = contrast.changed(change.row, change.column, ink)
-                before, after = scores(classifier, image), scores(classifier, other)
+                after = scores(classifier, other)
                 assert after[asked] > before[asked]
-                assert change.before == pytest.approx(before[asked], abs=1e-4)
-                assert change.after == pytest.approx(after[asked], abs=1e-4)
+                assert (change.before, change.after) == pytest.approx((before[asked], after[asked]), abs=1e-4)
                 assert (other != image).sum() <= 9
                 assert other.sum() > image.sum() if ink else other.sum() < image.sum()
     assert named > 40
@@ -59,11 +58,10 @@ def test_no_other_square_would_do_more(classifier):
     best = contrast.best(asked, 0)
     gain = best.after - best.before - contrast.taken[best.row, best.column, contrast.answer]
     before = scores(classifier, image)
-    for row in range(28):
-        for column in range(28):
-            change = scores(classifier, contrast.changed(row, column, 0)) - before
-            if change[asked] > 1e-4 and not np.isnan(contrast.taken[row, column, 0]):
-                assert change[asked] - change[contrast.answer] <= gain + 1e-4
+    for row, column in np.ndindex(28, 28):
+        change = scores(classifier, contrast.changed(row, column, 0)) - before
+        if change[asked] > 1e-4 and not np.isnan(contrast.taken[row, column, 0]):
+            assert change[asked] - change[contrast.answer] <= gain + 1e-4
 
 
 def test_the_units_shares_add_up_to_the_difference_of_the_scores(classifier):

@@ -1,5 +1,6 @@
+from itertools import product
+
 import numpy as np
-import pytest
 
 from ai.agent.network import build_network
 from ai.explain.inspection import NetworkHealth, dead_units, links, traces
@@ -22,40 +23,23 @@ def network_of(**options: object) -> NeuralNetwork:
     return build_network(9, 6, config, np.random.default_rng(0))
 
 
-@pytest.mark.parametrize("dueling", [False, True])
-@pytest.mark.parametrize("normalised", [False, True])
-@pytest.mark.parametrize("activation", ["relu", "tanh", "leaky_relu", "sigmoid"])
-def test_traces_end_with_what_the_network_answers(dueling: bool, normalised: bool, activation: str) -> None:
-    network = network_of(dueling=dueling, layer_normalisation=normalised, activation=activation)
-    stages = traces(network, OBSERVATION)
-    assert [len(stage) for stage in stages] == [9, 5, 7, 6]
-    np.testing.assert_array_equal(stages[0], OBSERVATION)
-    np.testing.assert_allclose(stages[-1], network.predict(OBSERVATION), rtol=1e-5)
-    if activation == "relu":
-        assert (stages[1] >= 0).all()
-    assert [(*link.weights.shape, *link.bias.shape) for link in links(network)] == [(9, 5, 5), (5, 7, 7), (7, 6, 6)]
-
-
-def test_links_of_a_dueling_layer_make_its_values() -> None:
-    network = network_of(dueling=True)
-    *_, hidden, output = traces(network, OBSERVATION)
-    last = links(network)[-1]
-    np.testing.assert_allclose(hidden @ last.weights + last.bias, output, atol=1e-6)
-    network.gradients[:] = -2 * network.values
-    np.testing.assert_allclose(links(network)[-1].gradient, -2 * last.weights, rtol=1e-5)
-
-
-def test_links_show_the_gradients_of_the_last_way_back() -> None:
-    network = network_of()
-    network.gradients[:] = np.arange(len(network.gradients))
-    assert links(network)[0].gradient[0, 1] == 1
-
-
-def test_a_batch_is_traced_row_by_row() -> None:
-    network = network_of()
-    batch = np.stack([OBSERVATION, -OBSERVATION])
-    for rows, first in zip(traces(network, batch), traces(network, OBSERVATION), strict=True):
-        np.testing.assert_allclose(rows[0], first, atol=1e-6)
+def test_traces_end_with_what_the_network_answers_and_links_lead_there(subtests) -> None:
+    for dueling, normalised, activation in product((False, True), (False, True), ("relu", "tanh", "leaky_relu")):
+        network = network_of(dueling=dueling, layer_normalisation=normalised, activation=activation)
+        with subtests.test(dueling=dueling, normalised=normalised, activation=activation):
+            stages = traces(network, OBSERVATION)
+            assert [len(stage) for stage in stages] == [9, 5, 7, 6]
+            np.testing.assert_array_equal(stages[0], OBSERVATION)
+            np.testing.assert_allclose(stages[-1], network.predict(OBSERVATION), rtol=1e-5)
+            assert (stages[1] >= 0).all() or activation != "relu"
+            found = links(network)
+            assert [(*link.weights.shape, *link.bias.shape) for link in found] == [(9, 5, 5), (5, 7, 7), (7, 6, 6)]
+            np.testing.assert_allclose(stages[-2] @ found[-1].weights + found[-1].bias, stages[-1], atol=1e-6)
+            network.gradients[:] = -2 * network.values  # of the last way back
+            for link in links(network):
+                np.testing.assert_allclose(link.gradient, -2 * link.weights, rtol=1e-5)
+            for rows, first in zip(traces(network, np.stack([OBSERVATION, -OBSERVATION])), stages, strict=True):
+                np.testing.assert_allclose(rows[0], first, atol=1e-6)
 
 
 def test_numbers_that_are_none_pass_through() -> None:
@@ -93,6 +77,8 @@ def test_dead_units_are_counted_exactly() -> None:
     assert dead_units(network, observations) == 0.5  # the third never answers, the fourth not to these
     assert dead_units(network, [[1.0, 0.0]]) == 0.75
     assert dead_units(network, [[1.0, 9.0], [-1.0, 0.0]]) == 0.25
+    assert dead_units(network_of(activation="tanh"), OBSERVATION) == 0  # these cannot die
+    assert dead_units(network_of(), np.zeros((0, 9))) == 0
 
 
 def test_health_counts_gradients_that_were_cut_and_units_that_are_silent() -> None:
@@ -106,8 +92,3 @@ def test_health_counts_gradients_that_were_cut_and_units_that_are_silent() -> No
         health.look(network, OBSERVATION, 1.0)
     assert health.clipped_share == 0.75
     assert health.dead_share == 1.0
-
-
-def test_units_that_cannot_die_are_not_counted() -> None:
-    assert dead_units(network_of(activation="tanh"), OBSERVATION) == 0
-    assert dead_units(network_of(), np.zeros((0, 9))) == 0

@@ -29,6 +29,7 @@ def test_each_line_has_the_values_that_it_set():
     numbers = np.array([1.0, 2.0])
     with Recorder([scaled]) as recorder:
         scaled(numbers, 3.0)
+    numbers[:] = 7.0  # what is recorded stays
     call, first = recorder.call(scaled), scaled.__code__.co_firstlineno
     assert call.arguments["factor"] == 3.0
     np.testing.assert_array_equal(call.arguments["numbers"], [1.0, 2.0])
@@ -51,14 +52,6 @@ def test_a_new_shape_or_kind_of_the_same_bytes_is_news():
         reshaped(np.zeros(2))
     news = [line.values["numbers"] for line in recorder.call(reshaped).lines if "numbers" in line.values]
     assert [(each.shape, each.dtype) for each in news] == [((2,), float), ((2, 1), float), ((2, 1), np.int64)]
-
-
-def test_what_is_recorded_stays_when_the_array_changes():
-    numbers = np.ones(3)
-    with Recorder([scaled]) as recorder:
-        scaled(numbers, 2.0)
-    numbers[:] = 7.0
-    np.testing.assert_array_equal(recorder.call(scaled).values["numbers"], [2.0, 2.0, 2.0])
 
 
 def test_each_call_is_kept_apart_also_one_within_another():

@@ -54,16 +54,21 @@ CASES = {"strange": strange_network, "modern": lambda: shipped("modern"), "class
          "narrow": narrow}  # fmt: skip
 
 
+@pytest.fixture(params=CASES)
+def case(request):
+    network, example = CASES[request.param]()
+    return network, example, stages(network, example)
+
+
 def places(stage, rng, most=150):
     found = list(np.ndindex(stage.outputs.shape))
     return found if len(found) <= most else [found[number] for number in rng.choice(len(found), most, replace=False)]
 
 
-@pytest.mark.parametrize("case", CASES)
 def test_the_sum_of_a_units_products_is_what_its_layer_gave(case):
-    network, example = CASES[case]()
+    *_, found = case
     rng = np.random.default_rng(1)
-    for stage in stages(network, example):
+    for stage in found:
         for place in places(stage, rng):
             if stage.kind == "other":
                 with pytest.raises(ValueError, match="LayerNormalisation"):
@@ -81,22 +86,19 @@ def test_the_sum_of_a_units_products_is_what_its_layer_gave(case):
                 assert abs(unit.total - unit.output) <= (unit.products.size + 1) * EPSILON * size
 
 
-@pytest.mark.parametrize("case", CASES)
 def test_the_last_stage_is_the_networks_own_answer_and_each_reads_the_one_before(case):
-    network, example = CASES[case]()
-    found = stages(network, example)
+    network, example, found = case
     given = example if isinstance(network.layers[0].inputs, tuple) else example.reshape(-1)
     assert found[-1].outputs.ravel().tobytes() == network.activations(given[None])[-1].tobytes()
     for before, after in pairwise(found):
         assert after.inputs is before.outputs
 
 
-@pytest.mark.parametrize("case", CASES)
 def test_a_patch_is_what_the_unit_depends_on(case):
     """Other inputs of the layer change nothing; those of the patch that have a weight do."""
-    network, example = CASES[case]()
+    *_, found = case
     rng = np.random.default_rng(2)
-    for stage in stages(network, example):
+    for stage in found:
         if stage.kind not in ("convolution", "pooling") or stage.inputs.shape[0] == 1:
             continue
         for place in places(stage, rng, 12):
@@ -126,11 +128,9 @@ def test_a_receptive_field_holds_all_pixels_that_matter_and_no_row_that_does_not
     assert receptive_field(first[:4], (0, 0, 0)) == (0, 0, 14, 14)
 
 
-@pytest.mark.parametrize("case", ["modern", "classic", "narrow", "strange"])
-def test_the_strongest_reader_has_the_largest_product(case):
-    network, example = CASES[case]()
+def test_the_strongest_reader_and_the_strongest_input_have_the_largest_products(case):
+    *_, found = case
     rng = np.random.default_rng(3)
-    found = stages(network, example)
     for before, stage in pairwise(found):
         for place in places(before, rng, 4):
             reader = stage.strongest_reader(place)
@@ -147,19 +147,13 @@ def test_the_strongest_reader_has_the_largest_product(case):
             assert (reader is None) == (not shares)
             if reader:
                 assert shares[reader] == max(shares.values())
-
-
-@pytest.mark.parametrize("case", CASES)
-def test_the_strongest_input_has_the_largest_product(case):
-    network, example = CASES[case]()
-    rng = np.random.default_rng(7)
-    for stage in stages(network, example):
+    for stage in found:
         for place in places(stage, rng, 20) if stage.kind != "other" else ():
-            found, unit = stage.strongest_input(place), stage.unit(place)
+            strongest, unit = stage.strongest_input(place), stage.unit(place)
             if stage.kind == "pooling":
-                assert stage.inputs[found] == unit.output
+                assert stage.inputs[strongest] == unit.output
             elif stage.kind == "activation":
-                assert found == place
+                assert strongest == place
             else:
-                inside = found[0] - unit.corner[0], found[1] - unit.corner[1], found[2]
+                inside = strongest[0] - unit.corner[0], strongest[1] - unit.corner[1], strongest[2]
                 assert unit.products[inside] == unit.products.max() or min(inside) < 0 or unit.products.max() == 0

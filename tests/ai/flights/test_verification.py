@@ -1,61 +1,91 @@
-"""Flights flown again: in any company, each earns what it earned alone, and a wrong claim is found out."""
+"""Flights of every kind, sent and flown again: each earns what it earned, and a wrong claim is found out."""
 
 from dataclasses import replace
+from datetime import date
+from functools import cache
+from typing import Any
 
 import numpy as np
-import pytest
 
-from ai.flights.recording import Claim, Recording, SharedFlight, StickHolder
-from ai.flights.verification import TOLERANCE, begun, earned, fly_again, is_true, verified
+from ai.flights.code import code_of, flight_of
+from ai.flights.recording import Claim, Easing, Recording, SharedFlight, StickHolder, thrust
+from ai.flights.verification import DAILY, DESCENT, TOLERANCE, begun, earned, fly_again, in_its_place, is_true, verified
+from ai.lander.descent import LegStart, leg
 from ai.lander.environment import LanderEnv, Outcome
-from ai.lander.missions import STARTS
+from ai.lander.missions import MISSIONS, STARTS
 from ai.lander.pilots import ScriptedPilot
+from ai.lander.rules import ACTION_SHARES
+from ai.lander.spawns import RUNGS, SPAWNS
+from game.input.analogue import pushed
+
+KINDS: dict[str, dict[str, Any]] = {
+    "plain": {},
+    "three pads": {"pads": 3},
+    "a mission": {"mission": "fall"},
+    "another gravity": {"gravity": ((0, 0.8), (60, 1.2))},
+    "a leg of a descent": {"leg": LegStart(2, 11.375)},
+    "a leg from a flat spot": {"leg": LegStart(10, 4.005, bare=True)},
+    "wider pads": {"easing": Easing(wider_pads=True)},
+    "wider pads among hills": {"easing": Easing(wider_pads=True), "pads": 3},
+    "without a time limit": {"easing": Easing(untimed=True), "mission": "wind"},
+    "an earlier area": {"area": 0},
+    "a rung of the ladder": {"spawn": "rung_4"},
+}
+DAY = date(2026, 11, 22).toordinal()
+SHORT = [3, 0, 3, 3] * 9
 
 
-def flown(seed, pads=1, mission="", gravity=()):
-    """A flight by the scripted pilot, with a true claim."""
-    env, pilot, actions = begun(Recording(seed, "random", pads, mission=mission)), ScriptedPilot(), []
-    while env.outcome[0] == Outcome.FLYING:
-        if len(actions) in dict(gravity):
-            env.gravity = dict(gravity)[len(actions)] * env.params.gravity
-        actions += pilot.act(env.observe()).tolist()
-        env.fly(np.array(actions[-1:]))
-    hands = [StickHolder.HUMAN] * len(actions)
-    recording = Recording(seed, "random", pads, mission, gravity, actions=actions, hands=hands)
-    real = earned(env, recording)
-    return SharedFlight(recording, Claim(real.outcome, real.points, real.end), mission), real
+@cache
+def flown(kind, analogue=False):
+    """A flight by the scripted pilot, at most half a minute, with a true claim."""
+    recording = Recording(11, **{"spawn": "random", **KINDS[kind]})
+    env, pilot, gravity = begun(recording), ScriptedPilot(), dict(recording.gravity)
+    while env.outcome[0] == Outcome.FLYING and (step := len(recording.actions)) < 1800:
+        if step in gravity:
+            env.gravity = gravity[step] * env.params.gravity
+        action, shares = int(pilot.act(env.observe())[0]), None
+        if analogue:  # as a hand on sticks: a little less than all of it
+            main, side = ACTION_SHARES[action].tolist()
+            action, shares = pushed(main * 0.95, side * (0.6 + 0.4 * (step % 30 < 20)))
+        if shares:
+            recording.shares[step] = shares
+        recording.actions.append(action)
+        recording.hands.append(StickHolder.HUMAN)
+        env.fly(np.array([action]), thrust(shares))
+    return claimed(recording, earned(env, recording), recording.mission)
 
 
-ROWS = [flown(3), flown(4), flown(5, pads=3), flown(0, mission="fall"), flown(6, gravity=((0, 0.8), (60, 1.2)))]
+def claimed(recording, real, course=""):
+    return SharedFlight(recording, Claim(real.outcome, real.points, real.end), course), real
 
 
-def test_each_earns_the_same_in_any_company_bit_for_bit():
-    flights = [flight for flight, _ in ROWS * 2]
-    found = dict(verified(flights))
-    assert [found[index] for index in range(len(flights))] == [real for _, real in ROWS * 2]
-    assert [fly_again([flight.recording])[0] for flight, _ in ROWS] == [real for _, real in ROWS]
+def test_a_code_of_every_kind_is_read_to_the_same_flight_and_earns_the_same_alone_and_in_company(subtests):
+    rows = [flown(kind, analogue) for kind in KINDS for analogue in (False, True)]
+    read = [flight_of(code_of(flight)) for flight, _ in rows]
+    together = dict(verified(read * 2))
+    for number, (flight, real) in enumerate(rows):
+        with subtests.test(kind=list(KINDS)[number // 2], analogue=number % 2):
+            assert bool(flight.recording.shares) == number % 2
+            assert read[number].recording == flight.recording
+            assert together[number] == together[number + len(rows)] == fly_again([flight.recording])[0] == real
+            assert is_true(read[number], real)
+    landed = [flown(kind)[1] for kind in ("plain", "three pads", "a mission")]
+    assert all(real.outcome is Outcome.LANDED and real.points > 0 for real in landed)
+    assert [real.medal > 0 for real in landed] == [False, False, True]
 
 
-@pytest.mark.parametrize(("pads", "mission"), [(1, ""), (3, ""), (1, "wind")])
-def test_flights_begin_as_they_always_did(pads, mission):
-    env = begun(Recording(7, "random", pads, mission=mission))
-    before = STARTS[mission].begin() if mission else LanderEnv(1, 7, "random", frame_skip=1, ground=env.ground)
-    if not mission:
-        before.reset()
-    assert np.array_equal(env.observe(), before.observe())
-
-
-def test_a_landing_earns_points_and_in_a_mission_a_medal():
-    assert all(real.outcome is Outcome.LANDED for _, real in ROWS[:4])
-    assert all(real.points > 0 for _, real in ROWS[:4])
-    assert [real.medal > 0 for _, real in ROWS[:4]] == [False, False, False, True]
+def test_flights_begin_as_they_always_did():
+    for pads, mission in ((1, ""), (3, ""), (1, "wind")):
+        env = begun(Recording(7, "random", pads, mission=mission))
+        before = STARTS[mission].begin() if mission else LanderEnv(1, 7, "random", frame_skip=1, ground=env.ground)
+        if not mission:
+            before.reset()
+        assert np.array_equal(env.observe(), before.observe())
 
 
 def test_true_claims_are_true_and_wrong_ones_are_not():
-    flight, real = ROWS[0]
-    claim, recording = flight.claim, flight.recording
-    x, y, angle = claim.end
-    assert is_true(flight, real)
+    flight, real = flown("plain")
+    claim, actions, (x, y, angle) = flight.claim, flight.recording.actions, flight.claim.end
     assert is_true(replace(flight, claim=replace(claim, end=(x + TOLERANCE / 2, y, angle))), real)
     for wrong in (
         replace(claim, points=claim.points + 1),
@@ -64,23 +94,69 @@ def test_true_claims_are_true_and_wrong_ones_are_not():
         replace(claim, medal=1),
     ):
         assert not is_true(replace(flight, claim=wrong), real)
-    longer = replace(recording, actions=[*recording.actions, 0])
-    assert not is_true(replace(flight, recording=longer), real)
-
-
-def test_a_record_that_stops_before_the_end_has_earned_nothing():
-    recording = ROWS[0][0].recording
-    half = replace(recording, actions=recording.actions[:60])
-    none = replace(recording, actions=[])
-    real = [fly_again([each])[0] for each in (half, none)]
-    assert [(each.outcome, each.points, each.steps) for each in real] == [
-        (Outcome.FLYING, 0, 60),
-        (Outcome.FLYING, 0, 0),
-    ]
-
-
-def test_what_is_recorded_after_the_end_is_not_flown():
-    flight, real = ROWS[0]
-    longer = replace(flight.recording, actions=[*flight.recording.actions, 3, 3])
+    longer = replace(flight.recording, actions=[*actions, 3, 3])  # what is recorded after the end is not flown
     assert fly_again([longer])[0] == real
     assert not is_true(replace(flight, recording=longer), real)
+    for steps in (60, 0):  # a record that stops before the end has earned nothing
+        short = fly_again([replace(flight.recording, actions=actions[:steps])])[0]
+        assert (short.outcome, short.points, short.steps) == (Outcome.FLYING, 0, steps)
+
+
+def test_a_medal_is_for_the_mission_as_it_is():
+    flight, real = flown("a mission")
+    assert real.medal == MISSIONS["fall"].medal(real.fuel, real.seconds) > 0
+    assert is_true(replace(flight, claim=replace(flight.claim, medal=real.medal)), real)
+    assert not is_true(replace(flight, claim=replace(flight.claim, medal=real.medal + 1)), real)
+    assert fly_again([replace(flight.recording, easing=Easing(wider_pads=True))])[0].medal == 0
+
+
+def placed(course="", seed=DAY, spawn="random", pads=1, **rest):
+    """A short flight with a true claim but, maybe, for its course."""
+    recording = Recording(seed, spawn, pads, actions=SHORT, **rest)
+    return claimed(recording, fly_again([recording])[0], course)
+
+
+def test_a_flight_is_true_from_its_place_and_from_elsewhere_not_whatever_it_earned(subtests):
+    spots = {number: any(pad.bare for pad in leg(DAY, number).ground.pads) for number in range(1, 9)}
+    no_spot, spot = (next(number + 1 for number, has in spots.items() if has is wanted) for wanted in (False, True))
+    here = (
+        placed(),
+        placed(pads=3),
+        placed(gravity=((0, 0.5),)),
+        placed(easing=Easing(wider_pads=True)),
+        placed(spawn="rung_3"),
+        placed(DAILY, pads=3),
+        placed(DAILY, pads=3, easing=Easing(untimed=True)),
+        placed("wind", seed=0, mission="wind"),
+        placed("tank", seed=5, mission="tank", easing=Easing(wider_pads=True)),
+        placed(DESCENT, leg=LegStart()),
+        placed("", leg=LegStart(2, 9.5)),
+        placed(DESCENT, leg=LegStart(spot, 3.25, bare=True)),
+    )
+    elsewhere = (
+        placed(DAILY),  # one pad
+        placed(DAILY, pads=3, seed=0),  # before the first day
+        placed(DAILY, pads=3, seed=10**9),  # after the last
+        placed(DAILY, pads=3, spawn="rung_1"),
+        placed(DAILY, pads=3, gravity=((0, 0.7),)),
+        placed(DAILY, mission="fall"),
+        placed(DAILY, leg=LegStart()),
+        placed("wind"),
+        placed("wind", mission="fall"),
+        placed("wind", mission="wind", gravity=((9, 0.7),)),
+        placed(mission="wind"),
+        placed(DESCENT),
+        placed(DESCENT, mission="fall"),
+        placed(DESCENT, leg=LegStart(1, 12.0)),  # the first tank is full
+        placed(DESCENT, leg=LegStart(1, bare=True)),
+        placed(DESCENT, leg=LegStart(2, 4.9)),  # a landing brings more
+        placed(DESCENT, leg=LegStart(no_spot, 6.0, bare=True)),
+        placed(DESCENT, leg=LegStart(), gravity=((0, 0.7),)),
+        placed("tank", leg=LegStart()),
+        placed(spawn="rung_3", pads=3),
+        *(placed(spawn=spawn) for spawn in set(SPAWNS) - {"random", *RUNGS}),
+        placed("elsewhere"),
+    )
+    for flight, real in (*here, *elsewhere):
+        with subtests.test(flight=flight):
+            assert is_true(flight, real) == in_its_place(flight) == ((flight, real) in here)

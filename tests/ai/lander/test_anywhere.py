@@ -7,63 +7,55 @@ import pytest
 
 from ai.lander.anywhere import GROUND, SITES, AnywhereEnv, Site
 from ai.lander.conditions import Conditions
-from ai.lander.environment import LIMITS, NUM_FEATURES, PARAMS, LanderEnv, Outcome
+from ai.lander.environment import LIMITS, NUM_FEATURES, PARAMS, Outcome
 from ai.lander.ground import Ground, Pad
 from ai.lander.pilots import ScriptedPilot
 from ai.lander.sensing import SURROUNDINGS, SURROUNDINGS_SCALE
+from tests.support.landers import STAND, fly, placed, put
 
 HARD = Site(9.81, 16.0, 0.06, 3.0, 3.0, 12.0, 0.2, 0.3, 4.0, 5.0, 0.4, 0.9, 2.0, 15.0, 2)
 MIXED = (Site(), HARD, Site(wind=-0.3, swing=-1.0, pad=3), Site(gravity=0.9, thrust=3.0, air=0.2, tank=2.0))
+START = (2.0, 11.0, -0.3, -0.5, 0.05)
 
 
-def alone(site: Site) -> LanderEnv:
+def alone(site):
     """A lander of its own at a site, made as missions are."""
     pad = GROUND.pads[site.pad]
-    return LanderEnv(
-        1, 0, frame_skip=1,
+    return placed(
+        START,
         params=replace(PARAMS, gravity=site.gravity, main_thrust=site.thrust, quadratic_drag=site.air),
         ground=Ground((Pad(0.0, pad.top, pad.width),)),
         limits=replace(LIMITS, touch_speed=site.touch_speed, slide_speed=site.slide_speed, time=site.time),
-        conditions=Conditions(site.wind, site.gust, site.gust_period, site.tank, (site.dead, site.back),
-                              site.swing, site.swing_period),
-    )  # fmt: skip
+        conditions=Conditions(
+            site.wind, site.gust, site.gust_period, site.tank, (site.dead, site.back), site.swing, site.swing_period
+        ),
+    )
 
 
 def test_each_lander_of_a_batch_flies_as_it_would_alone():
-    start = np.array([2.0, 11.0, -0.3, -0.5, 0.05, 0.0])
     env = AnywhereEnv(len(MIXED), 0, frame_skip=1)
-    env.reset()
     env.settle(MIXED)
-    env.place(np.ones(len(MIXED), bool), np.tile(start, (len(MIXED), 1)))
-    single = [alone(site) for site in MIXED]
-    for other in single:
-        other.reset()
-        other.place(np.ones(1, bool), start[None])
-    pilot = ScriptedPilot()
-    together, apart = [], []
+    put(env, START)
+    single, together, apart = [alone(site) for site in MIXED], [], []
     while Outcome.FLYING in env.outcome:
-        actions = pilot.act(env.observe()[:, :NUM_FEATURES])
+        actions = ScriptedPilot().act(env.observe()[:, :NUM_FEATURES])
         env.step(actions)
         for slot, other in enumerate(single):
             other.step(actions[slot : slot + 1])
         together.append(np.column_stack([env.observe(), env.outcome, env.fuel]))
-        apart.append([[*other.observe_wide()[0], other.outcome[0], other.fuel[0]] for other in single])
+        apart.append([[*other.observe(wide=True)[0], other.outcome[0], other.fuel[0]] for other in single])
     np.testing.assert_allclose(together, apart, rtol=1e-6, atol=1e-5)
     assert Outcome.LANDED in env.outcome
 
 
-def test_a_flight_and_its_site_do_not_depend_on_how_many_fly_beside():
+def test_a_flight_and_its_site_do_not_depend_on_how_many_fly_beside_or_begin_anew():
     few, many = AnywhereEnv(2, 5), AnywhereEnv(40, 5)
     for _ in range(3):
         assert np.array_equal(few.reset(), many.reset()[:2])
         for _ in range(10):
             assert np.array_equal(few.step(np.full(2, 4)).observation, many.step(np.full(40, 4)).observation[:2])
-
-
-def test_only_the_slots_that_begin_anew_get_new_sites():
     env = AnywhereEnv(6, 1, sites=("any",))
-    before = env.reset()
-    after = env.reset(np.array([True, False] * 3))
+    before, after = env.reset(), env.reset(np.array([True, False] * 3))
     assert np.array_equal(before[1::2], after[1::2])
     assert (before[::2, NUM_FEATURES:] != after[::2, NUM_FEATURES:]).any(axis=1).all()
 
@@ -71,9 +63,7 @@ def test_only_the_slots_that_begin_anew_get_new_sites():
 def test_limits_of_a_touch_are_those_of_each_site():
     env = AnywhereEnv(2, 0, frame_skip=1)
     env.settle([Site(touch_speed=3.0, slide_speed=1.2), Site()])
-    env.place(np.ones(2, bool), np.array([[12.0, PARAMS.ground + PARAMS.stand + 0.01, 1.6, -0.3, 0, 0]] * 2))
-    for _ in range(30):
-        env.step(np.zeros(2, int))
+    fly(put(env, (12.0, PARAMS.ground + PARAMS.stand + 0.01, 1.6, -0.3)), steps=30)
     assert env.outcome.tolist() == [Outcome.CRASHED] * 2
     assert env.intact.tolist() == [False, True]
 
@@ -91,20 +81,17 @@ def test_sites_are_of_the_kinds_asked_for():
 
 def test_stricter_limits_hold_and_are_not_told():
     env = AnywhereEnv(2, 0, "fixed", frame_skip=1, sites=("moon",))
-    env.reset()
-    touch = 0.75 * LIMITS.touch_speed
-    env.place(np.ones(2, bool), np.array([[0.0, PARAMS.pad_top + PARAMS.stand + 0.01, 0, -touch, 0, 0]] * 2))
+    before = put(env, (0.0, STAND + 0.01, 0, -0.75 * LIMITS.touch_speed)).snapshot()
     for strictness, outcome in ((1.0, Outcome.FLYING), (0.5, Outcome.CRASHED)):
-        before, env.strictness = env.snapshot(), strictness
-        for _ in range(5):
-            env.step(np.zeros(2, int))
+        env.restore(before)
+        env.strictness = strictness
+        fly(env, steps=5)
         assert (env.outcome == outcome).all()
         assert env.surroundings()[0, -1] / SURROUNDINGS_SCALE[-1] == pytest.approx(LIMITS.touch_speed)
-        env.restore(before)
 
 
 @pytest.mark.slow
-def test_sites_of_every_kind_can_be_flown(subtests: pytest.Subtests):
+def test_sites_of_every_kind_can_be_flown(subtests):
     for kind in SITES:
         with subtests.test(kind=kind):
             env = AnywhereEnv(20, 3, "near", sites=(kind,))

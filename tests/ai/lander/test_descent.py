@@ -1,17 +1,19 @@
 """A descent's legs: what they follow from, that they can be flown, and the routes that lead networks through them."""
 
+from itertools import product
+
 import numpy as np
 import pytest
 
 from ai.agent.agent import DeepQAgent
 from ai.lander.descent import TANK, LegStart, can_begin, leg, leg_of, refill
-from ai.lander.environment import Cause, LanderEnv, Outcome
+from ai.lander.environment import Cause, Outcome
 from ai.lander.pilots import ScriptedPilot
 from ai.lander.route import Route, sink_of
 from game.core.assets import MODELS_DIR
-from tests.support.descent import QUICK, SLOW, descend, fly_leg, stand_on
+from tests.support.descent import QUICK, SLOW, descend, stand_on
+from tests.support.landers import fly, placed, put
 
-SEEDS = range(4)
 NUMBERS = (1, 2, 3, 4, 5, 7, 9, 11, 13, 16, 40)
 CLEAR = 1.6  # metres around a craft's middle, which reaches 1.1 sideways and 1 down
 
@@ -22,6 +24,8 @@ def test_a_leg_follows_from_seed_number_and_start_alone():
     assert leg_of(5, LegStart(7)) == first
     assert leg_of(6, LegStart(7)) != first
     assert leg_of(5, LegStart(7, tank=3.0)) == first  # what is in the tank changes no ground
+    first_kinds = {leg(1, number).kinds for number in range(1, 6)}
+    assert first_kinds == {("open",), ("ridge",), ("canyon",), ("overhang",), ("cave",)}
 
 
 def test_legs_become_longer_windier_and_end_on_smaller_pads():
@@ -36,38 +40,29 @@ def test_legs_become_longer_windier_and_end_on_smaller_pads():
     assert (np.diff(rows, axis=0) > 0).all()
 
 
-def test_the_first_legs_meet_every_kind_of_ground_once():
-    assert {leg(1, number).kinds for number in range(1, 6)} == {
-        ("open",), ("ridge",), ("canyon",), ("overhang",), ("cave",),
-    }  # fmt: skip
-
-
 def test_a_route_keeps_clear_of_all_rock_and_the_start_stands_free(subtests: pytest.Subtests):
-    for number in NUMBERS:
-        with subtests.test(number=number):
-            for seed in SEEDS:
-                for bare in (False, True):
-                    flown = leg(seed, number, bare)
-                    route = Route(flown.route)
-                    way = np.array([route.point(along) for along in np.arange(0, route.length, 0.25)])
-                    around = np.linspace(0, 2 * np.pi, 12, endpoint=False)
-                    ring = (way[:, None] + CLEAR * np.stack([np.cos(around), np.sin(around)], axis=1)).reshape(-1, 2)
-                    assert (ring[:, 1] > flown.ground.height(ring[:, 0])).all(), (seed, flown.kinds)
-                    assert not flown.ground.roofed(ring).any(), (seed, flown.kinds)
-                    env = flown.begin(TANK)
-                    for _ in range(40):
-                        env.fly(np.zeros(1, int))
-                    assert env.outcome[0] == Outcome.FLYING  # it stands, and standing where it began ends nothing
-                    assert env.contacts.all()
+    around = np.linspace(0, 2 * np.pi, 12, endpoint=False)
+    circle = CLEAR * np.stack([np.cos(around), np.sin(around)], axis=1)
+    for number, seed, bare in product(NUMBERS, range(4), (False, True)):
+        flown = leg(seed, number, bare)
+        with subtests.test(number=number, seed=seed, bare=bare, kinds=flown.kinds):
+            route = Route(flown.route)
+            way = route.point(np.arange(0, route.length, 0.25))
+            ring = (way[:, None] + circle).reshape(-1, 2)
+            assert (ring[:, 1] > flown.ground.height(ring[:, 0])).all()
+            assert not flown.ground.roofed(ring).any()
+            env = flown.begin(TANK)
+            fly(env, steps=40)
+            assert env.outcome[0] == Outcome.FLYING  # it stands, and standing where it began ends nothing
+            assert env.contacts.all()
 
 
 def test_a_landing_on_the_goal_or_a_flat_spot_ends_a_leg_and_one_at_the_start_does_not():
-    flown = next(each for seed in SEEDS if len((each := leg(seed, 3)).ground.pads) == 3)
+    flown = next(each for seed in range(4) if len((each := leg(seed, 3)).ground.pads) == 3)
     for pad, ends in ((0, True), (1, True), (2, False)):
         env = flown.begin(TANK)
         stand_on(env, pad)
-        for _ in range(60):
-            env.fly(np.zeros(1, int))
+        fly(env, steps=60)
         assert bool(env.outcome[0] == Outcome.LANDED) is ends
         assert env.landed_on[0] == (pad if ends else -1)
 
@@ -79,10 +74,8 @@ def test_rock_that_hangs_is_struck_from_below_and_lies_over_open_ground():
     middle = corners.mean(axis=0)
     assert flown.ground.roofed(middle[None])[0]
     assert flown.ground.height(middle[0]) < corners[:, 1].min() - 4
-    env = flown.begin(TANK)
-    env.place(np.ones(1, bool), np.array([[middle[0], corners[:, 1].min() - 1.6, 0, 1.5, 0, 0]]))
-    for _ in range(90):
-        env.fly(np.array([3]))
+    env = put(flown.begin(TANK), (middle[0], corners[:, 1].min() - 1.6, 0, 1.5))
+    fly(env, 3, steps=90)
     assert env.outcome[0] == Outcome.CRASHED
     assert env.cause[0] in (Cause.HULL, Cause.TERRAIN)
 
@@ -122,21 +115,11 @@ def test_a_route_leads_on_from_its_nearest_point_and_ends_over_the_goal():
     (across, _), (up, _) = route.lead(np.array([[1.0, 6.0], [4.0, 8.9]]))[0].T
     assert across > 0 > up  # on, and back to the route
     assert route.lead(np.array([[1.0, 6.0], [4.0, 8.9]]))[1].tolist() == [False, True]
-    plain = LanderEnv(1, 0)
-    plain.place(np.ones(1, bool), np.array([[4.0, 8.9, 0, 0, 0, 0]]))
+    plain = placed((4.0, 8.9))
     assert (route.observe(plain, ScriptedPilot()) == plain.observe()).all()
 
 
-def test_the_network_lands_the_first_six_legs():
+def test_the_network_lands_the_first_six_legs_and_slow_hands_five():
     agent = DeepQAgent.load(MODELS_DIR / "lander" / "modern")
     assert descend(0, agent, QUICK, most=6).legs == 6
-
-
-def test_slow_hands_land_the_first_five_legs():
     assert descend(0, ScriptedPilot(), SLOW, most=5).legs == 5
-
-
-def test_a_leg_is_flown_alike_again():
-    first, second = (fly_leg(2, LegStart(2), ScriptedPilot()) for _ in range(2))
-    assert (first.position == second.position).all()
-    assert first.fuel == second.fuel

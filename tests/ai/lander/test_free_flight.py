@@ -62,7 +62,7 @@ def asked(many, rng):
     while True:
         held = np.where(rng.random(many.num_envs) < 0.2, rng.integers(0, NUM_ACTIONS, many.num_envs), held)
         actions = held.copy()
-        actions[::2] = pilot.act(LanderEnv.observe(many))[::2]
+        actions[::2] = pilot.act(many.observe(wide=False))[::2]
         yield actions
 
 

@@ -1,50 +1,36 @@
+"""Ground: several pads, hills and where they leave room."""
+
 import numpy as np
 import pytest
 
-from ai.lander.environment import PARAMS, Cause, LanderEnv, Outcome
+from ai.lander.environment import PARAMS, Cause, Outcome
 from ai.lander.ground import PADS, Ground, Pad, clearance, hilly, knoll
+from tests.support.landers import fly, placed
 
 THREE = Ground(
     (Pad(-9.0, 2.0, 6.0), Pad(0.0, 1.6, 4.4, 3), Pad(9.0, 2.5, 3.6, 5)), (((3.0, 1.0), (4.5, 2.2), (6.0, 1.0)),)
 )
-SEEDS = range(30)
 
 
-def standing(ground, *places, frame_skip=1):
+def standing(*places):
     """Landers at rest on each of these x, y of the surface."""
-    env = LanderEnv(len(places), 0, frame_skip=frame_skip, ground=ground)
-    start = np.zeros((len(places), 6))
-    start[:, :2] = places
-    start[:, 1] += PARAMS.stand
-    env.place(np.ones(len(places), dtype=bool), start)
-    return env
+    return placed(*[(x, y + PARAMS.stand) for x, y in places], ground=THREE)
 
 
-def rest(env, steps=90):
-    for _ in range(steps):
-        env.step(np.zeros(env.num_envs, dtype=int))
-
-
-def test_any_pad_will_do_and_the_result_tells_which():
-    env = standing(THREE, (-9, 2.0), (0, 1.6), (9, 2.5))
-    assert env.landed_on.tolist() == [-1, -1, -1]
-    rest(env)
-    assert env.outcome.tolist() == [Outcome.LANDED] * 3
-    assert env.landed_on.tolist() == [0, 1, 2]
+def test_any_pad_will_do_and_the_result_tells_which_but_hills_and_flanks_are_no_place_to_land():
+    env = standing((-9, 2.0), (0, 1.6), (9, 2.5), (4.5, 2.3), (14, 1.1))
+    assert env.landed_on.tolist() == [-1] * 5
+    fly(env, steps=90)
+    assert env.outcome.tolist() == [Outcome.LANDED] * 3 + [Outcome.CRASHED] * 2
+    assert env.cause[3:].tolist() == [Cause.TERRAIN] * 2
+    assert env.landed_on.tolist() == [0, 1, 2, -1, -1]
     env.reset()
-    assert env.landed_on.tolist() == [-1, -1, -1]
+    assert env.landed_on.tolist() == [-1] * 5
 
 
-def test_hills_and_flanks_are_no_place_to_land():
-    env = standing(THREE, (4.5, 2.3), (14, 1.1))
-    rest(env)
-    assert env.outcome.tolist() == [Outcome.CRASHED] * 2
-    assert env.cause.tolist() == [Cause.TERRAIN] * 2
-
-
-def test_observations_are_about_the_pad_in_question():
-    env = standing(THREE, (9, 2.5), (0, 9.0))
-    rest(env, 5)
+def test_observations_and_rewards_are_about_the_pad_in_question():
+    env = standing((9, 2.5), (0, 9.0))
+    fly(env, steps=5)
     each = env.observe_pads()
     assert each.shape == (2, 3, 9)
     for pad in range(3):
@@ -56,18 +42,14 @@ def test_observations_are_about_the_pad_in_question():
     env.target[:] = 2
     assert np.array_equal(env.observe(), each[:, 2])
     assert env.pad.tolist() == [[9.0, 2.5]] * 2
-
-
-def test_rewards_follow_the_target():
-    env = standing(THREE, (4, 9.0), (4, 9.0))
+    env = standing((4, 9.0), (4, 9.0))
     env.target[:] = (0, 2)
-    for _ in range(20):
-        result = env.step(np.array([2, 2]))
-    assert result.components["distance"][0] < result.components["distance"][1]
+    paid = fly(env, 2, steps=20).components["distance"]
+    assert paid[0] < paid[1]
 
 
 def test_hills_leave_room_for_every_approach(subtests):
-    for seed in SEEDS:
+    for seed in range(30):
         with subtests.test(seed=seed):
             ground = hilly(np.random.default_rng(seed))
             assert ground == hilly(np.random.default_rng(seed)) != hilly(np.random.default_rng(seed + 1))
@@ -83,13 +65,12 @@ def test_hills_leave_room_for_every_approach(subtests):
 
 
 def test_a_knoll_is_flat_under_its_pad_and_a_little_wider_on_both_sides():
-    left, top_left, top_right, right = knoll(Pad(2.0, 2.3, 4.0), 1.0)
-    assert top_left == pytest.approx((-0.5, 2.0))
-    assert top_right == pytest.approx((4.5, 2.0))
+    left, *top, right = knoll(Pad(2.0, 2.3, 4.0), 1.0)
+    assert np.array(top) == pytest.approx(np.array([(-0.5, 2.0), (4.5, 2.0)]))
     assert left[0] + right[0] == pytest.approx(4.0)
 
 
-@pytest.mark.parametrize("pads", [(), (Pad(0, 0.5, 6),), (Pad(0, 1.6, 0),), (Pad(0, 1.6, 6), Pad(4, 1.6, 6))])
-def test_ground_that_makes_no_sense_is_refused(pads):
-    with pytest.raises(ValueError, match="pad"):
-        Ground(pads)
+def test_ground_that_makes_no_sense_is_refused():
+    for pads in ((), (Pad(0, 0.5, 6),), (Pad(0, 1.6, 0),), (Pad(0, 1.6, 6), Pad(4, 1.6, 6))):
+        with pytest.raises(ValueError, match="pad"):
+            Ground(pads)

@@ -12,11 +12,11 @@ from ai.lander.environment import LIMITS, NUM_ACTIONS, PARAMS, LanderEnv, Outcom
 from ai.lander.ground import Ground, Pad
 from ai.lander.moment import Moment
 from engine import DT
+from tests.support.landers import STAND, fly, placed
 
 GROUND = Ground((Pad(-5.0, 1.8, 5.0), Pad(5.0, 2.6, 4.0, 3)), (((1.0, 1.0), (2.0, 2.0), (3.0, 1.0)),))
 HARD = Conditions(wind=0.2, gust=0.2, tank=8.0, outage=(1.0, 1.5), swing=2.0)
 ACTIONS = np.random.default_rng(0).integers(0, NUM_ACTIONS, (120, 6))
-STAND = PARAMS.pad_top + PARAMS.stand
 
 
 def hard(slots=6):
@@ -79,23 +79,17 @@ def test_landers_of_a_moment_fly_on_alone_and_twice():
 
 
 def test_how_long_a_lander_has_stood_still_is_kept():
-    env, fresh = (LanderEnv(2, 0, frame_skip=1) for _ in range(2))
-    env.place(np.ones(2, bool), np.array([[0, STAND, 0, 0, 0, 0]] * 2))
-    for _ in range(LIMITS.rest_steps - 5):
-        env.fly(np.zeros(2, int))
+    env, fresh = placed((0, STAND), (0, STAND)), LanderEnv(2, frame_skip=1)
+    fly(env, steps=LIMITS.rest_steps - 5)
     fresh.restore(env.snapshot())
     for each in (env, fresh):
-        while each.outcome[0] == Outcome.FLYING:
-            each.fly(np.zeros(2, int))
+        fly(each)
     assert env.steps.tolist() == fresh.steps.tolist()
     assert env.time[0] < (LIMITS.rest_steps + 10) * DT
 
 
 def test_a_snapshot_of_others_is_refused():
-    for other in (
-        LanderEnv(5, 0, ground=GROUND),
-        LanderEnv(6, 0),
-        LanderEnv(6, 0, ground=GROUND, params=replace(PARAMS, mass=2.0)),
-    ):
+    heavy = replace(PARAMS, mass=2.0)
+    for other in (LanderEnv(5, ground=GROUND), LanderEnv(6), LanderEnv(6, ground=GROUND, params=heavy)):
         with pytest.raises(ValueError, match="same craft"):
             other.restore(hard().snapshot())

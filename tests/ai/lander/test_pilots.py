@@ -1,5 +1,3 @@
-from typing import ClassVar
-
 import numpy as np
 import pytest
 
@@ -16,9 +14,8 @@ class Always:
         return np.full(len(observation), self.action, dtype=np.intp)
 
 
-@pytest.mark.parametrize("seed", [0, 1])
-def test_the_scripted_pilot_lands(seed):
-    result = evaluate(ScriptedPilot(), 100, seed)
+def test_the_scripted_pilot_lands():
+    result = evaluate(ScriptedPilot(), 200, 0)
     assert result.success >= 0.95
     assert result.success + result.crash + result.out_of_bounds + result.time_out == pytest.approx(1.0)
     assert result.mean_time
@@ -47,18 +44,6 @@ def test_a_pilot_flies_as_well_when_measured_as_in_a_batch_that_keeps_its_slots(
         observation = env.step(lag.act(observation)).observation
     assert measured.success == (env.outcome == Outcome.LANDED).mean()
     assert measured.success < 0.6
-
-
-def test_every_call_of_an_evaluation_is_about_the_same_slots():
-    class Watcher(ScriptedPilot):
-        seen: ClassVar = set()
-
-        def act(self, observation, *, held=None):
-            self.seen.add((observation.shape, held.shape))
-            return super().act(observation)
-
-    evaluate(Watcher(), 20, 0)
-    assert Watcher.seen == {((20, 9), (20,))}
 
 
 def test_the_noisy_pilot_errs_as_often_as_said():

@@ -104,7 +104,7 @@ def test_flattening_moves_nothing():
     flat = layer.forward_propagate(x)
     assert flat.shape == (5, 24)
     assert np.shares_memory(flat, x)
-    np.testing.assert_array_equal(layer.predict(x[0]), flat[0])
+    np.testing.assert_array_equal(layer.predict(x), flat)
     np.testing.assert_array_equal(layer.input_error(np.array(flat)), x)
 
 

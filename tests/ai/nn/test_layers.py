@@ -179,8 +179,6 @@ def test_activations_are_what_each_layer_gives(name):
     kept = network.activations(x)
     assert len(kept) == len(network.layers)
     np.testing.assert_allclose(kept[-1], network.predict(x))
-    for whole, one in zip(kept, network.activations(x[2]), strict=True):
-        np.testing.assert_allclose(one, whole[2], atol=1e-12)
 
 
 @pytest.mark.parametrize("name", LAYER_ROWS)

@@ -85,12 +85,10 @@ def test_a_wrong_state_is_refused():
 def test_a_damaged_state_is_refused_and_changes_nothing(subtests):
     change: Any
     for change, message in [
-        ({"square_sum": np.ones(4)}, r"square_sum holds float64 \[4\], and should hold float32 \[3\]"),
-        ({"square_sum": np.ones((3, 1))}, "square_sum holds"),
-        ({"gradient_sum": np.array([0.0, np.nan, 0.0])}, "gradient_sum holds numbers that are not finite"),
-        ({"gradient_sum": np.array([0.0, 1e300, 0.0])}, "gradient_sum holds numbers that are not finite"),
-        ({"gradient_sum": np.array(["a", "b", "c"])}, "gradient_sum holds"),
-        ({"square_sum": np.array([1.0, -1.0, 1.0])}, "square_sum holds numbers below 0"),
+        ({"square_sum": np.ones(4, np.float32)}, r"square_sum should hold float32 \[3\]"),
+        ({"square_sum": np.ones(3)}, "square_sum should hold float32"),
+        ({"gradient_sum": np.array([0, np.nan, 0], np.float32)}, "gradient_sum holds numbers that are not finite"),
+        ({"square_sum": np.array([1, -1, 1], np.float32)}, "square_sum holds numbers below 0"),
         ({"steps": np.array(-1)}, "after how many steps"),
         ({"steps": np.array(2**64 - 1, np.uint64)}, "after how many steps"),
         ({"steps": np.array(2.5)}, "after how many steps"),
@@ -106,16 +104,6 @@ def test_a_damaged_state_is_refused_and_changes_nothing(subtests):
                 optimizer.load_state(before | change, values)
             for name, array in optimizer.state().items():
                 np.testing.assert_array_equal(array, before[name])
-
-
-@pytest.mark.parametrize("name", OPTIMIZERS)
-def test_a_state_of_another_precision_becomes_the_parameters_own(name):
-    optimizer, values = OPTIMIZERS[name](), np.ones(3, np.float32)
-    optimizer.step(values, np.ones(3, np.float32))
-    state = {key: array.astype(float) if array.ndim else array for key, array in optimizer.state().items()}
-    optimizer.load_state(state, values)
-    optimizer.step(values, np.ones(3, np.float32))
-    assert all(kept.dtype == np.float32 for kept in optimizer.memory.values())
 
 
 def test_another_number_of_parameters_is_refused():

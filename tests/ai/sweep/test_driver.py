@@ -170,27 +170,18 @@ with joined(None, 1):
     assert len(finished(tmp_path / "study")) == 3
 
 
-def test_any_function_is_called_for_many_items_and_each_answer_finds_its_place(nodes):
-    program = f"""
-from functools import partial
-from ai.sweep.cluster import each
-from ai.sweep.study import seed_folder
-print(sorted(each([partial(seed_folder, seed) for seed in (1, 300, 8000)], {nodes.address!r})))
-"""
-    done = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False)
-    # Ray itself tells of a node that is gone, if another test has taken it away before.
-    assert done.stdout.splitlines()[-1] == "[(0, 'seed-1'), (1, 'seed-300'), (2, 'seed-8000')]", done.stderr
-
-
-def test_without_an_address_nothing_listens_but_on_this_machine(tmp_path):
-    folder = tmp_path / "study"
-    with sweep(folder, *NEW, "--trials", "2", "--decisions", "400", "--workers", "1") as driver:
+def test_without_an_address_nothing_listens_but_on_this_machine_and_no_token_is_written(tmp_path):
+    folder, home = tmp_path / "study", tmp_path / "home"
+    home.mkdir(mode=0o500)
+    options = [*NEW, "--trials", "2", "--decisions", "400", "--workers", "1"]
+    with sweep(folder, *options, env=os.environ | {"HOME": str(home)}) as driver:
         wait_for(lambda: finished(folder), driver)
         opened = listening([driver.pid, *descendants(driver.pid)])
         ended(driver)
     assert opened <= {"0100007F", "0000000000000000FFFF00000100007F"}
     assert len(opened) == 2
     assert len(finished(folder)) == 2
+    assert not list(home.iterdir())
 
 
 def test_trials_that_fall_behind_are_ended_and_the_others_go_on(tmp_path):
@@ -260,14 +251,6 @@ def test_what_is_missing_on_a_node_is_a_failure_and_no_finished_trial(tmp_path):
     assert "0 of 2 trials are kept" in out
     assert "--env half:Half-v0" in out
     assert not finished(tmp_path / "study")
-
-
-def test_a_local_start_writes_no_token_and_needs_no_home(tmp_path):
-    (tmp_path / "home").mkdir(mode=0o500)
-    options = [*NEW, "--trials", "1", "--decisions", "400", "--workers", "1"]
-    with sweep(tmp_path / "study", *options, env=os.environ | {"HOME": str(tmp_path / "home")}) as driver:
-        ended(driver)
-    assert not list((tmp_path / "home").iterdir())
 
 
 def test_a_killed_worker_driver_and_node_lose_and_repeat_no_finished_trial_and_change_none(nodes, tmp_path):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from ai.sweep.metric import Metric, Point
+from ai.sweep.metric import Metric, Point, median
 
 CURVE = [Point(100, 0.0, -5.0), Point(200, 0.96, 1.0), Point(300, 0.99, 2.0), Point(400, 0.97, 3.0)]
 
@@ -39,13 +39,11 @@ def test_other_names_are_refused(name):
         Metric.named(name)
 
 
-def test_seeds_are_judged_by_the_median_or_the_worst():
-    time, success = Metric.named("time_to_99"), Metric.named("success")
-    assert time.judged([1.0, 9.0, 2.0], "median") == 2.0
-    assert time.judged([1.0, 9.0, 2.0], "worst") == 9.0
-    assert success.judged([0.5, 0.9], "worst") == 0.5
-    assert success.judged([0.5, 0.9], "median") == pytest.approx(0.7)
-    assert success.judged([0.5, None], "worst") is None
+def test_a_trial_is_judged_by_the_median_of_its_seeds_if_all_have_a_value():
+    assert median([1.0, 9.0, 2.0]) == 2.0
+    assert median([0.5, 0.9]) == pytest.approx(0.7)
+    assert median([0.5, None]) is None
+    assert median([]) is None
 
 
 def test_a_diverged_seed_has_the_worst_value_there_is():

@@ -6,8 +6,7 @@ import pytest
 from ai.sweep.population import explored, proposed
 from ai.sweep.space import Dimension
 from ai.sweep.study import FinishedTrial, SeedResult, Study
-from ai.sweep.trial import Asked
-from ai.training.checkpoints import resume_run
+from ai.training.checkpoints import AGENTS, resume_run
 from tests.support.studies import networks_in, run_alone, tiny_plan
 
 
@@ -49,9 +48,8 @@ def test_a_copy_begins_with_the_networks_of_its_parent_and_goes_on_as_train_does
     while training.agent.decisions < 400:
         training.advance()
     from ai.sweep.study import write_files
-    from ai.training.checkpoints import save_run
 
-    save_run(training, tmp_path / "alone", final=True)
+    AGENTS.save(training, tmp_path / "alone", final=True, state=False)
     write_files(runs, tmp_path / "swept")
     assert networks_in(tmp_path / "alone") == networks_in(tmp_path / "swept" / "seed-0")
 
@@ -81,7 +79,3 @@ def test_a_population_changes_only_what_can_change_while_a_run_goes_on():
     space = {"n_step": Dimension(1, 5, whole=True)}
     with pytest.raises(ValueError, match="n_step cannot change"):
         tiny_plan(search="population", population=2, space=space).check()
-
-
-def test_an_asked_trial_knows_its_parent(study):
-    assert isinstance(proposed(study, 5), Asked)

@@ -4,6 +4,7 @@ import json
 import os
 import pickle
 import shutil
+from functools import reduce
 
 import numpy as np
 import pytest
@@ -12,8 +13,7 @@ from ai.agent.agent import DeepQAgent
 from ai.copilot import measurement
 from ai.lander.environment import LanderEnv
 from ai.sweep import shards as module
-from ai.sweep.cluster import each
-from ai.sweep.shards import flown_shards, packed, parts_of, received, shards
+from ai.sweep.shards import packed, parts_of, received, results, shards
 from ai.training.tasks import FlightSums, evaluate
 from game.core.assets import MODELS_DIR
 from main import main
@@ -22,33 +22,25 @@ MODERN = MODELS_DIR / "lander" / "modern"
 AGENT = DeepQAgent.load(MODERN)
 
 
-def total(parts):
-    return next(sums for sums in flown_shards(parts, None, 1) if sums is not None)
+def test_flights_are_those_of_one_batch_whatever_the_size_of_a_shard(monkeypatch):
+    whole = evaluate(AGENT, 40, 3, "hard")
+    for size, lengths in ((7, [7] * 5 + [5]), (40, [40])):
+        monkeypatch.setattr(module, "SHARD", size)
+        parts = shards(AGENT, 40, 3, "hard")
+        assert [len(part.args[1]) for part in parts] == lengths
+        cut = reduce(FlightSums.plus, results(parts)).evaluation()
+        assert (cut.episodes, cut.success, cut.crash) == (whole.episodes, whole.success, whole.crash), size
+        assert cut.mean_return == pytest.approx(whole.mean_return)
+        assert cut.mean_time == pytest.approx(whole.mean_time)
+    assert cut == whole
 
 
-@pytest.mark.parametrize("size", [7, 40])
-def test_flights_are_those_of_one_batch_whatever_the_size_of_a_shard(monkeypatch, size):
-    monkeypatch.setattr(module, "SHARD", size)
-    parts = shards(AGENT, 40, 3, "hard")
-    assert [len(part.args[1]) for part in parts] == ([7] * 5 + [5] if size == 7 else [40])
-    cut, whole = total(parts).evaluation(), evaluate(AGENT, 40, 3, "hard")
-    if size == 40:
-        assert cut == whole
-    assert (cut.episodes, cut.success, cut.crash) == (whole.episodes, whole.success, whole.crash)
-    assert cut.mean_return == pytest.approx(whole.mean_return)
-    assert cut.mean_time == pytest.approx(whole.mean_time)
-
-
-def test_the_order_in_which_shards_are_done_changes_nothing(monkeypatch):
-    monkeypatch.setattr(module, "SHARD", 7)
-    parts = shards(AGENT, 20, 3, "random")
-    in_order = total(parts)
-
-    def backwards(tasks, address, workers):
-        yield from reversed(list(each(tasks, address, workers)))
-
-    monkeypatch.setattr(module, "each", backwards)
-    assert total(parts) == in_order
+@pytest.mark.slow
+def test_processes_give_what_this_one_gives_in_the_same_order(monkeypatch):
+    monkeypatch.setattr(module, "SHARD", 2)
+    parts, told = shards(AGENT, 6, 3, "random"), []
+    assert results(parts, 2, lambda: told.append(1)) == results(parts)
+    assert len(told) == 3
 
 
 def test_sums_add_up():
@@ -66,11 +58,6 @@ def test_evaluate_tells_an_interval_around_the_share(capsys):
     assert low < told["success"] <= high
     assert main(["evaluate", "--model", str(MODERN), "--episodes", "30"]) == 0
     assert f"(95%: {low:.2%} to {high:.2%})" in capsys.readouterr().out
-
-
-def test_a_worker_flies_one_shard_after_another_with_the_same_network(monkeypatch):
-    parts = shards(AGENT, 3, 0, "random")
-    assert parts[0]() == parts[0]()
 
 
 def test_the_copilots_table_is_the_same_in_parts(monkeypatch):
@@ -96,11 +83,11 @@ def test_evaluating_a_model_sends_what_was_read_and_leaves_nothing_behind(monkey
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "temporary"))
     asked = []
 
-    def here(tasks, address, workers):
+    def here(tasks, processes, told):
         asked.extend(tasks)
-        return each(tasks, None, 1)
+        return results(tasks)
 
-    monkeypatch.setattr(module, "each", here)
+    monkeypatch.setattr(module, "results", here)
     command = ["evaluate", "--model", str(tmp_path / "model"), "--episodes", "3", "--workers", "2"]
     assert main(command) == 0
     capsys.readouterr()

@@ -67,6 +67,13 @@ def test_a_setting_out_of_range_is_named(subtests):
     ]:
         with subtests.test(changes=changes, message=message), pytest.raises(ValueError, match=message):
             Config().changed(**changes)
+    for values, message in [
+        ({"warp": 9}, "unknown settings: warp"),
+        *(({name: value}, name) for name, value in (("hidden", 64), ("hidden", "64"), ("learning_rate", [0.001]))),
+        *((wrong, "settings are values by name, not ") for wrong in (None, 3, [], [1], "horizon", [{"horizon": 5}])),
+    ]:
+        with subtests.test(values=values), pytest.raises(ValueError, match=message):
+            Config.from_json(values)
 
 
 def test_numbers_of_numpy_are_plain_numbers():
@@ -88,20 +95,3 @@ def test_numbers_of_numpy_are_plain_numbers():
     config = Config().changed(**given)
     assert config == Config().changed(**plain)
     assert Config.from_json(json.loads(json.dumps(config.to_json()))) == config
-
-
-def test_unknown_settings_are_named():
-    with pytest.raises(ValueError, match="unknown settings: warp"):
-        Config.from_json({"warp": 9})
-
-
-@pytest.mark.parametrize("values", [{"hidden": 64}, {"hidden": "64"}, {"learning_rate": [0.001]}])
-def test_a_number_is_no_list_and_a_list_no_number(values):
-    with pytest.raises(ValueError, match=next(iter(values))):
-        Config.from_json(values)
-
-
-@pytest.mark.parametrize("wrong", [None, 3, [], [1], "horizon", [{"horizon": 5}]])
-def test_settings_that_are_no_table_are_refused(wrong):
-    with pytest.raises(ValueError, match="settings are values by name, not "):
-        Config.from_json(wrong)

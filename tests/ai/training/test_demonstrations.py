@@ -87,43 +87,12 @@ def test_flights_are_relived_together_as_alone(landings):
             assert np.array_equal(column, same)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("preset", ["modern", "classic"])
-def test_an_agent_learns_from_demonstrations_alone(landings, preset):
-    agent = DeepQAgent(config=taught(PRESETS[preset]).changed(learning_starts=64), rng=np.random.default_rng(0))
-    teach(agent, landings)
-    (cells,) = relive(landings[:1], agent.config)
-
-    def agreement():
-        return (agent.act(cells.state) == cells.action).mean()
-
-    before = agreement()
-    assert agent.learn() is not None
-    assert agent.optimizer.steps == 2 * agent.config.gradient_steps  # the second pass is over the successes
-    for _ in range(150):
-        agent.learn()
-    assert agreement() != before
-
-
 def test_demonstrations_are_kept_in_a_file(landings, tmp_path):
     path = tmp_path / "new" / "flights.json"
     assert read(path) == []
     write(path, landings)
     assert read(path) == landings
     assert [file.name for file in path.parent.iterdir()] == ["flights.json"]
-
-
-def test_two_games_can_write_at_once_and_a_full_disk_leaves_nothing(landings, tmp_path, monkeypatch):
-    path = tmp_path / "demonstrations.json"
-    path.with_name(path.name + ".part").mkdir()  # where another game once wrote
-    write(path, landings)
-    assert read(path) == landings
-    with monkeypatch.context() as patch:
-        patch.setattr("ai.training.demonstrations.Path.replace", lambda *_: (_ for _ in ()).throw(OSError("full")))
-        with pytest.raises(OSError, match="full"):
-            write(path, landings[:1])
-    assert read(path) == landings
-    assert len(list(tmp_path.iterdir())) == 2
 
 
 def test_a_live_run_learns_from_them_from_its_first_decision(landings, tmp_path):
@@ -194,23 +163,3 @@ def test_a_file_of_many_flights_is_read_no_further_than_one_is_written(landings,
     described["flights"] *= 2 * MOST
     path.write_text(json.dumps(described))
     assert len(read(path)) == MOST
-
-
-@pytest.mark.parametrize(
-    "content",
-    ["", "[]", "{}", f"{{{KNOWN}}}", f'{{{KNOWN}, "flights": [{{"seed": 1}}]}}',
-     f'{{{KNOWN}, "flights": [{{"seed": 1, "actions": [7]}}]}}'],
-)  # fmt: skip
-def test_a_damaged_file_is_named(content, tmp_path):
-    path = tmp_path / "flights.json"
-    path.write_text(content)
-    with pytest.raises(ValueError, match=r"flights\.json"):
-        read(path)
-
-
-@pytest.mark.parametrize(
-    "wrong", [{"actions": ()}, {"actions": (6,)}, {"spawn": "nowhere"}, {"seed": -1}, {"actions": (0.5,)}]
-)
-def test_what_cannot_have_been_flown_is_refused(wrong):
-    with pytest.raises(ValueError, match=r"flight|whole numbers|6 actions"):
-        Demonstration(**{"seed": 0, "actions": (0,)} | wrong)

@@ -11,7 +11,6 @@ from ai.digits.mnist import load_part
 from ai.digits.training import DigitTraining, confusion
 from ai.digits.validation import EXAMPLES, Confusion
 from ai.training import digit_session
-from ai.training import run as keeping
 from ai.training.checkpoints import resume_digit_run
 from ai.training.digit_session import live_digits
 from ai.training.history import REVERTED, DigitPoint, SettingChange, Validation
@@ -63,13 +62,6 @@ def test_the_network_is_that_of_a_run_without_a_window(data, tmp_path):
     np.testing.assert_array_equal(kept.network.values, training.best_classifier().network.values)
 
 
-def test_a_finished_run_is_kept_with_its_accuracy_on_the_test_images(data, tmp_path):
-    told = [each for turn in live_digits(SMALL, 4, keep=tmp_path / "run", data=data) for each in turn]
-    (kept,) = kinds(told, Saved)
-    assert kept.folder == tmp_path / "run"
-    assert kept.test > 0.2
-
-
 def test_a_run_that_is_closed_can_be_gone_on_with(data, tmp_path):
     run = live_digits(SMALL, 4, keep=tmp_path / "run", data=data)
     for _ in range(9):
@@ -96,17 +88,6 @@ def test_a_run_that_is_asked_to_finish_is_kept_measured_and_can_be_gone_on_with(
     assert resume_digit_run(tmp_path / "run", data=data).step == 7
 
 
-def test_a_run_is_saved_to_another_folder_when_asked(data, tmp_path):
-    run = live_digits(SMALL, 4, keep=tmp_path / "run", data=data)
-    for _ in range(9):
-        next(run)
-    assert run.send(Save(tmp_path / "named")) == (Saved(tmp_path / "named"),)
-    assert resume_digit_run(tmp_path / "named", data=data).step == 7
-    (tmp_path / "file").write_text("in the way")
-    (refused,) = run.send(Save(tmp_path / "file" / "named"))
-    assert refused.problem
-
-
 def test_live_knobs_turn_and_others_are_refused(data):
     run = live_digits(SMALL, data=data)
     next(run), next(run)
@@ -116,19 +97,6 @@ def test_live_knobs_turn_and_others_are_refused(data):
     assert isinstance(run.send(ChangeSetting("augmentation", 7.0))[0], Refused)
     rates = [each.learning_rate for turn in run for each in kinds(turn, DigitPoint)]
     assert max(rates) <= 1e-4
-
-
-def test_a_full_disk_is_told_of_once_and_the_run_goes_on(data, tmp_path, monkeypatch):
-    monkeypatch.setattr(keeping, "FIRST_SECONDS", 0.0)
-    monkeypatch.setattr(keeping, "KEEP_SECONDS", 0.0)
-
-    def full(*_, **__):
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(DigitClassifier, "write", full)
-    told = [each for turn in live_digits(SMALL, keep=tmp_path / "run", data=data) for each in turn]
-    assert [each.problem for each in kinds(told, Saved)] == ["No space left on device"] * 2  # at first, and at the end
-    assert kinds(told, DigitPoint)[-1].step > 1
 
 
 def test_without_images_held_out_there_is_no_confusion(data):

@@ -26,7 +26,7 @@ from ai.training.edits import (
 )
 from ai.training.history import History, Point, SettingChange
 from ai.training.lander_session import live
-from ai.training.messages import NetworkState, Refused, RestoreCheckpoint
+from ai.training.messages import NetworkState, RestoreCheckpoint
 from tests.support.small import LANDERS
 
 SENSED = np.linspace(-1, 1, 18, dtype=np.float32).reshape(2, 9)
@@ -195,15 +195,6 @@ def test_it_learns_on_from_an_edit_and_can_still_go_back() -> None:
     optimizer = training.agent.optimizer
     assert state(run.send(UndoEdit(all=True))) == before
     assert training.agent.optimizer is not optimizer, "what it remembers belongs to other weights"
-    run.close()
-
-
-def test_what_is_refused_is_told_by_a_live_run() -> None:
-    run = live(LANDERS, 3)
-    next(run)
-    command = EditNetwork(SetWeight(0, 0, 99, 0.0))
-    [refused] = run.send(command)
-    assert refused == Refused(command, "there is no weight 0, 99 of 9 x 8")
     run.close()
 
 

@@ -147,6 +147,7 @@ def rewritten(folder, **changes):
         {"stride": 0},
         {"told": 1},
         {"stride": "x"},
+        *({"reward_scale": scale} for scale in (-1.0, float("nan"), float("inf"), "much")),
         {"points": np.zeros((3, 2))},
         {"points": np.zeros((CAPACITY + 1, len(COLUMNS)))},
         {"values": np.full((2, 7), np.nan, np.float32)},
@@ -176,21 +177,6 @@ def test_nonsense_is_named(tmp_path, changes):
         History.read(tmp_path)
 
 
-def test_a_damaged_file_is_named_wherever_the_damage_is(tmp_path):
-    full_history().write(tmp_path)
-    whole = (tmp_path / HISTORY_FILE).read_bytes()
-    rng = np.random.default_rng(0)
-    for _ in range(150):
-        damaged = bytearray(whole)
-        for place in rng.integers(len(whole), size=3):
-            damaged[place] = rng.integers(256)
-        (tmp_path / HISTORY_FILE).write_bytes(damaged if rng.random() < 0.5 else damaged[: rng.integers(len(whole))])
-        try:
-            History.read(tmp_path)
-        except ModelFormatError:
-            continue
-
-
 def test_parts_of_a_reward_that_came_later_or_are_gone_do_no_harm(tmp_path):
     history = full_history()
     history.write(tmp_path)
@@ -216,12 +202,3 @@ def test_a_history_tells_in_which_unit_its_values_are_and_an_older_one_takes_it_
     read = History.read(tmp_path)
     assert read.reward_scale == 0.01
     assert read["mean_q"].tolist() == history["mean_q"].tolist()
-
-
-@pytest.mark.parametrize("scale", [-1.0, float("nan"), float("inf"), "much"])
-def test_a_unit_that_makes_no_sense_is_refused(tmp_path, scale):
-    history = full_history()
-    history.reward_scale = scale
-    history.write(tmp_path)
-    with pytest.raises(ModelFormatError):
-        History.read(tmp_path)

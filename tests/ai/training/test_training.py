@@ -8,10 +8,9 @@ import pytest
 from ai.agent.schedule import geometric, linear
 from ai.lander.environment import LIMITS, LanderEnv, Outcome
 from ai.lander.pilots import NoPilot, ScriptedPilot
-from ai.nn import ModelFormatError
-from ai.training.checkpoints import resume_run, save_run
+from ai.training.checkpoints import AGENTS
 from ai.training.config import PRESETS, Config
-from ai.training.loop import Training, run
+from ai.training.loop import Training
 from ai.training.run import Limit
 from ai.training.tasks import Evaluation, LanderTask, evaluate
 
@@ -35,19 +34,6 @@ def test_schedules():
     assert geometric(1.0, 0.05, 0.5, 10) == 0.05
 
 
-@pytest.mark.parametrize(
-    "changes",
-    [{}, {"spawn": "curriculum", "num_envs": 1, "epsilon_decay": 0.9, "epsilon_decisions": 0, "success_pass": True}],
-)
-def test_the_same_seed_and_configuration_give_the_same_network(changes):
-    first, _ = advanced(SMALL.changed(**changes), 60)
-    second, _ = advanced(SMALL.changed(**changes), 60)
-    assert first.agent.gradient_steps > 0
-    assert np.array_equal(first.agent.online.values, second.agent.online.values)
-    assert np.array_equal(first.agent.target.values, second.agent.target.values)
-    assert not np.array_equal(first.agent.online.values, advanced(SMALL, 59)[0].agent.online.values)
-
-
 def test_evaluating_changes_nothing_about_the_training():
     quiet, _ = advanced(SMALL, 40)
     measured, progress = advanced(SMALL, 40, evaluate_every=80)
@@ -66,16 +52,16 @@ def test_progress_counts_what_happened():
 
 
 def test_progress_tells_the_pace_by_the_clock_it_is_given():
-    moments = iter(range(1000))
-    _, progress = advanced(SMALL, 10, clock=lambda: 0.5 * next(moments))
-    assert progress.steps_per_second == 8 * 4 / 0.5
+    training = Training(SMALL, 0, **QUICK)
+    training.clock = map(float, count(0, 0.5)).__next__
+    assert [training.advance() for _ in range(10)][-1].steps_per_second == 8 * 4 / 0.5
 
 
-def test_the_generator_takes_changed_knobs():
-    going = run(SMALL, 0, **QUICK)
-    next(going)
-    assert going.send(SMALL.changed(epsilon_decisions=8, epsilon_end=0.0)).epsilon == 0.0
-    going.close()
+def test_live_knobs_act_at_once():
+    training = Training(SMALL, 0, **QUICK)
+    training.advance()
+    training.apply_live(SMALL.changed(epsilon_decisions=8, epsilon_end=0.0))
+    assert training.advance().epsilon == 0.0
 
 
 def test_a_change_of_what_cannot_change_while_a_run_goes_on_changes_nothing():
@@ -131,10 +117,10 @@ def test_the_best_checkpoint_is_kept():
     assert np.array_equal(training.best_agent().network.values, kept)
 
 
-def test_a_run_is_kept_and_gone_on_with(tmp_path):
+def test_a_run_is_kept_with_what_it_is(tmp_path):
     training, _ = advanced()
     training.seconds = 12.0
-    save_run(training, tmp_path / "run", final=True)
+    AGENTS.save(training, tmp_path / "run", final=True, state=False)
     described = json.loads((tmp_path / "run" / "training.json").read_text())
     assert described["decisions"] == 240
     assert described["preset"] == "modern"
@@ -148,39 +134,6 @@ def test_a_run_is_kept_and_gone_on_with(tmp_path):
         "spawn": "near",
     }
     assert described["evaluation"]["episodes"] == 1000
-    resumed = resume_run(tmp_path / "run")
-    assert np.array_equal(resumed.agent.online.values, training.agent.online.values)
-    assert resumed.agent.decisions == training.agent.decisions
-    assert resumed.best == training.best
-    assert resumed.episodes == training.episodes
-    assert resumed.seconds == 12.0
-    before = resumed.agent.gradient_steps
-    for _ in range(40):
-        resumed.advance()
-    assert resumed.agent.gradient_steps > before
-
-
-@pytest.mark.parametrize("damage", ["", "{", '{"seed": 0}', "[]"])
-def test_a_damaged_run_is_named(tmp_path, damage):
-    save_run(advanced()[0], tmp_path / "run")
-    (tmp_path / "run" / "training.json").write_text(damage)
-    with pytest.raises(ModelFormatError, match=r"training\.json"):
-        resume_run(tmp_path / "run")
-
-
-def test_a_failed_save_leaves_the_old_run(tmp_path, monkeypatch):
-    training, _ = advanced()
-    save_run(training, tmp_path / "run")
-
-    def full(*_, **__):
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(np, "savez", full)
-    with pytest.raises(OSError, match="No space"):
-        save_run(training, tmp_path / "run")
-    monkeypatch.undo()
-    assert resume_run(tmp_path / "run").agent.decisions == 240
-    assert [path.name for path in tmp_path.iterdir()] == ["run"]
 
 
 def test_a_run_stops_at_the_decisions_or_seconds_asked_for_whichever_comes_first(subtests):
@@ -190,7 +143,8 @@ def test_a_run_stops_at_the_decisions_or_seconds_asked_for_whichever_comes_first
         (Limit(seconds=500.0, moment=40), 40, 10.0),
     ]:
         with subtests.test(decisions=decisions):
-            training = Training(SMALL, 0, **QUICK, clock=map(float, count()).__next__)
+            training = Training(SMALL, 0, **QUICK)
+            training.clock = map(float, count()).__next__
             assert [progress.decisions for progress in limit.run(training)][-1] == decisions
             assert limit.share(training) == 1.0
             assert training.seconds == seconds, "a step looks at the clock twice, and once for its pace"

@@ -1,6 +1,4 @@
-import json
 from collections.abc import Callable
-from dataclasses import asdict
 
 import numpy as np
 import pygame
@@ -12,8 +10,7 @@ from game.core import texts
 from game.core.settings import SettingsFile
 from game.flight import networks
 from game.flight.flight import StickHolder
-from game.flight.flight_file import Entry
-from game.flight.logbook import LOGBOOK, Records
+from game.flight.logbook import Records
 from game.scenes.play.help_words import HELP, word_of
 from game.scenes.play.overrides import difference
 from game.scenes.play.scene import PlayScene
@@ -211,43 +208,12 @@ def test_pads_and_hands_do_not_change_under_a_flight_that_has_begun(open_game: O
     assert len(play(driver).flight.env.ground.pads) == 3
 
 
-def test_a_check_flight_has_no_dial_no_network_and_no_other_hands(open_game: Open, context: Context):
-    helped = Entry(0.0, "LANDED", 7.0, 3.0, 0.4, 0.5)
-    context.user_dir.mkdir(exist_ok=True)
-    (context.user_dir / LOGBOOK).write_text(4 * (json.dumps(asdict(helped)) + "\n"))
-    driver = fly(open_game, context, check_flights=True, assist=0.8, hands="noisy")
-    start_at(driver, 0, 16, 0, 0, 0, 0)
-    play(driver).choose_network("modern")  # in a pause
-    driver.keys(pygame.K_TAB, pygame.K_PLUS)
-    driver.frames(10)
-    assert driver.app.context.settings.assist == pytest.approx(0.8)
-    assert set(play(driver).flight.recording.actions) == {COAST}
-    start_at(driver, 8, 3, 0, -4, 0, 0)
-    driver.frames(60)
-    last = Records(context.user_dir).entries()[-1]
-    assert (last.landed, last.alone) == (False, True)
-    driver.key(pygame.K_n)
-    driver.key(pygame.K_TAB)
-    assert play(driver).flight.hand is StickHolder.NETWORK
-
-
 def test_nonsense_in_the_settings_flies_as_usual(open_game: Open, context: Context):
     driver = fly(open_game, context, hands="three", copilot="captain", assist=0.5)
     driver.key(pygame.K_UP)
     driver.frames(10)
     assert play(driver).flown.hands == "own"
     assert driver.app.context.settings.copilot == "tolerance"
-
-
-def test_draw_changes_nothing_of_a_shared_flight(open_game: Open, context: Context):
-    driver = fly(open_game, context, assist=0.5, three_pads=True)
-    down(driver, pygame.K_RIGHT)
-    driver.frames(40)
-    pictures = []
-    for _ in range(2):
-        driver.top.draw(driver.app.canvas, 0.5)
-        pictures.append(pygame.surfarray.array3d(driver.app.canvas.surface))
-    assert np.array_equal(*pictures)
 
 
 @pytest.mark.parametrize(

@@ -7,14 +7,14 @@ from ai.lander.environment import Cause, Outcome
 from game.core import texts
 from game.flight.flight import Flight
 from game.flight.outcomes import cause_of, outcome_card, struck_side
-from game.panels.readouts import Readout, at_touch, flight_readouts
+from game.panels.readouts import GAUGES, Readout, at_touch, flight_readouts
 
-FIGURES = {Cause.HARD: 1, Cause.SLIDING: 2, Cause.TILTED: 3}
+FIGURES = {gauge.cause: name for name, gauge in GAUGES.items() if gauge.cause}
 
 
-def dropped(start: tuple[float, ...]) -> tuple[Flight, list[Readout]]:
+def dropped(start: tuple[float, ...]) -> tuple[Flight, dict[str, Readout]]:
     """Let a craft fall from a start; return its flight, and the read-outs that stay at the end."""
-    flight, last = Flight(1), list[Readout]()
+    flight, last = Flight(1), dict[str, Readout]()
     flight.env.place(np.ones(1, bool), np.array([start]))
     while not flight.over:
         last = flight_readouts(flight.env)
@@ -36,7 +36,7 @@ def test_every_crash_has_a_marked_figure_that_agrees_with_its_reason():
             continue
         seen += 1
         if struck_side(flight.env):
-            assert not all(readout.within for readout in readouts[1:3])
+            assert not all(readouts[name].within for name in ("descent", "drift"))
         else:
             named = readouts[FIGURES[cause]]
             assert named.within is False
@@ -53,7 +53,7 @@ def test_the_side_of_a_pad_is_not_said_to_be_slid_across():
     reason = outcome_card(flight.env, 1.0).reason
     words = texts.CRASHED_SIDEWAYS.split("{")[0]
     assert reason.startswith(words)
-    assert readouts[1].within is False
+    assert readouts["descent"].within is False
 
 
 def test_a_landing_and_a_soft_touch_mark_nothing():
@@ -61,4 +61,4 @@ def test_a_landing_and_a_soft_touch_mark_nothing():
     for x in (pad.x, pad.x + pad.width):
         flight, readouts = dropped((x, pad.top + 1.5, 0.0, -0.2, 0.0, 0.0))
         assert not flight.wrecked
-        assert all(readout.within for readout in readouts[1:4])
+        assert all(readouts[name].within for name in FIGURES.values())

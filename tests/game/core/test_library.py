@@ -12,7 +12,7 @@ import platformdirs
 import pytest
 
 from ai.agent.agent import DeepQAgent
-from ai.training.checkpoints import resume_run, save_run
+from ai.training.checkpoints import AGENTS, resume_run
 from ai.training.config import Config
 from ai.training.loop import Training
 from game.core import collection, texts
@@ -35,7 +35,7 @@ def trained(tmp_path_factory: pytest.TempPathFactory) -> Path:
     training = Training(SMALL, seed=5, validation_episodes=4)
     training.advance()
     training.conclude()
-    save_run(training, folder)
+    AGENTS.save(training, folder, state=False)
     return folder
 
 

@@ -79,8 +79,8 @@ def test_read_outs_keep_their_distance_from_the_edges(open_game, context: Contex
     def places() -> list[tuple[pygame.FRect, str, str]]:
         areas = {area.what: area.box for area in driver.app.canvas.explained}
         return [
-            (areas[texts.EXPLAIN_READOUTS[0]], "left", "bottom"),
-            (areas[texts.EXPLAIN_READOUTS[3]], "left", "bottom"),
+            (areas[texts.EXPLAIN_READOUTS["altitude"]], "left", "bottom"),
+            (areas[texts.EXPLAIN_READOUTS["tilt"]], "left", "bottom"),
         ]
 
     before = places()
@@ -210,7 +210,7 @@ def test_scenes_with_a_world_fill_the_window_and_pages_do_not():
     assert MenuScene.flows
     assert not Scene.fills
     assert not Scene.flows
-    assert readouts.COLUMNS[0] == MARGIN
+    assert readouts.GAUGES["altitude"].column == MARGIN
 
 
 def test_a_crash_is_not_hidden(open_game, context: Context):

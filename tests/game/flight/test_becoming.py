@@ -3,12 +3,13 @@ from dataclasses import asdict
 
 import pytest
 
-from ai.copilot.alone import LandingAlone
+from ai.copilot.alone import Estimate, LandingAlone
 from ai.lander.spawns import RUNGS
 from game.core import texts
-from game.flight.becoming import KINDS, Becoming, kind_of
+from game.flight.becoming import KINDS, Becoming, kind_of, said
 from game.flight.flight_file import Entry
 from game.flight.logbook import LOGBOOK, Records
+from game.scenes.logbook.scene import LogbookScene
 
 
 def flown(*, landed: bool = True, **more) -> Entry:
@@ -50,20 +51,16 @@ def test_kinds_of_starts_have_estimates_of_their_own():
     guarded(pace=0.5),
 ])  # fmt: skip
 def test_other_flights_tell_nothing(entry: Entry):
-    becoming = Becoming([entry])
-    assert becoming.add(entry) is None
-    assert not any(becoming.curves.values())
+    assert not any(Becoming([entry]).curves.values())
 
 
 def test_a_flight_that_the_guardian_left_alone_is_a_good_sign_and_one_it_changed_a_bad_one():
-    becoming = Becoming()
-    good = becoming.add(guarded(human=0.98))
-    assert good is not None
-    assert good.after.mean > good.before.mean
-    bad = becoming.add(guarded(human=0.6))
-    assert bad is not None
-    assert bad.after.mean < bad.before.mean
-    assert (bad.after.alone, bad.after.helped) == (0, 2)
+    before, good, bad = (
+        Becoming(flights).estimate("plain")
+        for flights in ([], [guarded(human=0.98)], [guarded(human=0.98), guarded(human=0.6)])
+    )
+    assert bad.mean < good.mean > before.mean
+    assert (bad.alone, bad.helped) == (0, 2)
 
 
 def test_the_estimate_is_that_of_the_model():
@@ -85,3 +82,25 @@ def test_an_old_logbook_gives_estimates_from_what_it_holds(tmp_path):
     entries = records.entries()
     assert not records.problem
     assert Becoming(entries).estimate("plain").alone == 8
+
+
+def test_words_for_few_flights_and_for_many():
+    assert said(Estimate(0.5, 0.1, 0.9, alone=2)) == texts.BECOMING_TOO_FEW.format(count=2)
+    assert said(Estimate(0.7, 0.52, 0.88, alone=20)) == texts.BECOMING_ESTIMATE.format(share=7, low=5, high=9)
+    assert said(Estimate(0.99, 0.98, 1.0, alone=20)) == texts.BECOMING_SURE.format(share=10)
+
+
+def test_the_logbook_opens_on_the_kind_flown_last_and_says_its_estimate(
+    open_game, context, written: list[str], subtests: pytest.Subtests
+):
+    starts = {"plain": {}, "ladder": {"spawn": "rung_3"}, "hills": {"pads": 3}, "missions": {"course": "brake"}}
+    for last in KINDS:
+        with subtests.test(last=last):
+            lines = [asdict(alone(**start)) for start in (*starts.values(), *[starts[last]] * 24)]
+            context.user_dir.mkdir(exist_ok=True)
+            (context.user_dir / LOGBOOK).write_text("".join(json.dumps(line) + "\n" for line in lines))
+            driver = open_game(LogbookScene)
+            driver.frames(3)
+            choice = driver.choice(texts.BECOMING_KINDS[last])
+            assert choice.options[choice.index] == texts.BECOMING_KINDS[last]
+            assert texts.BECOMING_ESTIMATE.format(share=10, low=9, high=10) in written

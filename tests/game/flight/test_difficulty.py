@@ -14,9 +14,8 @@ from game.core.settings import Settings
 from game.flight import flight_file
 from game.flight.flight import Flight, Recording
 from game.flight.flight_file import Record
-from game.flight.logbook import Records, best, describe
+from game.flight.logbook import Records, best, best_alone, describe
 from game.flight.replay import FlightReplay, ReplayedFlight
-from game.flight.skill import Skill
 from game.scenes.play.challenge import FlownMission
 from game.scenes.play.choices import ChoicesScene
 from game.scenes.play.scene import PlayScene
@@ -124,9 +123,9 @@ def test_practice_is_not_among_the_best():
     easy, slow = replace(entry, gravity=0.8, score=100), replace(entry, pace=0.7, score=99)
     assert (easy.practice, slow.practice, entry.practice) == (True, True, False)
     assert best([easy, slow, entry]) == [entry]
-    skill = Skill([easy, slow, entry])
-    skill.add(easy)
-    assert (skill.best, len(skill.entries)) == (90, 1)
+    others = [replace(entry, score=95, **kind) for kind in ({"course": "night"}, {"alone": False}, {"spawn": "rung_3"})]
+    assert best_alone([easy, slow, entry, *others]) == 90
+    assert best_alone([]) == 0
 
 
 @pytest.mark.parametrize("value", [0.5, 1.5, float("nan"), "1", 1, None])

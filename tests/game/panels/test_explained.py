@@ -10,6 +10,7 @@ from ai.lander.environment import ACTION_NAMES
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.panels.q_values import QValues, value_words
+from game.panels.readouts import PILOT
 from game.panels.training_charts import TrainingCharts
 from game.scenes.play.scene import PlayScene
 from game.scenes.watch.scene import WatchScene
@@ -48,7 +49,8 @@ def test_everything_in_watch_is_explained(watching: Driver):
     assert len(inputs) == 9
     for what in (
         texts.EXPLAIN_WATCH, texts.EXPLAIN_FLIES, texts.EXPLAIN_EXPECTED, texts.EXPLAIN_VALUE, texts.EXPLAIN_WHY,
-        *texts.EXPLAIN_READOUTS[:4], *texts.EXPLAIN_CHOICES, *texts.EXPLAIN_TOUCH, texts.EXPLAIN_MAP[0],
+        *(texts.EXPLAIN_READOUTS[name] for name in PILOT),
+        *texts.EXPLAIN_CHOICES, *texts.EXPLAIN_TOUCH, texts.EXPLAIN_MAP[0],
     ):  # fmt: skip
         assert what in told
     assert all(area.now() == area.now() for area in watching.app.canvas.explained)
@@ -56,21 +58,21 @@ def test_everything_in_watch_is_explained(watching: Driver):
 
 def test_a_mouse_at_rest_is_told_what_it_points_at(watching: Driver, written: list[str]):
     watching.key(pygame.K_SPACE)
-    place = areas(watching)[texts.EXPLAIN_READOUTS[1]].center
+    place = areas(watching)[texts.EXPLAIN_READOUTS["descent"]].center
     watching.move(place)
-    assert not shows(watching, written, texts.EXPLAIN_READOUTS[1])
+    assert not shows(watching, written, texts.EXPLAIN_READOUTS["descent"])
     watching.frames(40)
-    assert shows(watching, written, texts.EXPLAIN_READOUTS[1])
+    assert shows(watching, written, texts.EXPLAIN_READOUTS["descent"])
     env = scene(watching).swarm.env
     sinking = -float(env.velocity[0, 1])
-    now = texts.EXPLAIN_READOUTS_NOW[1].format(value=sinking, limit=env.limits.touch_speed)
+    now = texts.EXPLAIN_READOUTS_NOW["descent"].format(value=sinking, limit=env.limits.touch_speed)
     if sinking < 0:
         now = texts.EXPLAIN_CLIMBING.format(value=-sinking)
     assert shows(watching, written, now)
     watching.move((640, 300))
-    assert not shows(watching, written, texts.EXPLAIN_READOUTS[1])
+    assert not shows(watching, written, texts.EXPLAIN_READOUTS["descent"])
     watching.frames(40)
-    assert not shows(watching, written, texts.EXPLAIN_READOUTS[1])
+    assert not shows(watching, written, texts.EXPLAIN_READOUTS["descent"])
 
 
 def scene(driver: Driver) -> WatchScene:
@@ -130,13 +132,13 @@ def test_a_value_says_how_far_below_the_best_it_lies():
 def test_f1_shows_what_the_network_thinks_in_flight_and_explains_all_in_the_pause(open_game: Open, written: list[str]):
     driver = open_game(PlayScene, seed=4)
     driver.frames(5)
-    assert set(texts.EXPLAIN_READOUTS[:4]) <= areas(driver).keys()
+    assert {texts.EXPLAIN_READOUTS[name] for name in PILOT} <= areas(driver).keys()
     for shown in (True, False):
         driver.key(pygame.K_F1)
         assert driver.saved()["show_thinking"] is shown
     driver.key(pygame.K_ESCAPE)
     driver.frames(3)
-    assert set(texts.EXPLAIN_READOUTS) <= areas(driver).keys()
+    assert set(texts.EXPLAIN_READOUTS.values()) <= areas(driver).keys()
     driver.key(pygame.K_F1)
     told = [area.what for area in driver.app.canvas.explained]
     assert shows(driver, written, told[0])

@@ -94,13 +94,6 @@ def test_on_a_mission_elsewhere_it_is_named_and_flies_the_ghost(open_game: Open,
     assert play(driver).flight.outcome is Outcome.LANDED
 
 
-def test_on_the_moon_the_network_for_the_moon_flies(open_game: Open, written: list[str]):
-    driver = open_game(PlayScene, 0, challenge=FlownMission(MISSIONS["brake"]))
-    driver.frames(1)
-    assert play(driver).network.name == "modern"
-    assert not any("anywhere" in string for string in written)
-
-
 def test_a_race_against_a_flight_from_elsewhere_is_flown_with_it_too(open_game: Open, context: Context):
     record = kept(context, scripted(0, mission="mars"), course="mars")
     driver = open_game(PlayScene, 0, challenge=Race(record, "yesterday"))

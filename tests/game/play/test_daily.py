@@ -63,13 +63,6 @@ def clipboard(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     return held
 
 
-def test_the_page_of_play_leads_to_the_day(open_game: Open):
-    driver = open_game(FlightsScene)
-    driver.frames(2)
-    driver.press_on(texts.FLIGHTS["day"][0])
-    assert driver.top_name == "DaysScene"
-
-
 def test_the_first_attempt_counts_and_a_second_is_practice(open_game: Open, context: Context):
     driver = open_game(day_scene)
     driver.frames(2)
@@ -112,7 +105,7 @@ def test_leaving_the_first_attempt_ends_it(open_game: Open, context: Context):
     driver = open_game(day_scene)
     driver.frames(2)
     assert isinstance(driver.top, DaysScene)
-    assert driver.top.items[0] == TODAY
+    assert driver.top.days[0] == TODAY
     assert driver.widget(texts.DAYS_FLY_AGAIN)
 
 
@@ -216,17 +209,6 @@ def test_a_gamepad_alone_gets_there_flies_and_copies(open_game: Open, context: C
     driver.skip(240)
     driver.button(pygame.CONTROLLER_BUTTON_RIGHTSTICK)
     assert clipboard[-1].startswith("Tranquility ")
-
-
-def test_a_mouse_alone_flies_and_copies(open_game: Open, context: Context, clipboard: list[str]):
-    Days(context.user_dir).note(Attempt(TODAY.isoformat(), "LANDED", 84))
-    driver = open_game(day_scene)
-    driver.frames(2)
-    driver.click(driver.widget(texts.DAYS_COPY).box.center)
-    assert clipboard[-1].endswith("first attempt")
-    driver.click(driver.widget(texts.DAYS_FLY_AGAIN).box.center)
-    driver.frames(2)
-    assert play(driver).credit.bar == "day_again"
 
 
 def test_card_list_and_line_agree_on_who_comes_down_softly_beside_the_pad(context: Context):

@@ -1,6 +1,5 @@
 """A friend's flight comes in by paste and by drop at any screen, is checked, raced, taken over and answered."""
 
-import json
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -8,8 +7,7 @@ import pygame
 import pytest
 
 from game.core import texts
-from game.core.assets import ASSETS_DIR
-from game.flight import flight_file, sharing
+from game.flight import sharing
 from game.flight.flight_file import Record
 from game.scenes.digit_training import DigitTrainingScene
 from game.scenes.logbook.replay import ReplayScene
@@ -85,12 +83,6 @@ def test_a_file_is_dropped_at_any_screen(open_game: Open, context: Context, reco
         assert isinstance(driver.top, scene)
 
 
-def test_a_text_is_dropped_too(open_game: Open, record: Record):
-    driver = open_game()
-    driver.post(pygame.DROPTEXT, text=sharing.code(record))
-    assert page(driver)
-
-
 @pytest.mark.parametrize(
     ("content", "why"),
     [
@@ -123,13 +115,6 @@ def test_pasting_what_is_no_code_is_refused(open_game: Open, clipboard: list[str
     driver = open_game()
     paste(driver, "tranq2-000", clipboard)
     assert driver.said == texts.CODE_PASTE_REFUSED.format(reason=texts.CODE_REFUSED["cut"])
-
-
-def test_a_letter_alone_pastes_nothing(open_game: Open, record: Record, clipboard: list[str]):
-    clipboard.append(sharing.code(record))
-    driver = open_game()
-    driver.key(pygame.K_v)
-    assert driver.top_name == "MenuScene"
 
 
 def test_a_true_claim_is_said_to_be_true(open_game: Open, record: Record, written: list[str]):
@@ -249,16 +234,3 @@ def test_without_a_clipboard_the_code_is_written_to_a_file(
     assert sharing.flight_in_file(path).recording == record.recording
     driver.press_on(texts.CODE_PASTE)
     assert driver.said == texts.CODE_PASTE_EMPTY
-
-
-def test_a_flight_file_of_an_older_version_is_shown_too(open_game: Open, tmp_path):
-    values = json.loads((ASSETS_DIR / "flights" / "fall.json").read_text())
-    values["version"] = 1
-    values.pop("gravity", None)
-    path = tmp_path / "old.json"
-    path.write_text(json.dumps(values))
-    driver = open_game()
-    driver.post(pygame.DROPFILE, file=str(path))
-    driver.frames(200)
-    assert page(driver).claimed.true
-    assert flight_file.read(path).recording.mission == "fall"

@@ -130,21 +130,6 @@ def test_escape_leaves_before_the_start_and_after_the_end(duel):
     assert driver.top_name == "MenuScene"
 
 
-def test_leaving_from_the_pause_goes_back_as_well(duel):
-    driver = duel(Idle())
-    press(driver, MAIN)
-    driver.frames(5)
-    driver.keys(pygame.K_ESCAPE, pygame.K_UP, pygame.K_RETURN)
-    assert driver.top_name == "MenuScene"
-
-
-def test_looking_away_before_the_start_pauses_and_does_not_leave(duel):
-    driver = duel(Idle())
-    driver.post(pygame.WINDOWFOCUSLOST)
-    driver.frames(15)
-    assert "PauseScene" in driver.top_name
-
-
 @pytest.mark.parametrize(("key", "same"), [(pygame.K_r, True), (pygame.K_n, False)])
 def test_retry_and_a_new_start_are_for_both(duel, key: int, same: bool):
     driver = duel(Idle())
@@ -155,18 +140,6 @@ def test_retry_and_a_new_start_are_for_both(duel, key: int, same: bool):
     assert scene(driver).waiting
     assert np.array_equal(mine.env.position, theirs.env.position)
     assert np.array_equal(mine.env.position, first) is same
-
-
-def test_a_gamepad_flies_retries_and_leaves(duel):
-    driver = duel(Idle())
-    driver.axis(pygame.CONTROLLER_AXIS_TRIGGERRIGHT, 32000)
-    driver.frames(5)
-    assert ghost(driver).flight.env.steps[0] > 0
-    driver.axis(pygame.CONTROLLER_AXIS_TRIGGERRIGHT, 0)
-    driver.button(pygame.CONTROLLER_BUTTON_X)
-    assert scene(driver).waiting
-    driver.button(pygame.CONTROLLER_BUTTON_START)
-    assert driver.top_name == "MenuScene"
 
 
 def test_hand_over_still_works_and_the_card_tells_of_both(duel):
@@ -205,18 +178,6 @@ def test_of_two_who_land_the_card_says_who_was_first(later: float, said: str):
             env.step(np.zeros(1, int))
     ghost.flight.env.steps[0] += round(60 * later)
     assert said in ghost.row(yours).result
-
-
-def test_drawing_a_ghost_changes_nothing(duel):
-    driver = duel(ScriptedPilot())
-    press(driver, MAIN)
-    for frames in (40, 400):  # in flight; and with both down and the card shown
-        driver.frames(frames)
-        pictures = []
-        for _ in range(2):
-            driver.top.draw(driver.app.canvas, 0.5)
-            pictures.append(pygame.surfarray.array3d(driver.app.canvas.surface))
-        assert np.array_equal(*pictures)
 
 
 def test_a_ghost_is_seen(duel):

@@ -76,8 +76,6 @@ FREE: dict[str, dict[str, object]] = {
     "no main engine": {"hands": "sensor"},
     "light": {"gravity": 0.8},
     "slow": {"pace": 0.5},
-    "check": {"check_flights": True, "assist": 0.5},
-    "check, slow": {"check_flights": True, "assist": 0.5, "pace": 0.5},
     "guarded": {"assist": 0.7, "copilot": "guardian"},
     "guarded, three pads": {"assist": 0.7, "copilot": "guardian", "three_pads": True},
 }
@@ -120,10 +118,6 @@ def test_header_panel_hints_card_and_logbook_say_the_same(
 
 def begin(open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch, scene: str, settings: dict) -> Reading:
     monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", Weighs()))
-    if settings.get("check_flights"):
-        crash = fly_out(Flight(5))
-        for _ in range(4):
-            kept(context, crash, alone=False, barred="helped")
     for name, value in {**settings, "reduced_motion": True}.items():
         setattr(context.settings, name, value)
     context.settings_file.save(context.settings)
@@ -268,8 +262,9 @@ MEDALS_AND_POINTS = [pattern(text) for text in (*texts.MEDALS, texts.SCORE, text
 @pytest.mark.parametrize(
     ("scene", "settings", "way", "outcome"),
     [(scene, more, WAYS[(number + 2 * row) % len(WAYS)], outcome)
-     for row, (scene, more) in enumerate([*((name, {}) for name in SCENES), ("free", {"pace": 0.5}),
-                                          ("free", {"check_flights": True, "assist": 0.5}), ("free", {"assist": 0.5})])
+     for row, (scene, more) in enumerate(
+         [*((name, {}) for name in SCENES), ("free", {"pace": 0.5}), ("free", {"assist": 0.5})]
+     )
      for number, outcome in enumerate(LOST)],
 )  # fmt: skip
 def test_a_flight_that_is_no_landing_is_told_of_alike_everywhere(

@@ -17,7 +17,8 @@ from ai.digits.config import DIGIT_PRESETS, DigitConfig, build_digit_network
 from ai.digits.filters import FilterMoment
 from ai.digits.training import DigitTraining
 from ai.digits.validation import Confusion
-from ai.training.checkpoints import save_digit_run
+from ai.files import state_folder
+from ai.training import checkpoints
 from ai.training.history import DigitPoint, Validation
 from game.core import texts
 from game.core.names import LibraryError
@@ -137,7 +138,7 @@ def test_a_run_is_named_dreams_and_is_quizzed(train: Driver, tmp_path: Path, mon
 )
 def test_a_nameless_run_is_asked_about_before_a_new_one(train: Driver, tmp_path: Path, answer: str):
     scene, runs = train.top, tmp_path / "user" / "digits" / "runs"
-    save_digit_run(DigitTraining(SMALL, 3), runs / ".training")
+    checkpoints.DIGITS.save(DigitTraining(SMALL, 3), runs / ".training")
     train.key(pygame.K_RETURN)
     assert train.top_name == "QuestionDialog"
     if answer:
@@ -196,8 +197,8 @@ def test_looking_for_an_unfinished_run_leaves_alone_what_is_being_written(tmp_pa
     digit_run.begin(SMALL, 0)
     half = tmp_path / f".{digit_run.collection.unsaved.name}.old"  # between the two renames of a save
     half.mkdir()
-    for name in ("last.npz", "training.json"):
-        (half / name).write_bytes(b"")
+    (half / "training.json").write_bytes(b"")
+    state_folder(digit_run.collection.unsaved).mkdir()
     assert not digit_run.unfinished
     assert half.exists()
     digit_run.close()

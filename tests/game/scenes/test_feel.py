@@ -104,15 +104,6 @@ def test_slow_motion_can_be_cut_short_and_loses_no_key(game: Driver):
     assert not scene(game).flown.pace.slow
 
 
-def test_slow_motion_ends_where_motion_is_reduced_in_its_midst(game: Driver):
-    crash(game)
-    for reduced in (False, True):
-        game.key(pygame.K_ESCAPE)
-        game.app.context.settings.reduced_motion = reduced
-        game.key(pygame.K_ESCAPE)
-        assert scene(game).flown.pace.slow is not reduced
-
-
 @pytest.mark.parametrize("reduced", [False, True])
 def test_a_crash_is_heard_as_it_is_seen_also_if_motion_was_reduced_on_the_way(game: Driver, reduced: bool, monkeypatch):
     heard: list[str] = []

@@ -30,15 +30,6 @@ def test_it_takes_off_is_flown_back_and_begins_anew(context: Context, folder: st
     assert 8 < highest < 14
 
 
-def test_it_stands_still_where_motion_is_reduced(context: Context) -> None:
-    context.settings.reduced_motion = True
-    background = MenuBackground(context)
-    pose = background.poses.at(1.0)
-    for _ in range(60):
-        background.update()
-    assert np.array_equal(background.poses.at(1.0), pose)
-
-
 def test_it_stands_again_when_motion_is_reduced_in_its_midst(context: Context) -> None:
     background = MenuBackground(context)
     pose = background.poses.at(1.0)

@@ -102,24 +102,6 @@ def test_the_key_that_opened_the_flight_does_not_also_begin_it(open_game: Open, 
     assert not scene(driver).waiting
 
 
-def test_a_hundred_handovers_stick_no_engine_and_lose_no_input(open_game: Open, flown_by):
-    flown_by(Steady())
-    driver = open_game(PlayScene, seed=1)
-    held = False
-    for turn in range(100):
-        if turn % 10 == 0:  # stay clear of the ground
-            start_at(scene(driver), 0, 16, 0, 0, 0, 0)
-        before = scene(driver).flight.hand
-        driver.key(pygame.K_TAB)
-        assert scene(driver).flight.hand is not before
-        if turn % 3 == 0:  # press or let go while either of the two flies
-            (let_go if held else press)(driver, MAIN)
-            held = not held
-        driver.frames(1)
-        assert action(driver) == (1 if scene(driver).flight.hand is StickHolder.NETWORK else 3 * held)
-    assert not scene(driver).flight.over
-
-
 def test_the_network_lands_what_was_handed_over_and_the_card_says_who_flew(open_game: Open, flown_by):
     flown_by(ScriptedPilot())
     driver = open_game(PlayScene, seed=12)
@@ -202,32 +184,6 @@ def test_a_glance_away_does_not_pause(open_game: Open, flown_by):
     assert driver.top_name == "PlayScene"
 
 
-def test_a_resize_in_the_middle_changes_nothing_but_the_picture(open_game: Open, flown_by):
-    flown_by(ScriptedPilot())
-    flown = []
-    for sizes in ([], [(900, 700), (640, 360), (1280, 720)]):
-        driver = open_game(PlayScene, seed=4)
-        driver.key(pygame.K_TAB)
-        for size in sizes:
-            driver.resize(size)
-            driver.frames(20)
-        driver.frames(130)
-        flown.append(scene(driver).flight.recording.actions[:120])
-        driver.app.close()
-    assert flown[0] == flown[1]
-    assert len(flown[0]) == 120
-
-
-def test_a_missing_network_is_named_and_the_game_goes_on(open_game: Open, context: Context, tmp_path: Path):
-    context.models_dir = tmp_path
-    driver = open_game(PlayScene, seed=1)
-    driver.key(pygame.K_TAB)
-    driver.frames(30)
-    play = scene(driver)
-    assert play.flight.hand is StickHolder.HUMAN
-    assert "missing" in play.network.problem
-
-
 def cut_short(path: Path) -> None:
     path.write_bytes(path.read_bytes()[:100])
 
@@ -289,29 +245,6 @@ def crash(driver: Driver) -> None:
         driver.frames(1)
 
 
-def test_a_window_that_is_minimised_for_a_minute_finds_the_flight_as_it_was_left(open_game: Open, flown_by):
-    driver = open_game(PlayScene, seed=1)
-    driver.frames(2)
-    driver.post(pygame.KEYDOWN, key=pygame.K_UP, mod=0, unicode="", scancode=0)
-    driver.frames(30)
-    driver.post(pygame.WINDOWMINIMIZED)
-    driver.post(pygame.WINDOWFOCUSLOST)
-    driver.frames(3600)
-    driver.post(pygame.WINDOWRESTORED)
-    driver.post(pygame.WINDOWFOCUSGAINED)
-    assert "PauseScene" in driver.top_name
-    driver.key(pygame.K_ESCAPE)
-    flight = scene(driver).flight
-    flown = len(flight.recording.actions)
-    assert 20 < flown < 60
-    driver.frames(10)
-    assert len(flight.recording.actions) == flown  # it hangs until it is touched
-    driver.key(pygame.K_UP)
-    driver.frames(10)
-    assert len(flight.recording.actions) > flown + 9
-    assert set(flight.recording.actions[-10:]) == {0}  # no engine sticks
-
-
 def with_networks(context: Context, tmp_path: Path, *names: str) -> None:
     context.models_dir = tmp_path / "shipped"
     for name in names:
@@ -353,18 +286,6 @@ def test_a_network_that_breaks_on_the_way_gives_the_stick_back(open_game: Open, 
     driver.frames(5)
     assert scene(driver).flight.hand is StickHolder.HUMAN
     assert "No network" in driver.said
-
-
-def test_draw_changes_nothing(open_game: Open, flown_by):
-    flown_by(ScriptedPilot())
-    driver = open_game(PlayScene, seed=4)
-    driver.key(pygame.K_TAB)
-    driver.frames(90)
-    pictures = []
-    for _ in range(2):
-        driver.top.draw(driver.app.canvas, 0.5)
-        pictures.append(pygame.surfarray.array3d(driver.app.canvas.surface))
-    assert np.array_equal(*pictures)
 
 
 @pytest.mark.parametrize("hints", [True, False])

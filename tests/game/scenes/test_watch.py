@@ -189,13 +189,6 @@ def test_a_list_opens_to_choose_from(many: Driver, context: Context, way: str):
     many.frames(5)
 
 
-def test_the_mouse_turns_pages_and_takes_words_beside_the_list(many: Driver):
-    row = many.the(ChoiceOrList)
-    last = next(page.stop for page in row.row.pages if row.index in page)
-    many.click((row.row.right - 4, row.box.centery))
-    assert scene(many).network.name == row.options[last]
-
-
 def test_what_was_renamed_or_deleted_meanwhile_is_noted(many: Driver, context: Context):
     library = Library(context.user_dir)
     many.key(pygame.K_ESCAPE)

@@ -151,11 +151,6 @@ def test_knobs_that_a_preset_puts_aside_can_be_had_back(run_settings: RunSetting
     assert heard[-1][0] in KNOBS
 
 
-def test_a_preset_puts_nothing_aside_where_nothing_was_turned(run_settings: RunSettings):
-    run_settings.load(("classic", ""))
-    assert run_settings.put_aside is None
-
-
 def test_an_impossible_value_changes_nothing_and_is_explained(run_settings: RunSettings, heard: list[Any]):
     run_settings.turn("learning_rate", -1.0)
     assert run_settings.config == run_settings.draft == PRESETS["modern"]
