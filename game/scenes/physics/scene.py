@@ -26,7 +26,6 @@ from game.panels import readouts
 from game.panels.explained import Explained
 from game.scenes.physics.bench import LEFT, Bench
 from game.scenes.physics.exhibits import EXHIBITS
-from game.scenes.physics.labels import draw_label
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.form_scene import FormScene
@@ -156,7 +155,7 @@ class PhysicsScene(FormScene):
         if self.contacts_drawn:
             draw_contacts(canvas, view, self.exhibit.world, self._weight)
         for label in self.exhibit.labels():
-            draw_label(canvas, view, label, poses, self.bench.panel.box if self.bench.panel else None)
+            label.draw(canvas, view, poses, self.bench.panel.box if self.bench.panel else None)
         if self.grip:
             place = self.grip.place(poses[self.grip.body.index])
             x, y = view.points(place).tolist()

@@ -214,16 +214,6 @@ def test_without_any_network_there_is_a_pad_and_a_message(open_game: Open, conte
     assert driver.top_name == "DigitsScene"
 
 
-def test_drawing_changes_nothing_but_pixels(drawing: Driver):
-    draw(drawing, strokes(8))
-    drawing.frames(30)
-    pictures = []
-    for _ in range(2):
-        scene(drawing).draw(drawing.app.canvas, 0.5)
-        pictures.append(pygame.surfarray.array3d(drawing.app.canvas.surface))
-    assert np.array_equal(*pictures)
-
-
 def test_a_fix_is_learnt_in_the_background_shown_and_undone(drawing: Driver, context: Context, monkeypatch):
     monkeypatch.setattr("game.scenes.digits.fixing.fix", biased_fix)
     digits = scene(drawing)
@@ -240,14 +230,6 @@ def test_a_fix_is_learnt_in_the_background_shown_and_undone(drawing: Driver, con
     drawing.click(word.box.center)
     assert guess(drawing) == 1
     assert word not in digits.form.widgets
-
-
-def test_menu_leads_to_drawing_and_back(open_game: Open):
-    driver = open_game()
-    driver.keys(*[pygame.K_DOWN] * 3, pygame.K_RETURN)
-    assert driver.top_name == "DigitsScene"
-    driver.key(pygame.K_ESCAPE)
-    assert driver.top_name == "MenuScene"
 
 
 @pytest.mark.parametrize(
