@@ -37,13 +37,14 @@ class PhysicsStepScene(PanelScene):
         pair: the shapes that are followed through it; None if none is near another.
         pieces: what happens to them, one after the other.
         place: number of the piece that is shown.
+        in_code: whether its code and its figures stand beside the picture.
 
     """
 
     def __init__(self, context: Context, exhibit: Exhibit, grip: Grip | None = None) -> None:
         super().__init__(context)
         self.record = StepRecord(exhibit, grip)
-        self._view = StepView(self.record)
+        self._view, self.in_code = StepView(self.record), False
         self.pair = max(self.record.pairs, key=self._push, default=None)
         self._follow(self.pair)
         self.form.focus(self._slider)
@@ -54,7 +55,7 @@ class PhysicsStepScene(PanelScene):
         return -1.0 if contacts is None or pair.contact is None else float(contacts.impulse[pair.contact, :2].sum())
 
     def describe(self, panel: Panel) -> None:
-        """Add the kinds of pieces, what happens, the picture beside its code and figures, and the slider."""
+        """Add the kinds of pieces, what happens, the slider, and the picture, with its code and figures if wanted."""
         panel.aside(texts.STEP_TITLE)
         self._kinds = list(dict.fromkeys(piece.kind for piece in self.pieces))
         words, chosen = [texts.STEP_PIECES[kind][0] for kind in self._kinds], self._kinds.index(self.piece.kind)
@@ -65,10 +66,11 @@ class PhysicsStepScene(PanelScene):
             texts.STEP_PIECE, self.place, (0, last), self._turn_to, step=1,
             figure=lambda value: texts.STEP_PLACE.format(count=value + 1, total=last + 1),
         )  # fmt: skip
-        left, right = panel.beside((1, 1), least=_LEAST, apart=40.0)
+        left, *right = panel.beside((1, 1) if self.in_code else (1,), least=_LEAST, apart=40.0)
         left.picture(_PICTURE, lambda canvas, box: self._view.draw(canvas, box, self.piece, self.pair))
-        right.picture(_LISTING, self._draw_code)
-        right.add(self._write_figures)
+        for column in right:
+            column.picture(_LISTING, self._draw_code)
+            column.add(self._write_figures)
 
     # What is chosen
 
@@ -97,8 +99,12 @@ class PhysicsStepScene(PanelScene):
         if self.pair in pairs:
             self._follow(pairs[(pairs.index(self.pair) + direction) % len(pairs)], self.piece.kind)
 
+    def _show_code(self) -> None:
+        self.in_code = not self.in_code
+        self.build()
+
     def actions(self) -> Table:
-        """Next piece; another pair; back to the gallery."""
+        """Next piece; another pair; the code; back to the gallery."""
         pairs = [
             Action(Command.NEXT, lambda: self._other_pair(1), texts.HINT_NEXT_PAIR),
             Action(Command.PREVIOUS, lambda: self._other_pair(-1)),
@@ -106,6 +112,7 @@ class PhysicsStepScene(PanelScene):
         return [
             Action(Command.STEP, lambda: self._slider.set(self.place + 1), texts.HINT_NEXT_PIECE),
             *(pairs if len(self.record.pairs) > 1 else []),
+            Action(Command.CHOICES, self._show_code, texts.STEP_CODE[self.in_code]),
             self.form.goes_back(texts.HINT_BACK),
         ]
 

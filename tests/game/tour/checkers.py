@@ -295,6 +295,7 @@ NOT_AT = {
 FLOWING = {
     "MenuScene", "FlightsScene", "SettingsScene", "AssistsScene", "BindingsScene", "QuestionDialog", "NameDialog",
     "ListDialog", "sound", "controls", "ChoicesScene", "PauseScene", "FlightPauseScene, of a flight",
+    "PhysicsStepScene",
 }  # fmt: skip
 IN_FLIGHT = {
     "Play, in flight", "mission, in flight", "descent, in flight", "daily, in flight", "tutorial, in flight",
