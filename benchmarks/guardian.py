@@ -40,8 +40,8 @@ from ai.copilot import futures
 from ai.copilot.copilot import Mode
 from ai.copilot.futures import DECISION_STEPS, KEYS, Future, Lookahead, Push
 from ai.copilot.guardian import decisions_of
-from ai.copilot.hands import FAMILIES, STUBBORN, UNSEEN
-from ai.copilot.measurement import ALONE, PILOTS, rows
+from ai.copilot.hands import HANDS
+from ai.copilot.measurement import ALONE, rows
 from ai.flights.recording import STEPS, Shares
 from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.moment import Moment
@@ -54,7 +54,7 @@ MODEL = Path(__file__).parent.parent / "models" / "lander" / "modern"
 BATCHES = (1, 6, 12, 18, 42)
 # Hands that are flown at once: futures of many take hardly longer.
 HOSTILE = "adversary, random", "adversary, least"
-KINDS = [name for name in STUBBORN if name not in HOSTILE], HOSTILE, [*FAMILIES, *UNSEEN]
+KINDS = [name for name in HANDS if name not in HOSTILE], HOSTILE
 ROUND = 100  # flights of each family in a round: few at once cost several times as much each
 LIVE_STEPS = 480  # of a flight in real time at most: hands that crash are kept in the air for long
 
@@ -248,7 +248,7 @@ def main() -> None:
         help=f"of each family with each dial, in whole rounds of {ROUND}; live, at most 4",
     )
     parser.add_argument("--into", type=Path, default=Path("guardian.jsonl"), help="file of the rounds that were flown")
-    parser.add_argument("--hands", nargs="*", default=list(PILOTS), choices=list(PILOTS), metavar="NAME")
+    parser.add_argument("--hands", nargs="*", default=list(HANDS), choices=list(HANDS), metavar="NAME")
     parser.add_argument("--dials", type=float, nargs="*", default=[0.04, 0.27, 1.0])
     parser.add_argument("--seed", type=int, default=0)
     arguments = parser.parse_args()

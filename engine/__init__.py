@@ -1,7 +1,7 @@
 """Two-dimensional rigid bodies on NumPy, in batches of independent worlds.
 
 Reading order: `vector`, `state`, `shapes`, `integrate`, `broad_phase`, `collide`, `contacts`, `constraints`, `solver`,
-`rest`, `body`, `world`, `sprite`.
+`rest`, `body`, `world`.
 
     from engine import Circle, Polygon, World
 
@@ -13,10 +13,9 @@ Reading order: `vector`, `state`, `shapes`, `integrate`, `broad_phase`, `collide
     print(ball.position)        # (batch, 2)
 """
 
-from engine.body import Body
+from engine.body import Body, Sprite
 from engine.collide import Manifold, collide
 from engine.shapes import Circle, Polygon, Shape
-from engine.sprite import Sprite
 from engine.world import DT, World, memory_of_worlds
 
 __all__ = ["DT", "Body", "Circle", "Manifold", "Polygon", "Shape", "Sprite", "World", "collide", "memory_of_worlds"]

@@ -1,7 +1,8 @@
-"""A handle on one body's slot in every world of a batch."""
+"""A handle on one body's slot in every world of a batch, and how a body is to be drawn."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
@@ -143,6 +144,23 @@ class Body:
     def _inverse(self, row: int) -> float:
         value = float(self.world.params.inverse_mass[self.index, row])
         return 1.0 / value if value else float("inf")
+
+
+@dataclass(frozen=True)
+class Sprite:
+    """Description of the picture to draw at a body's position and angle.
+
+    Attributes:
+        image: key of a picture in the renderer's table; the engine has none.
+        size: width and height of the picture in metres, its middle at the body's position.
+        layer: higher ones lie on top.
+
+    """
+
+    body: Body
+    image: str
+    size: tuple[float, float]
+    layer: int = 0
 
 
 def _read_only(view: NDArray[T]) -> NDArray[T]:

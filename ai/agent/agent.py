@@ -5,32 +5,24 @@ One decision of training is on one page: `DeepQAgent.train_step` and the methods
 
 Mnih et al. 2015, Human-level control through deep reinforcement learning
 - One game, one gradient step on 32 transitions every 4 actions. Here `num_envs` landers decide at once, then come
-  `gradient_steps` steps: NumPy pays per call. All their targets are computed beforehand, by the networks as they are
-  before the first of them, in a few large passes.
+  `gradient_steps` steps: NumPy pays per call. All their targets are computed before the first of them, in a few large
+  passes, and stay as they are.
 - The target network is copied every 10,000 steps, and the online one acts. Here it follows softly by `tau` after each
-  step (Lillicrap et al. 2016), at last more slowly (`final_tau`), and acts itself, in training too (`fly_target`): it
-  is steadier to watch. In `modern` that is all it does: next states are judged by the online network
-  (`target_judges`), as in Gallici et al. 2025, who need no target network, thanks to layer normalisation. A decision's
-  targets stay as they are for all its steps.
+  step (Lillicrap et al. 2016), at last more slowly (`final_tau`), and acts itself (`fly_target`): it is steadier to
+  watch. Next states are judged by the online network (`target_judges` is off), as in Gallici et al. 2025, who need no
+  target network, thanks to layer normalisation.
 - Rewards are clipped to ±1. Here they are only scaled (`reward_scale`): a landing must outweigh what leads to it.
-- RMSProp at a fixed rate. Here Adam, at a rate that falls in a straight line, and gradients are clipped by length.
-  The paper's clipped error is the Huber cost.
-- ε falls to 0.1 for the one player, and random actions are uniform. Here each lander has an ε of its own, as in
-  Horgan et al. 2018, and the chances of random actions may differ (`action_chances`): a lander's main engine, fired
-  half the time, is hovering.
+- RMSProp at a fixed rate. Here Adam, at a rate that falls in a straight line; gradients are clipped by length, and the
+  cost is Huber's, the paper's clipped error.
+- ε falls to 0.1, and random actions are uniform. Here each lander has an ε of its own, as in Horgan et al. 2018, and
+  chances of random actions may differ (`action_chances`): a main engine fired half the time is hovering.
 - The action of the greatest value is taken. Here the one held goes on while it is nearly as good (`steadiness`), so
   that engines do not flicker. Targets use the greatest value all the same.
 - An episode's end has no value beyond. Here the end by the clock has, as time is not observed (Pardo et al. 2018).
-- Images and convolutions. Here features, and layer normalisation before each activation.
-van Hasselt et al. 2016, double Q-learning (off in both presets): as published, but for the networks that act.
-Schaul et al. 2016, prioritised replay (off in both presets)
-- Priorities change after every minibatch. Here the transitions of all minibatches of a decision are drawn together,
-  in as many strata, and get their priorities once, after the last step; weights are relative to the largest of all.
-- The learning rate is a quarter of that of uniform replay. Here it is left as it is.
-Wang et al. 2016, dueling networks (off in both presets): each stream has a hidden layer of its own, and gradients
-  into the shared layers are scaled by 1/√2. Here both streams are linear and nothing is scaled.
-Sutton and Barto 2018, n-step returns (sections 7.1 and 7.3): off-policy returns are weighted by importance sampling.
-  Here they are not, as in Hessel et al. 2018: transitions are learned from as they were flown.
+Off in both presets: double Q-learning (van Hasselt et al. 2016); prioritised replay (Schaul et al. 2016), here with all
+  minibatches of a decision drawn together, priorities set once after the last, and weights relative to the largest of
+  all; dueling networks (Wang et al. 2016), here with linear streams and no gradient scaled by 1/√2.
+N-step returns (Sutton and Barto 2018, 7.1) are not weighted by importance sampling, as in Hessel et al. 2018.
 In no paper: half of each minibatch is mirrored (`mirror`); `classic` has a second pass over flights that ended well.
 """
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ai.agent.agent import DeepQAgent
     from ai.copilot.measurement import AssistedFlights
 
-ROW: Final = 4  # flights
+ROW: Final = 3  # flights
 _MODELS: Final = Path(__file__).parents[2] / "models" / "lander"
 MODEL: Final = _MODELS / "modern"
 ANYWHERE_MODEL: Final = _MODELS / "anywhere"
@@ -68,24 +68,27 @@ def _lander(model: Path, envs: tuple[str, ...]) -> DeepQAgent:
 
 def _table(arguments: argparse.Namespace) -> int:
     from ai.copilot.copilot import Mode
-    from ai.copilot.measurement import HELPS, seconds
-    from ai.sweep.shards import PILOTS, parts_of, results
+    from ai.copilot.measurement import GUARD, HELPS, TABLES, seconds
+    from ai.lander.pilots import ScriptedPilot
+    from ai.sweep.shards import parts_of, results
     from ai.training.config import ANYWHERE, LANDER
 
     if problem := out_of_range(arguments, episodes=EPISODES, seed=SEEDS, workers=WORKERS):
         return fail(problem)
     if not all(0 <= assist <= 1 for assist in arguments.assist):
         return fail("the dial goes from 0 to 1")
-    helps = [*HELPS, *((Mode.GUARDIAN, assist) for assist in arguments.assist)]
+    more = [(Mode.GUARDIAN, assist) for assist in arguments.assist]
     try:
         agent = _lander(arguments.model, (LANDER,))
         agents = {"one_pad": agent, "three_pads": agent, "other_worlds": _lander(arguments.anywhere, (ANYWHERE,))}
-        asked = parts_of(agents, arguments.good == "scripted", helps, arguments.episodes, arguments.seed)
-        rounds = len(asked) * (1 + len(arguments.assist))
-        minutes = rounds * seconds(agent, PILOTS * arguments.episodes) / 60 / arguments.workers
-        print(
-            f"this takes about {minutes:.0f} minutes" if minutes > 1 else "this takes about a minute", file=sys.stderr
-        )
+        flown, scripted = (arguments.episodes, arguments.seed), arguments.good == "scripted"
+        asked = parts_of(agents, scripted, [*HELPS, *more], *flown)
+        took = sum(
+            seconds(agent, ScriptedPilot() if scripted else agent, table, TABLES[table][1], help_, *flown)
+            for table, agent in agents.items()
+            for help_ in (GUARD, *more)
+        ) / arguments.workers
+        print(f"this takes about {max(took / 60, 0.1):.1f} minutes", file=sys.stderr)
         with progress_bar(len(asked), "flying", unit="part") as bar:
             parts = results([part for _, part in asked], arguments.workers, bar.update)
     except REFUSED as error:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
 from typing import Any, Final, Protocol
@@ -13,7 +13,7 @@ import numpy as np
 from ai.agent.agent import DeepQAgent
 from ai.agent.config import AgentConfig
 from ai.agent.decision import in_points
-from ai.copilot.futures import DECISION_STEPS, KEYS, Future, Futures, Here, Lookahead, Push
+from ai.copilot.futures import DECISION_STEPS, KEYS, Future, Futures, Here, Known, Lookahead, Push
 from ai.copilot.guardian import ActionSource, Choice, Guardian, decisions_of
 from ai.copilot.intent import Intent, in_question
 from ai.environment import Bools, Doubles, Floats, Ints
@@ -25,7 +25,6 @@ from ai.lander.rules import ACTION_SHARES
 
 # Points of reward by which the guardian's action must be better than the pilot's, at an assist of one half.
 GUARDIAN_MARGIN: Final = 3.0
-_AT_ONCE: Final = 256  # futures that take little longer than a few
 _STEERS: Final = 3  # action = 3 * main + steer
 
 
@@ -48,22 +47,22 @@ class SharedDecision:
     """Joint decision of a pilot and a co-pilot, with all that explains it."""
 
     observation: Floats  # (n, pads, 9) that it was made on
-    action: Ints  # (n,) what is flown
     pilot: Ints  # (n,) what the pilot asked for
-    best: Ints  # (n,) what the co-pilot would do
-    source: Ints  # (n,) of ActionSource
     values: Floats  # (n, pads, 6) what each action is worth on the way to each pad
     meant: Floats  # (n, pads, 6) the same, with the likeliest pad's in place of those that can't be meant
-    feasible: Bools  # (n, 6) which actions the pilot could have had
     likely: Doubles  # (n, pads) how likely it is that each pad is meant
     assist: float  # how much the co-pilot helped, 0 to 1
     mode: Mode  # and when it stepped in
     reward_scale: float  # size of one point of reward in the unit of `values`
+    action: Ints  # (n,) what is flown
+    best: Ints  # (n,) what the co-pilot would do
+    source: Ints  # (n,) of ActionSource
+    feasible: Bools  # (n, 6) which actions the pilot could have had
     shares: Doubles  # (n, 2) of thrust that are flown, of main engine and jets
     overridden: Bools  # (n,) whether anything else is flown than the pilot asked for
     # A guardian's that goes by futures; None of any other.
     asked: tuple[Push, ...] = ()  # (n) what the pilot pushes
-    known: tuple[Mapping[Push, Future], ...] | None = None  # (n) what comes of each push that was looked at
+    known: tuple[Known, ...] | None = None  # (n) what comes of each push that was looked at
     held: Bools | None = None  # (n,) whether a plan is held now, so that nobody can crash the flight
 
     @cached_property
@@ -84,47 +83,26 @@ def _candidates(pilot: Ints, best: Ints) -> Ints:
     return np.stack([pilot, pilot - pilot % _STEERS + best % _STEERS, best - best % _STEERS + pilot % _STEERS, best])
 
 
+def _checked(observation: Floats, pilot: Any, shares: Doubles | None) -> tuple[Floats, Ints, Doubles]:
+    """Return observations (n, pads, 9), actions (n,) and shares of thrust (n, 2); raises ValueError for others."""
+    observation, pilot = np.atleast_2d(observation), np.atleast_1d(pilot)
+    if observation.ndim == 2:
+        observation = observation[:, None]
+    slots = len(observation)
+    if pilot.shape != (slots,) or pilot.dtype.kind not in "iu":
+        raise ValueError(f"pilot actions must be {slots} whole numbers, not {pilot.dtype} {pilot.shape}")
+    if ((pilot < 0) | (pilot >= NUM_ACTIONS)).any():
+        raise ValueError(f"actions run from 0 to {NUM_ACTIONS - 1}, not {pilot.min()} to {pilot.max()}")
+    pushed = ACTION_SHARES[pilot] if shares is None else np.asarray(shares, dtype=float)
+    if pushed.shape != (slots, 2):
+        raise ValueError(f"shares of thrust must be {slots} rows of two, not {pushed.shape}")
+    return observation, pilot, pushed
+
+
 def guardian_margin(assist: Any) -> Any:
     """Return by how many points of reward the guardian must be better than the pilot, for assist (n,), 0 to 1."""
     with np.errstate(divide="ignore"):
         return GUARDIAN_MARGIN * (1.0 - np.asarray(assist)) / assist
-
-
-@dataclass(frozen=True, eq=False)
-class _Asked:
-    """What a decision of n pilots is asked for by."""
-
-    observation: Floats  # (n, pads, 9)
-    pilot: Ints  # (n,)
-    surroundings: Floats | None
-    shares: Doubles  # (n, 2)
-    env: LanderEnv | None
-    known: Sequence[Mapping[Push, Future]] | None = None
-    looks: bool = True  # whether futures are flown that are not known
-    whole: bool = False  # whether what is corrected is flown with all thrust
-
-    @classmethod
-    def of(
-        cls, observation: Floats, pilot: Any, around: Floats | None, shares: Doubles | None, env: LanderEnv | None
-    ) -> _Asked:
-        """Return what is asked for; raises as `CoPilot.share` does."""
-        observation, pilot = np.atleast_2d(observation), np.atleast_1d(pilot)
-        if observation.ndim == 2:
-            observation = observation[:, None]
-        slots = len(observation)
-        if pilot.shape != (slots,) or pilot.dtype.kind not in "iu":
-            raise ValueError(f"pilot actions must be {slots} whole numbers, not {pilot.dtype} {pilot.shape}")
-        if ((pilot < 0) | (pilot >= NUM_ACTIONS)).any():
-            raise ValueError(f"actions run from 0 to {NUM_ACTIONS - 1}, not {pilot.min()} to {pilot.max()}")
-        pushed = ACTION_SHARES[pilot] if shares is None else np.asarray(shares, dtype=float)
-        if pushed.shape != (slots, 2):
-            raise ValueError(f"shares of thrust must be {slots} rows of two, not {pushed.shape}")
-        return cls(observation, pilot, around, pushed, env)
-
-    @property
-    def pushes(self) -> list[Push]:
-        """What each pilot pushes."""
-        return [Push(*push) for push in zip(self.pilot.tolist(), *self.shares.T.tolist(), strict=True)]
 
 
 class CoPilot:
@@ -201,12 +179,14 @@ class CoPilot:
         """Go on with the plans of another: one that lands does so whichever network it was found with."""
         self.guardians, self._rules = other.guardians, other._rules
 
-    def futures(self, env: LanderEnv) -> Futures:
-        """Fly the network on from the present moment after each action, in every slot; return what comes of it."""
-        slots = np.flatnonzero(env.outcome == Outcome.FLYING)
-        asked = [(int(slot), push) for slot in slots for push in KEYS]
-        found = self.lookahead.futures(Moment.of(env), asked, decisions_of(self.assist))
-        return Futures.of(env.num_envs, asked, found)
+    def futures(self, env: LanderEnv, slots: Sequence[int] | None = None) -> Futures:
+        """Fly the network on from now after each action, in some slots or all; return what comes of it."""
+        flying = env.outcome == Outcome.FLYING
+        asked = [(slot, push) for slot in (range(env.num_envs) if slots is None else slots) if flying[slot]
+                 for push in KEYS]  # fmt: skip
+        known: list[dict[Push, Future]] = [{} for _ in range(env.num_envs)]
+        self._look(env, env.target, asked, known)
+        return Futures(known)
 
     def share(
         self,
@@ -225,8 +205,7 @@ class CoPilot:
         mode goes by futures: ask every four physics steps, at the same time as `env` flies what was
         returned. Raises ValueError for others.
         """
-        asked = _Asked.of(observation, pilot_action, surroundings, shares, env)
-        decision = self._decide(replace(asked, whole=True))
+        decision = self.decide(observation, pilot_action, surroundings, shares, env, whole=True)
         return decision.action, decision.overridden
 
     def decide(
@@ -236,39 +215,35 @@ class CoPilot:
         surroundings: Floats | None = None,
         shares: Doubles | None = None,
         env: LanderEnv | None = None,
-        known: Sequence[Mapping[Push, Future]] | None = None,
+        known: Sequence[Known | None] | None = None,
         *,
-        looks: bool | None = None,
+        whole: bool = False,
     ) -> SharedDecision:
         """Decide as `share` does, and return all that explains it; raises as `share` does.
 
-        Here, what is corrected keeps the pilot's share of thrust, so fly `SharedDecision.shares`. Futures that are
-        `known` (n) were flown beforehand: then none is flown now, unless it `looks`, and what is missing counts as
-        lost.
+        Here, what is corrected keeps the pilot's share of thrust, unless it is to be `whole`, so fly
+        `SharedDecision.shares`. What is `known` (n) of a pilot was flown beforehand: then no future of theirs is flown
+        now, and what is missing counts as lost.
         """
-        asked = _Asked.of(observation, pilot_action, surroundings, shares, env)
-        return self._decide(replace(asked, known=known, looks=known is None if looks is None else looks))
-
-    def _decide(self, asked: _Asked) -> SharedDecision:
-        observation, pilot = asked.observation, asked.pilot
+        observation, pilot, pushed = _checked(observation, pilot_action, shares)
         slots, pads, _ = observation.shape
-        seen = self._seen(observation, asked.surroundings)
+        seen = self._seen(observation, surroundings)
         values = self.agent.q_values(seen.reshape(slots * pads, -1)).reshape(slots, pads, NUM_ACTIONS)
         likely, meant = self._read(values, pilot, np.abs(observation[:, :, 0]))
-        if self.mode is Mode.GUARDIAN and asked.env is not None:
-            return self._save(asked, asked.env, values, meant, likely)
-        assist = np.where(pilot == COAST, 1.0, self.assist)
+        told = observation, pilot, values, meant, likely, self.assist, self.mode, self.reward_scale
+        if self.mode is Mode.GUARDIAN and env is not None:
+            pushes = [Push(*push) for push in zip(pilot.tolist(), *pushed.T.tolist(), strict=True)]
+            return SharedDecision(*told, *self._save(env, observation, pushes, values, likely, known, whole=whole))
         weigh = self._guard if self.mode is Mode.GUARDIAN else self._tolerate
-        best, feasible = weigh(meant, pilot, assist)
+        best, feasible = weigh(meant, pilot, np.where(pilot == COAST, 1.0, self.assist))
         candidates = _candidates(pilot, best)
         rows = np.arange(slots)
         source = feasible[rows, candidates].argmax(axis=0)
         action = candidates[source, rows]
         overridden = action != pilot
         source[(pilot == COAST) & overridden] = ActionSource.HANDS_OFF
-        flown = np.where(overridden[:, None], ACTION_SHARES[action], asked.shares)
-        return SharedDecision(observation, action, pilot, best, source, values, meant, feasible, likely,
-                              self.assist, self.mode, self.reward_scale, flown, overridden)  # fmt: skip
+        flown = np.where(overridden[:, None], ACTION_SHARES[action], pushed)
+        return SharedDecision(*told, action, best, source, feasible, flown, overridden)
 
     def _seen(self, observation: Floats, surroundings: Floats | None) -> Floats:
         """Return what the network reads, (n, pads, features): the surroundings, too, if it has inputs for them."""
@@ -289,9 +264,21 @@ class CoPilot:
         pad = np.where(open_, np.arange(pads), likeliest)
         return likely, values[np.arange(slots)[:, None], pad]
 
-    def _save(self, asked: _Asked, env: LanderEnv, values: Floats, meant: Floats, likely: Doubles) -> SharedDecision:
-        """Let each pilot fly what a landing plan begins with; else do the least that such a plan begins with."""
-        observation = asked.observation
+    def _save(
+        self,
+        env: LanderEnv,
+        observation: Floats,
+        asked: Sequence[Push],
+        values: Floats,
+        likely: Doubles,
+        known: Sequence[Known | None] | None,
+        *,
+        whole: bool,
+    ) -> tuple[Any, ...]:
+        """Let each pilot fly what a landing plan begins with; else do the least that such a plan begins with.
+
+        Returns the fields of a `SharedDecision` from its `action` on.
+        """
         slots, pads, _ = observation.shape
         if env.num_envs != slots or DECISION_STEPS % env.frame_skip:
             raise ValueError(
@@ -303,81 +290,34 @@ class CoPilot:
         pad = target if pads == len(env.ground.pads) else np.zeros(slots, dtype=np.intp)
         best = values[np.arange(slots), pad].argmax(axis=1)
         self._void(env)
-        futures = [dict(each) for each in asked.known or [{}] * slots]
-        if self.assist > 0:
-            choices = self._choose(asked, env, target, best, futures)
-        else:
-            choices = [Choice(push, ActionSource.PILOT, held=False) for push in asked.pushes]
-        action = np.array([choice.push.action for choice in choices])
-        feasible = np.ones((slots, NUM_ACTIONS), dtype=bool)
-        for slot, each in enumerate(futures):
-            for push in KEYS:
-                feasible[slot, push.action] = push not in each or each[push].passes
+        flying = np.flatnonzero(env.outcome == Outcome.FLYING).tolist() if self.assist > 0 else []
+        futures, here = [dict(each or {}) for each in known or [None] * slots], Here.all(env)
+        needed = [(slot, push) for slot in flying if known is None or known[slot] is None
+                  for push in self.guardians[slot].needs(here[slot], asked[slot], KEYS[best[slot]], futures[slot],
+                                                         whole=whole)]  # fmt: skip
+        self._look(env, target, needed, futures)
+        choices = [Choice(push, ActionSource.PILOT, held=False) for push in asked]
+        for slot in flying:
+            network = KEYS[best[slot]]
+            choices[slot] = self.guardians[slot].choose(here[slot], asked[slot], network, futures[slot], whole=whole)
+        feasible = np.array([[push not in each or each[push].passes for push in KEYS] for each in futures])
         source = np.array([choice.source for choice in choices])
+        action = np.array([choice.push.action for choice in choices])
         shares = np.array([choice.push[1:] for choice in choices])
         held = np.array([choice.held for choice in choices])
-        return SharedDecision(observation, action, asked.pilot, best, source, values, meant, feasible, likely,
-                              self.assist, self.mode, self.reward_scale, shares, source != ActionSource.PILOT,
-                              tuple(asked.pushes), tuple(futures), held)  # fmt: skip
-
-    def _choose(
-        self, asked: _Asked, env: LanderEnv, target: Ints, best: Ints, known: list[dict[Push, Future]]
-    ) -> list[Choice]:
-        """Return every guardian's choice, after all futures that it needs were flown, if they are to be flown now."""
-        asks, whole = asked.pushes, asked.whole
-        here = Here.all(env)
-        flying = np.flatnonzero(env.outcome == Outcome.FLYING).tolist()
-        wishes = [KEYS[action] for action in best]
-        while asked.looks:
-            needed = [
-                (slot, push)
-                for slot in flying
-                for push in self.guardians[slot].needs(here[slot], asks[slot], wishes[slot], known[slot], whole=whole)
-            ]
-            if not needed:
-                break
-            self._look(env, target, needed, known)
-        choices = [Choice(push, ActionSource.PILOT, held=False) for push in asks]
-        for slot in flying:
-            guardian = self.guardians[slot]
-            choices[slot] = guardian.choose(here[slot], asks[slot], wishes[slot], known[slot], whole=whole)
-        return choices
+        return action, best, source, feasible, shares, source != ActionSource.PILOT, tuple(asked), tuple(futures), held
 
     def _look(
         self, env: LanderEnv, target: Ints, asked: Sequence[tuple[int, Push]], known: Sequence[dict[Push, Future]]
     ) -> None:
         """Fly the futures of slots and pushes, and note them as `known` (n)."""
+        if not asked:
+            return
         moment = Moment.of(env)
         moment.target[:] = target
-        for held in (True, False):  # where a plan is held, only what passes can take its place
-            mine = [(slot, push) for slot, push in asked if (self.guardians[slot].plan is not None) == held]
-            found = self.lookahead.futures(moment, mine, decisions_of(self.assist), lasting=held)
-            for (slot, push), future in zip(mine, found, strict=True):
-                known[slot][push] = future
-
-    def first_passing(
-        self, env: LanderEnv, wishes: Mapping[int, Sequence[Push]], known: Sequence[dict[Push, Future]]
-    ) -> dict[int, Push]:
-        """Return for each slot the first of its wishes that passes, or the first of all; note futures as `known` (n).
-
-        Of many slots, one wish after another is flown ahead: for who knows what they want, that is less than all.
-        """
-        self._void(env)
-        here, left = Here.all(env), dict(wishes)
-        first = {slot: order[0] for slot, order in wishes.items()}
-        turn = 0
-        while left and turn < NUM_ACTIONS:
-            until = turn + max(1, _AT_ONCE // len(left))
-            new = [(slot, push) for slot, order in left.items() for push in order[turn:until]
-                   if not self.guardians[slot].knows(here[slot], push, known[slot])]  # fmt: skip
-            self._look(env, env.target, new, known)
-            for slot, order in list(left.items()):
-                passing = [push for push in order[turn:until] if push not in known[slot] or known[slot][push].passes]
-                if passing:
-                    first[slot] = passing[0]
-                    del left[slot]
-            turn = until
-        return first
+        found = self.lookahead.futures(moment, asked, decisions_of(self.assist))
+        for (slot, push), future in zip(asked, found, strict=True):
+            known[slot][push] = future
 
     def _void(self, env: LanderEnv) -> None:
         """Drop all plans of another environment, or of one whose rules have changed since."""

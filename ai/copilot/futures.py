@@ -26,9 +26,9 @@ T = TypeVar("T")
 DECISION_STEPS: Final = 4  # physics steps of a decision, whatever rate a network was trained with
 LONGEST: Final = 30.0  # seconds after which a future that has not landed counts as one that does not
 SPARE: Final = 1.5  # seconds before time is out, from which on a landing does not count
+RESTLESS: Final = 4.0  # seconds on the ground after which a future that has not landed counts as one that does not
 _MOST: Final = round(LONGEST / DT) // DECISION_STEPS  # decisions
-_TOGETHER: Final = 4  # futures from which on a batch takes less time than one lander alone after another
-_AT_ONCE: Final = 64  # futures of several pads that are flown in one batch; of more, those to other pads come later
+_STUCK: Final = round(RESTLESS / DT) // DECISION_STEPS
 _GATHERED: Final = 8  # futures from which on those that touch down wait for each other
 _FEW: Final = 8  # until only one of so many is in the air
 # Metres of height, and of a leg that leans, and seconds of falling, within which one touches down soon.
@@ -121,29 +121,34 @@ class Future:
         return self.plan is not None and self.lasts
 
 
+Known = Mapping[Push, Future]  # what comes of each push that was looked at
+
+
 @dataclass(frozen=True, eq=False)
 class Futures:
-    """Futures of n landers after each action with all its thrust.
+    """Futures of n landers after each action with all its thrust; a flight that has ended has none.
 
     Attributes:
-        landed: whether the network lands after one decision of it, (n, 6); never for a flight that has ended.
-        lasts: whether it lands after as many decisions of it as the dial asks for, too, (n, 6).
-        plans: the plan of each landing, None for the others, n lists of 6.
+        known: what comes of each action, for every lander, (n).
 
     """
 
-    landed: Bools
-    lasts: Bools
-    plans: list[list[Plan | None]]
+    known: Sequence[Known]
 
-    @classmethod
-    def of(cls, slots: int, asked: Sequence[tuple[int, Push]], found: Sequence[Future]) -> Futures:
-        """Return the futures that were found for landers and keys."""
-        plans: list[list[Plan | None]] = [[None] * len(KEYS) for _ in range(slots)]
-        lasts = np.zeros((slots, len(KEYS)), dtype=bool)
-        for (slot, push), future in zip(asked, found, strict=True):
-            plans[slot][push.action], lasts[slot, push.action] = future.plan, future.passes
-        return cls(np.array([[plan is not None for plan in row] for row in plans]), lasts, plans)
+    @property
+    def landed(self) -> Bools:
+        """Whether the network lands after one decision of an action, (n, 6)."""
+        return np.array([[plan is not None for plan in row] for row in self.plans])
+
+    @property
+    def lasts(self) -> Bools:
+        """Whether it lands after as many decisions of it as the dial asks for, too, (n, 6)."""
+        return np.array([[key in known and known[key].passes for key in KEYS] for known in self.known])
+
+    @property
+    def plans(self) -> list[list[Plan | None]]:
+        """The plan of each landing, None for the others, n lists of 6."""
+        return [[known[key].plan if key in known else None for key in KEYS] for known in self.known]
 
 
 class FlownAhead(Protocol):
@@ -164,7 +169,7 @@ class FlownAhead(Protocol):
     def hint(self, asked: Push) -> None:
         """Say what the stick asks for now; call it in every step between two requests, so that answers are fetched."""
 
-    def known(self) -> Mapping[Push, Future]:
+    def known(self) -> Known:
         """Return what is known by now of the moment asked for; never waits."""
 
 
@@ -196,28 +201,16 @@ class Lookahead:
         self._built = ""  # what these are built of
 
     def futures(
-        self,
-        moment: Moment,
-        asked: Sequence[tuple[int, Push]],
-        decisions: int = 1,
-        before: Opening = (),
-        *,
-        lasting: bool = False,
+        self, moment: Moment, asked: Sequence[tuple[int, Push]], decisions: int = 1, before: Opening = ()
     ) -> list[Future]:
         """Return what comes of pushing something, for each lander (its row of `moment`) and push in `asked`.
 
         It `lasts` if the network lands after so many `decisions` of it as well. What is pushed `before` comes first:
-        so futures of decisions to come are flown ahead. If only those that are `lasting` can be of use, the plans after
-        one decision are left out of all others.
+        so futures of decisions to come are flown ahead.
         """
-        once: list[tuple[int, Opening]] = [(row, (*before, push)) for row, push in asked]
-        if decisions == 1:
-            return [Future(plan) for plan in self.plans(moment, once)]
-        longer: list[tuple[int, Opening]] = [(row, (*before, *(push,) * decisions)) for row, push in asked]
-        lasts = [plan is not None for plan in self.plans(moment, longer)]
-        wanted = [opening for opening, last in zip(once, lasts, strict=True) if last or not lasting]
-        plans = iter(self.plans(moment, wanted))
-        return [Future(next(plans) if last or not lasting else None, last) for last in lasts]
+        openings = [(row, (*before, *(push,) * many)) for many in sorted({1, decisions}) for row, push in asked]
+        plans, count = self.plans(moment, openings), len(asked)
+        return [Future(once, long is not None) for once, long in zip(plans[:count], plans[-count:], strict=True)]
 
     def look(
         self, moment: Moment, push: Push, decisions: int = 1, before: Opening = ()
@@ -245,33 +238,29 @@ class Lookahead:
     def _plans(self, moment: Moment, asked: Sequence[tuple[int, Opening]]) -> Flying[Plan | None]:
         pads = [_pads_of(moment, row) for row in range(len(moment))]
         plans: list[Plan | None] = [None] * len(asked)
-        if len(asked) < _TOGETHER:
-            for index, (row, opening) in enumerate(asked):
-                for pad in pads[row]:
-                    (plans[index],) = yield from self._fly(moment, [(row, opening, pad)])
-                    if plans[index]:
-                        break
-            return plans
-        each = len(pads[0])
-        # Most land where they were meant to: of many, the other pads are tried where that fails.
-        for tried in [range(each)] if each * len(asked) <= _AT_ONCE else [range(1), range(1, each)]:
-            left = [(index, pads[row][pad])
-                    for index, (row, _) in enumerate(asked) if plans[index] is None for pad in tried]  # fmt: skip
+        for tried in slice(1), slice(1, None):  # most land where they were meant to; the other pads are for the rest
+            left = [(index, pad) for index, (row, _) in enumerate(asked) if plans[index] is None
+                    for pad in pads[row][tried]]  # fmt: skip
             for first in range(0, len(left), _BATCH):
                 batch = left[first : first + _BATCH]
                 found = yield from self._fly(moment, [(*asked[index], pad) for index, pad in batch])
-                for (index, _), plan in zip(batch, found, strict=True):
-                    plans[index] = plans[index] or plan
+                for (index, _), (plan, landed) in zip(batch, found, strict=True):
+                    plans[index] = plans[index] or (plan if landed else None)
         return plans
 
-    def _fly(self, moment: Moment, asked: Sequence[tuple[int, Opening, int]]) -> Flying[Plan | None]:
-        """Fly landers with openings to pads; return the plans of those that land.
+    def ways(self, moment: Moment, asked: Sequence[tuple[int, Opening]]) -> Flying[tuple[Plan, bool]]:
+        """Fly each lander and opening in `asked` to its target; yield after each decision, return way and landing.
+
+        A way that does not land is written down like a plan, but is none.
+        """
+        return self._fly(moment, [(row, opening, int(moment.target[row])) for row, opening in asked])
+
+    def _fly(self, moment: Moment, asked: Sequence[tuple[int, Opening, int]]) -> Flying[tuple[Plan, bool]]:
+        """Fly landers with openings to pads; return what was flown, and whether it landed.
 
         Of many, those that are about to touch down wait until most are as far, and go on together: a step takes ten
         times as long with a single contact in it.
         """
-        if not asked:
-            return []
         count = len(asked)
         length, pushed = _table([opening for _, opening, _ in asked])
         start = moment.take(np.array([row for row, _, _ in asked]))
@@ -279,50 +268,44 @@ class Lookahead:
         # A row more than there are decisions: what has ended, or waits, writes into the next one.
         actions, shares = np.zeros((_MOST + 1, count), dtype=np.intp), np.zeros((_MOST + 1, count, 2))
         states = np.empty((_MOST + 2, count, 6))
-        flown, landed = np.zeros((2, count), dtype=np.intp)
+        flown, landed, touched = np.zeros((3, count), dtype=np.intp)
         env, future = self._begin(start, np.arange(count))  # future (n,) of every slot, fewer than there are slots
         states[0] = _states(env)[:count]
         flies = np.arange(env.num_envs) < count  # (slots,), as are the next two
         waits, down = np.zeros((2, env.num_envs), dtype=bool)
         gathers = count >= _GATHERED
-        soonest = float(((env.limits.time - SPARE - env.time) / DT).min()) // DECISION_STEPS - 1  # decisions in time
-        rounds = 0
         while flies.any():
             n, at = len(future), flown[future]
             action, share = self._choose(env)
-            if gathers:
-                action[waits], share[waits] = env.actions[waits], env.shares[waits]
-            if rounds < len(pushed) or gathers:
-                opens = np.flatnonzero(at < length[future])
-                given = pushed[at[opens], future[opens]]
-                action[opens], share[opens] = given[:, 0], given[:, 1:]
+            action[waits], share[waits] = env.actions[waits], env.shares[waits]
+            opens = np.flatnonzero(at < length[future])
+            given = pushed[at[opens], future[opens]]
+            action[opens], share[opens] = given[:, 0], given[:, 1:]
             actions[at, future], shares[at, future] = action[:n], share[:n]
             env.fly(action, share)
             states[at + 1, future] = _states(env)[:n]
             moves = flies & ~waits
             flown[future] += moves[:n]
-            rounds += 1
             yield
             if gathers:
                 waits, down = _gather(env, flies, waits, down)
                 moves &= ~waits
-            if rounds < min(soonest, _MOST) and not (moves & (env.outcome != Outcome.FLYING)).any():
-                continue  # none has ended, and none is late
             late = env.time > env.limits.time - SPARE
             ended = late | (env.outcome != Outcome.FLYING)
-            ended[:n] |= flown[future] == _MOST
+            touched[future] = np.where(env.contacts[:n].any(axis=1), touched[future] + 1, 0)
+            ended[:n] |= (flown[future] == _MOST) | (touched[future] >= _STUCK)
             over = np.flatnonzero(moves & ended)
             landed[future[over]] = (env.outcome == Outcome.LANDED)[over] & ~late[over]
             flies[over] = False
             left = np.flatnonzero(flies)
-            if len(left) and _size(len(left)) <= env.num_envs // 2:
+            if len(over) and len(left) and _size(len(left)) < env.num_envs:
                 masks = np.zeros((3, _size(len(left))), dtype=bool)
                 masks[:, : len(left)] = flies[left], waits[left], down[left]
                 env, future = self._begin(Moment.of(env).take(left), future[left])
                 flies, waits, down = masks
         return [
-            Plan(int(start.steps[row]), start.fall(row), asked[row][2], actions[:end, row].copy(),
-                 shares[:end, row].copy(), states[: end + 1, row].copy()) if landed[row] else None
+            (Plan(int(start.steps[row]), start.fall(row), asked[row][2], actions[:end, row].copy(),
+                  shares[:end, row].copy(), states[: end + 1, row].copy()), bool(landed[row]))
             for row, end in enumerate(flown.tolist())
         ]  # fmt: skip
 
@@ -384,8 +367,7 @@ def roomy(slots: int, moment: Moment) -> LanderEnv:
 
 def _size(count: int) -> int:
     """Return how many slots so many futures are flown in: few different numbers, so that environments are kept."""
-    power = 1 << (count - 1).bit_length()
-    return power * 3 // 4 if count <= power * 3 // 4 and power >= 4 else power
+    return 1 << (count - 1).bit_length()
 
 
 def _pads_of(moment: Moment, row: int) -> list[int]:

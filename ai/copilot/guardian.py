@@ -5,11 +5,10 @@ Judging only: what comes of a push is flown by `ai.copilot.futures`, beforehand 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from enum import IntEnum
 from typing import Final, NamedTuple
 
-from ai.copilot.futures import KEYS, Future, Here, Plan, Push
+from ai.copilot.futures import KEYS, Future, Here, Known, Plan, Push
 
 _FARTHEST: Final = 12  # decisions of an action after which there must be a landing, with the dial at 1
 
@@ -55,22 +54,18 @@ class Guardian:
     def __init__(self) -> None:
         self.plan: Plan | None = None
 
-    def knows(self, here: Here, asked: Push, known: Mapping[Push, Future]) -> bool:
+    def knows(self, here: Here, asked: Push, known: Known) -> bool:
         """Whether it is known what comes of a push: it was flown ahead, or the held plan begins with it."""
         return asked in known or (self.plan is not None and self.plan.push(here) == asked)
 
-    def needs(self, here: Here, asked: Push, network: Push, known: Mapping[Push, Future], *, whole: bool) -> list[Push]:
-        """Return the pushes whose futures `choose` would have to know, and does not yet."""
+    def needs(self, here: Here, asked: Push, network: Push, known: Known, *, whole: bool) -> list[Push]:
+        """Return the pushes whose futures `choose` may have to know, and does not yet."""
         offers, head = self._offers(here, asked, network, whole)
         if asked == head or (asked in known and known[asked].passes):
             return []
-        if asked not in known:
-            return [asked]
         return [push for push in offers if push not in known and push != head]
 
-    def choose(
-        self, here: Here, asked: Push, network: Push, known: Mapping[Push, Future], *, whole: bool = False
-    ) -> Choice:
+    def choose(self, here: Here, asked: Push, network: Push, known: Known, *, whole: bool = False) -> Choice:
         """Return what to fly, where the pilot pushes `asked` and the network would push `network`.
 
         What the pilot asks for passes if a landing plan begins with it, which is held from now on; else as little as

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ai.environment import Bools, Doubles, Floats, Ints
-from ai.lander.environment import ACTION_NAMES, NUM_ACTIONS, OBSERVATION_SCALE
+from ai.lander.environment import ACTION_NAMES, NUM_ACTIONS
 from ai.lander.pilots import COAST, GAINS, Gains, LaggyPilot, NoisyPilot, Pilot, ScriptedPilot, SensorPilot
 from ai.lander.rules import ACTION_SHARES
 
@@ -125,93 +125,6 @@ def _scripted(**faults: Any) -> MakePilot:
     return make
 
 
-# Families of clumsy pilots; those below are of other kinds.
-FAMILIES: Final[dict[str, MakePilot]] = {
-    "good": lambda slots, rng, good: good,  # noqa: ARG005
-    "gains drawn anew": lambda slots, rng, good: ScriptedPilot(drawn_gains(slots, rng, 0.6)),  # noqa: ARG005
-    "late": _scripted(late=lambda slots, rng: rng.integers(4, 7, slots)),
-    "sticky keys": _scripted(sticky=0.75),
-    "one key": _scripted(one_key=True),
-    "too much thrust": _scripted(thrust=0.25),
-    "freezing": _scripted(freeze=0.03),
-    "inverted": _scripted(inverted=True),
-    "laggy": lambda slots, rng, good: LaggyPilot(good, rng),  # noqa: ARG005
-    "noisy": lambda slots, rng, good: NoisyPilot(good, rng),  # noqa: ARG005
-    "noisier": lambda slots, rng, good: NoisyPilot(good, rng, chance=0.3),  # noqa: ARG005
-    "sensor": lambda slots, rng, good: SensorPilot(),  # noqa: ARG005
-}
-
-
-class Misjudging:
-    """Pilot who sees the lander up to some metres beside where it is."""
-
-    def __init__(self, pilot: Pilot, slots: int, rng: np.random.Generator, metres: float = 2.5) -> None:
-        self.pilot = pilot
-        self.beside = rng.uniform(-metres, metres, slots) * OBSERVATION_SCALE[0]
-
-    def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:
-        """Actions (n,) for observations (n, 9)."""
-        seen = observation.copy()
-        seen[:, 0] += self.beside
-        return self.pilot.act(seen, held=held)
-
-
-class Panicking:
-    """Pilot who below some metres often fires everything that was last pressed, and the main engine."""
-
-    def __init__(self, pilot: Pilot, slots: int, rng: np.random.Generator, metres: float = 5.0) -> None:
-        self.pilot, self.rng, self.below = pilot, rng, metres * OBSERVATION_SCALE[1]
-        self._last: Ints = np.zeros(slots, dtype=np.intp)
-
-    def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:
-        """Actions (n,) for observations (n, 9)."""
-        action = self.pilot.act(observation, held=held)
-        panics = (observation[:, 1] < self.below) & (self.rng.random(len(action)) < 0.3)
-        self._last = np.where(panics, _STEERS + self._last % _STEERS, action)
-        return self._last
-
-
-class InTurns:
-    """Pilot who for some decisions does one part of what they mean, and then for some the other part."""
-
-    def __init__(self, pilot: Pilot, slots: int, rng: np.random.Generator, lengths: tuple[int, int], part: str) -> None:
-        self.pilot, self.lengths, self.part = pilot, lengths, part
-        self._asked = rng.integers(0, sum(lengths), slots)
-
-    def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:
-        """Actions (n,) for observations (n, 9)."""
-        action = self.pilot.act(observation, held=held)
-        first = self._asked % sum(self.lengths) < self.lengths[0]
-        self._asked = self._asked + 1
-        if self.part == "keys":
-            return np.where(first, action - action % _STEERS, action % _STEERS)
-        return np.where(first, action, COAST)
-
-
-def _gained(spread: float = 0.3, **factors: float) -> MakePilot:
-    """Make scripted controllers with gains drawn anew, some of them times a factor."""
-
-    def make(slots: int, rng: np.random.Generator, good: Pilot) -> Pilot:  # noqa: ARG001
-        gains = drawn_gains(slots, rng, spread)
-        changed = {name: getattr(gains, name) * factor for name, factor in factors.items()}
-        return ScriptedPilot(replace(gains, **changed))
-
-    return make
-
-
-_controller = _gained()
-
-# What people do whom nobody thought of.
-UNSEEN: Final[dict[str, MakePilot]] = {
-    "aims beside": lambda slots, rng, good: Misjudging(_controller(slots, rng, good), slots, rng),
-    "over-corrects": _gained(turn=2.5, calm=0.2),
-    "hasty": _gained(touch=2.0, fall=2.0, fastest=2.0),
-    "panics": lambda slots, rng, good: Panicking(_controller(slots, rng, good), slots, rng),
-    "steers or brakes": lambda slots, rng, good: InTurns(_controller(slots, rng, good), slots, rng, (7, 7), "keys"),
-    "dozes": lambda slots, rng, good: InTurns(_controller(slots, rng, good), slots, rng, (12, 20), "all"),
-}
-
-
 class HeldKeys:
     """Pilot who holds the same keys all the time, or others from each second to the next."""
 
@@ -249,23 +162,31 @@ class Adversary:
     def __init__(self, agent: Any, rng: np.random.Generator, *, least: bool) -> None:
         self.agent, self.rng, self.least = agent, rng, least
 
-    def order(self, observation: Floats) -> Ints:
-        """Return the six actions for observations (n, features), (n, 6), what they want most first."""
+    def act(self, observation: Floats, *, held: Ints | None = None, passes: Any = True) -> Ints:  # noqa: ARG002
+        """Actions (n,) for observations (n, features), where those that `passes` (n, 6) are flown; all by default."""
         rank = self.agent.q_values(observation) if self.least else self.rng.random((len(observation), NUM_ACTIONS))
-        order: Ints = rank.argsort(axis=1)
-        return order
-
-    def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:  # noqa: ARG002
-        """Actions (n,) for observations (n, features), where everything passes."""
-        return self.order(observation)[:, 0]
+        passes = np.broadcast_to(passes, rank.shape)
+        action: Ints = np.where(passes | ~passes.any(axis=1, keepdims=True), rank, np.inf).argmin(axis=1)
+        return action
 
 
 def _holding(action: int | None) -> MakePilot:
     return lambda slots, rng, good: HeldKeys(action, slots, rng)  # noqa: ARG005
 
 
-# Hands that no help could be made for beforehand: stuck keys, a weak stick, and somebody who wants to crash.
-STUBBORN: Final[dict[str, MakePilot]] = {
+# Hands by name: some good, many with faults; then stuck keys, a weak stick, and somebody who wants to crash.
+HANDS: Final[dict[str, MakePilot]] = {
+    "good": lambda slots, rng, good: good,  # noqa: ARG005
+    "gains drawn anew": lambda slots, rng, good: ScriptedPilot(drawn_gains(slots, rng, 0.6)),  # noqa: ARG005
+    "late": _scripted(late=lambda slots, rng: rng.integers(4, 7, slots)),
+    "sticky keys": _scripted(sticky=0.75),
+    "one key": _scripted(one_key=True),
+    "too much thrust": _scripted(thrust=0.25),
+    "freezing": _scripted(freeze=0.03),
+    "inverted": _scripted(inverted=True),
+    "laggy": lambda slots, rng, good: LaggyPilot(good, rng),  # noqa: ARG005
+    "noisy": lambda slots, rng, good: NoisyPilot(good, rng),  # noqa: ARG005
+    "sensor": lambda slots, rng, good: SensorPilot(),  # noqa: ARG005
     **{f"holds {name}": _holding(action) for action, name in enumerate(ACTION_NAMES)},
     "a key each second": _holding(None),
     "slow": _scripted(late=_LATEST, sticky=0.75),

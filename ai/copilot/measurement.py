@@ -11,26 +11,26 @@ import numpy as np
 
 from ai.agent.agent import DeepQAgent
 from ai.copilot.copilot import CoPilot, Mode
-from ai.copilot.futures import KEYS, Future, Lookahead, Push
-from ai.copilot.hands import FAMILIES, STUBBORN, UNSEEN, Adversary, MakePilot
+from ai.copilot.futures import Known
+from ai.copilot.hands import HANDS, Adversary
 from ai.environment import Bools, Doubles
 from ai.lander.anywhere import AnywhereEnv
-from ai.lander.environment import LanderEnv, Outcome
+from ai.lander.environment import NUM_ACTIONS, LanderEnv, Outcome
 from ai.lander.ground import hilly
-from ai.lander.moment import Moment
 from ai.lander.pilots import Pilot
 from ai.lander.rules import ACTION_SHARES
 from ai.training.statistics import wilson
 
-PILOTS: Final[dict[str, MakePilot]] = {**FAMILIES, **UNSEEN, **STUBBORN}
-SOME: Final = ("good", "late", "inverted", "laggy", "holds right", "holds main", "a key each second", "thrust 0.3")
+SOME: Final = ("good", "slow", "inverted", "laggy", "holds right", "a key each second", "thrust 0.3",
+               "adversary, random")  # fmt: skip
 ALONE: Final = "alone"
 VALUES: Final = "guardian by values"  # without futures
 Help = tuple[str, float]  # alone, or how the co-pilot helps; and how much
 GUARD: Final[Help] = (Mode.GUARDIAN, 0.04)  # there must be a landing after one decision of an action
 HELPS: Final[tuple[Help, ...]] = ((ALONE, 0.0), (Mode.TOLERANCE, 0.4), (VALUES, 0.4), GUARD)
 _STARTS: Final = 0x5AFE7AB1E  # beside the seed, so that no start is one that anything was trained with
-_BATCHES: Final = 750  # of futures as long as those from a start, that flights with a guardian take
+_SAMPLE: Final = 4  # decisions that are timed
+_DECISIONS: Final = 200  # as long as the first ones, that guarded flights take
 
 
 @dataclass(frozen=True)
@@ -69,24 +69,22 @@ def _hills(slots: int, rng: np.random.Generator) -> LanderEnv:
 
 # Tables by name: in which world they are flown, and by which pilots.
 TABLES: Final[dict[str, tuple[MakeEnv, tuple[str, ...]]]] = {
-    "one_pad": (LanderEnv, tuple(PILOTS)),
+    "one_pad": (LanderEnv, tuple(HANDS)),
     "three_pads": (_hills, SOME),
     "other_worlds": (AnywhereEnv, SOME),
 }
 
 
-def seconds(agent: DeepQAgent, slots: int) -> float:
-    """Return about how long it takes to fly so many slots at once with a guardian, in seconds of one core.
-
-    One batch of futures is timed.
-    """
-    env = LanderEnv(slots, 0)
-    env.reset()
-    lookahead, moment, asked = Lookahead(agent), Moment.of(env), [(slot, KEYS[0]) for slot in range(slots)]
-    lookahead.futures(moment, asked[:1])
+def seconds(
+    agent: DeepQAgent, good: Pilot, table: str, names: Sequence[str], help_: Help, episodes: int, seed: int
+) -> float:
+    """Return about how much processor time rows with a guardian take, in seconds: their first decisions are timed."""
+    env, pilots = _begun(good, table, names, episodes, seed)
+    copilot = CoPilot(agent, help_[1], Mode.GUARDIAN)
+    fly(env, agent, pilots, copilot, most=1)  # environments for futures are built then
     begun = time.process_time()
-    lookahead.futures(moment, asked)
-    return _BATCHES * (time.process_time() - begun)
+    fly(env, agent, pilots, copilot, most=_SAMPLE)
+    return _DECISIONS / _SAMPLE * (time.process_time() - begun)
 
 
 def rows(
@@ -100,10 +98,8 @@ def rows(
     return [row for pilot in zip(*found, strict=True) for row in pilot]
 
 
-def _measure(
-    agent: DeepQAgent, good: Pilot, table: str, names: Sequence[str], help_: Help, episodes: int, seed: int
-) -> list[AssistedFlights]:
-    """Fly `episodes` flights of every pilot with one help, all at once."""
+def _begun(good: Pilot, table: str, names: Sequence[str], episodes: int, seed: int) -> tuple[LanderEnv, list[Pilot]]:
+    """Return landers at the starts of all flights, and who flies them: as many each, from the same starts."""
     env = TABLES[table][0](len(names) * episodes, np.random.default_rng([_STARTS, seed]))
     for first in range(0, env.num_envs, episodes):
         for slot, rng in enumerate(np.random.default_rng([_STARTS, seed, 1]).spawn(episodes), first):
@@ -112,7 +108,14 @@ def _measure(
     if env.ground.at_once > 1:
         intended = np.random.default_rng([_STARTS, seed, 2]).integers(env.ground.at_once, size=episodes)
         env.target = np.tile(intended, len(names))
-    pilots = [PILOTS[name](episodes, np.random.default_rng([_STARTS, seed, 3]), good) for name in names]
+    return env, [HANDS[name](episodes, np.random.default_rng([_STARTS, seed, 3]), good) for name in names]
+
+
+def _measure(
+    agent: DeepQAgent, good: Pilot, table: str, names: Sequence[str], help_: Help, episodes: int, seed: int
+) -> list[AssistedFlights]:
+    """Fly `episodes` flights of every pilot with one help, all at once."""
+    env, pilots = _begun(good, table, names, episodes, seed)
     mode, assist = help_
     copilot = None
     if mode != ALONE:
@@ -131,36 +134,43 @@ def _measure(
 
 
 def fly(
-    env: LanderEnv, agent: DeepQAgent, pilots: Sequence[Pilot], copilot: CoPilot | None, *, by_values: bool = False
+    env: LanderEnv,
+    agent: DeepQAgent,
+    pilots: Sequence[Pilot],
+    copilot: CoPilot | None,
+    *,
+    by_values: bool = False,
+    most: float = np.inf,
 ) -> tuple[Doubles, Doubles, Bools]:
-    """Fly until all have ended, with as many slots for every pilot.
+    """Fly until all have ended, or for so many decisions at `most`, with as many slots for every pilot.
 
     Returns each flight's overridden decisions, its decisions, and whether a plan was ever held, (n,) each.
     """
     overridden, decisions = np.zeros((2, env.num_envs))
     held = np.zeros(env.num_envs, dtype=bool)
     each = env.num_envs // len(pilots)
+    hands = [(pilot, range(number * each, (number + 1) * each)) for number, pilot in enumerate(pilots)]
     foresees = copilot is not None and copilot.mode is Mode.GUARDIAN and not by_values
-    while (flying := env.outcome == Outcome.FLYING).any():
+    hostile = [slot for pilot, mine in hands if foresees and isinstance(pilot, Adversary) for slot in mine]
+    known: list[Known | None] = [None] * env.num_envs
+    passes = np.ones((env.num_envs, NUM_ACTIONS), dtype=bool)
+    while (flying := env.outcome == Outcome.FLYING).any() and decisions.max() < most:
+        if copilot and hostile:
+            futures = copilot.futures(env, hostile)
+            passes = futures.lasts
+            for slot in hostile:
+                known[slot] = futures.known[slot]
         wished, action, shares = env.observe(), env.actions.copy(), env.shares.copy()
-        known: list[dict[Push, Future]] = [{} for _ in range(env.num_envs)]
-        for number, pilot in enumerate(pilots):
-            mine = slice(number * each, (number + 1) * each)
+        for pilot, mine in hands:
             if not flying[mine].any():
                 continue
-            if copilot and foresees and isinstance(pilot, Adversary):
-                order = pilot.order(wished[mine]).tolist()
-                wishes = {slot: [KEYS[key] for key in order[slot - mine.start]]
-                          for slot in range(mine.start, mine.stop) if flying[slot]}  # fmt: skip
-                for slot, push in copilot.first_passing(env, wishes, known).items():
-                    action[slot] = push.action
-            else:
-                action[mine] = pilot.act(wished[mine], held=env.actions[mine])
+            options = {"passes": passes[mine]} if isinstance(pilot, Adversary) else {}
+            action[mine] = pilot.act(wished[mine], held=env.actions[mine], **options)
             pushes = getattr(pilot, "shares", ACTION_SHARES.__getitem__)
             shares[mine] = pushes(action[mine])
         if copilot:
             seen = env.observe_pads(agent) if env.ground.at_once > 1 else env.observe_for(agent)
-            decision = copilot.decide(seen, action, None, shares, env if foresees else None, known, looks=foresees)
+            decision = copilot.decide(seen, action, None, shares, env if foresees else None, known)
             action, shares = decision.action, decision.shares
             overridden += flying & decision.overridden
             held |= flying & (decision.held if decision.held is not None else False)

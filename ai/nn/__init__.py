@@ -1,6 +1,6 @@
 """A neural network library on NumPy: layers, costs, optimizers and a folder format, every gradient by hand.
 
-To read in this order: parameter, activations, costs, layer, layers, optimizers, single, network; then limits and
+To read in this order: parameter, activations, costs, layer, layers, optimizers, network; then limits and
 storage, and images, which agents do without.
 """
 

@@ -85,7 +85,7 @@ class Layer(ABC):
         """Return the output and keep nothing."""
 
     def single_step(self, memory: Array, values: Array, output: Array) -> Callable[[], object]:  # noqa: ARG002
-        """Return a function that predicts the one example in `memory` into `output`, for `ai.nn.single`.
+        """Return a function that predicts the one example in `memory` into `output`, for `ai.nn.network.SingleExample`.
 
         `memory` is (inputs + 1,): the example, and a 1 for a bias; `output` is (outputs,). `values` are the layer's
         parameters, flat. Layers whose `predict` is slow for one example have a quicker step.

@@ -119,7 +119,7 @@ class Credit:
             return "handed_over"
         if self._difficulty.practice:
             return "practice"
-        return "assists" if self._difficulty.assists.apart else ""
+        return "assists" if self._difficulty.apart else ""
 
     @property
     def counts(self) -> bool:
@@ -166,12 +166,12 @@ class Credit:
     @property
     def pace(self) -> float:
         """Slowest pace of time during the flight."""
-        return self._difficulty.assists.slowest
+        return self._difficulty.slowest
 
     @property
     def assists(self) -> str:
         """The assists of the flight in words; empty without any."""
-        return self._difficulty.assists.line
+        return self._difficulty.assists
 
 
 def who_flew(share: float) -> str:

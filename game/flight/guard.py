@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from game.flight.flight import Flight
 
 _SHORT: Final = 8.0  # seconds before time is out, in which no network may be able to land
+_SOON: Final = 0.5  # seconds within which it must be known that no network lands, to be why no plan is held
+_PATIENCE: Final = 180  # steps for which a craft hangs on until a plan is found
 _NEAR: Final = 0.25  # shares of thrust between a position of the stick and one that is flown in its place
 
 
@@ -89,6 +91,7 @@ class Guard:
         self.bare: tuple[float, str] | None = None
         self._wish = KEYS[COAST]  # what was asked for in the decision that is flown now
         self._decision: SharedDecision | None = None
+        self._hung = 0  # steps for which the craft has hung although something was asked for
         self._moment: tuple[object, ...] = ()  # that the futures asked for last belong to
         self._flown_by: tuple[object, ...] = ()  # and what they are flown by
 
@@ -112,10 +115,19 @@ class Guard:
     def _begins(self) -> bool:
         return len(self._flight.recording.actions) % DECISION_STEPS == 0
 
+    @property
+    def ready(self) -> bool:
+        """Whether a craft that hangs may go: it is known whether the network lands, or that takes too long."""
+        if not (self.acts and self._begins) or self.safe or self._hung >= _PATIENCE:
+            return True
+        known = self.ahead.known() if self._moment == self._here() else {}
+        return any(future.plan for future in known.values()) or all(key in known for key in KEYS)
+
     def hang(self, held: int) -> None:
         """Let the futures of the present moment be flown while the craft hangs, and `held` is the action asked for."""
         if not self.acts or not self._begins or self._flight.over:
             return
+        self._hung += held != COAST
         if self._moment != self._here() or self._flown_by != self._flyer:
             self._ask((), push_of(held))
         else:
@@ -165,7 +177,7 @@ class Guard:
             self.bare = None
             return
         since, why = self.bare or (self._seconds, "changed" if held else "looking")
-        if why == "looking" and all(key in known for key in KEYS):
+        if why == "looking" and self._seconds - since < _SOON and all(key in known for key in KEYS):
             left = float(np.max(self._flight.env.limits.time)) - self._seconds
             why = "none" if left > _SHORT else "time"
         self.bare = since, why

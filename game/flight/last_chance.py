@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Iterator
+from itertools import islice
 from typing import Final
 
-from ai.copilot.futures import KEYS, Future, Lookahead
+from ai.copilot.futures import KEYS, Lookahead
 from ai.lander.environment import LanderEnv
 from ai.lander.moment import Moment
 from ai.lander.pilots import COAST
@@ -27,7 +28,7 @@ class LastChance:
     def __init__(self, policy: Policy, route: Route | None = None) -> None:
         self._lookahead = Lookahead(policy, route)
         self._moments: list[tuple[float, Moment]] = []
-        self._flying: Generator[Future | None, None, None] | None = None
+        self._search = self._find()
         self.known = False
         self.seconds: float | None = None
 
@@ -38,18 +39,14 @@ class LastChance:
 
     def look(self, decisions: int) -> None:
         """Fly some decisions further, from the latest moment back to the first."""
-        for _ in range(decisions):
-            if self.known:
-                return
-            if not self._moments:
-                self.known = True
-                return
-            seconds, moment = self._moments[-1]
-            self._flying = self._flying or self._lookahead.look(moment, KEYS[COAST])
-            future = next(self._flying)
-            if future is None:
-                continue
-            self._flying = None
-            self._moments.pop()
-            if future.plan:
-                self.known, self.seconds = True, seconds
+        for _ in islice(self._search, decisions):
+            pass
+
+    def _find(self) -> Iterator[None]:
+        while self._moments and self.seconds is None:
+            seconds, moment = self._moments.pop()
+            for future in self._lookahead.look(moment, KEYS[COAST]):
+                if future and future.plan:
+                    self.seconds = seconds
+                yield
+        self.known = True

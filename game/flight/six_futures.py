@@ -4,19 +4,16 @@ from __future__ import annotations
 
 from typing import Final
 
-import numpy as np
-
-from ai.copilot.futures import LONGEST, roomy
+from ai.copilot.futures import DECISION_STEPS, KEYS, Flying, Lookahead, Plan
 from ai.environment import Doubles
-from ai.lander.environment import LanderEnv, Outcome
+from ai.lander.environment import LanderEnv
 from ai.lander.moment import Moment
 from ai.lander.route import Route
-from ai.lander.rules import ACTION_SHARES
 from engine import DT
-from game.flight.networks import Policy, decision_steps
+from game.flight.networks import Policy
 
-COUNT: Final = len(ACTION_SHARES)
 HELD: Final = 0.5  # seconds for which each action is held: after less, the six are hardly told apart
+_DECISIONS: Final = round(HELD / (DECISION_STEPS * DT))
 _EVERY: Final = 2  # decisions between two places of a path
 
 
@@ -34,46 +31,28 @@ class SixFutures:
     """
 
     def __init__(self, policy: Policy, route: Route | None = None) -> None:
-        self._policy, self._route = policy, route
+        self._lookahead = Lookahead(policy, route)
+        self._flying: Flying[tuple[Plan, bool]] | None = None
         self.paths: list[Doubles] = []
-        self.lands: list[bool | None] = [None] * COUNT
-        self._env: LanderEnv | None = None
-        self._kept: LanderEnv | None = None
-        self._places: list[Doubles] = []
+        self.lands: list[bool | None] = [None] * len(KEYS)
 
     def begin(self, env: LanderEnv) -> None:
         """Begin at the present moment of one lander, and forget what was begun before."""
-        moment = Moment.of(env).take(np.zeros(COUNT, dtype=np.intp))
-        self._kept = ahead = self._kept or roomy(COUNT, moment)  # building one takes longer than a frame
-        self._env = ahead
-        moment.put(ahead)
-        ahead.frame_skip = decision_steps(self._policy)
-        self._places = [ahead.position.copy()]
+        self._flying = self._lookahead.ways(Moment.of(env), [(0, (key,) * _DECISIONS) for key in KEYS])
 
     @property
     def under_way(self) -> bool:
         """Whether a moment is being flown."""
-        return self._env is not None
+        return self._flying is not None
 
     def follow(self, decisions: int) -> None:
         """Fly some decisions further; once all have ended, paths and landings are those of the moment begun last."""
         for _ in range(decisions):
-            if self._env is None:
+            if self._flying is None:
                 return
-            self._fly(self._env)
-
-    def _fly(self, ahead: LanderEnv) -> None:
-        number = len(self._places) - 1
-        if number * ahead.frame_skip * DT < HELD:
-            action = np.arange(COUNT)
-        else:
-            seen = self._route.observe(ahead, self._policy) if self._route else ahead.observe_for(self._policy)
-            action = self._policy.act(seen, held=ahead.actions).copy()
-        ahead.fly(action, ACTION_SHARES[action])
-        self._places.append(ahead.position.copy())
-        longest = number * ahead.frame_skip * DT > LONGEST
-        if longest or (ahead.outcome != Outcome.FLYING).all():
-            way = np.array(self._places)  # (k, 6, 2)
-            self.paths = [way[::_EVERY, slot] for slot in range(COUNT)]
-            self.lands = (ahead.outcome == Outcome.LANDED).tolist()
-            self._env = None
+            try:
+                next(self._flying)
+            except StopIteration as end:
+                self._flying = None
+                self.paths = [way.states[::_EVERY, :2] for way, _ in end.value]
+                self.lands = [landed for _, landed in end.value]

@@ -7,10 +7,11 @@ the room that there is.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import pygame
@@ -162,9 +163,10 @@ class Column:
         step: float,
         figure: Callable[[float], str],
         aside: str = "",
+        ticks: Mapping[float, str] = MappingProxyType({}),
     ) -> SliderRow:
         """Add a slider."""
-        return self.widget(SliderRow(self._form.manager, label, value, limits, change, step, figure, aside))
+        return self.widget(SliderRow(self._form.manager, label, value, limits, change, step, figure, aside, ticks))
 
     def entry(
         self, text: str, accept: Callable[[str], Transition | None], cancel: OnPress, limit: int, fits: object

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
 import pygame
@@ -169,8 +170,9 @@ class SliderRow(RowWidget, Slider):
         step: float,
         figure: Callable[[float], str],
         aside: str = "",
+        ticks: Mapping[float, str] = MappingProxyType({}),
     ) -> None:
-        super().__init__(manager, _NOWHERE, label, value, limits, change, step=step, figure=figure)
+        super().__init__(manager, _NOWHERE, label, value, limits, change, step=step, figure=figure, ticks=ticks)
         self._aside = aside
 
     def write(self, cursor: Cursor) -> None:
@@ -186,14 +188,30 @@ class SliderRow(RowWidget, Slider):
         if canvas := cursor.canvas:
             canvas.bar((left, middle - 1, right - left, 2), self.fraction, self._colour)
             canvas.cover(canvas.rect(left, middle - 8, right - left, 16))
+            for value in self._ticks:
+                x = left + self._fraction_of(value) * (right - left)
+                canvas.line((x, middle - 5), (x, middle + 5), MUTE)
             canvas.dot((left + self.fraction * (right - left), middle), 5 + self.warmth, INK)
             place = (cursor.right, words.baseline)
             canvas.text(self._figure(self.value), place, colour=self._colour, align="right", tabular=True)
         else:
             self._track = (left, right)
         cursor.y = words.y + LEADING * cursor.size
+        if self._ticks:
+            self._name_ticks(cursor.in_style(SMALL, MUTE), left, right)
+            cursor.gap(LEADING * SMALL)
         if self._aside:
             cursor.aside(self._aside)
+
+    def _name_ticks(self, cursor: Cursor, left: float, right: float) -> None:
+        """Write the name of each tick below it, or beside the one before."""
+        free = left
+        for value, name in self._ticks.items():
+            wide = cursor.measured(name)
+            free = max(free, left + self._fraction_of(value) * (right - left) - wide / 2)
+            if canvas := cursor.canvas:
+                canvas.text(name, (free, cursor.baseline), size=cursor.size, colour=cursor.colour)
+            free += wide + STEP
 
 
 class ChoiceRow(RowWidget, Choice):

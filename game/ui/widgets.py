@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from types import MappingProxyType
 from typing import Final
 
 import pygame
@@ -109,7 +110,10 @@ class Toggle(Widget):
 
 
 class Slider(Widget):
-    """Slider for a number: a thin track with a round handle, the label on the left, the figure on the right."""
+    """Slider for a number: a thin track with a round handle, the label on the left, the figure on the right.
+
+    `ticks` are values that have a name; it stops at them as well as after each `step`.
+    """
 
     by_arrows = True
 
@@ -123,6 +127,7 @@ class Slider(Widget):
         on_change: Callable[[float], None],
         *,
         step: float = 0.0,
+        ticks: Mapping[float, str] = MappingProxyType({}),
         logarithmic: bool = False,
         label_width: float = 142,
         figure_width: float = 62,
@@ -131,30 +136,39 @@ class Slider(Widget):
     ) -> None:
         super().__init__(manager, box, label)
         self.value, self.limits, self._on_change = value, limits, on_change
-        self._step, self._logarithmic = step, logarithmic
+        self._step, self._ticks, self._logarithmic = step, ticks, logarithmic
         self._figure, self._colour = figure, colour
         self._track = (self.box.left + label_width, self.box.right - figure_width)
 
     @property
     def fraction(self) -> float:
         """Position of the handle on its track, 0 to 1."""
-        low, high, value = map(self._scale, (*self.limits, self.value))
+        return self._fraction_of(self.value)
+
+    def _fraction_of(self, value: float) -> float:
+        low, high, value = map(self._scale, (*self.limits, value))
         return min(max((value - low) / (high - low), 0.0), 1.0)
 
     def set(self, value: float) -> None:
-        """Set the value, clipped to the limits and rounded to a step."""
+        """Set the value, clipped to the limits and rounded to a step or a tick."""
         low, high = self.limits
         if self._step:
-            value = low + round((value - low) / self._step) * self._step
+            stops = low + round((value - low) / self._step) * self._step, *self._ticks
+            value = min(stops, key=lambda stop: abs(stop - value))
         value = min(max(value, low), high)
         if value != self.value:
             self.value = value
             self._on_change(value)
 
     def shift(self, direction: int) -> bool:
-        """Move by one step, or by a twentieth of the track."""
+        """Move to the next step or tick, or by a twentieth of the track."""
         if self._step:
-            self.set(self.value + direction * self._step)
+            low, value = self.limits[0], self.value
+            steps = math.floor(direction * (value - low) / self._step + 1e-6) + 1
+            stops = low + direction * steps * self._step, *self._ticks
+            self.set(
+                min((stop for stop in stops if direction * (stop - value) > 0), key=lambda stop: abs(stop - value))
+            )
         else:
             self._set_fraction(self.fraction + direction / 20)
         return True

@@ -13,7 +13,7 @@ from game.drawing.tokens import INK
 from game.flight.handicap import HANDS
 from game.input.controls import Command, key_name
 from game.scenes.play.cockpit import MODES
-from game.scenes.play.help_words import HELP, OTHER, choose, means, word_of
+from game.scenes.play.help_words import GUARDIAN, HELP, OTHER, choose, means, word_of
 from game.ui.actions import Action, Table
 from game.ui.panel_scene import PanelScene
 from game.ui.still_picture import StillPicture
@@ -97,7 +97,9 @@ class ChoicesScene(PanelScene):
     def _describe_more(self, left: Column, right: Column) -> None:
         """Add all else: the fine dial and its rule, gravity, time, and what follows from flights."""
         helped, settings = self._helped, self.context.settings
-        left.slider(texts.CHOICES_ASSIST, helped.assist, (0.0, 1.0), self._turn, step=0.1, figure=_percent)
+        words = HELP if helped.copilot == GUARDIAN else ["off"]
+        ticks = {HELP[word]: texts.HELP[word] for word in words}
+        left.slider(texts.CHOICES_ASSIST, helped.assist, (0.0, 1.0), self._turn, step=0.1, figure=_percent, ticks=ticks)
         index = MODES.index(helped.copilot) if helped.copilot in MODES else 0
         left.choice(texts.CHOICES_MODE, texts.CHOICES_MODES, index, self._choose_mode)
         left.aside(lambda: texts.CHOICES_MODES_HELP[MODES.index(helped.copilot)])

@@ -17,9 +17,8 @@ from game.core.pace import SlowMotion
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import VIEW_SIZE
 from game.flight import networks
-from game.flight.assists import eased
 from game.flight.credit import Credit
-from game.flight.difficulty import Difficulty
+from game.flight.difficulty import Difficulty, eased
 from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Entry, Record
 from game.flight.handicap import OWN
@@ -204,7 +203,9 @@ class FlownFlight:
         self._held_before = self._held_before and bool(action)
         touched = bool(action) or (self.challenge is not None and not self.challenge.waits)
         holds = self.challenge is not None and self.challenge.holds
-        if self.flight.hand is StickHolder.NETWORK or (touched and not self._held_before and not holds):
+        guard = self.flight.guard
+        ready = guard is None or guard.ready  # or nobody would keep it from harm at first
+        if self.flight.hand is StickHolder.NETWORK or (touched and not self._held_before and not holds and ready):
             self.waiting = False
         return self.waiting
 

@@ -15,8 +15,8 @@ from game.core import texts
 from game.core.scene import Pop, Push, Scene, Transition, push
 from game.drawing.canvas import Canvas
 from game.flight import networks
-from game.flight.assists import eased
 from game.flight.credit import Credit
+from game.flight.difficulty import eased
 from game.flight.flight import Flight, StickHolder
 from game.flight.handicap import HANDS, OWN
 from game.flight.logbook import Records, best_alone

@@ -6,7 +6,8 @@ import main
 from ai.agent.agent import DeepQAgent
 from ai.cli.copilot import MODEL
 from ai.copilot import measurement
-from ai.copilot.measurement import ALONE, GUARD, TABLES, VALUES, rows
+from ai.copilot.hands import HANDS
+from ai.copilot.measurement import ALONE, GUARD, TABLES, VALUES, rows, seconds
 from ai.lander.environment import LanderEnv
 from ai.training.statistics import wilson
 
@@ -42,11 +43,12 @@ def test_the_co_pilot_helps(agent, few):
         assert 0.0 <= low <= row.success <= high <= 1.0
     assert [row.success for row in found if row.mode == "guardian"] == [1.0, 1.0]
     assert found[3].success == 0.0
+    assert seconds(agent, agent, "one_pad", ("laggy", "holds right"), GUARD, 1, 1) > 0
 
 
 def test_every_table_has_pilots_that_there_are():
     for name, (_, names) in TABLES.items():
-        assert set(names) <= set(measurement.PILOTS), name
+        assert set(names) <= set(HANDS), name
 
 
 def test_an_interval_holds_the_share_and_shrinks_with_the_number_of_trials():
@@ -56,17 +58,17 @@ def test_an_interval_holds_the_share_and_shrinks_with_the_number_of_trials():
 
 
 def test_the_command_says_how_long_it_takes_and_prints_tables_that_follow_from_the_seed(few, monkeypatch, capsys):
+    monkeypatch.setattr(measurement, "seconds", lambda *_: 60.0)
     monkeypatch.setattr(measurement, "HELPS", ((ALONE, 0.0), (VALUES, 0.4)))
     told = []
-    for _ in range(2):
-        assert main.main(["copilot-table", "--episodes", "2", "--json"]) == 0
+    for form in (["--json"], ["--json"], []):
+        assert main.main(["copilot-table", "--episodes", "1", *form]) == 0
         printed = capsys.readouterr()
-        assert "this takes about" in printed.err
-        told.append(json.loads(printed.out))
+        assert "this takes about 3.0 minutes" in printed.err
+        told.append(json.loads(printed.out) if form else printed.out)
     assert told[0] == told[1]
     assert [len(told[0][name]) for name in TABLES] == [4, 4, 4]
-    assert main.main(["copilot-table", "--episodes", "1"]) == 0
-    assert "own pad" in capsys.readouterr().out
+    assert "own pad" in told[2]
 
 
 def test_the_command_says_what_is_wrong(capsys, tmp_path):

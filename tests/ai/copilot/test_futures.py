@@ -134,8 +134,6 @@ def test_what_comes_first_can_be_several_pushes(agent):
     assert once.passes
     assert not long.passes
     assert long.plan
-    (spared,) = lookahead.futures(Moment.of(falling), [(0, KEYS[0])], 12, lasting=True)
-    assert (spared.plan, spared.lasts) == (None, False)
 
 
 def test_very_many_are_flown_in_several_batches(agent, monkeypatch):

@@ -119,6 +119,29 @@ def test_a_change_of_gravity_voids_the_plan_and_another_is_found(agent):
     assert land(flight).outcome is Outcome.LANDED
 
 
+def test_a_craft_hangs_until_a_plan_is_found_but_not_for_long(agent):
+    for known, ready in (
+        (None, True),
+        ({}, False),
+        ({KEYS[1]: Future(None)}, False),
+        (dict.fromkeys(KEYS, Future(None)), True),
+    ):
+        guard = guarded(agent).guard
+        if known is not None:
+            guard.ahead.known = lambda known=known: known
+        assert guard.ready is ready, known
+    guard = guarded(agent).guard
+    guard.ahead.late = None
+    hung = 0
+    while not guard.ready:
+        guard.hang(2)
+        hung += 1
+    assert hung == 180
+    guard = fly(guarded(agent), lambda _: (0, None), most=6).guard
+    guard.ahead.late = None
+    assert guard.ready  # between two decisions nothing can be found
+
+
 def test_it_says_since_when_no_plan_is_held_and_why(agent):
     for why in ("off", "process", "none"):
         flight = guarded(agent)

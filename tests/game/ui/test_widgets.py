@@ -134,6 +134,20 @@ def test_a_logarithmic_slider_gives_every_decade_the_same_room(context: Context,
     assert slider.value == pytest.approx(1e-3)
 
 
+def test_a_slider_stops_at_its_ticks_as_well_as_at_each_step(context: Context, open_game: Callable[..., Driver]):
+    open_game(Page)
+    form, ticks = Form(context), {0.0: "Off", 0.04: "Guard", 0.64: "Guide"}
+    slider = Slider(form.manager, (0, 0, 300, 24), "", 0.0, (0.0, 1.0), lambda _: None, step=0.1, ticks=ticks)
+    up, down = [0.04, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.64, 0.7], [0.64, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1, 0.04, 0.0]
+    for direction, stops in ((1, up), (-1, down)):
+        for stop in stops:
+            slider.shift(direction)
+            assert slider.value == pytest.approx(stop), direction
+    for dragged, stop in ((0.03, 0.04), (0.08, 0.1), (0.63, 0.64), (0.61, 0.6), (0.01, 0.0)):
+        slider.set(dragged)
+        assert slider.value == pytest.approx(stop), dragged
+
+
 def test_a_ring_shows_for_keys_and_not_for_the_mouse(page: tuple[Driver, Page]):
     game, scene = page
     game.key(pygame.K_DOWN)
