@@ -255,8 +255,7 @@ def test_f1_explains_one_thing_after_the_other(open_game: Open, monkeypatch: pyt
         driver.key(pygame.K_F1)
     assert told == set(texts.EXPLAIN_PHYSICS.values())
     driver.key(pygame.K_ESCAPE)
-    assert not explained.stepping
-    assert driver.top is gallery(driver)
+    assert not gallery(driver).explained.stepping
 
 
 def test_what_flies_behind_the_controls_is_not_gripped_there(open_game: Open):
