@@ -71,7 +71,7 @@ from game.scenes.play.choices import ChoicesScene
 from game.scenes.play.descent import Descent
 from game.scenes.play.pause import PauseScene
 from game.scenes.play.scene import PlayScene
-from game.scenes.train import TrainScene
+from game.scenes.train.scene import TrainScene
 from game.scenes.watch.scene import COUNTS, WatchScene
 from game.shell.app import App
 from game.ui.context import Context

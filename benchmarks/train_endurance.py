@@ -37,7 +37,7 @@ from game.core.scene import Push
 from game.core.settings import Settings
 from game.core.worker import WorkerState
 from game.scenes import scene_of
-from game.scenes.train import TrainScene
+from game.scenes.train.scene import TrainScene
 from game.shell.app import App
 from game.ui.context import Context
 

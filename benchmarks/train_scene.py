@@ -41,7 +41,7 @@ def run(seed: int, limit: float) -> tuple[float, list[float], list[float]]:
     from ai.training.config import PRESETS
     from game.core.settings import Settings
     from game.scenes import scene_of
-    from game.scenes.train import TrainScene
+    from game.scenes.train.scene import TrainScene
     from game.shell.app import App
     from game.ui.context import Context
 

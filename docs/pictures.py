@@ -39,7 +39,7 @@ from game.scenes.physics.scene import PhysicsScene
 from game.scenes.play.challenge import FlownMission
 from game.scenes.play.descent import Descent
 from game.scenes.play.scene import PlayScene
-from game.scenes.train import TrainScene
+from game.scenes.train.scene import TrainScene
 from game.scenes.watch.scene import WatchScene
 from game.shell.app import App
 from game.ui.context import Context

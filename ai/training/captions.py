@@ -14,23 +14,22 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from ai.agent.decision import in_points
-from ai.lander.spawns import CURRICULA
 from ai.training.edits import EDITED
 from ai.training.hints import RULES, RecentCurves, returns
 from ai.training.history import PARTS
 
-CHARTS: Final = ("success", "mean_return", "loss", "mean_q", "epsilon", "stage")
+CHARTS: Final = ("success", "mean_return", "loss", "epsilon")
 # Charts that a hint is about, by its name.
 ABOUT: Final[Mapping[str, tuple[str, ...]]] = {
-    "rate_too_high": ("success", "mean_return", "loss", "mean_q"),
-    "damaged": ("success", "mean_return", "loss", "mean_q"),
+    "rate_too_high": ("success", "mean_return", "loss"),
+    "damaged": ("success", "mean_return", "loss"),
     "loss_explodes": ("loss",),
-    "q_runs_away": ("mean_q", "loss"),
+    "q_runs_away": ("mean_return", "loss"),
     "dead_units": ("success", "mean_return", "loss"),
     "changed": ("success", "mean_return"),
     "edited": ("success", "mean_return"),
     "collapsed": ("success", "mean_return"),
-    "target_stands": ("success", "mean_return", "mean_q", "loss"),
+    "target_stands": ("success", "mean_return", "loss"),
     "short_sight": ("success", "mean_return"),
     "no_guide": ("success", "mean_return"),
     "crashes": ("success", "mean_return"),
@@ -44,7 +43,6 @@ ABOUT: Final[Mapping[str, tuple[str, ...]]] = {
 _MOST: Final = 0.5  # share of flights that are most of them
 _CHANGE: Final = 0.05  # of a share, from which it rises or falls
 _RETURN_CHANGE: Final = 10.0  # points of reward
-_Q_CHANGE: Final = 4.0
 _LOSS_CHANGE: Final = 1.2  # times
 _ROUNDED: Final = 0.5  # points of reward that are written as 0
 _HOPE: Final = 60.0  # points of reward by which a mean value is too high to be chance
@@ -131,14 +129,6 @@ def _points(run: RecentCurves, scaled: float) -> float:
     return float(in_points(np.array(scaled), run.history.reward_scale))
 
 
-def _stages(run: RecentCurves) -> dict[str, float]:
-    return {"stage": run.now("stage"), "last": _last_stage(run)}
-
-
-def _last_stage(run: RecentCurves) -> float:
-    return float(len(CURRICULA[run.config.spawn].stages) - 1)
-
-
 def _loss_times(run: RecentCurves) -> float:
     """Return how many times its size the loss has become over the last share of the run, and in its latest number."""
     before, gained = run.before("loss"), run.gained("loss")
@@ -158,10 +148,6 @@ def _percent(run: RecentCurves) -> Mapping[str, float]:
         "before": 100 * run.before("success"),
         "best": 100 * run.best(),
     }
-
-
-def _paid(run: RecentCurves) -> Mapping[str, float]:
-    return {"points": abs(run.now("mean_return"))}
 
 
 def _split(run: RecentCurves) -> Mapping[str, float]:
@@ -191,10 +177,6 @@ def _runs_away(run: RecentCurves) -> bool:
     return _hint("q_runs_away")(run) and not 2 * least <= run.now("mean_q") <= 2 * most
 
 
-def _q_gained(run: RecentCurves) -> float:
-    return _points(run, run.gained("mean_q"))
-
-
 def _always(_: RecentCurves) -> bool:
     return True
 
@@ -215,12 +197,12 @@ CAPTION_RULES: Final[Mapping[str, tuple[CaptionRule, ...]]] = {
     ),
     "mean_return": (
         CaptionRule("unknown", _unknown("mean_return")),
+        CaptionRule("runs_away", _runs_away),
+        CaptionRule("hopes", _hopes),
         CaptionRule("nothing", lambda run: abs(run.now("mean_return")) < _ROUNDED and not _lands_for_little(run)),
         CaptionRule("little", _lands_for_little, values=_split),
         CaptionRule("rises", _rises("mean_return", _RETURN_CHANGE), True),
         CaptionRule("falls", _falls("mean_return", _RETURN_CHANGE)),
-        CaptionRule("costs", lambda run: run.now("mean_return") <= -_ROUNDED, values=_paid),
-        CaptionRule("earns", lambda run: run.now("mean_return") >= _ROUNDED, values=_paid),
     ),
     "loss": (
         CaptionRule("unknown", _unknown("loss")),
@@ -232,26 +214,11 @@ CAPTION_RULES: Final[Mapping[str, tuple[CaptionRule, ...]]] = {
         CaptionRule("falls", lambda run: _loss_times(run) < 1 / _LOSS_CHANGE, True),
         CaptionRule("steady", lambda run: 1 / _LOSS_CHANGE <= run.now("loss") / run.before("loss") <= _LOSS_CHANGE),
     ),
-    "mean_q": (
-        CaptionRule("unknown", _unknown("mean_q")),
-        CaptionRule("held", _held),
-        CaptionRule("waits", _stands),
-        CaptionRule("runs_away", _runs_away),
-        CaptionRule("hopes", _hopes),
-        CaptionRule("rises", lambda run: _q_gained(run) > _Q_CHANGE and _rises("success", _CHANGE)(run), True),
-        CaptionRule("crashes", lambda run: _q_gained(run) < -_Q_CHANGE and run.now("crashed") >= _MOST),
-        CaptionRule("steady", _always),
-    ),
     "epsilon": (
         CaptionRule("all", lambda run: run.now("epsilon") == 1.0),
         CaptionRule("none", lambda run: run.now("epsilon") == 0.0),
         CaptionRule("falls", lambda run: run.now("epsilon") < run.history["epsilon"][-8:].max(), values=_random),
         CaptionRule("spread", lambda run: run.config.epsilon_spread > 0 and run.config.num_envs > 1, values=_random),
         CaptionRule("steady", _always, values=_random),
-    ),
-    "stage": (
-        CaptionRule("same", lambda run: run.config.spawn not in CURRICULA),
-        CaptionRule("last", lambda run: run.now("stage") >= _last_stage(run), values=_stages),
-        CaptionRule("grows", _always, values=_stages),
     ),
 }

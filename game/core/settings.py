@@ -57,7 +57,7 @@ class Settings:
     untimed: bool = False  # whether a flight may take as long as it likes
     keys: dict[str, Any] = field(default_factory=dict)  # changed keys, as game.input.bindings writes them
     buttons: dict[str, Any] = field(default_factory=dict)  # the same for gamepads
-    all_knobs: bool = False  # whether Train shows all knobs, and not three
+    opened: str = ""  # names of what stays open in Train, with spaces between: see game.scenes.train.base
     tutored: bool = False  # whether the tutorial flight was flown or skipped, so it is not offered again
     first_flown: bool = False  # whether the tutorial flight was flown to its landing
     rung: Annotated[int, Within(-1, TOP_RUNG)] = -1  # place on the ladder of starts, from 0; -1 before it is known

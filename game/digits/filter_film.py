@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
+import pygame
 
 from ai.digits.filters import FilterMoment
 from ai.training.history import History
@@ -18,10 +19,10 @@ from game.drawing.tokens import LABEL, MUTE, SMALL
 from game.training.run import TrainingRun
 from game.ui.charts import Charts
 
-_LEFT, _TOP = 40.0, 358.0
-_ROOM: Final = (600.0, 320.0)
 _GAP: Final = 6.0
-_SAID: Final = (664.0, 148.0)  # left and width of the words beside the filters
+_SAID: Final = 160.0  # width of the words beside the filters
+_APART: Final = 24.0
+_HEADING: Final = 16.0
 
 
 class FilterFilm:
@@ -78,32 +79,37 @@ class FilterFilm:
         else:
             self._charts.mark(moment.seconds, texts.DIGIT_RUN_MOMENT.format(seconds=moment.seconds))
 
-    def draw(self, canvas: Canvas) -> None:
-        """Draw the filters, when they were so, and how well the network read then."""
-        moment = self.moment
+    def draw(self, canvas: Canvas, box: pygame.FRect) -> None:
+        """Draw the filters into a box: when they were so, and how well the network read then."""
+        moment, (left, top) = self.moment, box.topleft
         if moment is None or not len(moment.images):
             words = texts.DIGIT_RUN_FILTERS_NONE if moment is None else texts.DIGIT_RUN_FILTERS_NO_IMAGE
-            draw_wrapped(canvas, words, (_LEFT, _TOP), _ROOM[0], size=SMALL, colour=MUTE)
+            draw_wrapped(canvas, words, (left, top), box.width, size=SMALL, colour=MUTE)
             return
         words = texts.DIGIT_RUN_FILTERS_AT.format(seconds=f"{moment.seconds:.1f}", steps=moment.step)
-        canvas.text(words, (_LEFT, _TOP - 18), size=LABEL, colour=MUTE, weight="medium", tabular=True)
-        self._painted.draw(canvas, (_LEFT, _TOP, *_ROOM), moment, lambda sheet: _paint(sheet, moment))
+        canvas.text(words, (left, top), size=LABEL, colour=MUTE, weight="medium", tabular=True, room=box.width)
+        beside = _SAID if box.width > 2 * _SAID else 0.0
+        room = (box.width - beside - (_APART if beside else 0.0), box.height - _HEADING)
+        self._painted.draw(
+            canvas, (left, top + _HEADING, *room), (moment, room), lambda sheet: _paint(sheet, moment, room)
+        )
+        if not beside:
+            return
         scores = [score.success for score in self.history.validations if score.seconds <= moment.seconds]
-        left, width = _SAID
-        y = _TOP + 14
+        left, y = box.right - beside, top + _HEADING + 14
         if scores:
             words = texts.DIGIT_RUN_FILTERS_READ.format(percent=percent(scores[-1]))
-            y = draw_wrapped(canvas, words, (left, y), width, size=SMALL, leading=18) + 14
-        draw_wrapped(canvas, texts.DIGIT_RUN_FILTERS_HOW, (left, y), width, size=SMALL, colour=MUTE, leading=18)
+            y = draw_wrapped(canvas, words, (left, y), beside, size=SMALL, leading=18) + 14
+        draw_wrapped(canvas, texts.DIGIT_RUN_FILTERS_HOW, (left, y), beside, size=SMALL, colour=MUTE, leading=18)
 
 
-def _paint(sheet: Canvas, moment: FilterMoment) -> None:
+def _paint(sheet: Canvas, moment: FilterMoment, room: tuple[float, float]) -> None:
     images = moment.images.astype(np.float32)
     images = np.nan_to_num(images / np.abs(images).max(axis=(1, 2), keepdims=True).clip(1e-9))
 
     def tile(columns: int) -> float:
         """Return how large the square of each filter can be."""
-        return min((_ROOM[0] + _GAP) / columns, (_ROOM[1] + _GAP) / -(-len(images) // columns)) - _GAP
+        return min((room[0] + _GAP) / columns, (room[1] + _GAP) / -(-len(images) // columns)) - _GAP
 
     columns = max(range(1, len(images) + 1), key=tile)
     pitch = tile(columns) + _GAP

@@ -14,17 +14,16 @@ ROUTES: Final = {
     "menu": "menus.menu.MenuScene", "flights": "menus.flights.FlightsScene", "play": "play.scene.PlayScene",
     "tutorial": "play.starts.tutorial", "descent": "play.starts.descent", "race": "play.starts.race",
     "fly_on": "play.starts.fly_on", "missions": "play.missions.MissionsScene", "days": "play.calendar.DaysScene",
-    "watch": "watch.scene.WatchScene", "train": "train.TrainScene", "runs": "runs.NetworksScene",
-    "digits": "digits.scene.DigitsScene", "digit_training": "digit_training.DigitTrainingScene",
+    "watch": "watch.scene.WatchScene", "train": "train.scene.TrainScene", "runs": "train.networks.NetworksScene",
+    "digits": "digits.scene.DigitsScene", "digit_training": "train.digits.DigitTrainingScene",
     "digit_inside": "digits.inside.DigitInsideScene", "why_not": "digits.why_not.WhyNotScene",
     "dream": "digits.dream.DreamScene", "quiz": "digits.quiz.QuizScene", "physics": "physics.scene.PhysicsScene",
     "physics_step": "physics.step_scene.PhysicsStepScene",
     "logbook": "logbook.scene.LogbookScene", "replay": "logbook.replay.ReplayScene",
-    "settings": "menus.settings.SettingsScene", "assists": "menus.settings.AssistsScene",
-    "bindings": "menus.keys.BindingsScene", "choices": "play.choices.ChoicesScene",
-    "pause": "play.pause.PauseScene", "flight_pause": "play.pause.FlightPauseScene",
-    "learn": "learn.LearnScene", "chapter": "chapter.ChapterScene", "lesson": "lesson.LessonScene",
-    "error_screen": "error_screen.ErrorScene", "study": "study.StudyScene",
+    "settings": "menus.settings.SettingsScene", "bindings": "menus.keys.BindingsScene",
+    "choices": "play.choices.ChoicesScene", "pause": "play.pause.PauseScene",
+    "flight_pause": "play.pause.FlightPauseScene", "learn": "learn.LearnScene", "chapter": "chapter.ChapterScene",
+    "lesson": "lesson.LessonScene", "error_screen": "error_screen.ErrorScene", "study": "train.study.StudyScene",
 }  # fmt: skip
 
 

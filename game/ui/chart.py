@@ -82,6 +82,11 @@ class Chart:
         self._stale = True
         self._rested = 0
 
+    def move(self, box: pygame.FRect) -> None:
+        """Move to another box."""
+        if box != self.box:
+            self.box, self._painted = box, None
+
     @property
     def plot(self) -> pygame.FRect:
         """Box of the curves, in points."""

@@ -236,6 +236,32 @@ class Form:
             widget.ringed = not self._context.controls.mouse_in_use
 
 
+class Part:
+    """Part of a form whose widgets a panel of its own lays out; the form has them once they are added to it."""
+
+    def __init__(self, form: Form) -> None:
+        self._form, self.widgets = form, list[Widget]()
+        self.manager, self.controls, self.in_order = form.manager, form.controls, True
+
+    @property
+    def focused(self) -> Widget | None:
+        """The widget in focus, if it is one of these."""
+        focused = self._form.focused
+        return focused if focused in self.widgets else None
+
+    def add(self, widget: W) -> W:
+        """Add a widget and return it."""
+        self.widgets.append(widget)
+        return widget
+
+    def replace(self, old: Sequence[Widget], new: Sequence[Widget]) -> None:
+        """Replace some adjacent widgets by others, of the form as well."""
+        self._form.replace(old, new)
+        place = self.widgets.index(old[0]) if old else len(self.widgets)
+        self.widgets = [each for each in self.widgets if each not in old]
+        self.widgets[place:place] = new
+
+
 def _reading(widget: Widget | None) -> object:
     """Return the value, or the index, of a widget; None if it has neither."""
     return getattr(widget, "value", getattr(widget, "index", None))

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from game.core.scene import Transition
     from game.drawing.canvas import Canvas, Now
-    from game.ui.form import Form
+    from game.ui.form import Form, Part
     from game.ui.listing import Row as Cells
     from game.ui.widget import OnPress
 
@@ -52,7 +52,7 @@ class Row:
 class Column:
     """Rows that are described one after another; each call adds one, and returns its widget if it has one."""
 
-    def __init__(self, form: Form) -> None:
+    def __init__(self, form: Form | Part) -> None:
         self.rows: list[Row] = []
         self._form, self._widgets = form, list[Widget]()
 
@@ -140,6 +140,7 @@ class Column:
     def words(self, words: Sequence[tuple[str, OnPress]]) -> list[ButtonRow]:
         """Add words to press, side by side on as many lines as they need."""
         buttons = [self._form.add(ButtonRow(self._form.manager, label, press)) for label, press in words]
+        self._widgets += buttons
         self.add(partial(_write_words, buttons))
         return buttons
 
@@ -212,7 +213,7 @@ class Panel(Column):
 
     """
 
-    def __init__(self, form: Form) -> None:
+    def __init__(self, form: Form | Part) -> None:
         super().__init__(form)
         form.in_order = True
         self.box = pygame.FRect(0, 0, 0, 0)

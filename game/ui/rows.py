@@ -15,6 +15,8 @@ from game.drawing.tokens import HUMAN, INK, MUTE, NET, SMALL, STEP, TEXT, Colour
 from game.drawing.typeface import Weight
 from game.ui.entry import Entry
 from game.ui.listing import Listing, Row
+from game.ui.series import run_style
+from game.ui.tooltip import draw_swatch
 from game.ui.widget import OnPress, PointsManager, Widget, mix
 from game.ui.widgets import Choice, Slider, TextButton, Toggle, draw_switch
 
@@ -29,6 +31,7 @@ _FIGURES: Final = 56.0
 _TRACK: Final = 120.0  # the shortest track beside its label
 _WORDS: Final = 24.0  # between two options
 _ROWS: Final = 8  # of a list, at most
+_SWATCH: Final = 27.0  # points for a piece of a line before a name
 
 
 class RowWidget(Widget):
@@ -131,6 +134,24 @@ class ButtonRow(RowWidget, TextButton):
         beside = _WORDS + cursor.in_style(TEXT).measured(figure) if figure else 0.0
         below = cursor.in_style(SMALL).measured(aside) if aside else 0.0
         return max(self.measured(cursor) + beside, below) + _WORDS
+
+
+class RunRow(ButtonRow):
+    """Name of a run to press, after a piece of its line in a chart."""
+
+    def __init__(self, manager: PointsManager, name: str, style: int, press: OnPress) -> None:
+        super().__init__(manager, name, press, size=SMALL)
+        self.style = style
+        self.pad = 3.0
+
+    def write(self, cursor: Cursor) -> None:
+        """Draw the piece of the line, and write the name beside it."""
+        if cursor.canvas:
+            middle = cursor.y + LEADING * self._size / 2
+            draw_swatch(cursor.canvas, (cursor.left, middle), *run_style(self.style))
+        name = replace(cursor, left=cursor.left + _SWATCH, width=cursor.width - _SWATCH)
+        super().write(name)
+        cursor.y = name.y
 
 
 class ToggleRow(RowWidget, Toggle):

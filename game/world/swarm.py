@@ -29,25 +29,32 @@ _JUMP: Final = 4.0  # metres: farther than any lander flies between two snapshot
 _LABEL: Final = (3.2, 1.6)  # metres that a lander's label takes; of landers closer than that, only the best is labelled
 _REACH: Final = 16.0  # points from a lander within which a click is meant for it
 _MOON: Final = 5
+_BELOW: Final = 0.077  # share of the world's height that lies below its box: nothing but ground
 _EARTH: Final = (880.0, 150.0)  # points of the small picture: clear of the figures
 
 
 class LearningSwarm:
-    """The landers of one training run in the upper left part of the view.
-
-    `width` is their share of the view's width; the world keeps its proportions.
+    """The landers of one training run in a box of the view.
 
     Attributes:
+        box: where they fly, in points; all of their world is seen, and more land or sky beside it.
         chosen: slot of the lander that the player has chosen; None without one.
 
     """
 
-    def __init__(self, width: float) -> None:
-        self._share = width
-        span = (1 - width) / (2 * width * POINTS_PER_METRE)
-        self._centre = (HOME[0] + span * VIEW_SIZE[0], HOME[1] - span * VIEW_SIZE[1])
+    def __init__(self, box: pygame.typing.RectLike = (0, 0, 836, 434)) -> None:
         self.chosen: int | None = None
+        self.place(pygame.FRect(box))
         self.clear()
+
+    def place(self, box: pygame.FRect) -> None:
+        """Move to another box."""
+        self.box = box
+        width, height = VIEW_SIZE
+        self._zoom = min(box.width / width, box.height / ((1 - _BELOW) * height))
+        middle = box.centerx, box.bottom + (_BELOW - 0.5) * height * self._zoom
+        metre = POINTS_PER_METRE * self._zoom
+        self._centre = (HOME[0] - (middle[0] - width / 2) / metre, HOME[1] + (middle[1] - height / 2) / metre)
 
     def clear(self) -> None:
         """Forget the run shown so far."""
@@ -86,9 +93,9 @@ class LearningSwarm:
 
     def slot_at(self, point: Point) -> int | None:
         """Return the slot of the lander at a point of the view, or None without one."""
-        if not len(self._now) or point[0] > VIEW_SIZE[0] * self._share:
+        if not len(self._now) or not self.box.collidepoint(point):
             return None
-        away = np.hypot(*(View(1.0, self._centre, self._share).points(self._now[:, :2]) - point).T)
+        away = np.hypot(*(View(1.0, self._centre, self._zoom).points(self._now[:, :2]) - point).T)
         nearest = int(away.argmin())
         return nearest if away[nearest] <= _REACH else None
 
@@ -101,13 +108,15 @@ class LearningSwarm:
 
     def draw(self, canvas: Canvas, alpha: float, paused: bool = False) -> None:
         """Draw the moon, the pad and the landers."""
-        view = View(canvas.scale, self._centre, self._share)
-        whole = canvas.whole
-        left, top = (round(-start * whole.scale) for start in whole.view.topleft)
-        moon = _moon(canvas.size, self._share, (left, top))
-        whole.surface.blit(moon, (0, 0))
+        view = View(canvas.scale, self._centre, self._zoom)
+        area = canvas.rect(*self.box)
+        canvas.surface.set_clip(area)
+        canvas.surface.blit(
+            _moon((area.width, round(area.height + _BELOW * VIEW_SIZE[1] * self._zoom * canvas.scale))), area
+        )
         draw_pad(canvas, view, (0.0, PARAMS.pad_top), PARAMS.pad_width, self._time)
         if self.swarm_state is None:
+            canvas.surface.set_clip(None)
             return
         part = 1.0 if paused else min(1.0, (self._since + alpha) / self._gap)
         poses = self._before + part * (self._now - self._before)
@@ -119,7 +128,6 @@ class LearningSwarm:
         chosen = self.chosen if self.chosen is not None and self.chosen < count else None
         if chosen is not None:
             marked[chosen] = True
-        canvas.surface.set_clip(canvas.rect(0, 0, VIEW_SIZE[0] * self._share, (moon.get_height() - top) / canvas.scale))
         self._trails.draw(canvas, view, CAREFUL)
         shown = ~marked & ~wrecked
         draw_fires(canvas, view, poses[shown & self._burning()], self._frame, size)
@@ -151,20 +159,19 @@ class LearningSwarm:
         if word:
             width = canvas.text_width(word, size=LABEL)
             edge = width / 2 + 8  # a lander may fly out of the picture, the word may not
-            x = min(max(x, edge), VIEW_SIZE[0] * self._share - edge)
-            y = max(y - 30 * min(1.0, 1.5 * size), 24)
+            x = min(max(x, self.box.left + edge), self.box.right - edge)
+            y = max(y - 30 * min(1.0, 1.5 * size), self.box.top + 24)
             canvas.pill((x - width / 2 - 8, y - 22, width + 16, 17), NIGHT0, 0.72)  # over whatever flies behind
             canvas.text(word, (x, y - 9.5), size=LABEL, colour=colour, align="centre")
             canvas.marker("triangle_down", (x, y - 1), 6, colour)
 
 
-@lru_cache(maxsize=2)
-def _moon(size: tuple[int, int], share: float, beyond: tuple[int, int]) -> pygame.Surface:
-    """Return the landscape behind the swarm, dimmed; `beyond` is how far it reaches beside and above its page."""
-    small = (round(size[0] * share) + 2 * beyond[0], round(size[1] * share) + beyond[1])
-    picture = pygame.Surface(small)
-    Backdrop(small, np.random.default_rng(_MOON), reduced_motion=True).paint(picture, earth=_EARTH)
-    veil = pygame.Surface(small)
+@lru_cache(maxsize=4)
+def _moon(size: tuple[int, int]) -> pygame.Surface:
+    """Return the landscape behind the swarm, dimmed."""
+    picture = pygame.Surface(size)
+    Backdrop(size, np.random.default_rng(_MOON), reduced_motion=True).paint(picture, earth=_EARTH)
+    veil = pygame.Surface(size)
     veil.fill(NIGHT0)
     veil.set_alpha(90)
     picture.blit(veil, (0, 0))

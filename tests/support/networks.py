@@ -1,8 +1,8 @@
 """Places on a network that is drawn."""
 
 from game.drawing.canvas import Point
-from game.panels.network_picking import Link, part_at
 from game.panels.network_view import NetworkView
+from game.scenes.train.picking import Link, part_at
 
 
 def on_a_link(view: NetworkView, layer: int = 0) -> Point:

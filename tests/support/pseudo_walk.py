@@ -43,6 +43,7 @@ from game.scenes.error_screen import ErrorScene
 from game.scenes.lesson import LessonScene
 from game.scenes.menus.dialogs import QuestionDialog
 from game.scenes.play.scene import PlayScene
+from game.scenes.train.base import INSIDE
 from game.shell.app import App
 from game.training.beside import put_beside, rename_beside
 from game.training.run import TrainingRun
@@ -87,7 +88,7 @@ def rewound(driver: Driver) -> None:
 def edited(driver: Driver) -> None:
     """Silence a unit of the large network, and pick a link."""
     trained(driver)
-    driver.press_on(texts.TRAIN_CLOSER)
+    driver.top.open(INSIDE)
     driver.frames(3)
     driver.click(driver.top.inside.view.centres[1][2])
     driver.frames(2)
@@ -115,7 +116,8 @@ def listed(driver: Driver) -> None:
     if isinstance(driver.top, QuestionDialog):
         driver.press_on(texts.TRAIN_LEFT_DISCARD)
     driver.top.knobs.set_config(LANDERS, 3)
-    driver.press_on(texts.SABOTAGE)
+    driver.top.pages.open()
+    driver.frames(2)
 
 
 def asked(driver: Driver) -> None:
@@ -289,11 +291,11 @@ STATES: dict[str, tuple[str, dict[str, object], Happens]] = {
     "assists": ("Play", {"wider_pads": True, "untimed": True, "pace": 0.5, "toggle_thrust": True}, crashed),
     "a share of thrust": ("Play", {}, half_way),
     "one switch": ("MenuScene", {"one_switch": True}, lambda driver: driver.skip(30)),
-    "bringing it back": ("AssistsScene", {}, reset),
+    "bringing it back": ("flights", {}, reset),
     "the tutorial": ("tutorial", {"tutored": False}, lambda _: None),
     "an error": ("error", {}, lambda _: None),
     "a message": ("MenuScene", {}, told),
-    "all knobs": ("TrainScene", {"all_knobs": True}, lambda _: None),
+    "all knobs": ("TrainScene", {"opened": "charts knobs more"}, lambda _: None),
     "the laboratory": ("TrainScene", {}, listed),
     "a guess": ("TrainScene", {}, asked),
     "training": ("TrainScene", {}, trained),

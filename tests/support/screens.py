@@ -18,7 +18,6 @@ from game.flight.days import Days
 from game.flight.flight_file import Record
 from game.learn.path import FIRST, PATH
 from game.scenes.chapter import ChapterScene
-from game.scenes.digit_training import DigitTrainingScene
 from game.scenes.digits.dream import DreamScene
 from game.scenes.digits.inside import DigitInsideScene
 from game.scenes.digits.quiz import QuizScene
@@ -32,7 +31,7 @@ from game.scenes.menus.dialogs import ListDialog, NameDialog, QuestionDialog
 from game.scenes.menus.flights import FlightsScene
 from game.scenes.menus.keys import BindingsScene
 from game.scenes.menus.menu import MenuScene
-from game.scenes.menus.settings import AssistsScene, SettingsScene
+from game.scenes.menus.settings import SettingsScene
 from game.scenes.physics.exhibits import EXHIBITS, Exhibit
 from game.scenes.physics.scene import PhysicsScene
 from game.scenes.physics.step_scene import PhysicsStepScene
@@ -45,9 +44,10 @@ from game.scenes.play.missions import MissionsScene
 from game.scenes.play.pause import FlightPauseScene, PauseScene
 from game.scenes.play.scene import PlayScene
 from game.scenes.play.tutorial import Tutorial
-from game.scenes.runs import NetworksScene
-from game.scenes.study import StudyScene
-from game.scenes.train import TrainScene
+from game.scenes.train.digits import DigitTrainingScene
+from game.scenes.train.networks import NetworksScene
+from game.scenes.train.scene import TrainScene
+from game.scenes.train.study import StudyScene
 from game.scenes.watch.scene import WatchScene
 from game.ui.context import Context
 from tests.support.driver import Driver
@@ -96,7 +96,6 @@ SCREENS: dict[str, Make] = {
     "DaysScene": lambda context: DaysScene(context, date(2026, 11, 22)),
     "SettingsScene": SettingsScene,
     "BindingsScene": BindingsScene,
-    "AssistsScene": AssistsScene,
     "NetworksScene": NetworksScene,
     "ReplayScene": lambda context: ReplayScene(context, flown(context)),
 }

@@ -88,11 +88,11 @@ class Written:
         def noted_lay(canvas: Canvas, laid: Canvas, x: float, y: float) -> None:
             lay(canvas, laid, x, y)
             page, size = self.page(canvas), (laid.size[0] / laid.scale, laid.size[1] / laid.scale)
-            x, y = x + canvas.moved[0], y + canvas.moved[1]
             for note in self.page(laid).notes:
-                within = pygame.FRect((x, y), size) if note.within == laid.view else note.within.move(x, y)
-                page.notes.append(replace(note, box=note.box.move(x, y), within=within))
-            page.panels += [each.move(x, y) for each in self.page(laid).panels]
+                within = pygame.FRect((0, 0), size) if note.within == laid.view else note.within
+                box, within = (on_whole(canvas, each.move(x, y)) for each in (note.box, within))
+                page.notes.append(replace(note, box=box, within=within))
+            page.panels += [on_whole(canvas, each.move(x, y)) for each in self.page(laid).panels]
 
         for name, method in (("text", noted_text), ("panel", noted_panel), ("sheet", noted_sheet), ("lay", noted_lay)):
             patch(Canvas, name, method)

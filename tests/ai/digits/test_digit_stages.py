@@ -1,11 +1,9 @@
 from pathlib import Path
 
 import numpy as np
-import pytest
 
 from ai.digits.ablation import drawings, stage_accuracy
 from ai.digits.classifier import load_part
-from ai.nn import ModelFormatError
 
 MODELS = Path(__file__).parents[3] / "models" / "digits"
 ALL = {"crop": True, "fit": True, "width": True, "centre": True}
@@ -30,8 +28,3 @@ def test_drawings_are_anywhere_of_any_size_and_with_any_pen():
     assert all(canvas.shape == (160, 160) and canvas.min() >= 0 and 0.9 < canvas.max() <= 1 for canvas in drawn)
     inked = [float(canvas.sum()) / span**2 for canvas, span in zip(drawn, spans, strict=True)]
     assert max(inked) > 2 * min(inked)
-
-
-def test_a_network_that_is_missing_is_told_at_once(tmp_path):
-    with pytest.raises(ModelFormatError):
-        next(stage_accuracy({"modern": tmp_path / "gone"}))

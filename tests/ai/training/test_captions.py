@@ -43,16 +43,13 @@ def test_a_caption_agrees_with_the_number_above_it(subtests: pytest.Subtests):
                             assert now["success"] >= 0.9, at
                         case "success", "crashes" | "hovers" | "leaves" | "none":
                             assert now["success"] == 0, at
-                        case "mean_return", "costs" | "earns":
-                            assert figures["points"] == abs(now["mean_return"]) >= 0.5, at
-                            assert (now["mean_return"] > 0) == (shown[chart] == "earns"), at
                         case "epsilon", "all":
                             assert now["epsilon"] == 1, at
                         case "epsilon", "falls" | "spread" | "steady":
                             assert figures["percent"] == 100 * now["epsilon"], at
-                        case "loss" | "mean_q", "unknown":
+                        case "loss", "unknown":
                             assert now["loss"] != now["loss"], at
-    assert {("success", "steady"), ("success", "rises"), ("success", "falls"), ("mean_return", "costs")} <= said
+    assert {("success", "steady"), ("success", "rises"), ("success", "falls")} <= said
     assert {("epsilon", "falls"), ("success", ""), ("loss", "rises"), ("loss", "falls")} <= said
 
 
@@ -80,9 +77,8 @@ def test_a_healthy_run_crashes_then_lands_more_and_then_nearly_always():
     assert charts["success"].index("crashes") < charts["success"].index("rises")
     assert charts["success"][-1] == "high"
     assert charts["loss"][0] == "unknown"
-    assert charts["mean_q"][:2] == ["unknown", "hopes"], "values begin at 0, and flights cost points"
-    assert "runs_away" not in charts["mean_q"]
-    assert charts["mean_return"][-1] == "earns"
+    assert charts["mean_return"][:2] == ["unknown", "hopes"], "values begin at 0, and flights cost points"
+    assert "runs_away" not in charts["mean_return"]
     assert "falls" in charts["epsilon"]
     assert charts["epsilon"][-1] == "spread"
 
@@ -90,12 +86,12 @@ def test_a_healthy_run_crashes_then_lands_more_and_then_nearly_always():
 def test_a_run_that_breaks_is_said_to_have_landed_more_before():
     charts = seen("modern rates to 1 and back, late")
     assert charts["success"][-1] == "collapsed"
-    assert charts["mean_return"][-1] in ("falls", "costs")
+    assert charts["mean_return"][-1] == "falls"
 
 
 @pytest.mark.parametrize("name", ["classic rates 1", "classic rates 0.3"])
 def test_values_that_run_away_are_named(name: str):
-    assert seen(name)["mean_q"][-1] == "runs_away"
+    assert seen(name)["mean_return"][-1] == "runs_away"
 
 
 @pytest.mark.parametrize("name", ["modern sabotage rate_times_100", "modern rates 1"])
@@ -123,10 +119,8 @@ def test_a_hint_on_the_screen_silences_praise_of_its_charts():
     assert (praised, beside) == ("high", "steady")
 
 
-def test_a_curriculum_and_a_run_without_chance_have_captions_of_their_own():
+def test_a_run_without_chance_has_a_caption_of_its_own():
     run = recorded("modern healthy", until=60_000)
-    history, config = run.history, run.config.changed(spawn="curriculum", epsilon_spread=0.0)
-    stage = captions(RecentCurves(history, config))["stage"]
-    assert (stage.name, dict(stage.values)) == ("grows", {"stage": 0.0, "last": 3.0})
+    history, config = run.history, run.config.changed(epsilon_spread=0.0)
     assert captions(RecentCurves(history, config))["epsilon"].name in ("falls", "steady")
     assert captions(RecentCurves(History(), config)) == {}

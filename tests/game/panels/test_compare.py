@@ -8,7 +8,7 @@ import pytest
 
 from ai.training.history import History
 from game.core import texts
-from game.panels.training_charts import TrainingCharts
+from game.scenes.train.charts import TrainingCharts
 from game.training.beside import EarlierRun, put_beside, rename_beside, take_away
 from game.ui.series import run_style
 from tests.ai.training.test_hints import HEALTHY

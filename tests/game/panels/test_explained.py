@@ -11,8 +11,8 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.panels.q_values import QValues, value_words
 from game.panels.readouts import PILOT
-from game.panels.training_charts import TrainingCharts
 from game.scenes.play.scene import PlayScene
+from game.scenes.train.charts import TrainingCharts
 from game.scenes.watch.scene import WatchScene
 from tests.support.driver import Driver
 
@@ -148,7 +148,8 @@ def test_f1_shows_what_the_network_thinks_in_flight_and_explains_all_in_the_paus
 
 def test_charts_of_training_explain_their_names_and_scales(written: list[str]):
     canvas = Canvas(pygame.Surface((1280, 720)))
-    charts = TrainingCharts()
+    charts = TrainingCharts(more=True)
+    charts.place([pygame.FRect(40, 100 + 150 * row, 360, 112) for row in range(4)])
     charts.draw(canvas)
     told = [area.what for area in canvas.explained]
     assert set(texts.EXPLAIN_CHARTS.values()) <= set(told)

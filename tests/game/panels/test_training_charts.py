@@ -9,7 +9,7 @@ from ai.training.lander_session import live
 from ai.training.messages import RunStarted
 from game.core import texts
 from game.core.worker import WorkerState
-from game.panels.training_charts import TrainingCharts
+from game.scenes.train.charts import TrainingCharts
 from game.training.beside import EarlierRun
 from game.training.library import Library
 from game.training.run import TrainingRun
@@ -32,28 +32,39 @@ def run(config: Config, points: float) -> History:
     return history
 
 
-def test_mean_q_is_drawn_in_points_of_reward_whatever_the_networks_count_in(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_expected_is_drawn_in_points_whatever_networks_count_in(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     drawn: dict[str, list[Series]] = {}
     monkeypatch.setattr(Chart, "set", lambda chart, series, *_: drawn.update({chart.label: series}))
-    training_charts = TrainingCharts()
     modern, classic = (run(PRESETS[name], 80.0) for name in ("modern", "classic"))
     assert modern["mean_q"][0] != classic["mean_q"][0]
+    for history in (modern, classic):
+        training_charts = TrainingCharts()
+        for _ in range(24):
+            training_charts.look(history, [])
+        earned, expected = drawn[texts.TRAIN_CHARTS["mean_return"]]
+        np.testing.assert_allclose(expected.y, 80.0, rtol=1e-6)
+        np.testing.assert_allclose(earned.y, 1.0)
+
+
+def test_what_is_said_of_both_scores_are_the_numbers_of_their_curves(monkeypatch: pytest.MonkeyPatch) -> None:
+    training_charts = TrainingCharts()
     for _ in range(24):
-        training_charts.look(modern, [EarlierRun("classic", classic, 1)])
-    assert len(drawn[texts.TRAIN_CHARTS["mean_q"]]) == 2
-    for series in drawn[texts.TRAIN_CHARTS["mean_q"]]:
-        np.testing.assert_allclose(series.y, 80.0, rtol=1e-6)
+        training_charts.look(run(PRESETS["modern"], -80.0), [])
+    said = training_charts.charts.charts[1].caption
+    assert said == texts.TRAIN_SCORES.format(earned=1, expected=-80).replace("-", "−")
 
 
 def test_a_twin_that_is_paid_otherwise_is_not_compared_by_its_pay(monkeypatch: pytest.MonkeyPatch) -> None:
     drawn: dict[str, int] = {}
     monkeypatch.setattr(Chart, "set", lambda chart, series, *_: drawn.update({chart.label: len(series)}))
-    training_charts = TrainingCharts()
+    training_charts = TrainingCharts(more=True)
     healthy, other = (run(PRESETS["modern"], 80.0) for _ in range(2))
     for _ in range(24):
         training_charts.look(healthy, [EarlierRun("other", other, 1)], paid_otherwise=True)
     compared = {name for name in texts.TRAIN_CHARTS if drawn[texts.TRAIN_CHARTS[name]] == 2}
-    assert compared == {"success", "loss", "epsilon", "stage"}
+    assert compared == {"success", "loss", "epsilon"}
 
 
 @pytest.mark.parametrize("preset", ["modern", "classic"])

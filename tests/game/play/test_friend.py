@@ -9,13 +9,13 @@ import pytest
 from game.core import texts
 from game.flight import sharing
 from game.flight.flight_file import Record
-from game.scenes.digit_training import DigitTrainingScene
 from game.scenes.logbook.replay import ReplayScene
 from game.scenes.logbook.scene import LogbookScene
 from game.scenes.menus.menu import MenuScene
 from game.scenes.play.challenge import ContinuedFlight, FlownMission, Race
 from game.scenes.play.scene import PlayScene
-from game.scenes.runs import NetworksScene
+from game.scenes.train.digits import DigitTrainingScene
+from game.scenes.train.networks import NetworksScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import kept, landed, play, scripted
@@ -209,13 +209,6 @@ def test_a_friends_code_is_sent_on_as_it_came(open_game: Open, record: Record, c
     driver.frames(2)
     driver.press_on(texts.CODE_COPY)
     assert clipboard[-1] == code
-
-
-def test_a_flight_of_the_logbook_is_copied(open_game: Open, record: Record, clipboard: list[str]):
-    driver = open_game(LogbookScene)
-    driver.frames(2)
-    driver.press_on(texts.CODE_COPY)
-    assert sharing.flight_in(clipboard[-1]).recording == record.recording
 
 
 def test_without_a_clipboard_the_code_is_written_to_a_file(

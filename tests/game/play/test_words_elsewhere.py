@@ -12,10 +12,10 @@ from game.core import texts
 from game.core.worker import WorkerState
 from game.digits import percent
 from game.flight import networks
-from game.scenes.digit_training import DigitTrainingScene
 from game.scenes.digits.answer import best_two
 from game.scenes.digits.scene import DigitsScene
-from game.scenes.train import TrainScene
+from game.scenes.train.digits import DigitTrainingScene
+from game.scenes.train.scene import TrainScene
 from game.scenes.watch.scene import COUNTS, WatchScene
 from game.training.run import TrainingRun
 from game.ui.context import Context

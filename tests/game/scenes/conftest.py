@@ -5,7 +5,8 @@ from collections.abc import Callable
 import pytest
 
 from game.core.scene import Scene
-from game.scenes.train import TrainScene
+from game.scenes.train.base import MORE
+from game.scenes.train.scene import TrainScene
 from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.small import LANDERS
@@ -19,11 +20,13 @@ def small_run() -> tuple[type[Scene], object]:
 
 @pytest.fixture
 def beside(open_game: Callable[..., Driver], small_run: tuple[type[Scene], object]) -> Driver:
-    """The screen, with processes of their own for its runs."""
+    """The screen with all its words, and processes of their own for its runs."""
     scene, config = small_run
     driver = open_game(scene)
     driver.frames(2)
+    driver.top.open(MORE)
     driver.top.knobs.set_config(config, 3)
+    driver.frames(1)
     return driver
 
 

@@ -1,4 +1,4 @@
-"""Runs beside the current one in Train: their legend, by keys, gamepad and mouse."""
+"""Runs beside the current one in Train: their names, by keys, gamepad and mouse."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -8,11 +8,10 @@ import pytest
 
 from ai.training.history import History
 from game.core import texts
-from game.panels.run_legend import RunLegend
 from game.scenes.menus.dialogs import NameDialog, QuestionDialog
-from game.scenes.train import TrainScene
+from game.scenes.train.scene import TrainScene
 from game.training.beside import put_beside
-from game.ui.rows import EntryRow
+from game.ui.rows import EntryRow, RunRow
 from tests.ai.training.test_hints import HEALTHY
 from tests.support.driver import Driver
 
@@ -42,13 +41,9 @@ def test_a_run_is_renamed_and_taken_away_without_a_mouse(train: Driver, device: 
     def confirm() -> None:
         press(pygame.K_RETURN, pygame.CONTROLLER_BUTTON_A)
 
-    scene, legend = train.top, train.the(RunLegend)
+    scene, chosen = train.top, "three"
     assert len(scene.training_charts.charts.charts[0].runs) == 5
-    train.form.focus(legend)
-    press(pygame.K_RIGHT, pygame.CONTROLLER_BUTTON_DPAD_RIGHT)
-    train.frames(2)
-    chosen = legend.names[legend.index][0]
-    assert legend.emphasised == legend.names[legend.index][1]
+    train.form.focus(train.widget(chosen))
     confirm()
     assert isinstance(train.top, QuestionDialog)
     confirm()
@@ -59,10 +54,11 @@ def test_a_run_is_renamed_and_taken_away_without_a_mouse(train: Driver, device: 
     assert isinstance(train.top, NameDialog), "another has that name"
     train.the(EntryRow).text = "renamed"
     train.key(pygame.K_RETURN)
+    train.frames(2)
     assert train.top is scene
     assert "renamed" in names(train)
     assert chosen not in names(train)
-    train.frames(30)
+    train.form.focus(train.widget("renamed"))
     confirm()
     press(pygame.K_RIGHT, pygame.CONTROLLER_BUTTON_DPAD_RIGHT)
     confirm()
@@ -74,27 +70,17 @@ def test_a_run_is_renamed_and_taken_away_without_a_mouse(train: Driver, device: 
 
 
 def test_the_mouse_over_a_name_emphasises_its_line_and_a_click_asks(train: Driver) -> None:
-    legend = train.the(RunLegend)
-    train.move((legend.box.left + 40, legend.box.centery))
-    train.frames(30)
-    assert legend.emphasised == legend.names[0][1]
-    colours = [run.series.colour for run in train.top.training_charts.charts.charts[0].runs]
-    train.move((1100, 300))
-    train.frames(30)
-    assert train.the(RunLegend).emphasised is None
-    plain = [run.series.colour for run in train.top.training_charts.charts.charts[0].runs]
-    assert colours[0] == plain[0]
-    assert all(dimmed != colour for dimmed, colour in zip(colours[1:], plain[1:], strict=True))
-    train.click((legend.box.left + 40, legend.box.centery))
+    def colours() -> dict[str, object]:
+        train.frames(30)
+        return {run.series.name: run.series.colour for run in train.top.training_charts.charts.charts[0].runs}
+
+    row = next(each for each in train.form.widgets if isinstance(each, RunRow) and each.label == "two")
+    plain = colours()
+    train.move(row.box.center)
+    lit = colours()
+    assert lit["two"] == plain["two"]
+    assert all(lit[name] != plain[name] for name in ("one", "three", "four", "five"))
+    train.click(row.box.center)
     assert isinstance(train.top, QuestionDialog)
     train.click(train.widget(texts.COMPARE_REMOVE).box.center)
     assert len(names(train)) == 4
-
-
-def test_names_that_do_not_fit_are_on_further_pages(train: Driver) -> None:
-    legend = train.the(RunLegend)
-    train.form.focus(legend)
-    for _ in range(20):
-        legend.names = [(f"a long name of a run {number}", number + 1) for number in range(9)]
-        train.key(pygame.K_RIGHT)
-    assert legend.index <= 8

@@ -23,7 +23,7 @@ from ai.training.history import DigitPoint, Validation
 from game.core import texts
 from game.core.names import LibraryError
 from game.core.worker import WorkerState
-from game.scenes.digit_training import KNOBS, DigitTrainingScene
+from game.scenes.train.digits import KNOBS, DigitTrainingScene
 from game.training.digit_models import DigitModels
 from game.training.knob_descriptions import knob_descriptions
 from game.training.run import TrainingRun
@@ -90,16 +90,16 @@ def test_start_pause_stop_and_go_on(beside: Driver, tmp_path: Path):
     beside.key(pygame.K_RETURN)
     wait(beside, lambda: scene.digit_run.state is WorkerState.PAUSED)
     beside.frames(5)
-    beside.click(scene.stop_button.box.center)
+    beside.click(beside.widget(texts.DIGIT_RUN_STOP).box.center)
     wait(beside, lambda: not scene.digit_run.alive)
     assert scene.digit_run.state is WorkerState.ENDED
     assert not scene.digit_run.problem
     assert 0 < scene.digit_run.test < 1, "what was stopped is measured"
     assert DigitClassifier.load(tmp_path / "user" / "digits" / "runs" / ".training").predict(np.zeros((1, 28, 28))).size
-    wait(beside, lambda: scene.stop_button and scene.stop_button.label == texts.DIGIT_RUN_GO_ON)
+    wait(beside, lambda: texts.DIGIT_RUN_GO_ON in [each.label for each in scene.form.widgets])
     stood = scene.digit_run.history["step"][-1]
     scene.knobs.set_config(DIGIT_PRESETS["modern"], 0)
-    beside.click(scene.stop_button.box.center)
+    beside.click(beside.widget(texts.DIGIT_RUN_GO_ON).box.center)
     wait(beside, lambda: len(scene.digit_run.history) and scene.digit_run.history["step"][-1] > stood)
     assert scene.knobs.config == SMALL, "it goes on with its own settings"
     assert len(scene.digit_run.earlier) == 1
@@ -110,26 +110,26 @@ def test_a_run_is_named_dreams_and_is_quizzed(train: Driver, tmp_path: Path, mon
     notes: list[str] = []
     monkeypatch.setattr(train.top.context, "note", notes.append)
     scene = train.top
-    for word in (scene.save_button, scene.dream_button, scene.quiz_button):
-        train.click(word.box.center)
+    for word in (texts.TRAIN_SAVE, texts.DIGIT_RUN_DREAM, texts.DIGIT_RUN_QUIZ):
+        train.click(train.widget(word).box.center)
     assert notes == [texts.DIGIT_RUN_NOTHING] * 3
     train.key(pygame.K_TAB)
     scene.form.focus(scene.start_button)
     train.key(pygame.K_RETURN)
     wait(train, lambda: len(scene.digit_run.history))
-    train.click(scene.save_button.box.center)
+    train.click(train.widget(texts.TRAIN_SAVE).box.center)
     assert train.top_name == "NameDialog"
     train.key(pygame.K_RETURN)
     assert train.top is scene
     kept = tmp_path / "user" / "digits" / "runs" / texts.DIGIT_RUN_NAME.format(preset="Classic")
     wait(train, lambda: (kept / "config.json").exists() and len(notes) == 4)
     assert kept.name in notes[-1]
-    train.click(scene.stop_button.box.center)
+    train.click(train.widget(texts.DIGIT_RUN_STOP).box.center)
     wait(train, lambda: not scene.digit_run.alive and scene.digit_run.kept)
-    train.click(scene.dream_button.box.center)
+    train.click(train.widget(texts.DIGIT_RUN_DREAM).box.center)
     assert train.top_name == "DreamScene"
     train.key(pygame.K_ESCAPE)
-    train.click(scene.quiz_button.box.center)
+    train.click(train.widget(texts.DIGIT_RUN_QUIZ).box.center)
     assert train.top_name == "QuizScene"
 
 
@@ -281,11 +281,11 @@ def run_with_moments(driver: Driver) -> None:
 @pytest.mark.parametrize("device", ["keys", "pad", "mouse"])
 def test_filters_go_back_to_any_moment_of_the_run(beside: Driver, device: str, monkeypatch):
     scene, words = beside.top, words_written(monkeypatch)
+    views: Any = beside.choice(texts.DIGIT_RUN_VIEWS[1])
     if device == "mouse":
-        views = scene.views
-        beside.click((views.row.lefts[1] + 4, views.box.centery))
+        beside.click(views._places[1].center)
     else:
-        beside.form.focus(scene.views)
+        beside.form.focus(beside.choice(texts.DIGIT_RUN_VIEWS[1]))
         Player(beside, device).press("right")
     beside.frames(2)
     assert texts.DIGIT_RUN_FILTERS_NONE in " ".join(words)
@@ -311,7 +311,8 @@ def test_filters_go_back_to_any_moment_of_the_run(beside: Driver, device: str, m
     assert film.at is None, "at the end it follows the run again"
     scene.digit_run.filters.append(FilterMoment(10.0, 100, np.ones((5, 4, 4), np.float16)))
     assert film.moment.step == 100
-    scene.views.choose(0)
+    beside.choice(texts.DIGIT_RUN_VIEWS[0]).choose(0)
+    beside.frames(2)
     assert scene.matrix in beside.form.widgets
     assert scrubber not in beside.form.widgets
 
@@ -319,7 +320,7 @@ def test_filters_go_back_to_any_moment_of_the_run(beside: Driver, device: str, m
 def test_a_live_run_shows_its_filters_and_the_next_run_its_own(train: Driver):
     train.key(pygame.K_RETURN)
     wait(train, lambda: len(train.top.digit_run.filters) > 1)
-    train.top.views.choose(1)
+    train.choice(texts.DIGIT_RUN_VIEWS[1]).choose(1)
     train.frames(3)
     first = train.top.film.moment
     assert first.images.shape == (8, 28, 28)

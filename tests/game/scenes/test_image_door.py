@@ -7,8 +7,8 @@ import pytest
 
 from game.core import texts
 from game.core.worker import WorkerState
-from game.scenes.digit_training import DigitTrainingScene
 from game.scenes.lesson import LessonScene
+from game.scenes.train.digits import DigitTrainingScene
 from game.ui.hints import HintRow
 from tests.support.driver import Driver
 from tests.support.lessons import digit_lesson_of
@@ -29,7 +29,7 @@ def start(driver: Driver) -> None:
 
 def open_lesson(driver: Driver) -> None:
     start(driver)
-    driver.form.focus(driver.top.why_button)
+    driver.form.focus(driver.widget(texts.LESSON_WHY))
     driver.key(pygame.K_RETURN)
     driver.wait(lambda: isinstance(driver.top, LessonScene))
     driver.frames(3)
@@ -51,7 +51,7 @@ def test_a_word_opens_the_lesson_of_the_first_image_and_the_run_goes_on_afterwar
 
 def test_the_mouse_alone_opens_a_lesson_and_goes_to_another_image(train: Driver) -> None:
     start(train)
-    train.click(train.top.why_button.box.center)
+    train.click(train.widget(texts.LESSON_WHY).box.center)
     train.wait(lambda: isinstance(train.top, LessonScene))
     train.frames(3)
     canvas = train.app.canvas

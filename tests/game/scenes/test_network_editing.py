@@ -8,11 +8,11 @@ from ai.explain.inspection import links
 from ai.training.edits import NetworkEdits, UndoEdit
 from game.core import texts
 from game.core.worker import WorkerState
-from game.panels.network_editing import NetworkEditing
-from game.panels.network_picking import Link, Unit
-from game.scenes.train import TrainScene
+from game.scenes.train.editing import NetworkEditing
+from game.scenes.train.picking import Link, Unit
+from game.scenes.train.scene import TrainScene
+from game.ui.rows import SliderRow as Slider
 from game.ui.virtual_pointer import VirtualPointer
-from game.ui.widgets import Slider
 from tests.support.driver import Driver
 from tests.support.networks import on_a_link
 from tests.support.small import LANDERS as SMALL
@@ -24,7 +24,7 @@ def paused(driver: Driver) -> Driver:
     driver.wait(lambda: len(driver.top.lander_run.history) >= 2)
     driver.key(pygame.K_RETURN)
     driver.wait(lambda: driver.top.lander_run.state is WorkerState.PAUSED)
-    driver.press_on(texts.TRAIN_CLOSER)
+    driver.press_on(texts.TRAIN_LOOK[0])
     driver.top.lander_run.edit(UndoEdit())  # of nothing: the answer is the network as it is now
     driver.frames(3)
     return driver
@@ -161,7 +161,7 @@ def test_it_learns_on_when_it_is_told_to_and_the_swarm_says_how_it_stands(train:
     assert values(train) == edited, "it flies, and does not learn"
     train.key(pygame.K_ESCAPE)
     train.frames(3)
-    assert not scene.inside.large
+    assert not scene.inside.opened
     train.press_on(texts.EDIT_LEARN_ON)
     train.wait(lambda: values(train) != edited)
     assert edits(train) == NetworkEdits(way_back=True)

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pygame
@@ -10,9 +11,9 @@ import pytest
 from ai.training.history import COLUMNS, PARTS, Checkpoint, Point
 from game.core import texts
 from game.core.worker import WorkerState
-from game.panels.run_timeline import RunTimeline
-from game.panels.training_status import lander_status
-from game.scenes.train import TrainScene
+from game.scenes.train.base import CHARTS, INSIDE
+from game.scenes.train.scene import TrainScene
+from game.scenes.train.status import lander_status
 from game.ui.scrubber import Scrubber
 from tests.support.driver import Driver
 
@@ -26,8 +27,13 @@ def train(train: Driver) -> Driver:
     train.wait(lambda: len(train.top.lander_run.history) >= POINTS)
     train.key(pygame.K_RETURN)
     train.wait(lambda: train.top.lander_run.state is WorkerState.PAUSED)
+    train.top.open(CHARTS)
     train.frames(14)
     return train
+
+
+def timeline(driver: Driver) -> Any:
+    return driver.widget(texts.REWIND_TIMELINE)
 
 
 def halfway(driver: Driver, chart: int = 0) -> tuple[float, float]:
@@ -60,7 +66,7 @@ def assert_all_of_it_is_at(driver: Driver, moment: int) -> None:
     assert scene.training_charts.charts.charts[0].marker == pytest.approx(seconds)
 
 
-@pytest.mark.parametrize("chart", [0, 4])
+@pytest.mark.parametrize("chart", [0, 3])
 def test_a_click_on_any_chart_goes_to_that_moment_while_it_learns_on(train: Driver, chart: int) -> None:
     scene = train.top
     train.click(halfway(train, chart))
@@ -115,8 +121,9 @@ def test_left_and_right_step_through_the_run_and_back_leads_to_now(
 ) -> None:
     scene, press = train.top, device(train)
     if large:
-        train.press_on(texts.TRAIN_CLOSER)
-    train.form.focus(train.the(RunTimeline) if large else scrubber(train))
+        train.press_on(texts.TRAIN_LOOK[0])
+        train.frames(1)
+    train.form.focus(timeline(train) if large else scrubber(train))
     moments = []
     for _ in range(4):
         press["left"]()
@@ -128,7 +135,8 @@ def test_left_and_right_step_through_the_run_and_back_leads_to_now(
     assert scene.moment == moments[-2]
     if large:
         press["back"]()
-        assert not scene.inside.large
+        train.frames(1)
+        assert not scene.inside.opened
         assert scene.moment == moments[-2]
     press["back"]()
     train.frames(2)
@@ -147,15 +155,16 @@ def test_the_word_leads_back_to_now_and_goes_away(train: Driver) -> None:
     assert texts.REWIND_NOW not in [widget.label for widget in scene.form.widgets]
 
 
-def test_the_timeline_of_the_large_network_is_dragged(train: Driver) -> None:
+def test_the_timeline_beside_the_network_is_dragged(train: Driver) -> None:
     scene = train.top
-    train.press_on(texts.TRAIN_CLOSER)
-    box = train.the(RunTimeline).box
-    train.click(box.center)
+    train.press_on(texts.TRAIN_LOOK[0])
+    train.frames(1)
+    left, right = timeline(train)._track
+    train.click(((left + right) / 2, timeline(train).box.centery))
     assert scene.rewind.share == pytest.approx(0.5, abs=0.1)
     train.frames(2)
     assert np.array_equal(scene.inside.network.values, scene.rewind.network_state.values)
-    train.click((box.right - 2, box.centery))
+    train.click((right, timeline(train).box.centery))
     assert scene.moment is None
 
 
@@ -229,15 +238,15 @@ def test_a_short_history_of_which_little_is_known_or_fits_is_rewound(
     assert driver.top.moment == 300
     assert not driver.top.rewind.swarm_kept
     assert driver.top.inside.network is None or driver.top.inside.shown is None
-    driver.press_on(texts.TRAIN_CLOSER)
+    driver.top.open(INSIDE)
     driver.frames(3)
-    driver.form.focus(driver.the(RunTimeline))
-    driver.keys(pygame.K_LEFT, pygame.K_RIGHT, pygame.K_RETURN)
+    driver.form.focus(timeline(driver))
+    driver.keys(pygame.K_LEFT, pygame.K_RIGHT, pygame.K_RIGHT)
     assert driver.top.moment is None
     assert isinstance(driver.top, TrainScene)
 
 
-def test_the_charts_are_zoomed_by_wheel_keys_and_word(train: Driver) -> None:
+def test_the_charts_are_zoomed_by_wheel_and_keys(train: Driver) -> None:
     scene = train.top
     zoom = scene.training_charts.charts.zoom
     train.move(halfway(train))
@@ -253,8 +262,3 @@ def test_the_charts_are_zoomed_by_wheel_keys_and_word(train: Driver) -> None:
     assert zoom.factor > 1
     train.key(pygame.K_MINUS)
     assert zoom.factor == 1
-    train.form.focus(train.widget(texts.COMPARE_ZOOM))
-    train.button(pygame.CONTROLLER_BUTTON_A)
-    train.frames(2)
-    assert zoom.factor == 2
-    assert train.widget(texts.COMPARE_ZOOMED.format(factor=2))

@@ -14,7 +14,7 @@ from ai.training.config import Config
 from game.core import texts
 from game.core.scene import Pop, Push
 from game.scenes.menus.menu import MenuScene
-from game.scenes.runs import NetworksScene
+from game.scenes.train.networks import NetworksScene
 from game.training.library import Library
 from game.ui.context import Context
 from game.ui.entry import Entry
@@ -289,7 +289,7 @@ def test_a_new_name_is_still_the_one_that_flies(open_runs, three: Library, conte
 def test_go_on_training_opens_a_training_of_that_folder(open_runs, three: Library, monkeypatch: pytest.MonkeyPatch):
     asked: list[Path] = []
     stand_in = SimpleNamespace(TrainScene=lambda context, resume: (asked.append(resume), MenuScene(context))[1])
-    monkeypatch.setitem(sys.modules, "game.scenes.train", stand_in)
+    monkeypatch.setitem(sys.modules, "game.scenes.train.scene", stand_in)
     driver = open_runs()
     click(driver, texts.RUN_TRAIN)
     assert asked == [three.folder / "a"]

@@ -11,8 +11,8 @@ import pytest
 from ai.sweep.study import Study
 from game.core import texts
 from game.flight import networks
-from game.scenes.runs import NetworksScene
-from game.scenes.study import StudyScene
+from game.scenes.train.networks import NetworksScene
+from game.scenes.train.study import StudyScene
 from tests.support.screens import study as made
 from tests.support.studies import shown_study
 

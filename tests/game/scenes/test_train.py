@@ -24,11 +24,10 @@ from game.core import texts
 from game.core.scene import Push
 from game.core.worker import WorkerState
 from game.flight.demonstrations import FILE_NAME
-from game.panels.network_panel import SHOWN
 from game.panels.network_view import NetworkView
 from game.scenes.menus.dialogs import QuestionDialog
-from game.scenes.train import TrainScene
-from game.training.knob_descriptions import knob_descriptions
+from game.scenes.train.inside import SHOWN
+from game.scenes.train.scene import TrainScene
 from game.training.library import Library, SavedRun
 from game.training.run import TrainingRun
 from game.ui import focus
@@ -40,10 +39,6 @@ from tests.support.driver import Driver
 from tests.support.small import LANDERS as SMALL
 
 KNOB_PAGE = texts.KNOB_PAGES["learning"]  # one of the pages of knobs
-
-
-def all_knobs() -> str:
-    return texts.KNOBS_ALL.format(count=len(knob_descriptions()))
 
 
 def start(driver: Driver) -> None:
@@ -241,34 +236,25 @@ def test_flying_against_a_checkpoint_and_back(train: Driver) -> None:
     train.wait(lambda: scene.lander_run.state is WorkerState.RUNNING)
 
 
-def test_the_network_is_shown_large_by_mouse_and_keys(train: Driver) -> None:
+def test_the_network_is_looked_into_and_left(train: Driver) -> None:
     start(train)
     scene = train.top
     train.wait(lambda: scene.lander_run.network_state is not None)
-    train.click((1060, 530))
-    assert scene.inside.large
-    assert heading(train) == texts.TRAIN_INSIDE[1]  # for that is what the panel shows now
-    train.click((150, 102))
-    assert train.choice(texts.NETWORK_VIEW_SHOWS[1]).index == SHOWN.index("activations")
+    train.click(train.widget(texts.TRAIN_LOOK[0]).box.center)
+    train.frames(2)
+    assert scene.inside.opened
+    train.choice(texts.NETWORK_VIEW_SHOWS[1]).choose(1)
+    assert scene.inside.view.show == SHOWN[1]
     train.frames(3)
     train.key(pygame.K_ESCAPE)
     assert train.top is scene
-    assert not scene.inside.large
-    assert heading(train) == texts.TRAIN_INSIDE[0]
-    train.press_on(texts.TRAIN_CLOSER)
-    assert scene.inside.large
-    train.key(pygame.K_RETURN)
-    assert not scene.inside.large
-    assert scene.form.focused is train.widget(texts.TRAIN_CLOSER)
-    train.key(pygame.K_RETURN)
-    train.click((900, 441))  # the heading of the small network
-    assert not scene.inside.large
-    assert heading(train) == texts.TRAIN_INSIDE[0]
-
-
-def heading(driver: Driver) -> str:
-    choice = driver.choice(texts.TRAIN_INSIDE[0])
-    return choice.options[choice.index]
+    assert not scene.inside.opened
+    train.frames(1)
+    train.press_on(texts.TRAIN_LOOK[0])
+    train.frames(1)
+    assert scene.form.focused is not None
+    train.press_on(texts.TRAIN_LOOK[1])
+    assert not scene.inside.opened
 
 
 PAD = {
@@ -292,9 +278,11 @@ KEYS = {
 def test_every_widget_can_be_reached_by_directions_alone(train: Driver) -> None:
     scene = train.top
     form = scene.form
-    train.press_on(all_knobs())
+    train.press_on(texts.TRAIN_MORE_KNOBS[0])
+    train.frames(1)
     for page, word in enumerate(train.choice(KNOB_PAGE).options):
         train.choice(KNOB_PAGE).choose(page)
+        train.frames(1)
         boxes = [widget.box for widget in form.widgets]
         reached, frontier = {0}, [0]
         while frontier:
@@ -302,7 +290,7 @@ def test_every_widget_can_be_reached_by_directions_alone(train: Driver) -> None:
             # Left and right turn some, and lead nowhere; a choice leads on at its ends.
             turns = type(form.widgets[index]).shift not in (Widget.shift, Choice.shift)
             ways = (focus.UP, focus.DOWN) if turns else (focus.UP, focus.DOWN, focus.LEFT, focus.RIGHT)
-            fresh = {focus.neighbour(boxes, index, way) for way in ways} - reached
+            fresh = {focus.neighbour(boxes, index, way, in_order=True) for way in ways} - reached
             reached |= fresh
             frontier += fresh
         missed = [widget.label or type(widget).__name__ for n, widget in enumerate(form.widgets) if n not in reached]
@@ -319,8 +307,8 @@ def test_a_run_is_started_named_and_left_without_a_mouse(train: Driver, device: 
     train.wait(lambda: len(scene.lander_run.history) >= 2)
     press("confirm")
     train.wait(lambda: scene.lander_run.state is WorkerState.PAUSED)
-    press("right")
-    assert scene.form.focused is train.widget(texts.TRAIN_STEP)
+    press("up")
+    assert scene.form.focused is not train.widget(texts.TRAIN_RESUME)
     scene.form.focus(train.widget(texts.TRAIN_SAVE))
     press("confirm")
     assert train.top_name == "NameDialog"

@@ -11,13 +11,14 @@ import pytest
 
 from ai.files import read_json
 from ai.training.config import Config, in_force
+from ai.training.experiments import experiment_of
 from ai.training.history import History
 from ai.training.loop import Training
 from game.core import texts
 from game.core.worker import WorkerState
-from game.panels.knob import Knob
-from game.panels.knob_page import MORE, TryButton
-from game.scenes.train import TrainScene
+from game.scenes.train.base import KNOBS
+from game.scenes.train.knob import Knob
+from game.scenes.train.scene import TrainScene
 from game.training.knob_descriptions import knob_descriptions
 from game.training.library import Library
 from game.training.run import AHEAD
@@ -25,17 +26,21 @@ from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.small import LANDERS as SMALL
 
-ALL = texts.KNOBS_ALL.format(count=len(knob_descriptions()))
-FEW = texts.KNOBS_FEW.format(count=3)
 TIMES = texts.LAB_TIMES.format(factor=100.0)
 
 
 def knobs(driver: Driver) -> list[str]:
+    driver.frames(1)
     return [each.description.name for each in driver.form.widgets if isinstance(each, Knob)]
 
 
-def split(driver: Driver) -> None:
+def press_try(driver: Driver) -> None:
+    driver.press_on(texts.TRAIN_EXPERIMENTS)
     driver.press_on(TIMES)
+
+
+def split(driver: Driver) -> None:
+    press_try(driver)
     driver.wait(lambda: driver.top.lander_run.twin and len(driver.top.lander_run.twin.history) >= 2)
 
 
@@ -59,40 +64,14 @@ def test_three_knobs_come_first_and_all_on_demand_which_is_remembered(
     train: Driver, open_game: Callable[..., Driver]
 ) -> None:
     assert knobs(train) == ["learning_rate", "epsilon_end", "discount"]
-    train.press_on(ALL)
+    train.press_on(texts.TRAIN_MORE_KNOBS[0])
     assert len(knobs(train)) == 10
     assert train.choice(texts.KNOB_PAGES["reward"])
-    train.frames(2)
-    assert train.saved()["all_knobs"] is True
+    assert KNOBS in train.saved()["opened"]
     again = open_game(TrainScene)
-    again.frames(2)
     assert len(knobs(again)) == 10
-    again.press_on(FEW)
+    again.press_on(texts.TRAIN_MORE_KNOBS[1])
     assert len(knobs(again)) == 3
-
-
-@pytest.mark.parametrize("device", ["keys", "pad", "mouse"])
-def test_a_knob_has_a_page_with_experiments(train: Driver, device: str) -> None:
-    train.press_on(ALL)
-    train.choice(texts.KNOB_PAGES["reward"]).choose(texts_page("memory"))
-    knob = next(each for each in train.form.widgets if isinstance(each, Knob) and each.label == texts.KNOBS["mirror"])
-    train.form.focus(knob)
-    if device == "keys":
-        train.key(pygame.K_c)
-    elif device == "pad":
-        train.button(pygame.CONTROLLER_BUTTON_BACK)
-    else:
-        [sign] = [each for each in train.form.widgets if isinstance(each, TryButton) and each.knob is knob]
-        assert sign.label == MORE
-        train.click(sign.box.center)
-    assert knobs(train) == ["mirror"]
-    assert [each.label for each in train.form.widgets if isinstance(each, TryButton)] == [texts.KNOB_SWITCH[False]]
-    train.press_on(texts.BACK)
-    assert train.form.focused.label == texts.KNOBS["mirror"]
-
-
-def texts_page(page: str) -> int:
-    return list(dict.fromkeys(each.page for each in knob_descriptions())).index(page)
 
 
 def test_every_numeric_knob_says_what_too_little_and_too_much_does_and_what_to_watch() -> None:
@@ -181,6 +160,8 @@ def test_pause_and_step_are_for_both(train: Driver) -> None:
     train.frames(3)
     assert run.twin.state is run.state is WorkerState.PAUSED
     before = run.turns
+    train.press_on(texts.LAB_KNOBS)
+    train.frames(1)
     train.press_on(texts.TRAIN_STEP)
     train.frames(3)
     assert run.turns == (before[0] + 1, before[1] + 1)
@@ -203,6 +184,8 @@ def test_two_lines_in_every_chart_by_decisions(train: Driver) -> None:
     charts = train.top.training_charts
     for chart in charts.charts.charts:
         assert len(chart.runs) == 2
+    train.press_on(texts.LAB_KNOBS)
+    train.frames(1)
     assert train.choice(texts.TRAIN_AXES[1]).index == 1
 
 
@@ -210,7 +193,7 @@ def test_the_player_is_asked_before_a_run_ends_for_an_experiment(train: Driver) 
     scene = train.top
     train.press_on(texts.TRAIN_START)
     train.wait(lambda: len(scene.lander_run.history) >= 2)
-    train.press_on(TIMES)
+    press_try(train)
     assert train.top_name == "QuestionDialog"
     train.key(pygame.K_ESCAPE)
     assert not scene.lander_run.twin
@@ -239,49 +222,50 @@ def test_the_lab_asks_for_a_guess_and_says_what_came(train: Driver, device: str)
         train.key(pygame.K_RETURN) if device == "keys" else train.button(pygame.CONTROLLER_BUTTON_A)
 
     scene, laboratory = train.top, train.top.laboratory
-    press(texts.SABOTAGE)
-    press(texts.SABOTAGES["plain_steps"][0])
-    assert scene.knobs.view == "guess"
+    press(texts.TRAIN_EXPERIMENTS)
+    train.frames(2)
+    press(texts.SABOTAGES["no_replay"][0])
+    assert scene.pages.page == "guess"
     assert not scene.lander_run.twin
+    train.frames(2)
     press(texts.LAB_GUESSES["never"])
-    assert scene.knobs.view == "result"
+    assert scene.pages.page == "result"
     assert laboratory.chosen.guess == "never"
-    assert scene.lander_run.twin.config == SMALL.changed(optimizer="sgd")
+    assert scene.lander_run.twin.config == experiment_of(SMALL, "no_replay").applied(SMALL)
     train.wait(lambda: len(scene.lander_run.twin.history) >= 2 and len(scene.lander_run.history) >= 2)
     train.frames(25)  # they are judged now and then
     assert laboratory.came is None
     assert laboratory.so_far != texts.TRAIN_BEGINS
     press(texts.LAB_KNOBS)
-    assert scene.knobs.view == "few"
-    press(texts.LAB_RESULT)
+    assert knobs(train)
+    press(texts.TRAIN_EXPERIMENTS)
+    train.frames(2)
     press(texts.LAB_KEEP_RUN)
     assert not scene.lander_run.twin
-    assert scene.knobs.view == "few"
+    assert knobs(train)
 
 
 def test_the_guess_can_be_skipped_or_the_sabotage_flown_alone(train: Driver) -> None:
     scene = train.top
-    train.press_on(texts.SABOTAGE)
-    train.press_on(texts.SABOTAGES["no_n_step"][0])
-    train.press_on(texts.LAB_ALONE)
-    assert not scene.lander_run.twin
-    assert scene.knobs.config.n_step == 1
-    train.press_on(texts.SABOTAGE)
-    train.press_on(texts.SABOTAGES["short_sight"][0])
-    train.press_on(texts.LAB_SKIP)
+    for sabotage, answer in (("no_normalisation", texts.LAB_ALONE), ("short_sight", texts.LAB_SKIP)):
+        train.press_on(texts.TRAIN_EXPERIMENTS)
+        train.press_on(texts.SABOTAGES[sabotage][0])
+        train.press_on(answer)
+        train.frames(1)
+    assert scene.knobs.config.layer_normalisation is False, "flown alone, it is the run's own setting"
     assert scene.lander_run.twin.config.discount == 0.8
     assert scene.laboratory.chosen.guess is None
 
 
 def test_captions_follow_the_run(train: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(inline_worker, "TURNS", 1)  # so that no flight ends before the captions are read
+    train.press_on(texts.TRAIN_MORE_CHARTS[0])
     train.press_on(texts.TRAIN_START)
     scene = train.top
     painted = {chart.label: chart for chart in scene.training_charts.charts.charts}
-    success, epsilon, stage = (painted[texts.TRAIN_CHARTS[name]] for name in ("success", "epsilon", "stage"))
-    train.wait(lambda: success.painted_caption and epsilon.painted_caption and stage.painted_caption)
+    success, epsilon = (painted[texts.TRAIN_CHARTS[name]] for name in ("success", "epsilon"))
+    train.wait(lambda: success.painted_caption and epsilon.painted_caption)
     assert success.painted_caption == texts.CHART_CAPTIONS["success"]["unknown"]
-    assert stage.painted_caption == texts.CHART_CAPTIONS["stage"]["grows"].format(stage=0, last=1)
     for _ in range(40):  # in each frame, the number that is written is the caption's
         train.frames(1)
         words = texts.CHART_CAPTIONS["epsilon"]

@@ -1,15 +1,109 @@
-"""Of both scenes that train: one that cannot be built leaves nothing behind."""
+"""Of both scenes that train: what is seen first, in windows of any shape, and what a failure leaves behind."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import pygame
 import pytest
 
+from game.core import texts
 from game.core.scene import Scene
-from game.scenes import digit_training, split_scene, train
+from game.scenes.train import digits, scene
+from game.scenes.train.base import CHARTS, INSIDE, KNOBS, MORE
+from game.scenes.train.digits import DigitTrainingScene
+from game.scenes.train.knob import Knob
+from game.scenes.train.scene import TrainScene
 from game.training.digit_models import DigitModels, runs_dir
 from game.training.library import Library
 from game.ui.context import Context
+from game.ui.widgets import TextButton
+from tests.support.driver import Driver
+from tests.support.written import Written
+
+WINDOWS = (((1280, 720), "normal"), ((1280, 720), "largest"), ((800, 600), "normal"), ((720, 1280), "normal"))
+MOST_WORDS, MOST_CHOICES = 60, 7
+SCENES = (TrainScene, DigitTrainingScene)
+
+
+def written_in(driver: Driver, monkeypatch: pytest.MonkeyPatch) -> tuple[list[str], list[str]]:
+    """What is written in a frame, and which texts lie on one another."""
+    with monkeypatch.context() as patch:
+        notes = Written(patch.setattr)
+        for chart in (each for each in getattr(driver.top, "training_charts", driver.top).charts.charts):
+            chart.renew()
+        driver.frames(1)
+        found = notes.page(driver.top.laid_on(driver.app.canvas)).notes
+    return [note.text for note in found], [
+        f"{one.text!r} on {other.text!r}"
+        for number, one in enumerate(found)
+        for other in found[number + 1 :]
+        if one.box.inflate(-2, -2).colliderect(other.box.inflate(-2, -2)) and one.box != other.box
+    ]
+
+
+def words_in(driver: Driver, monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The words of a frame, without figures."""
+    return [word for word in " ".join(written_in(driver, monkeypatch)[0]).split() if any(map(str.isalpha, word))]
+
+
+@pytest.mark.parametrize("first", SCENES)
+def test_few_words_and_choices_come_first(
+    open_game: Callable[..., Driver], monkeypatch: pytest.MonkeyPatch, first: type[Scene]
+) -> None:
+    driver = open_game(first)
+    driver.frames(2)
+    choices = [each for each in driver.form.widgets if isinstance(each, Knob | TextButton)]
+    assert len([each for each in choices if isinstance(each, Knob)]) == 3
+    assert len(choices) <= MOST_CHOICES, [each.label for each in choices]
+    assert len(words_in(driver, monkeypatch)) <= MOST_WORDS, words_in(driver, monkeypatch)
+
+
+def test_few_words_beside_a_run_that_lands(train: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
+    train.top.open(MORE)
+    train.press_on(texts.TRAIN_START)
+    train.wait(lambda: train.top.lander_run.measured and len(train.top.lander_run.history) >= 8)
+    train.press_on(texts.TRAIN_PAUSE)
+    train.frames(14)
+    assert len(words_in(train, monkeypatch)) <= MOST_WORDS, words_in(train, monkeypatch)
+
+
+def test_what_was_opened_stays_open(open_game: Callable[..., Driver]) -> None:
+    driver = open_game(TrainScene)
+    for name, words in ((MORE, texts.TRAIN_MORE), (CHARTS, texts.TRAIN_MORE_CHARTS), (INSIDE, texts.TRAIN_LOOK)):
+        driver.press_on(words[0])
+        driver.frames(1)
+        assert name in driver.saved()["opened"].split()
+    again = open_game(TrainScene)
+    again.frames(1)
+    assert again.top.inside.opened
+    again.key(pygame.K_ESCAPE)
+    again.frames(1)
+    assert len(again.top.training_charts.charts.charts) == 4
+    assert again.widget(texts.TRAIN_EXPERIMENTS)
+
+
+def test_no_text_lies_on_another_in_any_window(
+    train: Driver, monkeypatch: pytest.MonkeyPatch, subtests: pytest.Subtests
+) -> None:
+    """Whatever is open, while a run goes on and a question waits; labels of landers are beside what they name."""
+    driver, settings = train, train.app.context.settings
+    driver.press_on(texts.TRAIN_START)
+    driver.wait(lambda: len(driver.top.lander_run.history) >= 6)
+    driver.press_on(texts.TRAIN_PAUSE)
+    driver.top.knobs.turn("n_step", 3)
+    names = [repr(word) for word in (texts.SWARM_BEST, texts.SWARM_LUCKIEST)]
+    for size, text_size in WINDOWS:
+        settings.text_size = text_size
+        driver.resize(size)
+        for opened in ("", f"{CHARTS} {KNOBS} {MORE}", INSIDE):
+            with subtests.test(size=size, text_size=text_size, opened=opened):
+                settings.opened = ""
+                for name in opened.split():
+                    driver.top.open(name)
+                driver.frames(14)
+                lying = written_in(driver, monkeypatch)[1]
+                assert not [pair for pair in lying if not any(name in pair for name in names)]
 
 
 def places(folder: Path) -> tuple[Path, Path]:
@@ -18,26 +112,20 @@ def places(folder: Path) -> tuple[Path, Path]:
     for each in collections:
         each.hold()
         each.release()
-    landers, digits = collections
-    return landers.unsaved, digits.unsaved
+    landers, read = collections
+    return landers.unsaved, read.unsaved
 
 
-@pytest.mark.parametrize(
-    ("module", "panel", "scene"),
-    [
-        (split_scene, "LabKnobsPanel", train.TrainScene),
-        (digit_training, "KnobsPanel", digit_training.DigitTrainingScene),
-    ],
-)
+@pytest.mark.parametrize(("module", "first"), list(zip((scene, digits), SCENES, strict=True)))
 def test_one_that_cannot_be_built_lets_go_of_the_place_of_its_runs(
-    context: Context, monkeypatch: pytest.MonkeyPatch, module: Any, panel: str, scene: type[Scene]
+    context: Context, monkeypatch: pytest.MonkeyPatch, module: Any, first: type[Scene]
 ) -> None:
     def fail(*_: Any, **__: Any) -> None:
         raise ValueError("no knobs")
 
     before = places(context.user_dir)
-    monkeypatch.setattr(module, panel, fail)
+    monkeypatch.setattr(module, "KnobsPanel", fail)
     with pytest.raises(ValueError, match="no knobs") as kept:  # and with it, the scene
-        scene(context)
+        first(context)
     assert places(context.user_dir) == before
     del kept

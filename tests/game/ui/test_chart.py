@@ -12,7 +12,7 @@ from game.core import texts
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.panels.reward_bar import PART_COLOURS, RewardBar, signed
-from game.panels.training_charts import ticks_of
+from game.scenes.train.charts import ticks_of
 from game.ui import plotting
 from game.ui.chart import RUN_STYLES, Chart, Series, Tick
 from game.ui.charts import Charts

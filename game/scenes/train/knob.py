@@ -14,23 +14,61 @@ import numpy as np
 import pygame
 
 from game.core import texts
+from game.core.scene import Transition
+from game.drawing import typeface
 from game.drawing.canvas import Canvas
+from game.drawing.cursor import Cursor
 from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, MUTE, NET, PANEL, SMALL, Colour
 from game.input.controls import Command, translate
 from game.training.knob_descriptions import KnobDescription, figure
-from game.ui.widget import PointsManager, Widget, mix
+from game.ui.entry import Entry, draw_line
+from game.ui.rows import RowWidget
+from game.ui.text_line import digits
+from game.ui.widget import PointsManager, mix
 from game.ui.widgets import draw_switch
 from game.ui.words import TextButtonRow
 
-MARGIN: Final = 16  # left of the label, for the dot
-_TRACK: Final = (142.0, 62.0)  # from the label to the track, from the track to the right end
+_TRACK: Final = (150.0, 62.0)  # from the label to the track, from the track to the right end
+_HEIGHT: Final = 20.0
 _GAP: Final = 14.0  # between words
 _DIM: Final = mix(FAINT, MUTE, 0.45)  # of a knob that has no effect
 _NOTE: Final = LABEL - 1.5  # size of text over a track
 _CLEAR: Final = 9.0  # from the middle of the handle to that text
+_LONGEST_SEED: Final = 9  # digits
+_NOWHERE: Final = (0, 0, 1, 1)
 
 
-class Knob(Widget):
+class _Row(RowWidget):
+    """Row with a label, painted into its own box."""
+
+    pad = 4.0
+    idle = ""
+    changed = False
+
+    @property
+    def track(self) -> tuple[float, float]:
+        """Left and right end of the track, in points."""
+        return self.box.left + min(_TRACK[0], 0.5 * self.box.width), self.box.right - _TRACK[1]
+
+    def write(self, cursor: Cursor) -> None:
+        """Draw the dot of a change, the label and the rest."""
+        cursor.take(_HEIGHT)
+        if (canvas := cursor.canvas) is None:
+            return
+        box = self.box
+        if self.changed:
+            canvas.dot((box.left - 11, box.centery), 2.5, HUMAN)
+        colour = mix(_DIM if self.idle else mix(MUTE, INK, 0.7), INK, self.warmth)
+        room = self.track[0] - box.left - 10
+        canvas.text(self.label, (box.left, box.centery + 4.5), size=SMALL, colour=colour, room=room)
+        canvas.cover(canvas.rect(*box))
+        self.put(canvas)
+
+    def put(self, canvas: Canvas) -> None:
+        """Draw the control and the figure."""
+
+
+class Knob(_Row):
     """Base of all knobs. The panel owns the value: `turn`, given the knob's name, asks for another; `display` shows it.
 
     `enter` is called by Enter, or a gamepad's A, on a slider, which has nothing to press.
@@ -41,32 +79,29 @@ class Knob(Widget):
         waits: whether the value is yet to be applied.
         now: the value in force at this moment of a run, where it differs; else None.
         idle: why the knob has no effect; empty if it has one.
-        more: shows all that there is to say about it, and its experiments; None where there is no more.
 
     """
 
     def __init__(
         self,
         manager: PointsManager,
-        box: pygame.typing.RectLike,
         description: KnobDescription,
         turn: Callable[[str, Any], None],
         enter: Callable[[], None] = lambda: None,
     ) -> None:
-        super().__init__(manager, box, description.label)
+        super().__init__(manager, _NOWHERE, description.label)
         self.description, self.help = description, description.help
         self.value: Any = None
         self.home: Any = None
         self.waits = False
         self.now: float | None = None
-        self.idle = ""
         self._turn, self._enter = turn, enter
-        self.more: Callable[[], None] | None = None
         self._named = False  # the mouse was pressed on the name
 
     def display(self, value: Any, home: Any, *, waits: bool, now: float | None = None, idle: str = "") -> None:
         """Show what the panel says."""
         self.value, self.home, self.waits, self.idle = value, home, waits, idle
+        self.changed = bool(value != home)
         rounded = None if now is None else float(f"{now:.3g}")
         self.now = None if rounded is None or figure(rounded) == figure(value) else rounded
         self.help = idle or self.description.help
@@ -75,16 +110,6 @@ class Knob(Widget):
     def live(self) -> bool:
         """Whether the knob may change while a run goes on."""
         return self.description.live
-
-    @property
-    def changed(self) -> bool:
-        """Whether the value is not the preset's."""
-        return bool(self.value != self.home)
-
-    @property
-    def track(self) -> tuple[float, float]:
-        """Left and right end of the track, in points."""
-        return self.box.left + MARGIN + _TRACK[0], self.box.right - _TRACK[1]
 
     @property
     def colour(self) -> Colour:
@@ -97,10 +122,7 @@ class Knob(Widget):
             self._turn(self.description.name, value)
 
     def take(self, event: pygame.event.Event) -> bool:
-        """Restore the preset's value on the key for it, or show more."""
-        if self.more is not None and translate(event) is Command.CHOICES:
-            self.more()
-            return True
+        """Restore the preset's value on the key for it."""
         if self.changed and translate(event) is Command.RETRY:
             self.turn(self.home)
             return True
@@ -119,21 +141,11 @@ class Knob(Widget):
             return True
         return super().process_event(event)
 
-    def paint(self, canvas: Canvas) -> None:
-        """Draw the ring of the focus, the dot of a change and the label."""
-        draw_row(canvas, self, changed=self.changed, dim=bool(self.idle))
-
-    def write(self, canvas: Canvas, written: str) -> None:
+    def written(self, canvas: Canvas, words: str, colour: Colour | None = None) -> None:
         """Write a figure at the right end."""
-        canvas.text(
-            written,
-            (self.box.right, self.box.centery + 4.5),
-            size=SMALL,
-            colour=self.colour,
-            align="right",
-            tabular=True,
-            room=_TRACK[1] - 8,
-        )
+        place = (self.box.right, self.box.centery + 4.5)
+        canvas.text(words, place, size=SMALL, colour=colour or self.colour, align="right", tabular=True,
+                    room=_TRACK[1] - 8)  # fmt: skip
 
 
 class SliderKnob(Knob):
@@ -166,9 +178,8 @@ class SliderKnob(Knob):
         places, fraction = self._places(), (x - left) / (right - left)
         self.turn(places[min(places, key=lambda place: abs(place - fraction))])
 
-    def paint(self, canvas: Canvas) -> None:
+    def put(self, canvas: Canvas) -> None:
         """Draw track, tick, handle and figure."""
-        super().paint(canvas)
         left, right = self.track
         middle, width = self.box.centery, right - left
         fraction, home = self._at(self.value), left + self._at(self.home) * width
@@ -180,19 +191,14 @@ class SliderKnob(Knob):
         if not whole:
             canvas.dot(handle, radius - 1.6, PANEL)
         if self.now is not None:
-            self._paint_now(canvas, self.now, handle[0])
+            x = left + self._at(self.now) * width
+            canvas.line((x, middle - 1), (x, middle + 6), INK, 2)
+            self._put_beside(canvas, texts.KNOB_NOW.format(value=figure(self.now)), x, handle[0])
         elif self.idle:
-            self._paint_beside(canvas, texts.KNOB_IDLE, middle - 4, handle[0], handle[0])
-        self.write(canvas, figure(self.value))
+            self._put_beside(canvas, texts.KNOB_IDLE, handle[0], handle[0])
+        self.written(canvas, figure(self.value))
 
-    def _paint_now(self, canvas: Canvas, now: float, handle: float) -> None:
-        """Mark the value in force on the track, and write it above."""
-        left, right = self.track
-        x, middle = left + self._at(now) * (right - left), self.box.centery
-        canvas.line((x, middle - 1), (x, middle + 6), INK, 2)
-        self._paint_beside(canvas, texts.KNOB_NOW.format(value=figure(now)), middle - 4, x, handle)
-
-    def _paint_beside(self, canvas: Canvas, words: str, baseline: float, x: float, handle: float) -> None:
+    def _put_beside(self, canvas: Canvas, words: str, x: float, handle: float) -> None:
         """Write text over the track, around x as far as there is room, clear of the handle."""
         left, right = self.track
         width = canvas.text_width(words, size=_NOTE)
@@ -200,7 +206,9 @@ class SliderKnob(Knob):
         if start - _CLEAR < handle < start + width + _CLEAR:
             before, after = handle - _CLEAR - width, handle + _CLEAR
             start = before if before >= left and (x <= handle or after + width > right) else after
-        canvas.text(words, (start, baseline), size=_NOTE, colour=mix(MUTE, INK, self.warmth))
+        if start < left or start + width > right:
+            return  # a short track, as in a narrow window
+        canvas.text(words, (start, self.box.centery - 4), size=_NOTE, colour=mix(MUTE, INK, self.warmth))
 
 
 class SwitchKnob(Knob):
@@ -221,37 +229,30 @@ class SwitchKnob(Knob):
         """Let the switch slide."""
         super().ease(at_once)
         target = float(self.value)
-        at_once = at_once or self._slid is None
-        self._slid = target if at_once else (self._slid or 0.0) + 0.3 * (target - (self._slid or 0.0))
+        self._slid = target if at_once or self._slid is None else self._slid + 0.3 * (target - self._slid)
 
-    def paint(self, canvas: Canvas) -> None:
+    def put(self, canvas: Canvas) -> None:
         """Draw the switch and its state."""
-        super().paint(canvas)
         left, middle = self.track[0], self.box.centery
         slid = float(self.value) if self._slid is None else self._slid
         draw_switch(canvas, (left, middle - 7, 26, 14), slid, self.colour)
         if not self.live:
             canvas.dot((left + 7 + 12 * slid, middle), 2.6, mix(FAINT, self.colour, slid))
-        state = texts.KNOB_SWITCH[bool(self.value)]
-        canvas.text(
-            state, (self.box.right, middle + 4.5), size=SMALL, align="right", colour=self.colour if self.value else MUTE
-        )
+        self.written(canvas, texts.KNOB_SWITCH[bool(self.value)], self.colour if self.value else MUTE)
 
 
 class WordsKnob(Knob):
     """A choice among a few words."""
 
-    values: tuple[Any, ...] = ()
-    row: TextButtonRow
+    @property
+    def values(self) -> tuple[Any, ...]:
+        """The values to choose from; one that has no word of its own gets one made for it."""
+        return tuple(dict.fromkeys((*self.description.stops, self.home, self.value)))
 
-    def display(self, value: Any, home: Any, *, waits: bool, now: float | None = None, idle: str = "") -> None:
-        """Show what the panel says; a value without a word gets one made for it."""
-        super().display(value, home, waits=waits, now=now, idle=idle)
-        own = [extra for extra in (home, value) if extra not in self.description.stops]
-        values = (*self.description.stops, *dict.fromkeys(own))
-        if values != self.values:
-            self.values = values
-            self.row = TextButtonRow([figure(each) for each in values], self.track[0], self.box.right, SMALL, _GAP)
+    @property
+    def row(self) -> TextButtonRow:
+        """The words as they stand."""
+        return TextButtonRow([figure(each) for each in self.values], self.track[0], self.box.right, SMALL, _GAP)
 
     def press(self) -> None:
         """Take the word under the mouse; without one, the next."""
@@ -264,9 +265,8 @@ class WordsKnob(Knob):
             self.turn(self.values[place])
         return True
 
-    def paint(self, canvas: Canvas) -> None:
+    def put(self, canvas: Canvas) -> None:
         """Draw the words."""
-        super().paint(canvas)
         ink = self.colour if self.live or self.waits or self.idle else INK
         self.row.paint(
             canvas,
@@ -279,21 +279,61 @@ class WordsKnob(Knob):
         )
 
 
+KINDS: Final[dict[str, type[Knob]]] = {"slider": SliderKnob, "switch": SwitchKnob, "words": WordsKnob}
+
+
+class SeedKnob(_Row, Entry):
+    """The random seed: typed, or stepped with the arrows. It takes a new run, as a run begins with it."""
+
+    live = False
+
+    def __init__(self, manager: PointsManager, label: str, turn: Callable[[int], None]) -> None:
+        super().__init__(manager, _NOWHERE, label, "0", self._accept, limit=_LONGEST_SEED, fits=digits, size=SMALL)
+        self.help = texts.KNOB_SEED
+        self._turn, self.value, self.waits = turn, 0, False
+
+    def display(self, value: int, *, waits: bool) -> None:
+        """Show what the panel says."""
+        self.value, self.waits = value, waits
+        if not self.typing:
+            self.line.set(str(value))
+
+    def shift(self, direction: int) -> bool:
+        """Raise or lower the seed by one."""
+        self._turn(min(max(self.value + direction, 0), 10**_LONGEST_SEED - 1))
+        return True
+
+    def _accept(self, text: str) -> Transition | None:
+        self._turn(int(text))
+        return None
+
+    def ease(self, at_once: bool) -> None:
+        """Take what was typed once the focus is elsewhere."""
+        super().ease(at_once)
+        self.commit()
+
+    def commit(self) -> None:
+        """Take what was typed, unless it is still being typed."""
+        if not self.typing and self.line.text != str(self.value):
+            self._turn(int(self.line.text or self.value))
+
+    @property
+    def start(self) -> tuple[float, float]:
+        """Left end of the number, which is aligned to the right end of the row."""
+        return self.box.right - typeface.width(self.line.shown, SMALL, "regular"), self.box.centery + 4.5
+
+    def put(self, canvas: Canvas) -> None:
+        """Draw the number."""
+        x, baseline = self.start
+        if self.typing:
+            draw_line(canvas, self.line, (x, baseline), self.box.width, SMALL, typing=True)
+            canvas.line((min(x, self.box.right - 20), baseline + 5.5), (self.box.right, baseline + 5.5), HUMAN, 1)
+        else:
+            canvas.text(self.line.text, (x, baseline), size=SMALL, colour=HUMAN if self.waits else MUTE)
+
+
 @lru_cache(maxsize=1024)
 def _along(stops: tuple[Any, ...], value: Any) -> float:
     """Return the place of a value between the first stop and the last, 0 to 1; stops are evenly spaced."""
     sizes = np.abs(np.array(stops, dtype=float))  # they rise, or fall below 0
     return float(np.interp(abs(value), sizes, np.linspace(0.0, 1.0, len(sizes))))
-
-
-def draw_row(canvas: Canvas, widget: Widget, *, changed: bool, dim: bool = False) -> None:
-    """Draw the parts that all rows share: focus ring, dot of a change, label."""
-    box = widget.box
-    if widget.ringed and widget.warmth > 0.02:
-        canvas.outline(box.inflate(12, 0), 6, INK, 1, 0.35 * widget.warmth)
-    if changed:
-        canvas.dot((box.left + 5, box.centery), 2.5, HUMAN)
-    colour = mix(_DIM if dim else mix(MUTE, INK, 0.7), INK, widget.warmth)
-    canvas.text(
-        widget.label, (box.left + MARGIN, box.centery + 4.5), size=SMALL, colour=colour, room=_TRACK[0] - MARGIN - 6
-    )

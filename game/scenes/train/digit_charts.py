@@ -14,8 +14,6 @@ from game.ui.chart import Chart, Series, Tick, draw_legend
 from game.ui.charts import Charts
 from game.ui.series import run_style
 
-_CHARTS: Final = {"loss": (40, 146, 372, 152), "accuracy": (440, 146, 372, 152)}
-_LEGEND: Final = (440.0, 118.0)
 _BATCHES: Final = (MUTE, (2.0, 4.0))
 
 
@@ -26,9 +24,18 @@ class DigitCharts(Charts):
         titles, empty = texts.DIGIT_RUN_CHARTS, texts.DIGIT_RUN_CHARTS_SHOW
         forms = {"loss": "{:.3g}", "accuracy": "{:.2f}"}
         super().__init__(
-            [Chart(_CHARTS[name], titles[name], read=forms[name].format, empty=empty[name]) for name in forms]
+            [Chart((0, 0, 300, 100), titles[name], read=forms[name].format, empty=empty[name]) for name in forms]
         )
         self._told: tuple[object, ...] = ()
+        self._batches: Series | None = None  # the accuracy of the training batches
+
+    def draw(self, canvas: Canvas) -> None:
+        """Draw both charts, and which curve of accuracy is which below them."""
+        super().draw(canvas)
+        box = self.charts[1].box
+        if self._batches is not None:
+            curves = [Series((), (), texts.DIGIT_RUN_HELD_OUT), self._batches]
+            draw_legend(canvas, curves, (box.left, box.bottom + 14))
 
     def look(self, history: History, earlier: list[EarlierRun]) -> None:
         """Show the curves of this run and of earlier ones, if they have changed."""
@@ -47,16 +54,12 @@ class DigitCharts(Charts):
                 read = each.validations
                 scores = ([score.seconds for score in read], [100 * score.success for score in read])
                 accuracies.append(Series(*scores, name, colour, dash, smooth=False))
-        if len(history):
-            accuracies.append(_batches(history))
+        self._batches = _batches(history) if len(history) else None
+        if self._batches is not None:
+            accuracies.append(self._batches)
         ticks = [Tick(turn.seconds, _turn_told(turn), "knob") for turn in history.setting_changes]
         for chart, series in zip(self.charts, (losses, accuracies), strict=True):
             chart.set(series, self.zoom.shown, ticks)
-
-
-def draw_accuracy_legend(canvas: Canvas, history: History) -> None:
-    """Draw which curve of accuracy is which."""
-    draw_legend(canvas, [Series((), (), texts.DIGIT_RUN_HELD_OUT), _batches(history)], _LEGEND)
 
 
 def _turn_told(turn: SettingChange) -> str:

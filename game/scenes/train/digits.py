@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -9,46 +10,56 @@ import pygame
 
 from ai.digits.config import DIGIT_PRESETS, DigitConfig
 from ai.training.config import InForce
+from ai.training.history import REVERTED, History
 from game.core import texts
 from game.core.scene import Push, Transition, push
 from game.digits.filter_film import FilterFilm
 from game.digits.matrix import ConfusionMatrix
-from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.sky import NightSky
-from game.drawing.tokens import LABEL, LINE, MUTE, SMALL, TEXT
+from game.drawing.tokens import HUMAN, LABEL, MUTE, SMALL
 from game.lesson.door import ImageDoor
-from game.panels.digit_charts import DigitCharts, draw_accuracy_legend
-from game.panels.knobs import KnobsPanel
-from game.panels.run_status import draw_run_status
-from game.panels.training_status import digit_status
-from game.panels.way_back import WayBack
 from game.scenes.menus.dialogs import QuestionDialog
-from game.scenes.training_scene import DISPLAY_WIDTH, LEFT, PANEL_LEFT, TrainingScene
+from game.scenes.train.base import KNOBS as ALL_KNOBS
+from game.scenes.train.base import MORE, TrainingScene
+from game.scenes.train.digit_charts import DigitCharts
+from game.scenes.train.knobs import KnobsPanel
+from game.scenes.train.layout import Layout
+from game.scenes.train.status import digit_status
 from game.training.digit_models import DigitModels, figures_of, runs_dir
 from game.training.knob_descriptions import knob_descriptions
 from game.training.run import TrainingRun
 from game.training.run_settings import RunKind
 from game.training.workers import DIGITS
 from game.ui.context import Context
-from game.ui.hints import HintRow
+from game.ui.panel import Column
 from game.ui.scrubber import Scrubber
 from game.ui.virtual_pointer import VirtualPointer
-from game.ui.widget import OnPress, Widget
-from game.ui.widgets import Choice, TextButton
+from game.ui.widget import Widget
 
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier
 
 _OFFERED: Final = {name: preset for name, preset in DIGIT_PRESETS.items() if name in texts.DIGIT_RUN_PRESETS}
-KNOBS: Final = RunKind(tuple(knob_descriptions(DigitConfig)), _OFFERED, texts.DIGIT_RUN_PRESETS, "images")
-_KNOBS: Final = pygame.Rect(868, 20, 384, 436)
-_MATRIX: Final = pygame.Rect(70, 372, 320, 320)
-_CELL: Final = pygame.Rect(440, 346, 372, 346)
-_VIEWS: Final = pygame.Rect(440, 690, 372, 24)  # what is misread, or the filters
-_SAID: Final = 500.0  # baseline of a problem's message
-_HINT: Final = pygame.Rect(868, 548, 384, 60)
+KNOBS: Final = RunKind(
+    tuple(knob_descriptions(DigitConfig)), _OFFERED, texts.DIGIT_RUN_PRESETS, "images",
+    first=("learning_rate", "batch_size", "dropout"),
+)  # fmt: skip
+FALLEN: Final = 0.15  # drop of the accuracy below its best at which a return to the best is offered
+_HEAD: Final = 172.0  # of the display, for the title and a heading
+_LEFT: Final = 28.0
+_NUMBERS: Final = 24.0  # beside and above the matrix, for its digits
+_LARGEST: Final = 330.0  # matrix
+_LEAST: Final = 180.0  # points beside it for the digits of a cell
 _EVERY: Final = 12  # frames between two drawings of the charts
+
+
+def fallen(history: History) -> tuple[float, float] | None:
+    """Return the best and the present accuracy, if the present one is far lower; None otherwise, or after a return."""
+    back = max((turn.seconds for turn in history.setting_changes if turn.name == REVERTED), default=-1.0)
+    read = [score.success for score in history.validations if score.seconds > back]
+    best = max((score.success for score in history.validations), default=0.0)
+    return (best, read[-1]) if read and best - read[-1] > FALLEN else None
 
 
 class DigitTrainingScene(TrainingScene):
@@ -56,36 +67,27 @@ class DigitTrainingScene(TrainingScene):
 
     Attributes:
         film: the filters of the moment that is chosen on the charts.
-        views: the choice between the matrix, 0, and the filters, 1.
+        view: what is shown: the matrix, 0, or the filters, 1.
 
     """
 
+    charts_shown = 2
+
     def __init__(self, context: Context) -> None:
-        self._frame = 0
+        self._frame = self.view = 0
         self._asked = False
-        self.stop_button: TextButton | None = None
         self._in_force_told: tuple[float, DigitConfig, InForce] | None = None
         self.digit_run = TrainingRun(DIGITS, DigitModels(runs_dir(context.user_dir)))
-        super().__init__(context, self.digit_run, ((PANEL_LEFT, _SAID), 4))
+        super().__init__(context, self.digit_run)
 
     def _build(self) -> None:
         self.digit_run.collection.hold()
         self._sky = NightSky(np.random.default_rng(12), ember=0.2, stars=40)
         self.charts = DigitCharts()
         self.lessons = ImageDoor(self.digit_run, self.context.note)
-        self._add_words()
-        self.form.add(VirtualPointer(self.form.manager, self.charts.box, self.charts.follow))
-        self.knobs = KnobsPanel(
-            self.form, _KNOBS, DIGIT_PRESETS["classic"], 0, self.digit_run.change, self._begin, KNOBS
-        )
+        self.knobs = KnobsPanel(self.form, DIGIT_PRESETS["classic"], 0, self.digit_run.change, self._begin, KNOBS)
         self.film = FilterFilm(self.charts)
-        self.matrix = self.form.add(ConfusionMatrix(self.form.manager, _MATRIX))
-        self._shown: Widget = self.matrix
-        self.views = self.form.add(
-            Choice(self.form.manager, _VIEWS, "", texts.DIGIT_RUN_VIEWS, 0, self._change_view, size=SMALL)
-        )
-        self._way_back = WayBack(self.form, _HINT, self.digit_run)
-        self.form.focus(self.start_button)
+        self.matrix = ConfusionMatrix(self.form.manager, (0, 0, 100, 100))
 
     def enter(self) -> None:
         """Resume the run."""
@@ -94,14 +96,86 @@ class DigitTrainingScene(TrainingScene):
             self.knobs.set_config(self.digit_run.config, self.digit_run.seed)
         self._asked = False
 
+    # Rows
+
+    @property
+    def _key(self) -> Hashable:
+        run = self.digit_run
+        return self.view, run.alive, run.stopping, run.unfinished, self._fallen is not None
+
+    @property
+    def _fallen(self) -> tuple[float, float] | None:
+        """The best accuracy and the present one, where a way back is offered."""
+        run = self.digit_run
+        return fallen(run.history) if run.alive and not run.stopping else None
+
+    def _pointers(self) -> list[Widget]:
+        manager, nowhere = self.form.manager, (0, 0, 1, 1)
+        self._pointer = VirtualPointer(manager, nowhere, self.charts.follow)
+        if self.view:
+            self._shown: Widget = Scrubber(manager, self.charts, self.film.choose, lambda: None, self.charts.zoom_by)
+        else:
+            if self.matrix not in self.form.widgets:
+                cell, before = self.matrix.cell, self.matrix
+                self._shown = self.matrix = ConfusionMatrix(manager, before.box)
+                self.matrix.set(before.confusion)
+                self.matrix.cell = cell
+            self._shown = self.matrix
+        return [self._pointer, self._shown]
+
+    def _place(self, place: Layout) -> None:
+        for chart, box in zip(self.charts.charts, place.charts, strict=True):
+            chart.move(box)
+        self._pointer.relative_rect = self._pointer.rect = pygame.Rect(self.charts.box)
+        area = place.swarm
+        self._area = pygame.FRect(_LEFT, area.top + _HEAD, area.width - 2 * _LEFT, max(area.height - _HEAD - 8, 60))
+        side = min(self._area.height - _NUMBERS, _LARGEST, self._area.width - _NUMBERS)
+        matrix = pygame.Rect(round(_LEFT + _NUMBERS), round(self._area.top + _NUMBERS), round(side), round(side))
+        self.matrix.rect = self.matrix.relative_rect = matrix
+        self._cell = pygame.FRect(matrix.right + 36, matrix.top, self._area.right - matrix.right - 36, side)
+        if self.view:
+            self._shown.relative_rect = self._shown.rect = pygame.Rect(self.charts.box)
+
+    def _describe_more(self, column: Column) -> None:
+        column.gap()
+        self.switch(column, MORE, texts.TRAIN_MORE)
+        if not self.opened(MORE):
+            return
+        self.switch(column, ALL_KNOBS, texts.TRAIN_MORE_KNOBS)
+        column.choice("", texts.DIGIT_RUN_VIEWS, self.view, self._change_view, SMALL)
+        column.line()
+        column.words([
+            (texts.LESSON_WHY, self.lessons.open),
+            (texts.DIGIT_RUN_DREAM, self._dream),
+            (texts.DIGIT_RUN_QUIZ, self._quiz),
+            (texts.TRAIN_SAVE, self._save),
+        ])  # fmt: skip
+
+    def _describe_foot(self, column: Column) -> None:
+        super()._describe_foot(column)
+        if word := self._stop_word:
+            column.button(word, self._stop_or_go_on)
+
+    @property
+    def _stop_word(self) -> str:
+        """What stops the run, or goes on with an unfinished one."""
+        if self.digit_run.alive:
+            return texts.DIGIT_RUN_STOPPING if self.digit_run.stopping else texts.DIGIT_RUN_STOP
+        return texts.DIGIT_RUN_GO_ON if self.digit_run.unfinished else ""
+
+    def _describe_hint(self, column: Column) -> bool:
+        if (parts := self._fallen) is None:
+            return False
+        best, now = (f"{100 * part:.1f}%" for part in parts)
+        column.caption(texts.HINT_TITLE)
+        column.text(texts.DIGIT_RUN_FALLEN.format(best=best, now=now), size=SMALL, colour=HUMAN)
+        column.button(texts.DIGIT_RUN_GO_BACK, self.digit_run.go_back)
+        return True
+
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Handle start, pause, stop, knobs and the matrix."""
         self.charts.follow(event)
         return super().handle_event(event)
-
-    def hint_rows(self, canvas: Canvas) -> list[HintRow]:
-        """Return the hints above the charts."""
-        return [HintRow(self.hints, (DISPLAY_WIDTH - 24, 46), from_right=True)]
 
     def update(self) -> Transition | None:
         """Receive the worker's messages, and animate the screen."""
@@ -113,13 +187,11 @@ class DigitTrainingScene(TrainingScene):
         self.film.follow(self.digit_run)
         if self.digit_run.alive:
             self.knobs.show_in_force(self._in_force())
-        self._way_back.follow()
         self._frame += 1
         if self._frame % _EVERY == 0:
             self.charts.look(self.digit_run.history, self.digit_run.earlier)
-            self._name_words()
         self.charts.update(at_once=self._settings.reduced_motion)
-        return self._ask_or(self.form.update()) or self.lessons.update()
+        return self._finish_update() or self.lessons.update()
 
     # The run
 
@@ -140,7 +212,6 @@ class DigitTrainingScene(TrainingScene):
     def _toggle(self) -> None:
         if not self.digit_run.stopping:
             super()._toggle()
-            self._name_words()
 
     def _begin(self, config: DigitConfig, seed: int) -> None:
         """Start a run; first ask whether to keep an unnamed earlier one."""
@@ -174,7 +245,6 @@ class DigitTrainingScene(TrainingScene):
             self.digit_run.stop()
         elif self.digit_run.unfinished:
             self._start(self.knobs.config, self.knobs.seed, resume=self.digit_run.collection.unsaved)
-        self._name_words()
 
     def _save(self) -> Transition | None:
         if not (self.digit_run.kept or self.digit_run.alive):
@@ -203,20 +273,10 @@ class DigitTrainingScene(TrainingScene):
             self.context.note(str(error))
             return None
 
-    # Matrix or filters
-
-    def _change_view(self, index: int) -> None:
+    def _change_view(self, view: int) -> None:
         """Show what is misread, or the filters with a scrubber over the charts."""
         self.film.release()
-        manager, old = self.form.manager, self._shown
-        if index:
-            self._shown = Scrubber(manager, self.charts, self.film.choose, lambda: None, self.charts.zoom_by)
-        else:
-            cell = self.matrix.cell
-            self._shown = self.matrix = ConfusionMatrix(manager, _MATRIX)
-            self.matrix.set(self.digit_run.confusion)
-            self.matrix.cell = cell
-        self.form.replace([old], [self._shown])
+        self.view = view
 
     # The picture
 
@@ -228,58 +288,23 @@ class DigitTrainingScene(TrainingScene):
     def _draw_display(self, canvas: Canvas, alpha: float) -> None:
         """Draw the figures, and what is misread or the filters."""
         self._sky.draw(canvas)
-        self._draw_title(canvas)
-        canvas.line((LEFT, 318), (DISPLAY_WIDTH - 24, 318), LINE)
-        if self.views.index:
-            self.film.draw(canvas)
+        self.draw_title(canvas, texts.DIGIT_RUN_TITLE, digit_status(self.digit_run))
+        if self.view:
+            self.film.draw(canvas, self._area)
         else:
             self._draw_misread(canvas)
 
     def _draw_misread(self, canvas: Canvas) -> None:
         """Draw the headings of the matrix, and the chosen cell's digits."""
-        heading = canvas.text(texts.MATRIX_TITLE, (LEFT, 340), size=LABEL, colour=MUTE, weight="medium")
-        shown = canvas.text(texts.MATRIX_AXES, (heading.right + 12, 340), size=LABEL, colour=MUTE)
-        if self.digit_run.test is not None and self.digit_run.kept_epoch is not None:
-            of_best = texts.MATRIX_OF_BEST.format(epoch=self.digit_run.kept_epoch)
-            canvas.text(of_best, (shown.right + 12, 340), size=LABEL, colour=MUTE)
+        box, run = self.matrix.box, self.digit_run
+        place = (box.left - _NUMBERS, box.top - _NUMBERS - 4)
+        said = texts.MATRIX_TITLE if self.matrix.confusion is not None else texts.MATRIX_EMPTY
+        heading = canvas.text(said, place, size=LABEL, colour=MUTE, weight="medium")
         if self.matrix.confusion is None:
-            canvas.text(texts.MATRIX_EMPTY, (_CELL.left, _CELL.top + 14), size=SMALL, colour=MUTE)
-        self.matrix.draw_cell(canvas, _CELL)
-
-    def _draw_advice(self, canvas: Canvas) -> None:
-        self._way_back.draw(canvas)
-
-    def _add_words(self) -> None:
-        def add(x: float, y: float, label: str, press: OnPress) -> TextButton:
-            width = typeface.width(label, TEXT, "regular")
-            return self.form.add(TextButton(self.form.manager, (x, y, width, 28), label, press))
-
-        self.start_button = add(PANEL_LEFT, 664, texts.TRAIN_START, self._toggle)
-        self.save_button = add(PANEL_LEFT + 316, 664, texts.TRAIN_SAVE, self._save)
-        self.dream_button = add(PANEL_LEFT, 624, texts.DIGIT_RUN_DREAM, self._dream)
-        self.quiz_button = add(
-            max(PANEL_LEFT + 120, self.dream_button.box.right + 18), 624, texts.DIGIT_RUN_QUIZ, self._quiz
-        )
-        self.why_button = add(
-            max(PANEL_LEFT + 214, self.quiz_button.box.right + 18), 624, texts.LESSON_WHY, self.lessons.open
-        )
-        self._name_words()
-
-    def _name_words(self) -> None:
-        digit_run = self.digit_run
-        stop = texts.DIGIT_RUN_GO_ON if digit_run.unfinished else ""
-        if digit_run.alive:
-            stop = texts.DIGIT_RUN_STOPPING if digit_run.stopping else texts.DIGIT_RUN_STOP
-        old = self.stop_button
-        if stop != (old.label if old else ""):
-            box = (PANEL_LEFT + 80, 664, typeface.width(stop, TEXT, "regular"), 28)
-            self.stop_button = TextButton(self.form.manager, box, stop, self._stop_or_go_on) if stop else None
-            before = [self.start_button, *([old] if old else [])]
-            self.form.replace(before, [self.start_button, *([self.stop_button] if self.stop_button else [])])
-
-    def _draw_title(self, canvas: Canvas) -> None:
-        if len(self.digit_run.history):
-            draw_accuracy_legend(canvas, self.digit_run.history)
-        status = digit_status(self.digit_run)
-        draw_run_status(canvas, (LEFT, 46), texts.DIGIT_RUN_TITLE, *status, drop=72, room=DISPLAY_WIDTH - 2 * LEFT)
-        self.draw_hints(canvas)
+            return
+        if run.test is not None and run.kept_epoch is not None:
+            of_best = texts.MATRIX_OF_BEST.format(epoch=run.kept_epoch)
+            canvas.text(of_best, (heading.right + 12, place[1]), size=LABEL, colour=MUTE)
+        if self._cell.width >= _LEAST:
+            canvas.text(texts.MATRIX_AXES, (self._cell.left, place[1]), size=LABEL, colour=MUTE, room=self._cell.width)
+            self.matrix.draw_cell(canvas, self._cell)

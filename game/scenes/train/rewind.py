@@ -10,25 +10,17 @@ from ai.environment import Doubles
 from ai.training.messages import NetworkState
 from game.core import texts
 from game.core.worker import WorkerState
-from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, MUTE, SMALL
-from game.panels.network_panel import NetworkPanel
-from game.panels.run_timeline import RunTimeline
-from game.panels.training_charts import TrainingCharts
+from game.scenes.train.charts import TrainingCharts
+from game.scenes.train.inside import Inside
 from game.training.run import TrainingRun
-from game.ui.form import Form
-from game.ui.widget import Widget
-from game.ui.widgets import TextButton
+from game.ui.panel import Column
+from game.ui.rows import SliderRow
+from game.ui.widget import PointsManager
 from game.world.swarm import LearningSwarm
 
-_PLACES: Final = ((40.0, 420.0), (460.0, 46.0))  # baseline of the words: over the swarm, beside the large network
-_BESIDE: Final = (40.0, 170.0)  # over two swarms, whose names stand below them
-_TIMELINE: Final = (460, 88, 360, 28)  # beside the large network
-_APART: Final = 16.0  # points between the sentence and the word that leads back
-_MIDDLE: Final = (430.0, 250.0)
 _STEPS: Final = 100  # presses of an arrow from the beginning of a run to its end
-_COVER: Final = 0.88
 
 
 class Rewind:
@@ -41,17 +33,14 @@ class Rewind:
         moment: the moment that is shown, in decisions; None for now.
         swarm: the landers of that moment.
         swarm_kept: whether they were kept.
-        split: whether another swarm is beside them.
         network_state: the network of that moment; None if none was kept.
 
     """
 
-    def __init__(self, form: Form, lander_run: TrainingRun, width: float) -> None:
-        self._form, self._run = form, lander_run
-        self.swarm = LearningSwarm(width)
-        self._words: list[TextButton] = []
-        self._large = False
-        self.split = False  # whether there are two swarms
+    def __init__(self, lander_run: TrainingRun) -> None:
+        self._run = lander_run
+        self.swarm = LearningSwarm()
+        self._timeline: SliderRow | None = None
         self.clear()
 
     def clear(self) -> None:
@@ -59,7 +48,6 @@ class Rewind:
         self.moment: int | None = None
         self.swarm_kept = False
         self.network_state: NetworkState | None = None
-        self._lay()
 
     # Where it goes
 
@@ -98,7 +86,6 @@ class Rewind:
         if swarm_state is not None:
             self.swarm.take(swarm_state)
         self.network_state = self._network_at(self.moment)
-        self._lay()
 
     def seek_share(self, share: float) -> None:
         """Show the moment at a share of the run, from 0 to 1, which is now."""
@@ -135,10 +122,11 @@ class Rewind:
 
     # The picture
 
-    def show_in(self, inside: NetworkPanel, charts: TrainingCharts) -> None:
+    def show_in(self, inside: Inside, charts: TrainingCharts) -> None:
         """Put the panels at the moment that was chosen, or back to now; call it once a frame."""
-        self._lay()  # the sentence grows as the run goes on
         run, moment = self._run, self.moment
+        if self._timeline is not None and not self._timeline.held:
+            self._timeline.value = self.share
         if moment == charts.moment:
             return
         charts.moment, inside.editing.past = moment, moment is not None
@@ -147,12 +135,6 @@ class Rewind:
             inside.show(network, run.config)
         if len(run.history):
             inside.pay(run.history, self.row)
-
-    def place(self, large: bool) -> list[Widget]:
-        """Lay the words beside the swarm, or the large network; return the timeline that stands beside that."""
-        self._large = large
-        self._lay()
-        return [RunTimeline(self._form.manager, _TIMELINE, self)] if large else []
 
     @property
     def words(self) -> str:
@@ -163,35 +145,37 @@ class Rewind:
         words = texts.REWIND_AT_RUNNING if self._run.state is WorkerState.RUNNING else texts.REWIND_AT
         return words.format(seconds=float(seconds[self.row]), total=float(seconds[-1]))
 
-    @property
-    def _place(self) -> tuple[float, float]:
-        return _BESIDE if self.split and not self._large else _PLACES[self._large]
-
-    def _lay(self) -> None:
-        """Add or remove the word that leads back to now, and keep it beside the sentence."""
-        words = []
+    def describe(self, column: Column, manager: PointsManager, *, timeline: bool) -> None:
+        """Add the moment, the word that leads back to now and, where no chart is seen, a timeline."""
+        self._timeline = None
+        if timeline and len(self._run.history):
+            self._timeline = column.widget(_Timeline(manager, self))
         if self.moment is not None:
-            (left, baseline), height = self._place, 24
-            left += typeface.width(self.words, SMALL, "regular") + _APART
-            box = (left, baseline - 16, typeface.width(texts.REWIND_NOW, SMALL, "regular"), height)
-            if self._words and self._words[0].box.topleft == (int(box[0]), int(box[1])):
-                return
-            if self._words:  # it only moves: a press on it goes on
-                self._words[0].set_relative_position(box[:2])
-                return
-            words = [TextButton(self._form.manager, box, texts.REWIND_NOW, self.clear, size=SMALL, colour=HUMAN)]
-        if words or self._words:
-            old, self._words = self._words, words
-            self._form.replace(old, words)
+            column.text(lambda: self.words, size=SMALL, colour=HUMAN)
+            column.button(texts.REWIND_NOW, self.clear, colour=HUMAN)
 
-    def draw(self, canvas: Canvas) -> None:
-        """Draw the sentence, and say so where there are no landers to be shown."""
-        if self.moment is None:
-            return
-        left, baseline = self._place
-        if not self._large:
-            right = self._words[0].box.right if self._words else left
-            canvas.panel((24, baseline - 20, right - 24 + 16, 30), _COVER)
-            if not self.swarm_kept:
-                canvas.text(texts.REWIND_NO_LANDERS, _MIDDLE, size=SMALL, colour=MUTE, align="centre")
-        canvas.text(self.words, (left, baseline), size=SMALL, colour=HUMAN, tabular=True)
+    def seconds_at(self, share: float) -> str:
+        """Write the time at a share of the run."""
+        return texts.REWIND_MARK.format(seconds=share * float(self._run.history["seconds"][-1]))
+
+    def draw_swarm(self, canvas: Canvas, alpha: float) -> None:
+        """Draw the landers of that moment, or say that they were not kept."""
+        self.swarm.draw(canvas, alpha, paused=True)
+        if not self.swarm_kept:
+            canvas.text(texts.REWIND_NO_LANDERS, self.swarm.box.center, size=SMALL, colour=MUTE, align="centre")
+
+
+class _Timeline(SliderRow):
+    """Slider over the whole run; the arrows go from one kept moment to the next."""
+
+    def __init__(self, manager: PointsManager, rewind: Rewind) -> None:
+        super().__init__(
+            manager, texts.REWIND_TIMELINE, rewind.share, (0.0, 1.0), rewind.seek_share, 0.0, rewind.seconds_at
+        )
+        self._rewind = rewind
+
+    def shift(self, direction: int) -> bool:
+        """Go a step back or on."""
+        self._rewind.shift(direction)
+        self.value = self._rewind.share
+        return True

@@ -17,7 +17,7 @@ from game.drawing.tokens import MARGIN, TITLE, VIEW_SIZE
 from game.flight import networks
 from game.flight.study_runs import studies
 from game.input.controls import Command
-from game.panels.run_page import draw_run, row, suggestion
+from game.scenes.train.run_page import draw_run, row, suggestion
 from game.training.library import Library, SavedRun, read_run
 from game.ui.actions import Action, Table
 from game.ui.context import Context

@@ -18,7 +18,7 @@ from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import MARGIN, MUTE, NET, SMALL, TITLE, VIEW_SIZE
 from game.flight import networks
 from game.flight.study_runs import studies
-from game.panels.study_dots import StudyDots, knob_value
+from game.scenes.train.study_dots import StudyDots, knob_value
 from game.training.knob_descriptions import label
 from game.ui.chart import Chart, Series
 from game.ui.context import Context

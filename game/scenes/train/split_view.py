@@ -5,25 +5,22 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
+import pygame
+
 from ai.training.experiments import Flown
 from game.core import texts
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
-from game.drawing.prose import draw_wrapped
-from game.drawing.tokens import LINE, MUTE, NET, NIGHT0, SMALL, TEXT, VIEW_SIZE, Colour
-from game.panels.lab import Laboratory
+from game.drawing.cursor import Cursor
+from game.drawing.tokens import INK, LINE, NET, NIGHT0, SMALL, TEXT, Colour
+from game.scenes.train.laboratory import Laboratory
 from game.training.beside import EarlierRun
 from game.training.run import TrainingRun
 from game.ui.series import RUN_STYLES
 from game.world.swarm import LearningSwarm
 
-_WIDTH: Final = 418.0  # of each half, in points
-_TOP: Final = 146.0
-_HEIGHT: Final = round(_WIDTH * VIEW_SIZE[1] / VIEW_SIZE[0])
-_FLOOR: Final = 434.0
-_MARGIN: Final = 40.0, 22.0  # from the left of each half to its words
-_STEP: Final = (400.0, 46.0)  # where it is said that both are in step
-_STEP_WIDTH: Final = 268.0
+_SAID: Final = 66.0  # height of the words below each half
+_MARGIN: Final = 28.0
 _JUDGED: Final = 20  # frames after which the runs are judged anew
 _STYLE: Final = 1  # of the experiment's curves: see RUN_STYLES
 
@@ -33,11 +30,18 @@ class SplitView:
 
     def __init__(self, laboratory: Laboratory) -> None:
         self._laboratory, self._split = laboratory, laboratory.split
-        self.swarms = tuple(LearningSwarm(_WIDTH / VIEW_SIZE[0]) for _ in range(2))
+        self.swarms = tuple(LearningSwarm() for _ in range(2))
+        self._box = pygame.FRect(0, 0, 836, 434)
         self._pictures: list[Canvas] = []  # of both halves, each drawn anew in every second frame
         self._frame = 0
         self._moment: int | None = None
         self._moments: tuple[int, int] | None = None  # that moment of both, after as many decisions of each lander
+
+    def place(self, box: pygame.FRect) -> None:
+        """Move to another box, below the words of the screen."""
+        self._box, self._pictures = box, []
+        for swarm in self.swarms:
+            swarm.place(pygame.FRect(0, 0, box.width / 2, max(box.height - _SAID, 1.0)))
 
     @property
     def shown(self) -> bool:
@@ -96,29 +100,33 @@ class SplitView:
         twin, chosen = self._split.twin, self._laboratory.chosen
         if twin is None or chosen is None:
             return
-        canvas.fill(canvas.rect(0, 0, 2 * _WIDTH, _FLOOR), NIGHT0)
+        box = self._box
+        canvas.fill(canvas.rect(*box), NIGHT0)
         paused = self._split.state is WorkerState.PAUSED
         fresh = not self._pictures or self._pictures[0].scale != canvas.scale
         if fresh:
-            self._pictures = [canvas.picture(_WIDTH, _HEIGHT) for _ in self.swarms]
+            self._pictures = [canvas.picture(*swarm.box.size) for swarm in self.swarms]
         for number, (swarm, picture) in enumerate(zip(self.swarms, self._pictures, strict=True)):
             if fresh or self._frame % 2 == number:
                 swarm.draw(picture, alpha, paused=paused)
-            canvas.surface.blit(picture.surface, canvas.rect(number * _WIDTH, _TOP, _WIDTH, _HEIGHT))
-        canvas.line((_WIDTH, _TOP), (_WIDTH, _FLOOR - 8), LINE)
+            canvas.surface.blit(
+                picture.surface, canvas.rect(box.left + number * swarm.box.width, box.top, *swarm.box.size)
+            )
+        canvas.line((box.centerx, box.top), (box.centerx, box.bottom), LINE)
         self._write(canvas, 0, texts.SPLIT_HEALTHY, texts.SPLIT_ALIKE, self._split, NET)
         self._write(canvas, 1, chosen.name, self._laboratory.differs, twin, RUN_STYLES[_STYLE][0])
-        draw_wrapped(canvas, texts.SPLIT_STEP, _STEP, _STEP_WIDTH, colour=MUTE, most=3)
 
     def _write(self, canvas: Canvas, half: int, name: str, told: str, run: TrainingRun, colour: Colour) -> None:
-        left, right = half * _WIDTH + _MARGIN[half], (half + 1) * _WIDTH - _MARGIN[1 - half]
-        y = _TOP + _HEIGHT + 20
+        """Write a run's name, the share that lands and what is different, below its swarm."""
+        width = self._box.width / 2 - 2 * _MARGIN
+        left = self._box.left + half * self._box.width / 2 + _MARGIN
+        cursor = Cursor(left, self._box.bottom - _SAID + 6, width, canvas.scale, canvas, size=TEXT, colour=colour)
         figure = ""
         if len(run.history):
             row = -1 if self._moments is None else run.history.row_at(self._moments[half])
             figure = texts.SPLIT_LANDED.format(percent=100 * Flown(run.history, run.config).landed_at(row))
-        taken = canvas.text(figure, (right, y), size=TEXT, align="right", tabular=True, colour=colour).width
-        canvas.text(name, (left, y), size=TEXT, colour=colour, room=right - left - taken - 12)
+        cursor.pair(name, figure)
         ended = run.state in (WorkerState.FAILED, WorkerState.ENDED)
-        canvas.text(texts.SPLIT_ENDED if ended else told, (left, y + 20), size=SMALL,
-                    colour=canvas.palette.warn if ended else MUTE, room=right - left)  # fmt: skip
+        small = cursor.in_style(SMALL, canvas.palette.warn if ended else INK)
+        canvas.text(texts.SPLIT_ENDED if ended else told, (left, small.baseline), size=SMALL, colour=small.colour,
+                    room=width)  # fmt: skip

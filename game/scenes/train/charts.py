@@ -5,84 +5,112 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import Final, Protocol
+from typing import Final
 
 import numpy as np
 import pygame
 
 from ai.agent.decision import in_points
 from ai.environment import Doubles
+from ai.training.captions import Caption, caption
+from ai.training.config import Config
 from ai.training.edits import EDITED
+from ai.training.hints import RecentCurves
 from ai.training.history import REVERTED, History, SettingChange
 from ai.training.lander_session import TAUGHT
 from game.core import texts
-from game.core.scene import Transition
-from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
-from game.drawing.tokens import NIGHT0, SMALL
-from game.panels.chart_captions import draw_captions
-from game.panels.run_legend import RunLegend
+from game.drawing.prose import draw_wrapped
+from game.drawing.tokens import HUMAN, LABEL, MUTE, NIGHT0
 from game.training.beside import EarlierRun
 from game.training.knob_descriptions import told
 from game.ui.chart import Chart, Series, Tick
 from game.ui.charts import Charts
-from game.ui.scrubber import Scrubber
 from game.ui.series import run_style
-from game.ui.virtual_pointer import VirtualPointer
-from game.ui.widget import OnPress, PointsManager, Widget
-from game.ui.widgets import Choice, TextButton
 
+STAY: Final = 3.0  # seconds of training for which a caption stays at least, as long as it is true
 _TURNS: Final = 12  # frames in a round: in every second one, one chart reads the history, which spreads the load
 _TOGETHER: Final = 0.5  # seconds within which changed knobs share one mark: a preset changes many
 _FEW: Final = 3  # of them that are named
 _SHORTEST: Final = (10.0, 1_000.0, 100.0)  # seconds, decisions, percent that the axis spans at least
-_LEGEND: Final = (40, 436, 384, 20)
 _DIMMED: Final = 0.68  # of the other runs' lines, while one is emphasised
-_ZOOM_RIGHT: Final = 820.0
-_AXES: Final = pygame.Rect(436, 436, 262, 20)  # by what the charts are measured, while runs are compared
 BY_DECISIONS: Final = 1  # of the ways to measure the horizontal axis: see texts.TRAIN_AXES
-PAID: Final = ("mean_return", "mean_q")  # charts in points of what a run is paid
-_STEPPED: Final = ("epsilon", "stage")  # curves without noise
-_CHARTS: Final = (
-    ("success", (40, 456, 360, 112), (0.0, 100.0), "{:.0f}"),
-    ("mean_return", (436, 456, 360, 112), None, "{:.0f}"),
-    ("loss", (40, 592, 172, 92), None, "{:.3g}"),
-    ("mean_q", (234, 592, 172, 92), None, "{:.0f}"),
-    ("epsilon", (428, 592, 172, 92), (0.0, 1.0), "{:.2f}"),
-    ("stage", (622, 592, 174, 92), (0.0, 3.0), "{:.0f}"),
-)
+SCORE: Final = "mean_return"  # what a flight earns, and beside it what the network expects
+EXPECTED: Final = "mean_q"
+_EXPECTED_DASH: Final = (5.0, 4.0)
+_STEPPED: Final = ("epsilon",)  # curves without noise
+_CHARTS: Final = {
+    "success": ((0.0, 100.0), "{:.0f}"),
+    SCORE: (None, "{:.0f}"),
+    "loss": (None, "{:.3g}"),
+    "epsilon": ((0.0, 1.0), "{:.2f}"),
+}
+FEW_CHARTS: Final = 2
+_WIDE: Final = 300.0  # points of a chart with room for one line in a line
+_SIZE: Final = LABEL - 1.0  # of captions
+_LEADING: Final = 12.0
+_DROP: Final = 12.0  # from the bottom of a chart to the first baseline of its caption
 
 
-class Seeks(Protocol):
-    """Goes to a moment of a run."""
+class ChartCaptions:
+    """One caption for each chart, read together with the chart's number and painted in the same frame as that.
 
-    def seek(self, decisions: float) -> None:
-        """Go to the moment in decisions."""
+    Attributes:
+        shown: caption of each chart that has one, by its name.
 
-    def shift(self, direction: int) -> None:
-        """Go a step back (-1) or on (1)."""
+    """
+
+    def __init__(self) -> None:
+        self.clear()
+
+    def clear(self) -> None:
+        """Reset for another run."""
+        self.shown: dict[str, Caption] = {}
+        self._since: dict[str, float] = {}
+
+    def read(self, chart: str, history: History, config: Config, hint: str) -> str:
+        """Return a chart's caption, beside the hint that is shown, by its name; empty where no rule is sure."""
+        now = float(history["seconds"][-1]) if len(history) else 0.0
+        before = self.shown.pop(chart, None)
+        stays = before.name if before and now - self._since[chart] < STAY else ""
+        found = caption(chart, RecentCurves(history, config), hint, stays)
+        if found is None:
+            return ""
+        if before is None or before.name != found.name:
+            self._since[chart] = now
+        self.shown[chart] = found
+        return texts.CHART_CAPTIONS[chart][found.name].format(**found.values).replace("-", "−")
 
 
 class TrainingCharts:
-    """Six charts over one axis: seconds, decisions, or each run from its beginning to its end.
+    """Charts over one axis: seconds, decisions, or each run from its beginning to its end.
 
     Attributes:
+        charts: those that are shown.
         moment: the moment under the marker, in decisions; None for now.
         axis: index into `texts.TRAIN_AXES`.
 
     """
 
-    def __init__(self) -> None:
-        self.charts = Charts([
-            Chart(box, texts.TRAIN_CHARTS[name], limits=limits, read=partial(_written, form), log=name == "loss",
-                  empty=texts.TRAIN_CHARTS_SHOW[name])
-            for name, box, limits, form in _CHARTS
-        ])  # fmt: skip
+    def __init__(self, *, more: bool = False) -> None:
+        self._all = [
+            Chart((0, 0, 300, 100), texts.TRAIN_CHARTS[name], limits=limits, read=partial(_written, form),
+                  log=name == "loss", empty=texts.TRAIN_CHARTS_SHOW[name])
+            for name, (limits, form) in _CHARTS.items()
+        ]  # fmt: skip
         self._turn = self.axis = 0
-        self._legend: RunLegend | None = None
-        self._zoom_word: TextButton | None = None
+        self.show(more=more)
         self.clear()
+
+    def show(self, *, more: bool) -> None:
+        """Show all charts, or few."""
+        self.charts = Charts(self._all if more else self._all[:FEW_CHARTS])
+
+    def place(self, boxes: Sequence[pygame.FRect]) -> None:
+        """Move the charts to their boxes."""
+        for chart, box in zip(self.charts.charts, boxes, strict=True):
+            chart.move(box)
 
     def clear(self) -> None:
         """Reset for another run, or for other runs beside it."""
@@ -95,7 +123,7 @@ class TrainingCharts:
     def measure_by(self, axis: int) -> None:
         """Switch the charts to another horizontal axis."""
         self.axis = axis
-        for chart in self.charts.charts:
+        for chart in self._all:
             chart.read_x = texts.TRAIN_AXIS[axis].format
         self.charts.zoom.reset()
 
@@ -107,44 +135,47 @@ class TrainingCharts:
         say: Callable[[str], str] = lambda _: "",
         *,
         paid_otherwise: bool = False,
+        emphasised: int | None = None,
     ) -> None:
         """Read new points of the current run, by its name there, and of those beside it; call it once a frame.
 
         `say` returns the caption of a chart for the same points. Where the others are `paid_otherwise`, their pay says
-        nothing beside that of this one, and is not shown.
+        nothing beside that of this one, and is not shown. The run of the line style `emphasised` is seen before others.
         """
         self._turn = (self._turn + 1) % _TURNS
         number, odd = divmod(self._turn, 2)
         self._history = history
         self._mark()
-        runs = [EarlierRun(name, history, 0), *beside]
-        shown = [(each.name, each.style) for each in runs if len(each.run)]
-        if self._legend is not None:
-            self._legend.names = shown
-        if self._zoom_word is not None:
-            self._zoom_word.label = zoom_word(self.charts.zoom.factor)
-        if odd or number >= len(_CHARTS):
+        if odd or number >= len(self.charts.charts):
             return
-        emphasised = self._legend.emphasised if self._legend is not None else None
+        runs = [each for each in (EarlierRun(name, history, 0), *beside) if len(each.run)]
+        shown = [(each.name, each.style) for each in runs]
         told = (len(history), shown, emphasised, self.axis, self.charts.zoom.shown)
         if self._told[number] == told:
             return
         self._told[number] = told
-        name = _CHARTS[number][0]
-        compared = runs[:1] if name in PAID and paid_otherwise else runs
-        series = [self._series(name, each, emphasised) for each in compared if len(each.run)]
+        column = list(_CHARTS)[number]
+        compared = runs[:1] if column == SCORE and paid_otherwise else runs
+        series = [self._series(column, each, emphasised) for each in compared]
+        said = say(column)
+        if column == SCORE and len(runs) == 1 and len(history):
+            expected = self._series(EXPECTED, compared[0], emphasised)
+            series.append(expected)
+            said = f"{_both(history)}\n{said}".strip()
         self.charts.zoom.end = max([_SHORTEST[self.axis], *(float(np.max(each.x)) for each in series)])
         ticks = [Tick(self._place(tick.x), tick.text, tick.kind) for tick in ticks_of(history)] if number == 0 else ()
-        self.charts.charts[number].set(series, self.charts.zoom.shown, ticks, say(_CHARTS[number][0]))
+        self.charts.charts[number].set(series, self.charts.zoom.shown, ticks, said)
 
     def _series(self, name: str, beside: EarlierRun, emphasised: int | None) -> Series:
-        run, (colour, dash) = beside.run, run_style(beside.style)
+        run, (colour, dash), label = beside.run, run_style(beside.style), beside.name
+        if name == EXPECTED:
+            colour, dash, label = HUMAN, _EXPECTED_DASH, texts.TRAIN_EXPECTED
         if emphasised not in (None, beside.style):
             colour = mix(colour, NIGHT0, _DIMMED)
         x = run["decisions" if self.axis == 1 else "seconds"]
         if self.axis == 2:
             x = 100.0 * x / max(float(x[-1]), 1e-9)
-        return Series(x, _shown(run, name), beside.name, colour, dash, smooth=name not in _STEPPED)
+        return Series(x, _shown(run, name), label, colour, dash, smooth=name not in _STEPPED)
 
     def _place(self, seconds: float) -> float:
         """Return the place of a moment of the current run on the axis."""
@@ -176,51 +207,27 @@ class TrainingCharts:
         seconds = place if self.axis == 0 else place / 100.0 * float(history["seconds"][-1])
         return float(np.interp(seconds, history["seconds"], history["decisions"]))
 
-    def widgets(
-        self,
-        manager: PointsManager,
-        duel: OnPress,
-        rewind: Seeks,
-        *,
-        compared: bool,
-        choose: Callable[[int], Transition | None] = lambda _: None,
-    ) -> list[Widget]:
-        """Return a pointer for the charts, their scrubber, the zoom and, beside earlier runs, a legend and the axes.
-
-        The scrubber rewinds the run; `duel` is called when it is pressed, and `choose` with the line style of the run
-        that is pressed in the legend.
-        """
-
-        def scrub(place: float | int) -> None:
-            if isinstance(place, int):
-                rewind.shift(place)
-            else:
-                rewind.seek(self.decisions_at(place))
-
-        found: list[Widget] = [
-            VirtualPointer(manager, self.charts.box, self.charts.follow),
-            Scrubber(manager, self.charts, scrub, duel, self.charts.zoom_by),
-        ]
-        self._legend = RunLegend(manager, _LEGEND, choose) if compared else None
-        if self._legend is not None:
-            found.append(self._legend)
-            axes = Choice(manager, _AXES, "", texts.TRAIN_AXES, self.axis, self.measure_by, size=SMALL, gap=14)
-            found.append(axes)
-        width = max(typeface.width(zoom_word(factor), SMALL, "regular") for factor in (1.0, 8.0))
-        box = (_ZOOM_RIGHT - width, _AXES.top, width, _AXES.height)
-        self._zoom_word = TextButton(manager, box, zoom_word(self.charts.zoom.factor), self._double, size=SMALL)
-        return [*found, self._zoom_word]
-
-    def _double(self) -> None:
-        self.charts.zoom.double(self.charts.charts[0].marker)
-
     def draw(self, canvas: Canvas) -> None:
-        """Draw the charts."""
+        """Draw the charts, and what is said of them as it was when they were painted."""
         self.charts.draw(canvas)
-        draw_captions(canvas, self.charts.charts)
-        for (name, *_), chart in zip(_CHARTS, self.charts.charts, strict=True):
+        for name, chart in zip(_CHARTS, self.charts.charts, strict=False):
+            box = chart.box
+            y = box.bottom + _DROP
+            lines = chart.painted_caption.split("\n")
+            for line in lines if box.width >= _WIDE else lines[:1]:
+                y = draw_wrapped(canvas, line, (box.x, y), box.width - 8, size=_SIZE, colour=MUTE, leading=_LEADING,
+                                 most=2)  # fmt: skip
             canvas.explain(chart.header, texts.EXPLAIN_CHARTS[name], partial(_latest, chart))
             canvas.explain(chart.gutter, texts.EXPLAIN_AXES[self.axis], partial(_scale, name))
+
+
+def _both(history: History) -> str:
+    """Say what a flight earns and what is expected, from the latest numbers of both curves."""
+    earned, expected = (float(_shown(history, name)[-1]) for name in (SCORE, EXPECTED))
+    said = texts.TRAIN_SCORE.format(earned=earned) if math.isfinite(earned) else ""
+    if said and math.isfinite(expected):
+        said = texts.TRAIN_SCORES.format(earned=earned, expected=expected)
+    return said.replace("-", "−")
 
 
 def _scale(name: str) -> str:
@@ -231,14 +238,9 @@ def _latest(chart: Chart) -> str:
     return texts.EXPLAIN_CHART_NOW.format(value=chart.latest)
 
 
-def zoom_word(factor: float) -> str:
-    """Return the word of the zoom, with its factor unless the whole axis is shown."""
-    return texts.COMPARE_ZOOM if factor == 1.0 else texts.COMPARE_ZOOMED.format(factor=factor)
-
-
 def _shown(run: History, name: str) -> Doubles:
     """Return a column in the unit of its chart: shares in percent, values in points of reward."""
-    if name == "mean_q":
+    if name == EXPECTED:
         return in_points(run[name], run.reward_scale)
     return 100.0 * run[name] if name == "success" else run[name]
 

@@ -1,0 +1,122 @@
+"""Inside the network of a training run: the live network, what a player does to it, and what it is paid for."""
+
+from __future__ import annotations
+
+from typing import Final, get_args
+
+import numpy as np
+import pygame
+
+from ai.agent.network import build_network
+from ai.explain.inspection import NetworkHealth
+from ai.lander.environment import ACTION_NAMES, NUM_ACTIONS, NUM_FEATURES
+from ai.nn import NeuralNetwork
+from ai.training.config import Config
+from ai.training.history import PARTS, History
+from ai.training.messages import NetworkState
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import SMALL, TITLE
+from game.panels.network_plan import Show
+from game.panels.network_view import NetworkView
+from game.panels.reward_bar import RewardBar
+from game.scenes.train.editing import NetworkEditing
+from game.training.run import TrainingRun
+from game.ui.panel import Column
+
+SHOWN: Final[tuple[Show, ...]] = get_args(Show)
+_PAID: Final = 84.0  # height of what it is paid for, at the foot of the display
+_MARGIN: Final = 32.0
+
+
+class Inside:
+    """The network and the parts of its reward.
+
+    Attributes:
+        opened: whether they are seen; the network is followed in any case.
+        view, reward_bar: what it shows; `network` is the one in the view, None without a run,
+            and `shown` the message that it came with.
+        health: diagnosis of the network's units and numbers.
+        editing: what a player does to the network by hand.
+
+    """
+
+    def __init__(self, lander_run: TrainingRun) -> None:
+        self.opened = False
+        self.view = NetworkView((0, 0, 400, 300), texts.INPUTS, tuple(map(texts.said, ACTION_NAMES)))
+        self.reward_bar = RewardBar((0, 0, 400, 80))
+        self.editing = NetworkEditing(self.view, lander_run)
+        self.clear()
+
+    def clear(self) -> None:
+        """Reset for another run."""
+        self.network: NeuralNetwork | None = None
+        self.shown: NetworkState | None = None
+        self.health = NetworkHealth()
+        self.editing.clear()
+
+    @property
+    def busy(self) -> bool:
+        """Whether the next frame paints part of a new picture of the network."""
+        return self.opened and self.view.busy
+
+    def place(self, display: pygame.FRect) -> None:
+        """Move to another box."""
+        paid = pygame.FRect(display.left + _MARGIN, display.bottom - _PAID, display.width - 2 * _MARGIN, _PAID - 14)
+        self.reward_bar.box = paid
+        top = display.top + 20
+        self.view.place((paid.left, top, paid.width, max(paid.top - top - 16, 60)))
+
+    def take(self, network_state: NetworkState, config: Config) -> None:
+        """Show the network that a run reports, and see how healthy it is."""
+        if self.show(network_state, config) and self.network is not None:
+            self.health.look(self.network, network_state.observation, config.gradient_clip)
+
+    def show(self, network_state: NetworkState, config: Config) -> bool:
+        """Show a network, perhaps of an earlier moment; return whether it fits the run."""
+        if self.network is None or self.network.values.shape != network_state.values.shape:
+            self.network = build_network(NUM_FEATURES, NUM_ACTIONS, config, np.random.default_rng(0))
+        network = self.network
+        if network.values.shape != network_state.values.shape:
+            return False  # it belongs to a run that has just been replaced
+        self.shown = network_state
+        network.values = network_state.values
+        network.gradients[:] = network_state.gradients
+        self.view.output_scale = config.reward_scale
+        self.view.set(network, network_state.observation)
+        self.editing.look(network)
+        return True
+
+    def pay(self, history: History, row: int = -1) -> None:
+        """Show the reward of the latest flights, part by part, or of those before another point of the history."""
+        self.reward_bar.set(PARTS, history.parts[row])
+
+    def follow(self, event: pygame.event.Event) -> None:
+        """Follow the mouse or the virtual pointer; an event's position is in points."""
+        if event.type == pygame.MOUSEMOTION:
+            self.view.hover(event.pos if self.opened else None)
+            self.reward_bar.hover(event.pos if self.opened else None)
+        self.editing.follow(event, opened=self.opened)
+
+    def update(self, at_once: bool) -> None:
+        """Advance by 1/60 s."""
+        self.editing.update()
+        if self.opened:
+            self.view.update(at_once=at_once)
+            self.reward_bar.update(at_once=at_once)
+
+    def describe(self, column: Column) -> None:
+        """Add what the lines show, and what can be done to the network."""
+        column.text(texts.NETWORK_VIEW_TITLE, size=TITLE)
+        column.choice("", texts.NETWORK_VIEW_SHOWS, SHOWN.index(self.view.show), self._show, SMALL)
+        column.aside(lambda: texts.NETWORK_VIEW_LINES[self.view.show])
+        self.editing.describe(column, opened=True)
+
+    def draw(self, canvas: Canvas) -> None:
+        """Draw the network, the marks on it, and what it is paid for."""
+        self.view.draw(canvas)
+        self.editing.draw(canvas)
+        self.reward_bar.draw(canvas)
+
+    def _show(self, index: int) -> None:
+        self.view.show = SHOWN[index]
