@@ -4,7 +4,6 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.agent.decision import Decision, decide
 from ai.lander.environment import PARAMS, Outcome
 from game.core import texts
 from game.core.settings import SettingsFile
@@ -14,25 +13,13 @@ from game.scenes.play.help_words import HELP, word_of
 from game.scenes.play.overrides import difference
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
+from tests.game.cockpit.test_sharing import Wants
 from tests.support.driver import Driver
 from tests.support.flights import play
 from tests.support.written import words_written
 
 Open = Callable[..., Driver]
 COAST, LEFT, RIGHT, MAIN = range(4)
-
-
-class Wants:
-    """A network that thinks the main engine is worth 10, left 6, and the rest nothing."""
-
-    def q_values(self, observation: np.ndarray) -> np.ndarray:
-        return np.tile(np.array([0, 6, 0, 10, 0, 0], np.float32), (len(observation), 1))
-
-    def act(self, observation: np.ndarray, *, held: np.ndarray | None = None) -> np.ndarray:
-        return self.decide(observation, held=held).action
-
-    def decide(self, observation: np.ndarray, *, held: np.ndarray | None = None) -> Decision:
-        return decide(observation, self.q_values(observation), held)
 
 
 @pytest.fixture(autouse=True)
