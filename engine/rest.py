@@ -20,7 +20,7 @@ from engine.contacts import Contacts
 from engine.state import BodyParams, BodyState
 from engine.vector import Array, Bools, Ints
 
-STILL: Final = 0.01  # m/s and rad/s below which a body is still
+STILL: Final = 0.01  # m/s and rad/s up to which a body is still
 DRIFT: Final = 0.0005  # metres and radians that it may creep meanwhile: what has only begun to slide creeps farther
 STEPS: Final = 30  # for which it has to be still, half a second
 
@@ -36,6 +36,7 @@ class Rest:
 
     def __init__(self, params: BodyParams, state: BodyState, gravity: Array, allowed: bool) -> None:
         self._allowed, self._dynamic = allowed, params.dynamic
+        self._slow = np.where(params.dynamic, STILL, 0.0)[:, None]  # a fixed body that moves carries others along
         self.asleep: Bools = np.zeros(state.active.shape, dtype=bool)
         self.awake: Bools | None = None
         self._place: Array = state.pose.copy()  # where each body was when it came to be still
@@ -75,7 +76,7 @@ class Rest:
         """Let fall asleep what has been still for long enough."""
         if not self._allowed:
             return
-        still = ((np.abs(state.velocity) < STILL) & (np.abs(state.pose - self._place) < DRIFT)).all(axis=2)
+        still = ((np.abs(state.velocity) <= self._slow) & (np.abs(state.pose - self._place) < DRIFT)).all(axis=2)
         self._place[~still] = state.pose[~still]
         self._still = (self._still + 1) * still
         if ((self._still >= STEPS) & self._dynamic & ~self.asleep).any():

@@ -14,7 +14,7 @@ TITLE: Final = "Tranquility"
 ENTRY: Final = ROOT / "packaging_app" / "start.py"
 
 OWN: Final = ("tranquility", "engine", "ai", "game")
-# All that the game imports, and all that these import. PyAV, for MP4, is left out: see docs/app.md.
+# All that the game imports, and all that these import.
 PACKAGES: Final = ("numpy", "pygame", "pygame_gui", "i18n", "font_manrope", "platformdirs", "filelock", "tqdm", "PIL")
 _BUILDS: Final = ("PyInstaller", "_pyinstaller_hooks_contrib")  # at work while it is built
 

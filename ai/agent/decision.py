@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, TypeVar
+from typing import Any, Final, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ai.environment import Bools, Floats, Ints
 
-Array = NDArray[Any]
 Real = TypeVar("Real", np.float32, np.float64)
+_ROWS: Final = ("observation", "action", "best", "values")  # what has a row for each lander
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,30 +57,22 @@ class Decision:
     def updated(self, slots: Ints, newer: Decision) -> Decision:
         """Return the decisions of all n landers, with those of `slots` (m,) replaced by `newer` ones."""
 
-        def put(old: Array, new: Array) -> Array:
+        def put(old: Any, new: Any) -> Any:
+            if old is None or new is None:
+                return None
             both = old.copy()
             both[slots] = new
             return both
 
-        values = None if self.values is None or newer.values is None else put(self.values, newer.values)
-        return replace(
-            newer,
-            observation=put(self.observation, newer.observation),
-            values=values,
-            action=put(self.action, newer.action),
-            best=put(self.best, newer.best),
-        )
+        return replace(newer, **{name: put(getattr(self, name), getattr(newer, name)) for name in _ROWS})
 
     def of(self, slot: int) -> Decision:
         """Return a copy of the decision for one of the landers, with n = 1."""
-        values = None if self.values is None else self.values[[slot]]
-        return replace(
-            self,
-            observation=self.observation[[slot]],
-            values=values,
-            action=self.action[[slot]],
-            best=self.best[[slot]],
-        )
+
+        def row(array: Any) -> Any:
+            return None if array is None else array[[slot]]
+
+        return replace(self, **{name: row(getattr(self, name)) for name in _ROWS})
 
 
 def decide(

@@ -7,8 +7,9 @@ import json
 import os
 import signal
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
+from functools import wraps
 from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Any, Final, NoReturn, TypeVar
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
     Settings = TypeVar("Settings", bound=Knobs)
 
+Command = Callable[[argparse.Namespace], int]
 FAILED: Final = 1
 LONGEST: Final = 400  # letters of a printed line: text from a file or an argument may be of any length
 SEEDS: Final = (0, 2**63 - 1)
@@ -111,13 +113,25 @@ def reason(error: BaseException) -> str:
     return str(error) or type(error).__name__
 
 
-def out_of_range(arguments: argparse.Namespace, **ranges: tuple[float, float]) -> str | None:
-    """Return a message on the option outside its range, if any; both ends are inside, NaN never is."""
+def refusing(command: Command) -> Command:
+    """Return a command that says in a sentence why it refused what the user has named, and ends with a failure."""
+
+    @wraps(command)
+    def run(arguments: argparse.Namespace) -> int:
+        try:
+            return command(arguments)
+        except REFUSED as error:
+            return fail(reason(error))
+
+    return run
+
+
+def check_ranges(arguments: argparse.Namespace, **ranges: tuple[float, float]) -> None:
+    """Raise ValueError for an option outside its range; both ends are inside, NaN never is."""
     for name, (low, high) in ranges.items():
-        value = getattr(arguments, name)
+        value = getattr(arguments, name, None)
         if value is not None and not low <= value <= high:
-            return f"--{name} lies between {low:,} and {high:,}, and was {value}"
-    return None
+            raise ValueError(f"--{name} lies between {low:,} and {high:,}, and was {value}")
 
 
 def configured(preset: Settings, given: list[str]) -> Settings:

@@ -8,17 +8,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from ai.cli.command_line import (
-    EPISODES,
-    REFUSED,
-    SEEDS,
-    WORKERS,
-    fail,
-    folder,
-    out_of_range,
-    progress_bar,
-    reason,
-)
+from ai.cli import command_line as cli
 
 if TYPE_CHECKING:
     from ai.agent.agent import DeepQAgent
@@ -38,8 +28,8 @@ _TITLES: Final = {
 def add_commands(commands: Any) -> None:
     """Add `copilot-table` to a parser's sub-commands."""
     table = commands.add_parser("copilot-table", help="measure how much the co-pilot helps good and bad pilots")
-    table.add_argument("--model", type=folder, default=MODEL, metavar="DIR", help="the co-pilot (default: modern)")
-    table.add_argument("--anywhere", type=folder, default=ANYWHERE_MODEL, metavar="DIR",
+    table.add_argument("--model", type=cli.folder, default=MODEL, metavar="DIR", help="the co-pilot (default: modern)")
+    table.add_argument("--anywhere", type=cli.folder, default=ANYWHERE_MODEL, metavar="DIR",
                        help="the co-pilot of the table in other worlds (default: anywhere)")  # fmt: skip
     table.add_argument("--episodes", type=int, default=ROW, help=f"flights for each row (default: {ROW})")
     table.add_argument("--assist", type=float, nargs="*", default=[], metavar="DIAL",
@@ -66,6 +56,7 @@ def _lander(model: Path, envs: tuple[str, ...]) -> DeepQAgent:
     return agent
 
 
+@cli.refusing
 def _table(arguments: argparse.Namespace) -> int:
     from ai.copilot.copilot import Mode
     from ai.copilot.measurement import GUARD, HELPS, TABLES, seconds
@@ -73,26 +64,25 @@ def _table(arguments: argparse.Namespace) -> int:
     from ai.sweep.shards import parts_of, results
     from ai.training.config import ANYWHERE, LANDER
 
-    if problem := out_of_range(arguments, episodes=EPISODES, seed=SEEDS, workers=WORKERS):
-        return fail(problem)
+    cli.check_ranges(arguments, episodes=cli.EPISODES, seed=cli.SEEDS, workers=cli.WORKERS)
     if not all(0 <= assist <= 1 for assist in arguments.assist):
-        return fail("the dial goes from 0 to 1")
+        raise ValueError("the dial goes from 0 to 1")
     more = [(Mode.GUARDIAN, assist) for assist in arguments.assist]
-    try:
-        agent = _lander(arguments.model, (LANDER,))
-        agents = {"one_pad": agent, "three_pads": agent, "other_worlds": _lander(arguments.anywhere, (ANYWHERE,))}
-        flown, scripted = (arguments.episodes, arguments.seed), arguments.good == "scripted"
-        asked = parts_of(agents, scripted, [*HELPS, *more], *flown)
-        took = sum(
+    agent = _lander(arguments.model, (LANDER,))
+    agents = {"one_pad": agent, "three_pads": agent, "other_worlds": _lander(arguments.anywhere, (ANYWHERE,))}
+    flown, scripted = (arguments.episodes, arguments.seed), arguments.good == "scripted"
+    asked = parts_of(agents, scripted, [*HELPS, *more], *flown)
+    took = (
+        sum(
             seconds(agent, ScriptedPilot() if scripted else agent, table, TABLES[table][1], help_, *flown)
             for table, agent in agents.items()
             for help_ in (GUARD, *more)
-        ) / arguments.workers
-        print(f"this takes about {max(took / 60, 0.1):.1f} minutes", file=sys.stderr)
-        with progress_bar(len(asked), "flying", unit="part") as bar:
-            parts = results([part for _, part in asked], arguments.workers, bar.update)
-    except REFUSED as error:
-        return fail(reason(error))
+        )
+        / arguments.workers
+    )
+    print(f"this takes about {max(took / 60, 0.1):.1f} minutes", file=sys.stderr)
+    with cli.progress_bar(len(asked), "flying", unit="part") as bar:
+        parts = results([part for _, part in asked], arguments.workers, bar.update)
     tables: dict[str, list[AssistedFlights]] = {}
     for (name, _), rows in zip(asked, parts, strict=True):
         tables.setdefault(name, []).extend(rows)

@@ -32,28 +32,25 @@ def add_commands(commands: Any) -> None:
         command.set_defaults(run=run)
 
 
+@cli.refusing
 def _evaluate(arguments: argparse.Namespace) -> int:
     from ai.lander.spawns import SPAWNS
     from ai.training.config import LANDER
     from ai.training.statistics import wilson
 
-    if problem := cli.out_of_range(arguments, episodes=FLIGHTS, seed=cli.SEEDS, workers=cli.WORKERS):
-        return cli.fail(problem)
+    cli.check_ranges(arguments, episodes=FLIGHTS, seed=cli.SEEDS, workers=cli.WORKERS)
     if arguments.spawn not in (None, *SPAWNS):
-        return cli.fail(f"--spawn is one of {', '.join(SPAWNS)}, not {arguments.spawn}")
-    try:
-        agent, task, env = _agent_and_task(arguments)
-        episodes = arguments.episodes or task.test_episodes
-        if env == LANDER:
-            score: Score = _flown(arguments, agent, episodes)
-        elif arguments.workers is not None or episodes > cli.EPISODES[1]:
-            return cli.fail(f"--workers and more than {cli.EPISODES[1]:,} episodes are for the lander on the moon")
-        elif arguments.spawn is not None:
-            return cli.fail(f"--spawn is for the lander on the moon; this network is for {env}")
-        else:
-            score = task.evaluate(agent, episodes, arguments.seed)
-    except cli.REFUSED as error:
-        return cli.fail(cli.reason(error))
+        raise ValueError(f"--spawn is one of {', '.join(SPAWNS)}, not {arguments.spawn}")
+    agent, task, env = _agent_and_task(arguments)
+    episodes = arguments.episodes or task.test_episodes
+    if env == LANDER:
+        score: Score = _flown(arguments, agent, episodes)
+    elif arguments.workers is not None or episodes > cli.EPISODES[1]:
+        raise ValueError(f"--workers and more than {cli.EPISODES[1]:,} episodes are for the lander on the moon")
+    elif arguments.spawn is not None:
+        raise ValueError(f"--spawn is for the lander on the moon; this network is for {env}")
+    else:
+        score = task.evaluate(agent, episodes, arguments.seed)
     told: dict[str, Any] = score.to_json()
     if score.success is not None:
         told["success_interval"] = wilson(score.success, score.episodes)
@@ -95,16 +92,14 @@ def _flown(arguments: argparse.Namespace, agent: DeepQAgent, episodes: int) -> S
     return reduce(type(sums[0]).plus, sums).evaluation()
 
 
+@cli.refusing
 def _evaluate_digits(arguments: argparse.Namespace) -> int:
     from ai.digits.classifier import DigitClassifier
     from ai.digits.mnist import TEST, load_part
     from ai.digits.training import confusion
 
-    try:
-        classifier = DigitClassifier.load(arguments.model)
-        images, labels = load_part(TEST)
-    except cli.REFUSED as error:
-        return cli.fail(cli.reason(error))
+    classifier = DigitClassifier.load(arguments.model)
+    images, labels = load_part(TEST)
     table = confusion(classifier, images, labels)
     right, shown = table.diagonal(), table.sum(axis=1)
     accuracy = int(right.sum()) / len(labels)

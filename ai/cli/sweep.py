@@ -57,7 +57,7 @@ def add_commands(commands: Any) -> None:
     add("--preset", help="settings of all that is not searched, as for train or train-digits")
     add("--set", action="append", metavar="NAME=VALUE", dest="changes", help="change such a setting")
     add("--seed", type=int, help="of the search itself (default: 0)")
-    add("--address", metavar="HOST:PORT", help="join the Ray cluster there; auto for the one around")
+    add("--address", metavar="HOST:PORT", help="join the Ray cluster there")
     add("--workers", type=int, metavar="N", help="processes at once (default: all cores)")
     sweep.set_defaults(run=_sweep)
 
@@ -68,25 +68,20 @@ def add_commands(commands: Any) -> None:
     study.set_defaults(run=_study)
 
 
+@cli.refusing
 def _sweep(arguments: argparse.Namespace) -> int:
     from ai.sweep.cluster import MISSING, answering, installed
     from ai.sweep.study import Study
 
     if not installed():
-        return cli.fail(MISSING)
-    if problem := cli.out_of_range(arguments, **_RANGES):
-        return cli.fail(problem)
-    code = 0
-    try:
-        place = _place(arguments)
-        if arguments.address is not None:
-            answering(arguments.address)  # before there is a study
-        study = _resumed(arguments, place) if arguments.resume else Study.create(place, _plan(arguments))
-        with study.claimed(), cli.stoppable() as stop:
-            if not study.complete:
-                code = _run(arguments, study, stop)
-    except cli.REFUSED as error:
-        return cli.fail(cli.reason(error))
+        raise ImportError(MISSING)
+    cli.check_ranges(arguments, **_RANGES)
+    place = _place(arguments)
+    if arguments.address is not None:
+        answering(arguments.address)  # before there is a study
+    study = _resumed(arguments, place) if arguments.resume else Study.create(place, _plan(arguments))
+    with study.claimed(), cli.stoppable() as stop:
+        code = 0 if study.complete else _run(arguments, study, stop)
     _tell(study)
     if not study.complete:
         named = f" --env {arguments.env}" if ":" in (arguments.env or "") else ""
@@ -198,17 +193,15 @@ def _plan(arguments: argparse.Namespace) -> Plan:
     return Plan.of(config, space, **{name: value for name, value in given.items() if value is not None})
 
 
+@cli.refusing
 def _study(arguments: argparse.Namespace) -> int:
     from ai.files import write_text
     from ai.sweep.report import page, report
     from ai.sweep.study import Study
 
-    try:
-        study = Study.load(_place(arguments))
-        if arguments.html:
-            write_text(arguments.html, page(study))
-    except cli.REFUSED as error:
-        return cli.fail(cli.reason(error))
+    study = Study.load(_place(arguments))
+    if arguments.html:
+        write_text(arguments.html, page(study))
     if arguments.json:
         print(json.dumps(report(study), indent=2))
     else:

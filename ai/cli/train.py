@@ -22,7 +22,9 @@ if TYPE_CHECKING:
     from ai.training.loop import Progress
     from ai.training.run import Limit, RunKind
 
-DECISIONS: Final = (1, 10**12)
+_RANGES: Final = {
+    "decisions": (1, 10**12), "validation": cli.EPISODES, "seed": cli.SEEDS, "seconds": cli.SECONDS,
+}  # fmt: skip
 _LINE_SECONDS: Final = 20.0  # between two lines where there is no terminal
 _PARTS: Final = 1000  # of the bar
 _BAR: Final = "{desc} {percentage:3.0f}%|{bar}| {elapsed}<{remaining} {postfix}"
@@ -67,10 +69,6 @@ def _train(arguments: argparse.Namespace) -> int:
         recent = f"landed {progress.success_rate:.0%}" if lander else f"return {progress.mean_return:.1f}, mean"
         return f"{recent} of the last 100, ε {progress.epsilon:.2f}, {progress.decisions:,} decisions{best}"
 
-    if problem := cli.out_of_range(arguments, decisions=DECISIONS, validation=cli.EPISODES):
-        return cli.fail(problem)
-    if arguments.seconds is None and arguments.decisions is None and (arguments.output or arguments.resume):
-        return cli.fail("say when to stop: --seconds S or --decisions N")
     return _run(arguments, AGENTS, lander_config, shown, lambda training, _: str(training.best))
 
 
@@ -130,12 +128,13 @@ def _run(
 
     output = arguments.output or arguments.resume
     limit = Limit(arguments.seconds, getattr(arguments, "decisions", None))
-    if output is None:
-        return cli.fail("say where to keep the network: --output DIR, or --resume DIR")
-    if problem := cli.out_of_range(arguments, seed=cli.SEEDS, seconds=cli.SECONDS):
-        return cli.fail(problem)
     with ExitStack() as claims:
         try:
+            cli.check_ranges(arguments, **_RANGES)
+            if output is None:
+                raise ValueError("say where to keep the network: --output DIR, or --resume DIR")
+            if limit.seconds is None and limit.moment is None and "decisions" in arguments:
+                raise ValueError("say when to stop: --seconds S or --decisions N")
             if arguments.resume is None:
                 training = kind.begin(config(arguments), arguments.seed or 0)
             else:

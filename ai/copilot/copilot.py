@@ -179,14 +179,43 @@ class CoPilot:
         """Go on with the plans of another: one that lands does so whichever network it was found with."""
         self.guardians, self._rules = other.guardians, other._rules
 
-    def futures(self, env: LanderEnv, slots: Sequence[int] | None = None) -> Futures:
-        """Fly the network on from now after each action, in some slots or all; return what comes of it."""
-        flying = env.outcome == Outcome.FLYING
-        asked = [(slot, push) for slot in (range(env.num_envs) if slots is None else slots) if flying[slot]
-                 for push in KEYS]  # fmt: skip
-        known: list[dict[Push, Future]] = [{} for _ in range(env.num_envs)]
-        self._look(env, env.target, asked, known)
-        return Futures(known)
+    def futures(self, env: LanderEnv) -> Futures:
+        """Fly the network on from the present moment after each action, in every slot; return what comes of it."""
+        return Futures(self.foresee(env, [None] * env.num_envs))
+
+    def foresee(self, env: LanderEnv, asked: Sequence[Push | None], *, whole: bool = False) -> list[Known]:
+        """Fly ahead, in one batch, what may be flown where pilots push `asked` (n), or each action where that is None.
+
+        Returns what comes of each push, for every slot. Of several plans, that to the pad counts which is the likeliest
+        by what the pilot has done so far. `whole` is as in `decide`.
+        """
+        self._void(env)
+        here = Here.all(env)
+        needed = [
+            (slot, push)
+            for slot in np.flatnonzero(env.outcome == Outcome.FLYING).tolist()
+            for push in self._needs(slot, here[slot], asked[slot], whole)
+        ]
+        known: list[dict[Push, Future]] = [{} for _ in asked]
+        if needed:
+            moment = Moment.of(env)
+            moment.target[:] = self._target(env)
+            found = self.lookahead.futures(moment, needed, decisions_of(self.assist))
+            for (slot, push), future in zip(needed, found, strict=True):
+                known[slot][push] = future
+        return list(known)
+
+    def _needs(self, slot: int, here: Here, asked: Push | None, whole: bool) -> Sequence[Push]:
+        return KEYS if asked is None else self.guardians[slot].needs(here, asked, whole=whole)
+
+    def _target(self, env: LanderEnv) -> Ints:
+        """Return the number of the pad that is the likeliest so far, (n,), the nearest among equals."""
+        pads = env.ground.at_once
+        if pads == 1 or not self.infers_intent:
+            return env.target
+        away = np.abs(env.ground.middles[:pads, 0] - env.position[:, :1])
+        target: Ints = (self._intent.likely(env.num_envs, pads) - 1e-6 * away).argmax(axis=1)
+        return target
 
     def share(
         self,
@@ -215,15 +244,15 @@ class CoPilot:
         surroundings: Floats | None = None,
         shares: Doubles | None = None,
         env: LanderEnv | None = None,
-        known: Sequence[Known | None] | None = None,
+        known: Sequence[Known] | None = None,
         *,
         whole: bool = False,
     ) -> SharedDecision:
         """Decide as `share` does, and return all that explains it; raises as `share` does.
 
         Here, what is corrected keeps the pilot's share of thrust, unless it is to be `whole`, so fly
-        `SharedDecision.shares`. What is `known` (n) of a pilot was flown beforehand: then no future of theirs is flown
-        now, and what is missing counts as lost.
+        `SharedDecision.shares`. What is `known` (n) was flown beforehand: then no future is flown now, and what is
+        missing counts as lost.
         """
         observation, pilot, pushed = _checked(observation, pilot_action, shares)
         slots, pads, _ = observation.shape
@@ -233,7 +262,7 @@ class CoPilot:
         told = observation, pilot, values, meant, likely, self.assist, self.mode, self.reward_scale
         if self.mode is Mode.GUARDIAN and env is not None:
             pushes = [Push(*push) for push in zip(pilot.tolist(), *pushed.T.tolist(), strict=True)]
-            return SharedDecision(*told, *self._save(env, observation, pushes, values, likely, known, whole=whole))
+            return SharedDecision(*told, *self._save(env, pushes, values, known, whole=whole))
         weigh = self._guard if self.mode is Mode.GUARDIAN else self._tolerate
         best, feasible = weigh(meant, pilot, np.where(pilot == COAST, 1.0, self.assist))
         candidates = _candidates(pilot, best)
@@ -265,59 +294,35 @@ class CoPilot:
         return likely, values[np.arange(slots)[:, None], pad]
 
     def _save(
-        self,
-        env: LanderEnv,
-        observation: Floats,
-        asked: Sequence[Push],
-        values: Floats,
-        likely: Doubles,
-        known: Sequence[Known | None] | None,
-        *,
-        whole: bool,
+        self, env: LanderEnv, asked: Sequence[Push], values: Floats, known: Sequence[Known] | None, *, whole: bool
     ) -> tuple[Any, ...]:
         """Let each pilot fly what a landing plan begins with; else do the least that such a plan begins with.
 
         Returns the fields of a `SharedDecision` from its `action` on.
         """
-        slots, pads, _ = observation.shape
+        slots, pads, _ = values.shape
         if env.num_envs != slots or DECISION_STEPS % env.frame_skip:
             raise ValueError(
                 f"{slots} observations are of as many landers, whose steps are 1, 2 or 4 physics steps long"
             )
-        target = env.target
-        if pads > 1 and pads == env.ground.at_once and self.infers_intent:
-            target = (likely - 1e-6 * np.abs(observation[:, :, 0])).argmax(axis=1)
-        pad = target if pads == len(env.ground.pads) else np.zeros(slots, dtype=np.intp)
+        pad = self._target(env) if pads == len(env.ground.pads) else np.zeros(slots, dtype=np.intp)
         best = values[np.arange(slots), pad].argmax(axis=1)
         self._void(env)
-        flying = np.flatnonzero(env.outcome == Outcome.FLYING).tolist() if self.assist > 0 else []
-        futures, here = [dict(each or {}) for each in known or [None] * slots], Here.all(env)
-        needed = [(slot, push) for slot in flying if known is None or known[slot] is None
-                  for push in self.guardians[slot].needs(here[slot], asked[slot], KEYS[best[slot]], futures[slot],
-                                                         whole=whole)]  # fmt: skip
-        self._look(env, target, needed, futures)
         choices = [Choice(push, ActionSource.PILOT, held=False) for push in asked]
-        for slot in flying:
-            network = KEYS[best[slot]]
-            choices[slot] = self.guardians[slot].choose(here[slot], asked[slot], network, futures[slot], whole=whole)
-        feasible = np.array([[push not in each or each[push].passes for push in KEYS] for each in futures])
+        if self.assist == 0:
+            known = known or [{}] * slots
+        else:
+            known = known or self.foresee(env, asked, whole=whole)
+            here = Here.all(env)
+            for slot in np.flatnonzero(env.outcome == Outcome.FLYING).tolist():
+                network, guardian = KEYS[best[slot]], self.guardians[slot]
+                choices[slot] = guardian.choose(here[slot], asked[slot], network, known[slot], whole=whole)
+        feasible = np.array([[push not in each or each[push].passes for push in KEYS] for each in known])
         source = np.array([choice.source for choice in choices])
         action = np.array([choice.push.action for choice in choices])
         shares = np.array([choice.push[1:] for choice in choices])
         held = np.array([choice.held for choice in choices])
-        return action, best, source, feasible, shares, source != ActionSource.PILOT, tuple(asked), tuple(futures), held
-
-    def _look(
-        self, env: LanderEnv, target: Ints, asked: Sequence[tuple[int, Push]], known: Sequence[dict[Push, Future]]
-    ) -> None:
-        """Fly the futures of slots and pushes, and note them as `known` (n)."""
-        if not asked:
-            return
-        moment = Moment.of(env)
-        moment.target[:] = target
-        found = self.lookahead.futures(moment, asked, decisions_of(self.assist))
-        for (slot, push), future in zip(asked, found, strict=True):
-            known[slot][push] = future
+        return action, best, source, feasible, shares, source != ActionSource.PILOT, tuple(asked), tuple(known), held
 
     def _void(self, env: LanderEnv) -> None:
         """Drop all plans of another environment, or of one whose rules have changed since."""

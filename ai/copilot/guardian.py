@@ -58,12 +58,10 @@ class Guardian:
         """Whether it is known what comes of a push: it was flown ahead, or the held plan begins with it."""
         return asked in known or (self.plan is not None and self.plan.push(here) == asked)
 
-    def needs(self, here: Here, asked: Push, network: Push, known: Known, *, whole: bool) -> list[Push]:
-        """Return the pushes whose futures `choose` may have to know, and does not yet."""
-        offers, head = self._offers(here, asked, network, whole)
-        if asked == head or (asked in known and known[asked].passes):
-            return []
-        return [push for push in offers if push not in known and push != head]
+    def needs(self, here: Here, asked: Push, *, whole: bool = False) -> list[Push]:
+        """Return the pushes whose futures `choose` may have to know."""
+        offers, head = self._offers(here, asked, asked, whole)
+        return [] if asked == head else [push for push in offers if push != head]
 
     def choose(self, here: Here, asked: Push, network: Push, known: Known, *, whole: bool = False) -> Choice:
         """Return what to fly, where the pilot pushes `asked` and the network would push `network`.

@@ -26,16 +26,20 @@ class Intent:
         self.reward_scale = reward_scale
         self._likely: Doubles = np.ones((0, 0))
 
+    def likely(self, slots: int, pads: int) -> Doubles:
+        """Return the chances so far, (n, pads)."""
+        if self._likely.shape != (slots, pads):
+            self._likely = np.full((slots, pads), 1.0 / pads)
+        return self._likely
+
     def watch(self, values: Floats, pilot: Ints) -> Doubles:
         """Update by one action (n,), given `values` (n, pads, 6) on the way to each pad; return chances (n, pads)."""
         slots, pads, actions = values.shape
-        if self._likely.shape != (slots, pads):
-            self._likely = np.full((slots, pads), 1.0 / pads)
         worse = (values - values.max(axis=2, keepdims=True)) / (_TEMPER * self.reward_scale)
         chance = np.exp(worse)
         chance /= chance.sum(axis=2, keepdims=True)
         told = (1.0 - _SLIP) * chance[np.arange(slots), :, pilot] + _SLIP / actions
-        likely = self._likely**_MEMORY * told
+        likely = self.likely(slots, pads) ** _MEMORY * told
         likely /= likely.sum(axis=1, keepdims=True)
         says = (pilot != COAST) & np.isfinite(likely).all(axis=1)
         self._likely = np.where(says[:, None], likely, self._likely)

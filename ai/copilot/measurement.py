@@ -11,11 +11,11 @@ import numpy as np
 
 from ai.agent.agent import DeepQAgent
 from ai.copilot.copilot import CoPilot, Mode
-from ai.copilot.futures import Known
+from ai.copilot.futures import Futures, Push
 from ai.copilot.hands import HANDS, Adversary
 from ai.environment import Bools, Doubles
 from ai.lander.anywhere import AnywhereEnv
-from ai.lander.environment import NUM_ACTIONS, LanderEnv, Outcome
+from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.ground import hilly
 from ai.lander.pilots import Pilot
 from ai.lander.rules import ACTION_SHARES
@@ -30,7 +30,7 @@ GUARD: Final[Help] = (Mode.GUARDIAN, 0.04)  # there must be a landing after one 
 HELPS: Final[tuple[Help, ...]] = ((ALONE, 0.0), (Mode.TOLERANCE, 0.4), (VALUES, 0.4), GUARD)
 _STARTS: Final = 0x5AFE7AB1E  # beside the seed, so that no start is one that anything was trained with
 _SAMPLE: Final = 4  # decisions that are timed
-_DECISIONS: Final = 200  # as long as the first ones, that guarded flights take
+_DECISIONS: Final = 230  # as long as the first ones, that guarded flights take
 
 
 @dataclass(frozen=True)
@@ -149,25 +149,25 @@ def fly(
     overridden, decisions = np.zeros((2, env.num_envs))
     held = np.zeros(env.num_envs, dtype=bool)
     each = env.num_envs // len(pilots)
-    hands = [(pilot, range(number * each, (number + 1) * each)) for number, pilot in enumerate(pilots)]
+    hands = [(pilot, slice(number * each, (number + 1) * each)) for number, pilot in enumerate(pilots)]
     foresees = copilot is not None and copilot.mode is Mode.GUARDIAN and not by_values
-    hostile = [slot for pilot, mine in hands if foresees and isinstance(pilot, Adversary) for slot in mine]
-    known: list[Known | None] = [None] * env.num_envs
-    passes = np.ones((env.num_envs, NUM_ACTIONS), dtype=bool)
     while (flying := env.outcome == Outcome.FLYING).any() and decisions.max() < most:
-        if copilot and hostile:
-            futures = copilot.futures(env, hostile)
-            passes = futures.lasts
-            for slot in hostile:
-                known[slot] = futures.known[slot]
         wished, action, shares = env.observe(), env.actions.copy(), env.shares.copy()
+        asked: list[Push | None] = [None] * env.num_envs
         for pilot, mine in hands:
             if not flying[mine].any():
                 continue
-            options = {"passes": passes[mine]} if isinstance(pilot, Adversary) else {}
-            action[mine] = pilot.act(wished[mine], held=env.actions[mine], **options)
+            action[mine] = pilot.act(wished[mine], held=env.actions[mine])
             pushes = getattr(pilot, "shares", ACTION_SHARES.__getitem__)
             shares[mine] = pushes(action[mine])
+            if not isinstance(pilot, Adversary):
+                rows = zip(action[mine].tolist(), *shares[mine].T.tolist(), strict=True)
+                asked[mine] = [Push(*row) for row in rows]
+        known = copilot.foresee(env, asked) if copilot and foresees else None
+        for pilot, mine in hands:
+            if known and isinstance(pilot, Adversary):
+                action[mine] = pilot.act(wished[mine], passes=Futures(known[mine]).lasts)
+                shares[mine] = ACTION_SHARES[action[mine]]
         if copilot:
             seen = env.observe_pads(agent) if env.ground.at_once > 1 else env.observe_for(agent)
             decision = copilot.decide(seen, action, None, shares, env if foresees else None, known)

@@ -37,20 +37,6 @@ class InkChange:
     after: float
 
 
-@dataclass(frozen=True, eq=False)
-class UnitEvidence:
-    """Difference of two digits' scores, unit by unit of the last layer's inputs."""
-
-    values: Array  # (n,) what the units gave
-    weights: Array  # (n,) each unit's weight for the asked digit, less that for the answer
-    bias: float  # likewise of the biases
-
-    @property
-    def shares(self) -> Array:
-        """Value times weight, (n,): with the bias they add up to the asked digit's score less the answer's."""
-        return self.values * self.weights
-
-
 class Contrast:
     """Evidence in one image (28, 28), measured a part at a time: call `advance` until `done`.
 
@@ -71,10 +57,9 @@ class Contrast:
         last = next((each for each in reversed(classifier.network.layers) if each.parameters), None)
         if type(last) is not FullyConnectedLayer or last.outputs != DIGITS:
             raise ValueError("the network's last layer is not fully connected to ten outputs")
-        self._last, self._at = last, classifier.network.layers.index(last)
+        self._at = classifier.network.layers.index(last)
         self.image: Image = np.array(image, np.float32)
         activations = classifier.network.activations(classifier.shaped(self.image))
-        self._units = (activations[self._at - 1] if self._at else classifier.shaped(self.image))[0]
         self.scores: Array = activations[self._at][0]
         self.answer = int(self.scores.argmax())
         self.taken: Array = np.full((SIDE, SIDE, DIGITS), np.nan, np.float32)
@@ -119,12 +104,6 @@ class Contrast:
             return None
         before = float(self.scores[asked])
         return InkChange(row, column, ink, before, before + float(raised[row, column]))
-
-    def units(self, asked: int) -> UnitEvidence:
-        """Return how each unit before the last layer tells the asked digit from the answer."""
-        weights, bias = self._last.weights, self._last.bias
-        between = weights[:, asked] - weights[:, self.answer]
-        return UnitEvidence(self._units.reshape(-1), between, float(bias[asked] - bias[self.answer]))
 
     def _read(self, images: npt.NDArray[np.float32]) -> Array:
         """Return the scores of images (n, 28, 28), (n, 10)."""

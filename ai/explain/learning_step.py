@@ -44,7 +44,6 @@ class Step:
     values_before: Floats  # (parameters,) of the network
     values_after: Floats
     activations: tuple[Floats, ...]  # what each layer gave for that row on the forward pass, from the first layer up
-    errors: tuple[Floats, ...]  # derivative of the cost by what each layer gave, for that row, from the first layer up
     gradient: Floats  # (parameters,) of the whole minibatch, as the optimizer used it
     gradient_length: float  # before it was clipped
     share: Floats  # (parameters,) of the gradient before it was clipped, the part that comes from that row
@@ -86,17 +85,12 @@ def recorded_step(
         take()
     derivative = recorder.call(NeuralNetwork.backward_propagate).arguments["output_error"]
     given = {id(call.owner): call.values[RETURN] for call in recorder.calls(*forward)}
-    errors: dict[int, Any] = {}
-    for call in recorder.calls(*backward):
-        if "output_error" in call.arguments:
-            errors.setdefault(id(call.owner), call.arguments["output_error"])
     gradient, after = network.gradients.copy(), network.values.copy()
     return recorder, Step(
         row=row,
         values_before=values_before,
         values_after=after,
         activations=tuple(of_row(given[id(layer)], row) for layer in network.layers),
-        errors=tuple(of_row(errors[id(layer)], row) for layer in network.layers),
         gradient=gradient,
         gradient_length=float(recorder.call(Optimizer.step).values["length"]),
         share=_share(network, values_before, derivative, row),

@@ -135,7 +135,7 @@ def recover_folder(target: str | Path) -> None:
 
 def recover_all(folder: Path) -> None:
     """Put back or delete what saves that were stopped have left in a folder; raises OSError if it can't be seen."""
-    for name in {found[1] for path in folder.iterdir() if (found := _ASIDE.fullmatch(path.name))}:
+    for name in {name for name, _ in _left(folder)}:
         recover_folder(folder / name)
         _clear_away(folder / name)
 
@@ -166,15 +166,18 @@ def _clear_away(path: Path) -> None:
                 shutil.rmtree(left)
 
 
+def _left(folder: Path) -> Iterator[tuple[str, Path]]:
+    """Yield what saves have left in a folder: the name that it was for, and its path."""
+    for path in folder.iterdir():
+        if (name := _ASIDE.fullmatch(path.name)) and path.is_dir() and not path.is_symlink():
+            yield name[1], path
+
+
 def _aside(path: Path, suffix: str) -> list[Path]:
     """Return the folders beside a path that were begun, or moved aside, for it."""
-    found = []
     with suppress(OSError):
-        for each in path.parent.iterdir():
-            name = _ASIDE.fullmatch(each.name)
-            if name and name[1] == path.name and each.suffix == suffix and each.is_dir() and not each.is_symlink():
-                found.append(each)
-    return found
+        return [left for name, left in _left(path.parent) if name == path.name and left.suffix == suffix]
+    return []
 
 
 def _checked(target: str | Path, kind: FolderKind) -> Path:

@@ -1,6 +1,6 @@
 """Landing anywhere: random sites, and landers that each fly at one of their own.
 
-A site is what `LanderEnv.surroundings` tells of: gravity, engine, air, wind, fuel, time, and a pad that may be narrow
+A site is what `LanderEnv.around` tells of: gravity, engine, air, wind, fuel, time, and a pad that may be narrow
 or move. Sites are drawn from named distributions, as starts are from `ai.lander.spawns`.
 """
 

@@ -122,7 +122,7 @@ def leg(seed: int, number: int, bare: bool = False) -> Leg:
     kinds = _kinds(number, rng)
     rock = _Rock(first, goal, _HALF_WAY[len(kinds) - 1])
     for kind in kinds:
-        rock.add(kind, hard, rng)
+        getattr(rock, f"_{kind}")(hard, rng)
     windy = max(hard, _LIGHT) * (number > _CALM)
     wind, gust = (most * windy * rng.uniform(0.5, 1.0) for most in _WIND)
     conditions = Conditions(wind=round(float(wind * rng.choice((-1, 1))), 3), gust=round(float(gust), 3))
@@ -168,10 +168,6 @@ class _Rock:
     def route(self) -> tuple[tuple[float, float], ...]:
         """Points from above the start to above the goal."""
         return (self._above, *sorted(self._way), self._last)
-
-    def add(self, kind: str, hard: float, rng: np.random.Generator) -> None:
-        """Put an obstacle of a kind into the way."""
-        getattr(self, f"_{kind}")(hard, rng)
 
     def _open(self, hard: float, rng: np.random.Generator) -> None:  # noqa: ARG002
         """A low hill or two, that no sensible path comes near."""

@@ -13,11 +13,12 @@ from typing import Any, Final
 import numpy as np
 
 from ai.environment import Bools, Doubles, Floats, Ints, StepResult
-from ai.lander import craft, moment
+from ai.lander import craft
 from ai.lander.conditions import CALM, Conditions
 from ai.lander.free_flight import FreeFlight
 from ai.lander.ground import Ground
 from ai.lander.judging import judge
+from ai.lander.moment import Moment
 from ai.lander.rewards import REWARDS, RewardWeights, Situation
 from ai.lander.rules import (
     ACTION_NAMES,
@@ -34,7 +35,7 @@ from ai.lander.rules import (
     Limits,
     Outcome,
 )
-from ai.lander.sensing import sensed, surroundings, terrain
+from ai.lander.sensing import sensed, surroundings
 from ai.lander.spawns import SPAWNS, Curriculum, checked_start
 from engine import DT
 
@@ -119,7 +120,7 @@ class LanderEnv:
         self.still_steps: Ints = zeros()  # of these at rest on both feet, up to now
         self.feet_steps: Ints = zeros()  # of these with both feet down
         self.tilted_steps: Ints = zeros()  # of these tilted by more than `TILT_ALLOWED`
-        self._started = False
+        self.begun = False
         self._free = FreeFlight(self) if num_envs == 1 else None
 
     @property
@@ -260,7 +261,7 @@ class LanderEnv:
         for name in _BEGUN:
             getattr(self, name)[mask] = 0
         self.lander.active = self.outcome == FLYING
-        self._started = True
+        self.begun = True
 
     def lowest(self, x: float, angle: float) -> float:
         """Return the least height, in metres, at which a lander at `x` that leans by `angle` clears the ground."""
@@ -300,7 +301,7 @@ class LanderEnv:
             raise ValueError(f"actions must be {self.num_envs} whole numbers, not {actions.dtype} {actions.shape}")
         if np.count_nonzero(actions.astype(np.uintp) >= NUM_ACTIONS):  # those below 0 become huge
             raise ValueError(f"actions run from 0 to {NUM_ACTIONS - 1}, not {actions.min()} to {actions.max()}")
-        if not self._started:
+        if not self.begun:
             raise RuntimeError("reset() must come before the first step()")
         if shares is not None:
             shares = np.array(shares, dtype=float)
@@ -343,12 +344,11 @@ class LanderEnv:
 
     def snapshot(self) -> dict[str, Any]:
         """Return everything flights depend on but their random streams, as a nested dict of arrays, numbers, texts."""
-        return moment.snapshot(self)
+        return Moment.of(self).state
 
     def restore(self, state: dict[str, Any]) -> None:
         """Go back to a snapshot, of as many landers of the same craft over the same ground; else raises ValueError."""
-        moment.restore(self, state)
-        self._started = True
+        Moment(self.ground, state).put(self)
 
     def observe(self, pad: Any = None, *, wide: bool | None = None) -> Floats:
         """Return every lander's observation (n, 9) of its target, or of another `pad`, one number or (n,).
@@ -385,13 +385,9 @@ class LanderEnv:
         """Return every lander's observation of each pad, (n, pads, 9), or what `pilot` reads, (n, pads, features)."""
         return np.stack([self.observe_for(pilot, pad) for pad in range(len(self.ground.pads))], axis=1)
 
-    def surroundings(self, pad: Any = None) -> Floats:
+    def around(self, pad: Any = None) -> Floats:
         """Return the `ai.lander.sensing.SURROUNDINGS` of every lander, (n, k), for the target or another `pad`."""
         return surroundings(self, self.target if pad is None else pad)
-
-    def around(self, pad: Any = None) -> Floats:
-        """Return the surroundings and the ground beside every lander, (n, k): `ai.lander.sensing.AROUND` names them."""
-        return np.concatenate([self.surroundings(pad), terrain(self, self.target if pad is None else pad)], axis=1)
 
     def around_pads(self) -> Floats:
         """Return what is around every lander on its way to each pad, (n, pads, k)."""

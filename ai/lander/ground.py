@@ -16,7 +16,6 @@ from ai.lander.rules import PARAMS, LanderParams
 from engine import Body, Polygon, World
 
 _PLAIN: Final = (80.0, 10.0)  # metres wide and deep
-_TABLED: Final = 60.0  # metres to each side
 _BUMP: Final = np.linspace(-1.0, 1.0, 9)  # corners of a hill, from foot to foot
 _RIM: Final = 0.5  # metres that a knoll is wider than its pad, to each side
 _LIP: Final = 0.3  # and how much lower
@@ -115,15 +114,6 @@ class Ground:
         for pad in self.pads:
             height = np.where((pad.left <= np.asarray(x)) & (np.asarray(x) <= pad.right), pad.top, height)
         return height
-
-    def height_near(self, x: Doubles) -> Doubles:
-        """Return `height` at x, of any shape, to a decimetre: from a table, which takes no longer for many hills."""
-        return np.interp(x, *self._table)
-
-    @cached_property
-    def _table(self) -> tuple[Doubles, Doubles]:
-        x = np.linspace(-_TABLED, _TABLED, int(20 * _TABLED) + 1)
-        return x, self.height(x)
 
     def roofed(self, place: Doubles) -> Bools:
         """Whether places (k, 2) lie inside a roof, (k,)."""

@@ -25,41 +25,6 @@ _RULES: Final = {"params": LanderParams, "limits": Limits, "conditions": Conditi
 _BUILT: Final = ("mass", "inertia", "linear_drag", "angular_drag", "angular_quadratic_drag", "restitution", "friction")
 
 
-def snapshot(env: LanderEnv) -> dict[str, Any]:
-    """Return the state of an environment as `LanderEnv.snapshot` says."""
-    world, count = env.world, env.num_envs
-    memory = world.memory()
-    felt = np.broadcast_to(memory["gravity"], (count, 2)).copy()
-    return {
-        "built": _built(env.params, env.ground),
-        **{name: _values(getattr(env, name)) for name in _RULES},
-        "strictness": env.strictness,
-        "gravity": np.broadcast_to(world.gravity, (count, 2)).copy(),
-        "air": np.broadcast_to(world.params.quadratic_drag, (count, len(world.bodies), 3)).copy(),
-        "landers": {name: getattr(env, name).copy() for name in env.kept},
-        "bodies": {name: value.copy() for name, value in _values(world.state).items()},
-        "contacts": {**memory, "gravity": felt},
-        "landings": env.landings,
-    }
-
-
-def restore(env: LanderEnv, state: dict[str, Any]) -> None:
-    """Put a snapshot into an environment as `LanderEnv.restore` says."""
-    if state["built"] != _built(env.params, env.ground) or len(state["gravity"]) != env.num_envs:
-        raise ValueError("a snapshot belongs to the same craft over the same ground, and to as many landers")
-    for name, kind in _RULES.items():
-        setattr(env, name, kind(**state[name]))
-    for name in env.kept:
-        setattr(env, name, state["landers"][name].copy())
-    world = env.world
-    world.gravity = _one(state["gravity"])
-    _put_air(world.params, state["air"])
-    for name, value in state["bodies"].items():
-        setattr(world.state, name, value.copy())
-    world.recall(state["contacts"])
-    env.strictness, env.landings = state["strictness"], state["landings"]
-
-
 def _built(params: LanderParams, ground: Ground) -> str:
     """Return a text that says what the bodies of a world were made of."""
     return f"{[getattr(params, name) for name in _BUILT]} {ground.text}"
@@ -95,7 +60,21 @@ class Moment:
     @classmethod
     def of(cls, env: LanderEnv) -> Moment:
         """Return the present moment of an environment."""
-        return cls(env.ground, env.snapshot())
+        world, count = env.world, env.num_envs
+        memory = world.memory()
+        felt = np.broadcast_to(memory["gravity"], (count, 2)).copy()
+        state = {
+            "built": _built(env.params, env.ground),
+            **{name: _values(getattr(env, name)) for name in _RULES},
+            "strictness": env.strictness,
+            "gravity": np.broadcast_to(world.gravity, (count, 2)).copy(),
+            "air": np.broadcast_to(world.params.quadratic_drag, (count, len(world.bodies), 3)).copy(),
+            "landers": {name: getattr(env, name).copy() for name in env.kept},
+            "bodies": {name: value.copy() for name, value in _values(world.state).items()},
+            "contacts": {**memory, "gravity": felt},
+            "landings": env.landings,
+        }
+        return cls(env.ground, state)
 
     def __len__(self) -> int:
         return len(self.target)
@@ -128,7 +107,20 @@ class Moment:
 
     def put(self, env: LanderEnv) -> None:
         """Put it into an environment of as many slots as it has landers, as `LanderEnv.restore` does."""
-        env.restore(self.state)
+        state, world = self.state, env.world
+        if state["built"] != _built(env.params, env.ground) or len(state["gravity"]) != env.num_envs:
+            raise ValueError("a snapshot belongs to the same craft over the same ground, and to as many landers")
+        for name, kind in _RULES.items():
+            setattr(env, name, kind(**state[name]))
+        for name in env.kept:
+            setattr(env, name, state["landers"][name].copy())
+        world.gravity = _one(state["gravity"])
+        _put_air(world.params, state["air"])
+        for name, value in state["bodies"].items():
+            setattr(world.state, name, value.copy())
+        world.recall(state["contacts"])
+        env.strictness, env.landings = state["strictness"], state["landings"]
+        env.begun = True
 
 
 def _taken(value: Any, rows: Ints) -> Any:

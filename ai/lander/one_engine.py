@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
-from ai.environment import Bools, Doubles, Floats, Ints, StepResult
+from ai.environment import Bools, Floats, StepResult
 from ai.lander.environment import LanderEnv
 from ai.lander.rewards import RewardWeights
 
@@ -17,14 +16,14 @@ _MAIN: Final = 3  # the lander's action for this one's action 1
 _SPEEDS: Final = (-1.5, 0.5)  # m/s at the start, upwards
 
 
-class OneEngineEnv:
-    """`num_envs` landers of `LanderEnv` that move up and down alone: the same engine, rules and pay.
+class OneEngineEnv(LanderEnv):
+    """LanderEnv whose landers move up and down alone: the same engine, rules and pay.
 
     Observations (num_envs, 2) are height and vertical speed, scaled as the lander's. Actions are 0, coast, and 1, main
     engine. Flights begin with the feet at a height within `heights`, in metres above the pad.
     """
 
-    num_features, num_actions, stage = 2, 2, 0
+    num_features, num_actions = 2, 2
 
     def __init__(
         self,
@@ -33,33 +32,23 @@ class OneEngineEnv:
         heights: tuple[float, float],
         weights: RewardWeights | None = None,
     ) -> None:
-        self.num_envs, self.heights = num_envs, heights
-        self.lander = LanderEnv(num_envs, rng, "fixed", FRAME_SKIP, weights=weights)
-        self.landings = 0
-        self._rng = rng
-
-    @property
-    def height(self) -> Doubles:
-        """Height of the feet above the pad, (num_envs,) in metres."""
-        height: Doubles = self.lander.position[:, 1] - self.lander.params.pad_top - self.lander.params.stand
-        return height
+        super().__init__(num_envs, rng, frame_skip=FRAME_SKIP, weights=weights)
+        self.heights, self._rng = heights, rng
 
     def reset(self, mask: Bools | None = None) -> Floats:
         """Begin a new flight in the slots of `mask` (num_envs,), or in all; return every slot's observation."""
         mask = np.ones(self.num_envs, dtype=bool) if mask is None else mask
-        params, count = self.lander.params, int(mask.sum())
+        count = int(mask.sum())
         start = np.zeros((count, 6))
-        start[:, 1] = params.pad_top + params.stand + self._rng.uniform(*self.heights, count)
+        start[:, 1] = self.params.pad_top + self.params.stand + self._rng.uniform(*self.heights, count)
         start[:, 3] = self._rng.uniform(*_SPEEDS, count)
-        self.lander.place(mask, start)
-        return _sensed(self.lander.observe())
+        self.place(mask, start)
+        return self.observe()
 
-    def step(self, actions: Ints) -> StepResult:
+    def observe(self, pad: Any = None, *, wide: bool | None = None) -> Floats:
+        """Return height and vertical speed, (num_envs, 2)."""
+        return np.ascontiguousarray(super().observe(pad, wide=wide)[:, _SENSED])
+
+    def step(self, actions: Any) -> StepResult:
         """Fly one decision in every slot that has not ended."""
-        result = self.lander.step(_MAIN * actions)
-        self.landings = self.lander.landings
-        return replace(result, observation=_sensed(result.observation))
-
-
-def _sensed(observation: Floats) -> Floats:
-    return np.ascontiguousarray(observation[:, _SENSED])
+        return super().step(_MAIN * actions)

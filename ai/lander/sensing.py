@@ -40,15 +40,6 @@ SURROUNDINGS_MIRROR: Final = np.array(
     [-1 if "wind" in name or name in ("pad velocity", "pad acceleration") else 1 for name in SURROUNDINGS],
     dtype=np.float32,
 )
-# The ground's height at places beside a lander, above the pad's top in metres times the factor below.
-_BESIDE: Final = (-5.0, -2.5, 0.0, 2.5, 5.0)  # metres
-_HEIGHT: Final = 0.3
-_BEYOND: Final = np.linspace(5.0, 15.0, 11)  # metres: the highest of these is a crest that may be in the way
-_PLACES: Final = np.concatenate([-_BEYOND[::-1], _BESIDE, _BEYOND])
-TERRAIN: Final = (
-    "crest left", "ground far left", "ground left", "ground below", "ground right", "ground far right", "crest right"
-)  # fmt: skip
-AROUND: Final = (*SURROUNDINGS, *TERRAIN)
 LONG, _AHEAD, _SOON = 20.0, 8.0, 2.0  # seconds: what is farther off than the first two is shown as they are
 NEAR: Final = 10.0  # metres within which an edge of the area is announced
 
@@ -111,14 +102,6 @@ def surroundings(env: LanderEnv, pad: Any) -> Floats:
     numbers[:, 14] = env.limits.touch_speed
     numbers *= SURROUNDINGS_SCALE
     return numbers.astype(np.float32)
-
-
-def terrain(env: LanderEnv, pad: Any) -> Floats:
-    """Return the ground's height beside each lander, (n, 7): `TERRAIN` names the places. Pads count where they rest."""
-    heights = env.ground.height_near(env.position[:, :1] + _PLACES)
-    left, beside, right = np.split(heights, (len(_BEYOND), len(_BEYOND) + len(_BESIDE)), axis=1)
-    named = np.column_stack([left.max(axis=1), beside, right.max(axis=1)])
-    return (_HEIGHT * (named - np.reshape(env.ground.middles[pad, 1], (-1, 1)))).astype(np.float32)
 
 
 @dataclass(frozen=True)

@@ -88,16 +88,12 @@ def joined(address: str | None = None, workers: int | None = None) -> Iterator[i
 
 
 def answering(address: str) -> str:
-    """Return an address, looked up if it is "auto"; raises ConnectionError unless a server like Ray's answers there."""
+    """Return an address; raises ValueError for none, ConnectionError unless a server like Ray's answers there."""
     if address.removeprefix("ray://").startswith(("127.", "localhost", "[::1]")):
         os.environ.update(_LOCAL)
     os.environ.update(_QUIET)
-    if address == "auto":
-        from ray._private.services import canonicalize_bootstrap_address_or_die
-
-        address = canonicalize_bootstrap_address_or_die(address)
     if (parts := re.fullmatch(r"(?:ray://)?\[?([^/\[\]]+)\]?:(\d+)", address)) is None:
-        raise ValueError(f"--address is HOST:PORT, or auto for the cluster around; not {address}")
+        raise ValueError(f"--address is HOST:PORT, not {address}")
     try:
         with socket.create_connection((parts[1], int(parts[2])), _PATIENCE) as link:
             link.settimeout(_PATIENCE)

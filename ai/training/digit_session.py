@@ -126,10 +126,7 @@ class DigitSession(Session[DigitTraining]):
     # Commands
 
     def _explain(self, command: Explain) -> None:
-        try:
-            self.messages.append(explain_digit(self.training, command.slot))
-        except (ValueError, FloatingPointError) as error:
-            self.refuse(command, error)
+        self.messages.append(explain_digit(self.training, command.slot))
 
     def _restore_best(self, _: RestoreBest) -> None:
         if self._best is not None:

@@ -38,7 +38,6 @@ class GymScore(Score):
     episodes: int
     success: float | None  # share that reached the environment's own threshold; None if it names none
     mean_return: float
-    return_spread: float  # standard deviation
     mean_length: float  # decisions
 
     def better_than(self, other: GymScore | None) -> bool:
@@ -229,6 +228,4 @@ class GymTask(Task[GymScore]):
             observation = env.step(actions).observation
             yield
         success = None if self.threshold is None else float((env.outcome == SUCCESS).mean())
-        return GymScore(
-            episodes, success, float(env.returns.mean()), float(env.returns.std()), float(env.lengths.mean())
-        )
+        return GymScore(episodes, success, float(env.returns.mean()), float(env.lengths.mean()))

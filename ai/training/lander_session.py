@@ -26,7 +26,6 @@ from ai.training.messages import (
     NetworkState,
     RestoreCheckpoint,
     SwarmState,
-    problem_of,
 )
 from ai.training.session import Session
 from ai.training.state import State
@@ -211,34 +210,21 @@ class LanderSession(Session[Training]):
     # Commands
 
     def _teach(self, command: AddDemonstrations) -> None:
-        agent = self.training.agent
-        try:
-            new = [each for each in read(command.path) if each.digest not in self._learned_from]
-            used = teach(agent, new)
-        except (OSError, ValueError) as error:
-            self.refuse(command, problem_of(error))
-            return
+        new = [each for each in read(command.path) if each.digest not in self._learned_from]
+        used = teach(self.training.agent, new)
         self._learned_from.update(each.digest for each in new)
         if not used:
-            self.refuse(command, "there are no landings that this run has not learnt from already")
-            return
+            raise ValueError("there are no landings that this run has not learnt from already")
         if not self.training.config.success_pass:
             self.change(ChangeSetting("success_pass", taught(self.training.config).success_pass))
         self.record_change(TAUGHT, None, used)
 
     def _explain(self, command: Explain) -> None:
-        try:
-            self.messages.append(self._explanations.explain(command.slot, command.decisions))
-        except (ValueError, FloatingPointError) as error:
-            self.refuse(command, error)
+        self.messages.append(self._explanations.explain(command.slot, command.decisions))
 
     def _edit(self, command: EditNetwork | UndoEdit | LearnOn) -> None:
         editor, before = self._editor, self._editor.count
-        try:
-            editor.carry_out(command)
-        except ValueError as error:
-            self.refuse(command, error)
-            return
+        editor.carry_out(command)
         if editor.count != before:
             self.record_change(EDITED, before, editor.count)
         self.messages += (editor.edits, *self._state_messages())
@@ -246,8 +232,7 @@ class LanderSession(Session[Training]):
     def _restore_checkpoint(self, command: RestoreCheckpoint) -> None:
         checkpoint = self.history.checkpoint_at(command.decisions)
         if checkpoint is None:
-            self.refuse(command, "this run has no checkpoints yet")
-            return
+            raise ValueError("this run has no checkpoints yet")
         self._editor.forget()
         restore_checkpoint(self.training.agent, checkpoint)
         self.record_change(REVERTED, None, checkpoint.decisions)

@@ -154,8 +154,6 @@ def _copied(
     states, prepared = run.states, None
     if states is None or states.folder != folder:
         states = StateWriter(folder)
-        if run.states and around is not None:
-            states.take_over(run.states)
         run.states = states if around is not None else run.states
     if around is not None and not run.diverged and not run.done:
         prepared = states.prepare(run.moment, run.state() | {"around": around}, run.buffers)

@@ -15,7 +15,7 @@ from typing import Any, ClassVar, Final, Generic, TypeVar
 
 from ai.run import Run
 from ai.training.history import Entry, History, SettingChange
-from ai.training.messages import AutosaveTo, ChangeSetting, Finish, Refused, RunStarted, Save
+from ai.training.messages import AutosaveTo, ChangeSetting, Finish, Refused, RunStarted, Save, problem_of
 from ai.training.run import Keeper, RunKind, step
 from ai.training.state import State, going_on
 
@@ -31,7 +31,8 @@ class Session(ABC, Generic[Training]):
     Attributes:
         kind: the kind of run.
         columns: what its history measures.
-        commands: the method that carries out each command, by its class; a subclass adds its own.
+        commands: the method that carries out each command, by its class; a subclass adds its own. One that raises
+            OSError, ValueError or FloatingPointError has changed nothing.
         messages: to be yielded with the next turn.
 
     """
@@ -128,9 +129,12 @@ class Session(ABC, Generic[Training]):
             self.end()
 
     def _answer(self, command: Any) -> Messages:
-        """Carry out a command, if there is one; return all messages."""
+        """Carry out a command, if there is one, or tell why it cannot be; return all messages."""
         if command is not None:
-            self.commands[type(command)](self, command)
+            try:
+                self.commands[type(command)](self, command)
+            except (OSError, ValueError, FloatingPointError) as error:
+                self.messages.append(Refused(command, problem_of(error)))
         return self._flush()
 
     def _flush(self) -> Messages:
@@ -159,23 +163,15 @@ class Session(ABC, Generic[Training]):
         self.record(SettingChange(training.moment, name, before, after, amends, training.seconds))
 
     def change(self, command: ChangeSetting) -> None:
-        """Turn a live knob."""
+        """Turn a live knob; raises ValueError for what cannot be turned."""
         before = self.training.config
-        try:
-            self.training.apply_live(before.turned(command.name, command.value))
-        except ValueError as error:
-            self.refuse(command, error)
-            return
+        self.training.apply_live(before.turned(command.name, command.value))
         name = before.name_now(command.name)
         value = attrgetter(name)
         after = value(self.training.config)
         if after != value(before):
             self.record_change(name, value(before), after)
         self.turned()
-
-    def refuse(self, command: Any, problem: object) -> None:
-        """Tell that a command could not be carried out, and why."""
-        self.messages.append(Refused(command, str(problem)))
 
     def _save(self, command: Save) -> None:
         self.finish_measuring()

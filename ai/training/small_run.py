@@ -111,7 +111,7 @@ class SmallRun:
         self._ended: deque[bool] = deque(maxlen=RECENT)
         self._decisions = self._flights = 0
         self._tests = _Tests(self.plan.tested, test_rng, config) if self.plan.tested else None
-        self.state = self._look(self.env.lander.outcome)
+        self.state = self._look(self.env.outcome)
 
     def _begin(self) -> None:
         self._observation = self.env.reset()
@@ -177,7 +177,7 @@ class _Tests:
         self._env = OneEngineEnv(TESTED, rng, heights, config.reward_weights)
         self._observation = self._env.reset()
         self._ended: deque[bool] = deque(maxlen=RECENT_TESTS)
-        self.flown = _flown(self._env, self._env.lander.outcome)
+        self.flown = _flown(self._env, self._env.outcome)
 
     @property
     def passed(self) -> float | None:
@@ -197,8 +197,7 @@ def _share(flights: deque[bool]) -> float | None:
 
 
 def _flown(env: OneEngineEnv, outcome: Ints) -> Flown:
-    lander = env.lander
-    return Flown(env.height, lander.velocity[:, 1].copy(), lander.actions >= 3, outcome.copy())
+    return Flown(env.altitude, env.velocity[:, 1].copy(), env.actions >= 3, outcome.copy())
 
 
 def small_runs(

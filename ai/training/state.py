@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import io
 import json
-import os
 import secrets
 import shutil
 from collections.abc import Iterator, Mapping
@@ -81,15 +80,6 @@ class StateWriter:
         for name, told in state["buffers"].items() if state else ():
             numbers = range((told["added"] - told["kept"]) // BLOCK, told["added"] // BLOCK)
             self._written |= {(name, number): file for number, file in zip(numbers, told["blocks"], strict=False)}
-
-    def take_over(self, other: StateWriter) -> None:
-        """Take over the blocks that another run's state has on the disk, without writing them again if it can be."""
-        for key, block in other._written.items():
-            with suppress(OSError):  # not every disk has hard links
-                self._folder.mkdir(parents=True, exist_ok=True)
-                with suppress(FileExistsError):
-                    os.link(other._folder / block, self._folder / block)
-                self._written[key] = block
 
     def prepare(self, moment: int, state: State, buffers: Mapping[str, ReplayBuffer]) -> PreparedState:
         """Copy what is to be written of a state and of replay buffers, which may change from now on."""

@@ -205,7 +205,6 @@ class Totals:
     flights: int = 0
     landings: int = 0
     seconds: float = 0.0
-    fuel: float = 0.0
     streak: int = 0
 
 
@@ -220,7 +219,6 @@ def totals(entries: Sequence[Entry]) -> Totals:
         len(entries),
         sum(entry.landed for entry in entries),
         sum(entry.seconds for entry in entries),
-        sum(entry.fuel for entry in entries),
         longest,
     )
 

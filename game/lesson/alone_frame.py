@@ -8,8 +8,7 @@ from typing import Final
 
 import pygame
 
-from ai.explain.agent_lesson import Lesson
-from ai.explain.alone import LearnedAlone
+from ai.explain.agent_lesson import LearnedAlone, Lesson
 from ai.explain.recorder import Function
 from game.core import texts
 from game.drawing.canvas import Canvas

@@ -37,9 +37,9 @@ def draw_listing(
     the right, in `notes_width` points; with 0, at the right edge behind the ends of those lines that leave the room.
     """
     area, notes = pygame.FRect(box), notes or {}
-    letter = typeface.digit_width(typeface.grown(LABEL), "code")
+    letter = typeface.digit_width(canvas.grown(LABEL), "code")
     room = int((area.width - _NUMBER - (notes_width + _BETWEEN if notes_width else 0.0)) // letter)
-    leading = _LEADING * typeface.grown(LABEL) / LABEL
+    leading = _LEADING * canvas.grown(LABEL) / LABEL
     canvas.text(source.path, (area.left, area.top + leading * 0.8), size=LABEL, colour=MUTE)
     top = area.top + leading * 1.4
     rows = [row for number, line in source.lines for row in _broken(number, line, max(room, 20))]
@@ -61,7 +61,7 @@ def draw_listing(
             and [row[0] for row in shown[place + 1 : place + 2]] != [number]
             and (note := notes.get(number))
         ):
-            left = area.right - 4 - typeface.width(note, LABEL, "regular")
+            left = area.right - 4 - canvas.text_width(note, size=LABEL)
             if left > area.left + _NUMBER + len(text) * letter + _BETWEEN:
                 canvas.text(note, (left, y), size=LABEL, colour=NET if lit else MUTE)
         for part, colour, column in _coloured(text, lit):

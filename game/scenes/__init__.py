@@ -20,11 +20,10 @@ ROUTES: Final = {
     "dream": "digits.dream.DreamScene", "quiz": "digits.quiz.QuizScene", "physics": "physics.scene.PhysicsScene",
     "physics_step": "physics.step_scene.PhysicsStepScene",
     "logbook": "logbook.scene.LogbookScene", "replay": "logbook.replay.ReplayScene",
-    "settings": "menus.settings.SettingsScene", "assists": "menus.settings.AssistsScene",
-    "bindings": "menus.keys.BindingsScene", "choices": "play.choices.ChoicesScene",
-    "pause": "play.pause.PauseScene", "flight_pause": "play.pause.FlightPauseScene",
-    "learn": "learn.LearnScene", "chapter": "chapter.ChapterScene", "lesson": "lesson.LessonScene",
-    "error_screen": "error_screen.ErrorScene", "study": "train.study.StudyScene",
+    "settings": "menus.settings.SettingsScene", "bindings": "menus.keys.BindingsScene",
+    "choices": "play.choices.ChoicesScene", "pause": "play.pause.PauseScene",
+    "flight_pause": "play.pause.FlightPauseScene", "learn": "learn.LearnScene", "chapter": "chapter.ChapterScene",
+    "lesson": "lesson.LessonScene", "error_screen": "error_screen.ErrorScene", "study": "train.study.StudyScene",
 }  # fmt: skip
 
 

@@ -52,11 +52,6 @@ class SavedRun:
 
 
 @dataclass(frozen=True)
-class _Environment:
-    env: str
-
-
-@dataclass(frozen=True)
 class _Best:
     success: Share | None
 
@@ -65,6 +60,7 @@ class _Best:
 class _TrainingFile:
     """Training file of a run, as far as the list of runs shows it."""
 
+    env: str
     preset: str
     changes: dict[str, Any]
     seed: Annotated[int, Within(0, _MOST_SEED)]
@@ -88,11 +84,10 @@ def read_run(folder: Path, name: str = "") -> SavedRun:
         if missing:
             flyable = missing == [TRAINING_FILE]
             return SavedRun(name, folder, saved, flyable=flyable, problem=texts.RUN_INCOMPLETE.format(file=missing[0]))
-        described = read_json(inside(folder, TRAINING_FILE))
-        if (env := read_as(_Environment, described).env) != LANDER:
-            problem = texts.RUN_ELSEWHERE.format(env=brief(env, LONGEST_NAME))
+        told = read_as(_TrainingFile, read_json(inside(folder, TRAINING_FILE)))
+        if told.env != LANDER:
+            problem = texts.RUN_ELSEWHERE.format(env=brief(told.env, LONGEST_NAME))
             return SavedRun(name, folder, saved, problem=problem)
-        told = read_as(_TrainingFile, described)
         return SavedRun(
             name, folder, saved, brief(told.preset, LONGEST_NAME), len(told.changes), told.seed,
             told.decisions, told.seconds, told.best.success if told.best else None,

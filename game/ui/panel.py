@@ -140,6 +140,7 @@ class Column:
     def words(self, words: Sequence[tuple[str, OnPress]]) -> list[ButtonRow]:
         """Add words to press, side by side on as many lines as they need."""
         buttons = [self._form.add(ButtonRow(self._form.manager, label, press)) for label, press in words]
+        self._widgets += buttons
         self.add(partial(_write_words, buttons))
         return buttons
 
@@ -249,7 +250,7 @@ class Panel(Column):
         if which is self._form.widgets[0]:
             self.scrolled = 0.0  # with what stands above it
         elif which is self._form.widgets[-1]:
-            self.scrolled = self.height
+            self.scrolled = min(self.height, self.scrolled + widget.top - self.box.top - _ABOVE)  # with what is below
         elif widget.top < self.box.top + _ABOVE:
             self.scrolled += widget.top - self.box.top - _ABOVE
         elif widget.bottom > self.box.bottom - _ABOVE:

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from engine import Circle, Polygon, Sprite, World
+from engine import Circle, Polygon, World
 from tests.support.worlds import advance
 
 BOX = Polygon.box(1.0, 1.0)
@@ -228,13 +228,6 @@ def test_a_parameter_replaced_between_steps_holds_from_the_next_one():
         box.velocity = (1.0, 0.0)
         advance(floored, 60)
         assert box.velocity[0, 0] == pytest.approx(1.0 - rubs, abs=1e-3)
-
-
-def test_a_sprite_is_a_body_and_how_it_looks():
-    body = World().add(BOX, (1, 2))
-    sprite = Sprite(body, "crate", (1.0, 1.0), layer=3)
-    assert sprite.body.position.tolist() == [[1.0, 2.0]]
-    assert (sprite.image, sprite.size, sprite.layer) == ("crate", (1.0, 1.0), 3)
 
 
 def test_contacts_name_the_bodies_from_a_to_b():

@@ -3,7 +3,6 @@
 import pygame
 
 from ai.lander.pilots import Pilot, ScriptedPilot
-from game.core import texts
 from game.scenes.play.scene import PlayScene
 from game.ui.listing import Listing
 from game.ui.widget import Widget
@@ -56,21 +55,6 @@ class Player(Driver):
                     return
                 self.lead_on(direction)
         raise AssertionError(f"there is no way to {label}")
-
-    def choose_beside(self, label: str) -> None:
-        """Press the widget of that name in the column beside the one in which the last is the way back."""
-        for _ in self.form.widgets:
-            if self._at(texts.BACK):
-                break
-            self.lead_on("down")
-        self.lead_on("right")
-        while not self._at(label):
-            self.lead_on("up")
-        self.press("confirm")
-        self.frames(2)
-
-    def _at(self, label: str) -> bool:
-        return self.form.focused is not None and self.form.focused.label == label
 
     def lead_on(self, direction: str) -> None:
         """Press a direction until the focus moves, as often as a list has rows, or a choice options."""

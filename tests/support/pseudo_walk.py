@@ -291,7 +291,7 @@ STATES: dict[str, tuple[str, dict[str, object], Happens]] = {
     "assists": ("Play", {"wider_pads": True, "untimed": True, "pace": 0.5, "toggle_thrust": True}, crashed),
     "a share of thrust": ("Play", {}, half_way),
     "one switch": ("MenuScene", {"one_switch": True}, lambda driver: driver.skip(30)),
-    "bringing it back": ("AssistsScene", {}, reset),
+    "bringing it back": ("flights", {}, reset),
     "the tutorial": ("tutorial", {"tutored": False}, lambda _: None),
     "an error": ("error", {}, lambda _: None),
     "a message": ("MenuScene", {}, told),

@@ -31,7 +31,7 @@ from game.scenes.menus.dialogs import ListDialog, NameDialog, QuestionDialog
 from game.scenes.menus.flights import FlightsScene
 from game.scenes.menus.keys import BindingsScene
 from game.scenes.menus.menu import MenuScene
-from game.scenes.menus.settings import AssistsScene, SettingsScene
+from game.scenes.menus.settings import SettingsScene
 from game.scenes.physics.exhibits import EXHIBITS, Exhibit
 from game.scenes.physics.scene import PhysicsScene
 from game.scenes.physics.step_scene import PhysicsStepScene
@@ -96,7 +96,6 @@ SCREENS: dict[str, Make] = {
     "DaysScene": lambda context: DaysScene(context, date(2026, 11, 22)),
     "SettingsScene": SettingsScene,
     "BindingsScene": BindingsScene,
-    "AssistsScene": AssistsScene,
     "NetworksScene": NetworksScene,
     "ReplayScene": lambda context: ReplayScene(context, flown(context)),
 }

@@ -77,12 +77,10 @@ class DrawingPad:
                 return False
         return True
 
-    def undo(self) -> bool:
-        """Undo the last stroke, or the last clearing; return False if there is nothing to undo."""
-        if not self._history:
-            return False
-        self._change(self._history.pop())
-        return True
+    def undo(self) -> None:
+        """Undo the last stroke, or the last clearing, if there is one."""
+        if self._history:
+            self._change(self._history.pop())
 
     def clear(self) -> None:
         """Clear the drawing; `undo` restores it."""

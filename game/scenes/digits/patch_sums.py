@@ -24,6 +24,7 @@ _ROWS: Final = (28.0, 202.0)  # tops of the two rows of matrices
 _MOST_WRITTEN: Final = 7  # cells along a side up to which figures fit into them
 _ALL: Final = (0.0, 374.0, 410.0, 112.0)
 _LEADING: Final = 23.0
+_FULL: Final = 0.84  # of a cell's width for its figure: any wider, two of them would read as one
 _DIM: Final = 0.45  # of a cell's colour behind its figure
 
 
@@ -108,7 +109,9 @@ def _paint_matrix(sheet: Canvas, values: Numbers, at: Point, *, strongest: bool 
     if not written:
         return
     across, down = width / columns, height / rows
-    size, best = min(LABEL, across / 3.1), np.unravel_index(int(values.argmax()), values.shape)
+    largest = figure(-float(np.abs(values).max()))
+    size = LABEL * min(1.0, _FULL * across / sheet.text_width(largest, size=LABEL, tabular=True))
+    best = np.unravel_index(int(values.argmax()), values.shape)
     for (row, column), value in np.ndenumerate(values):
         lit = strongest and (row, column) == best
         middle = at[0] + (column + 0.5) * across, at[1] + (row + 0.5) * down + 0.36 * size

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import numpy.typing as npt
 
-from ai.digits.filters import MOST_FILTERS, first_filters
 from ai.digits.preprocessing import SIDE, Image, Stages, redrawn, stages, stroke_stages
 from ai.files import brief
 from game.digits.kept import classifier_in
@@ -39,6 +38,12 @@ class Verdict(Enum):
     LIKELY = auto()
     DISPUTED = auto()  # another network reads another digit
     UNSURE = auto()
+
+
+def best_two(probabilities: Numbers) -> tuple[int, int]:
+    """Return the most probable digit and the next."""
+    first, second = np.argsort(-probabilities, kind="stable")[:2].tolist()
+    return first, second
 
 
 @dataclass(frozen=True)
@@ -76,22 +81,6 @@ class Reading:
         if not agreed:
             return Verdict.DISPUTED
         return Verdict.SURE if surest >= SURE else Verdict.LIKELY
-
-
-@dataclass(frozen=True, eq=False)
-class Explanation:
-    """Explanation of a network's answer for one image.
-
-    Attributes:
-        saliency: (28, 28), evidence of each pixel's ink for the best answer against the second, -1 to 1.
-        filters: the first layer's weights, (n, height, width), the most active ones first if there are many.
-        layers: outputs of the activation layers: feature maps (n, height, width), or values (n,).
-
-    """
-
-    saliency: Image
-    filters: Numbers
-    layers: list[Numbers]
 
 
 @dataclass
@@ -134,48 +123,17 @@ class Reader:
         wanted = self.classifiers if names is None else names
         return Reading(seen, {name: self.classifiers[name].predict(seen.centred)[0] for name in wanted})
 
-    def explain(self, name: str, image: Image) -> Explanation:
-        """Return the explanation of a network's answer for an image (28, 28)."""
+    def saliency(self, name: str, image: Image) -> Image:
+        """Return (28, 28) what each pixel's ink says for a network's best answer against its second, -1 to 1."""
         classifier = self.classifiers[name]
         shaped = classifier.shaped(image)
-        outputs = classifier.network.activations(shaped)
-        first, second = np.argsort(outputs[-1][0])[[-1, -2]]
-        between = np.zeros((1, outputs[-1].shape[-1]), np.float32)
+        output = classifier.network.activations(shaped)[-1]
+        first, second = best_two(output[0])
+        between = np.zeros((1, output.shape[-1]), np.float32)
         between[0, first], between[0, second] = 1, -1
-        spoken = classifier.network.input_gradient(shaped, between).reshape(SIDE, SIDE) * image
-        layers = _layers(classifier, outputs)
-        if not image.any():
-            layers = [np.zeros_like(layer) for layer in layers]
-        return Explanation(_normalised(spoken), _filters(classifier, outputs), layers)
-
-
-def _normalised(values: Numbers) -> Numbers:
-    """Return values scaled into -1 to 1 by signed square roots, so that small ones are visible too."""
-    parts = values / max(float(np.abs(values).max()), 1e-9)
-    return np.asarray(np.sign(parts) * np.sqrt(np.abs(parts)), np.float32)
-
-
-def _filters(classifier: DigitClassifier, outputs: list[Numbers]) -> Numbers:
-    """Return the first layer's weights as images, each in -1 to 1; of plain units, those most active here."""
-    number = next(at for at, layer in enumerate(classifier.network.layers) if layer.parameters)
-    images = first_filters(classifier.network, None)
-    if images.shape[-1] == SIDE:
-        active = np.argsort(-np.abs(outputs[min(number + 1, len(outputs) - 1)][0]), kind="stable")
-        images = images[active]
-    images = images[:MOST_FILTERS]
-    return np.asarray(images / np.abs(images).max(axis=(1, 2), keepdims=True).clip(1e-9), np.float32)
-
-
-def _layers(classifier: DigitClassifier, outputs: list[Numbers]) -> list[Numbers]:
-    """Return the outputs of the activation layers, feature maps channel by channel, each layer in -1 to 1."""
-    from ai.nn import ActivationLayer
-
-    values = [
-        out[0]
-        for layer, out in zip(classifier.network.layers, outputs, strict=True)
-        if isinstance(layer, ActivationLayer) and out.shape[-1] > len("0123456789")
-    ]
-    return [_normalised(value.transpose(2, 0, 1) if value.ndim == 3 else value) for value in values]
+        said = classifier.network.input_gradient(shaped, between).reshape(SIDE, SIDE) * image
+        parts = said / max(float(np.abs(said).max()), 1e-9)
+        return np.asarray(np.sign(parts) * np.sqrt(np.abs(parts)), np.float32)  # small ones are visible too
 
 
 class LiveReading:
@@ -190,7 +148,7 @@ class LiveReading:
         reader: the networks that could be loaded.
         switches: the preprocessing steps that are on.
         reading: the latest reading.
-        why: explanation of the chosen network's answer; None if it could not be loaded.
+        why: (28, 28) what ink says for the chosen network's answer, -1 to 1; None if it could not be loaded.
 
     """
 
@@ -199,7 +157,7 @@ class LiveReading:
         self.reader, self.switches = Reader(), Switches()
         self._seen = -1  # revision of the drawing that was read last
         self._looking: Iterator[None] = iter(())
-        self.why: Explanation | None = None
+        self.why: Image | None = None
 
     @property
     def known(self) -> bool:
@@ -221,11 +179,6 @@ class LiveReading:
         """The chosen network's probabilities (10,); None while nothing is drawn, or it can't be loaded."""
         self.catch_up()
         return None if self.reading.verdict(self.chosen) is Verdict.EMPTY else self.reading.probabilities[self.chosen]
-
-    @property
-    def sources(self) -> dict[str, Path]:
-        """Folders of both networks."""
-        return {name: self.reader.sources[name] for name in self.pair}
 
     def bars(self, digit: int) -> tuple[tuple[float, float], bool]:
         """Return both networks' probabilities for a digit, and whether it is the chosen one's answer."""
@@ -264,5 +217,5 @@ class LiveReading:
         self._on_read()
         yield
         known = self.chosen in self.reading.probabilities
-        self.why = self.reader.explain(self.chosen, seen.centred) if known else None
+        self.why = self.reader.saliency(self.chosen, seen.centred) if known else None
         yield

@@ -12,25 +12,33 @@ import pygame
 
 from game.core import texts
 from game.core.scene import Push, Transition, push
+from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.prose import draw_wrapped
 from game.drawing.sky import NightSky
-from game.drawing.tokens import LABEL, MUTE, SMALL, TITLE
+from game.drawing.tokens import SMALL, TEXT, TITLE
 from game.input.controls import Command
-from game.scenes.digits.answer import FIX_TOP, LEFT, DigitRow, draw_answer, draw_fix
-from game.scenes.digits.before_after import BeforeAfter
-from game.scenes.digits.explanation import LEFT as EXPLANATION_LEFT
-from game.scenes.digits.explanation import STEPS, ExplanationView, StageSwitch
-from game.scenes.digits.fixing import AccuracyMeasurement, FixRunner
-from game.scenes.digits.network_tabs import draw_problems, network_tabs
+from game.scenes.digits.answer import (
+    END,
+    FIX_TOP,
+    LEFT,
+    STEPS,
+    DigitRow,
+    Explanation,
+    StageSwitch,
+    draw_answer,
+    draw_fix,
+)
+from game.scenes.digits.fixing import FixRunner
 from game.scenes.digits.pad import DrawingPad, make_pen
-from game.scenes.digits.pad_words import add_below, add_row, draw_keys
 from game.scenes.digits.reader import LiveReading, Numbers, Reading, Verdict
 from game.training.digit_models import NAMES, called
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.form_scene import FOOT, FormScene
 from game.ui.hints import HintRow
+from game.ui.pick import ChoiceOrList
+from game.ui.widget import OnPress
 from game.ui.widgets import Choice, TextButton
 
 if TYPE_CHECKING:
@@ -38,7 +46,10 @@ if TYPE_CHECKING:
 
 PAD: Final = pygame.Rect(40, 70, 520, 520)
 _BELOW: Final = 602  # top of the buttons under the pad
-_RIGHT: Final = 1244.0
+_TABS: Final = (LEFT, 26, 252, 24)  # above the chosen one's answer
+_LONGEST: Final = 16  # letters of a network's name
+_PROBLEMS: Final = 650.0  # baseline of what is wrong with networks
+_APART: Final = 26.0  # points between two words
 _WHY_NOT: Final = (LEFT, 233, 120, 20)  # of the word below the answer
 _DIGITS: Final = {
     **{pygame.K_0 + digit: digit for digit in range(10)},
@@ -53,9 +64,7 @@ class DigitsScene(FormScene):
     Attributes:
         pad: the drawing pad.
         live: reads and explains the drawing.
-        before_after: what a switch has changed.
         fixing: teaches a network a drawing that it misreads.
-        measuring: measures what each step of the preprocessing is worth.
 
     """
 
@@ -63,13 +72,11 @@ class DigitsScene(FormScene):
         super().__init__(context)
         self.pad = DrawingPad(PAD)
         self.live = LiveReading(self.pad, chosen, self._show_bars)
-        self._explanation = ExplanationView()
-        self.before_after = BeforeAfter()
+        self._explanation = Explanation()
         self._unfix: TextButton | None = None
         self._fix_of = -1  # revision of the drawing that was fixed last
         self._sky = NightSky(np.random.default_rng(11), ember=0.2, stars=40)
         self.fixing = FixRunner(context.user_dir, context.models_dir)
-        self.measuring = AccuracyMeasurement(lambda: self.live.sources)
         for name in dict.fromkeys((*NAMES, chosen)):
             self._load(name)
         if not self.live.known:
@@ -98,9 +105,8 @@ class DigitsScene(FormScene):
         self.pad.lift()
 
     def close(self) -> None:
-        """End the processes that measure and learn."""
+        """End the process that learns."""
         self.fixing.close()
-        self.measuring.close()
 
     @property
     def chosen(self) -> str:
@@ -127,12 +133,13 @@ class DigitsScene(FormScene):
         return None if self.pad.handle_event(event) else super().handle_event(event)
 
     def actions(self) -> Table:
-        """Choose another network, go back; undo and clear, told beside their buttons; correct by a digit's key."""
+        """Choose another network, go back; undo and clear; correct by a digit's key."""
         return [
             Action(Command.NEXT, lambda: self._turn(1), texts.DIGITS_HINT_NETWORK),
             Action(Command.PREVIOUS, lambda: self._turn(-1)),
             self.form.goes_back(texts.HINT_BACK),
-            *self._gamepad_actions,
+            Action(pygame.K_z, self.pad.undo, texts.DIGITS_UNDO.lower(), gamepad=Command.HANDOVER),
+            Action(Command.CHOICES, self.pad.clear, texts.DIGITS_CLEAR.lower()),
             *(Action(key, self.pad.clear) for key in (Command.RETRY, pygame.K_DELETE)),
             *(Action(key, partial(self._correct, digit)) for key, digit in _DIGITS.items()),
         ]
@@ -141,18 +148,10 @@ class DigitsScene(FormScene):
         """Return the hints below the pad."""
         return [HintRow(self.hints, (PAD.left, FOOT[1]))]
 
-    @property
-    def _gamepad_actions(self) -> tuple[Action, Action]:
-        """Undo and clear, which buttons below the pad do as well."""
-        return Action(pygame.K_z, self._undo, gamepad=Command.HANDOVER), Action(Command.CHOICES, self.pad.clear)
-
     def update(self) -> Transition | None:
-        """Read the drawing if it changed, and receive finished measurements."""
+        """Read the drawing if it changed, and see whether a fix is done."""
         self.live.update()
-        self.measuring.listen()
         self._follow_fix()
-        held = any(each.focused and (each.ringed or each.mouse_x is not None) for each in self._switches)
-        self.before_after.update(self.pad.revision, held=held)
         return self.form.update()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
@@ -163,9 +162,7 @@ class DigitsScene(FormScene):
         if self.chosen in self.reading.probabilities:
             draw_answer(canvas, self.reading, self.chosen)
         steps = list(asdict(self.live.switches).values())
-        compares = self.before_after.compared is not None
-        self._explanation.draw(canvas, self.reading, self.chosen, self.live.why, steps, aside=compares)
-        self.before_after.draw(canvas)
+        self._explanation.draw(canvas, self.reading, self.chosen, self.live.why, steps)
         self.form.draw(canvas)
         self._draw_words(canvas)
 
@@ -180,15 +177,10 @@ class DigitsScene(FormScene):
         for row in self._rows:
             row.values, row.best = self.live.bars(row.digit)
 
-    # Preprocessing steps and their measured effect
-
     def _switch(self, step: str, on: bool) -> None:
-        self.live.catch_up()
-        before = self.reading
+        """Switch a step of the preprocessing on or off."""
         self.live.switches = replace(self.live.switches, **{step: on})
         self.live.anew()
-        self.before_after.begin(step, on, self.chosen, before, self.reading, self.pad.revision)
-        self.measuring.ask(self.live.switches)
 
     # Fixing a wrong answer
 
@@ -213,7 +205,6 @@ class DigitsScene(FormScene):
         self._load(name)
         self.live.anew()
         self._offer_undo()
-        self.measuring.anew(self.live.switches)
 
     def _offer_undo(self) -> None:
         """Show the button that undoes a fix while there is one."""
@@ -230,28 +221,38 @@ class DigitsScene(FormScene):
 
     def _add_words(self) -> None:
         manager, add = self.form.manager, self.form.add
-        below = (texts.DIGITS_UNDO, self._undo), (texts.DIGITS_CLEAR, self.pad.clear)
-        self._under = add_below(self.form, below, PAD.left, _BELOW)
-        above = (
-            (texts.DIGITS_QUIZ, self._quiz),
-            (texts.DIGITS_TRAIN, partial(push, "digit_training")),
-            (texts.DIGITS_DREAM, self._dream),
-        )
-        add_row(self.form, above, PAD.right, 24)
-        add_row(self.form, [(texts.PATCH_WORD, partial(self._ask, "digit_inside"))], _RIGHT, 24)
+        below = (texts.DIGITS_UNDO, self.pad.undo), (texts.DIGITS_CLEAR, self.pad.clear)
+        self._add_row(PAD.left, _BELOW, *below, at=0.0)
+        train = (texts.DIGITS_TRAIN, partial(push, "digit_training"))
+        self._add_row(PAD.right, 24, (texts.DIGITS_QUIZ, self._quiz), train, (texts.DIGITS_DREAM, self._dream))
+        self._add_row(END, 24, (texts.PATCH_WORD, partial(self._ask, "digit_inside")))
         why = self.form.manager, _WHY_NOT, texts.WHY_NOT_WORD, partial(self._ask, "why_not")
         add(TextButton(*why, size=SMALL + 1))
         self._rows = [add(DigitRow(manager, digit, self._correct)) for digit in range(10)]
-        self._switches = [
-            add(StageSwitch(manager, number, partial(self._switch, step))) for number, step in enumerate(STEPS)
-        ]
+        for number, step in enumerate(STEPS):
+            add(StageSwitch(manager, number, partial(self._switch, step)))
+
+    def _add_row(self, x: float, top: float, *words: tuple[str, OnPress], at: float = 1.0) -> None:
+        """Add words to press, in a row of which x is that share: 0 its left end, 1 its right one."""
+        widths = [typeface.width(word, TEXT, "medium") for word, _ in words]
+        left = x - at * (sum(widths) + _APART * (len(widths) - 1))
+        for (word, press), width in zip(words, widths, strict=True):
+            self.form.add(TextButton(self.form.manager, (left, top, width, 28), word, press, weight="medium"))
+            left += width + _APART
 
     def _make_tabs(self) -> Choice:
-        return network_tabs(self.form.manager, list(self.fixing.networks), self.chosen, self._choose, self._pick)
+        """Return the row of networks; with networks of the player's own, it also leads to a list of all."""
+        names = list(self.fixing.networks)
+        words = [word if len(word) <= _LONGEST else word[:_LONGEST] + "…" for word in map(called, names)]
+        index = names.index(self.chosen) if self.chosen in names else 0
+        row = self.form.manager, _TABS, "", words, index, self._choose
+        if len(names) == len(NAMES):
+            return Choice(*row)
+        return ChoiceOrList(*row, self._pick, texts.DIGITS_ALL.format(count=len(names)), size=TEXT)
 
     def _choose(self, index: int) -> None:
         """Choose another network; if it can't be loaded, say so and keep the last one."""
-        names, before = list(self.fixing.networks), self.live.pair
+        names = list(self.fixing.networks)
         if names[index] not in self.live.reader.classifiers:
             self._load(names[index])
         if names[index] not in self.live.reader.classifiers:
@@ -260,8 +261,6 @@ class DigitsScene(FormScene):
         self.live.chosen = names[index]
         self.live.anew()
         self._offer_undo()
-        if set(self.live.pair) != set(before):
-            self.measuring.anew(self.live.switches)
 
     def _turn(self, direction: int) -> None:
         """Choose the next network that can be loaded."""
@@ -303,15 +302,13 @@ class DigitsScene(FormScene):
         classifier = self.live.reader.classifiers.get(self.chosen)
         return lead(classifier) if classifier else None
 
-    def _undo(self) -> None:
-        self.pad.undo()
-
     def _draw_words(self, canvas: Canvas) -> None:
         if self.reading.verdict(self.chosen) is not Verdict.EMPTY:
             draw_fix(canvas, self.fixing, same=self._fix_of == self.pad.revision)
-        measured = self.measuring.words(self.live.switches)
-        place, width = (EXPLANATION_LEFT, 184), _RIGHT - EXPLANATION_LEFT
-        draw_wrapped(canvas, measured, place, width, size=LABEL, colour=MUTE, leading=15)
-        draw_problems(canvas, self.live.reader.problems)
-        draw_keys(canvas, self._under, [each.key_word(self.context.controls) for each in self._gamepad_actions])
+        problems = [
+            texts.DIGITS_PROBLEM.format(name=called(name), problem=problem)
+            for name, problem in reversed(self.live.reader.problems.items())
+        ]
+        colour = canvas.palette.warn
+        draw_wrapped(canvas, "  ".join(problems), (LEFT, _PROBLEMS), _TABS[2], colour=colour, leading=17, most=4)
         self.draw_hints(canvas)

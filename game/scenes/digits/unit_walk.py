@@ -107,12 +107,16 @@ class UnitWalk:
                 self.look_at((*self.place[:2], channel))
 
     def slide(self) -> None:
-        """Move the window one pixel on, row by row, over and over."""
+        """Move the window on to the next place where there is something to read, row by row, over and over."""
         height, width, _ = self.stage.outputs.shape
         row, column, channel = self.place
-        after = (row * width + column + 1) % (height * width)
         kept = self.channel
-        self.look_at((after // width, after % width, channel))
+        for step in range(1, height * width + 1):
+            row, column = divmod((self.place[0] * width + self.place[1] + step) % (height * width), width)
+            top, left, bottom, right = self.stage.read_by((row, column, row + 1, column + 1))
+            if self.stage.inputs[top:bottom, left:right].any():
+                break
+        self.look_at((row, column, channel))
         self.channel = kept if self.stage.kind == "convolution" else self.channel
 
     def _sum_up(self) -> None:

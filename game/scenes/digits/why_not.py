@@ -14,7 +14,7 @@ from ai.explain.contrast import SQUARE, Contrast, InkChange
 from game.core import texts
 from game.core.scene import Transition, push
 from game.digits import percent
-from game.digits.pictures import SIGNED, Numbers, mosaic, picture, tiling
+from game.digits.pictures import SIGNED, Numbers, picture
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
@@ -22,8 +22,9 @@ from game.drawing.prose import draw_wrapped
 from game.drawing.sky import NightSky
 from game.drawing.tokens import HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL, TEXT, TITLE, Colour
 from game.input.controls import Command
-from game.scenes.digits.answer import LEFT, DigitRow, best_two
+from game.scenes.digits.answer import LEFT, DigitRow
 from game.scenes.digits.patch_sums import figure
+from game.scenes.digits.reader import best_two
 from game.ui.actions import Action, Table, one_of_ten
 from game.ui.context import Context
 from game.ui.form_scene import FOOT, FormScene
@@ -44,8 +45,6 @@ _SAID: Final = 122.0  # first baseline of the sentences
 _LEADING: Final = 18.0
 _MAPS: Final = (SAID_LEFT, 266.0, 160.0)
 _SECOND_MAP: Final = 184.0  # from the left of the first map
-_UNITS: Final = (SAID_LEFT, 496.0, _WIDTH, 56.0)
-_FEW: Final = 3  # units that are written out
 _EVERY: Final = 8  # updates from one picture of what is being measured to the next
 
 
@@ -188,8 +187,6 @@ class Shown:
         ink: rows and columns of the digit's ink, first and last of each.
         take, put: the ink to take away and to put that brings the asked digit nearest; None if none does.
         there, missing: (28, 28) in -1 to 1, of ink that is there and that is not, what it says for the asked digit.
-        units: (n,) in -1 to 1, what each unit says for it.
-        unit_lines: the units with the largest shares, in words, and the sum of all.
         measured: whether all has been measured.
 
     """
@@ -201,8 +198,6 @@ class Shown:
     put: InkChange | None
     there: Numbers
     missing: Numbers
-    units: Numbers
-    unit_lines: tuple[str, ...]
     measured: bool
 
 
@@ -211,8 +206,10 @@ def shown(contrast: Contrast, asked: int) -> Shown:
     between = [each[..., asked] - each[..., contrast.answer] for each in (contrast.taken, contrast.put)]
     taken, put = (np.nan_to_num(each) for each in between)
     scale = max(float(np.abs(taken).max()), float(np.abs(put).max()), 1e-9)
-    return Shown(asked, contrast.answer, _inked(contrast.image), contrast.best(asked, 0), contrast.best(asked, 1),
-                 _clear(-taken / scale), _clear(put / scale), *_units(contrast, asked), contrast.done)  # fmt: skip
+    changes = [contrast.best(asked, ink) for ink in (0, 1)]
+    take, add = (each if each and figure(each.before) != figure(each.after) else None for each in changes)
+    return Shown(asked, contrast.answer, _inked(contrast.image), take, add, _clear(-taken / scale), _clear(put / scale),
+                 contrast.done)  # fmt: skip
 
 
 def _inked(image: Image) -> tuple[tuple[int, int], tuple[int, int]]:
@@ -226,20 +223,6 @@ def _inked(image: Image) -> tuple[tuple[int, int], tuple[int, int]]:
 def _clear(parts: npt.NDArray[np.floating[Any]]) -> Numbers:
     """Return signed square roots, so that small values are visible too."""
     return np.asarray(np.sign(parts) * np.sqrt(np.abs(parts)), np.float32)
-
-
-def _units(contrast: Contrast, asked: int) -> tuple[Numbers, tuple[str, ...]]:
-    """Return the units' shares in -1 to 1, and the largest of them in words."""
-    evidence = contrast.units(asked)
-    shares = evidence.shares
-    lines = [
-        texts.WHY_NOT_UNIT.format(unit=unit + 1, value=figure(float(evidence.values[unit])),
-                                  weight=figure(float(evidence.weights[unit])), share=figure(float(shares[unit])))
-        for unit in np.argsort(-np.abs(shares), kind="stable")[:_FEW].tolist()
-    ]  # fmt: skip
-    total = float(shares.sum(dtype=np.float64))
-    lines.append(texts.WHY_NOT_UNITS_SUM.format(count=len(shares), total=figure(total), bias=figure(evidence.bias)))
-    return _clear(shares / max(float(np.abs(shares).max()), 1e-9)), tuple(lines)
 
 
 def sentences(seen: Shown) -> list[str]:
@@ -274,7 +257,7 @@ class ContrastView:
         self._painted = PaintCache()
 
     def draw(self, canvas: Canvas, seen: Shown) -> None:
-        """Draw sentences, both maps and the units."""
+        """Draw sentences and both maps."""
         self._painted.draw(canvas, (SAID_LEFT, 0, _WIDTH + 30, 720), seen, lambda sheet: _paint(sheet, seen))
 
     def draw_marks(self, canvas: Canvas, seen: Shown, box: tuple[float, float, float, float]) -> None:
@@ -303,7 +286,6 @@ def _paint(sheet: Canvas, seen: Shown) -> None:
         y = draw_wrapped(sheet, words, (indent, y), _WIDTH - indent, size=SMALL, leading=_LEADING, most=4) + 6
     if seen.asked != seen.answer:
         _paint_maps(sheet, seen)
-        _paint_units(sheet, seen)
 
 
 def _paint_maps(sheet: Canvas, seen: Shown) -> None:
@@ -318,17 +300,3 @@ def _paint_maps(sheet: Canvas, seen: Shown) -> None:
     for words, colour in zip(texts.WHY_NOT_LEGEND, (NET, sheet.palette.warn), strict=True):
         sheet.rounded((x, y - 7, 7, 7), 1.5, colour)
         x += 12 + sheet.text(words.format(asked=seen.asked), (x + 12, y), size=LABEL, colour=MUTE).width + 12
-
-
-def _paint_units(sheet: Canvas, seen: Shown) -> None:
-    _, top, width, most = _UNITS
-    words = texts.WHY_NOT_UNITS.format(asked=seen.asked, answer=seen.answer)
-    sheet.text(words, (0, top - 10), size=LABEL, colour=MUTE, weight="medium", room=width)
-    columns, size = tiling(len(seen.units), (1, 1), (width, most), 2.0)
-    area = sheet.rect(0, top, *size)
-    sheet.surface.blit(mosaic(seen.units[:, None, None], columns, area.size, 2.0 * sheet.scale), area)
-    y = top + size[1] + 22
-    for line in seen.unit_lines:
-        sheet.text(line, (0, y), size=LABEL, tabular=True,
-                   room=width)  # fmt: skip
-        y += 18

@@ -1,177 +1,155 @@
-"""Logbook scene: the list of all flights, their totals, and charts of the player's skill."""
+"""Logbook scene: all flights, what can be done with the chosen one, and how often the player would land alone."""
 
 from __future__ import annotations
 
 import time
-from typing import Final
+from functools import partial
+from itertools import pairwise
+from typing import TYPE_CHECKING, Final
 
-import numpy as np
 import pygame
 
-from ai.lander.rules import tenths
 from game.core import texts
 from game.core.scene import Transition, push
-from game.drawing.canvas import Canvas
-from game.drawing.prose import draw_wrapped
-from game.drawing.tokens import HUMAN, LABEL, MARGIN, MUTE, SMALL, TITLE, VIEW_SIZE
+from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, MUTE, SMALL, TITLE
 from game.flight import sharing
 from game.flight.becoming import KINDS, Becoming, kind_of, said, tells
 from game.flight.flight_file import Entry, Record
 from game.flight.friend import paste
-from game.flight.logbook import Records, Totals, best, totals
+from game.flight.logbook import Records, best, totals
 from game.flight.outcomes import ending_word
-from game.panels.becoming_band import draw_band
 from game.ui.actions import Action, Table
-from game.ui.chart import Chart, Series
-from game.ui.charts import Charts
 from game.ui.clipboard import give
-from game.ui.context import Context
-from game.ui.list_scene import VERB_LINE, VERB_SIZE, ListLayout, ListScene
 from game.ui.listing import Row
-from game.ui.virtual_pointer import VirtualPointer
-from game.ui.widget import Widget
-from game.ui.widgets import Choice, TextButton
+from game.ui.panel_scene import PanelScene
 
-_LEFT: Final = 824
-_LAYOUT: Final = ListLayout(
-    box=pygame.Rect(MARGIN, 252, 672, 336),
-    columns=(392.0, 244.0, 164.0, 92.0, 0.0),
-    headings=texts.LOGBOOK_COLUMNS,
-    pitch=28,
-    verbs=(_LEFT, 486),
-    foot=612,
-    size=SMALL + 1,
-    rise=9,
-)
-_WIDTH: Final = VIEW_SIZE[0] - MARGIN - _LEFT
-_KINDS: Final = 98  # the choice of a kind of start, above its chart
-_CHARTS: Final = (136, 330)
-_CHART_HEIGHT: Final = 150
-_ENDS: Final = (2.0, 4.0)  # dashes of the band's ends
-_SAID: Final = 304.0  # the estimate in words, between the charts
-_TOTALS: Final = (146.0, 132.0)  # baseline of their labels, and how far apart they stand
+if TYPE_CHECKING:
+    from game.drawing.canvas import Canvas, Point
+    from game.ui.context import Context
+    from game.ui.panel import Column, Panel
+
+_LEAST: Final = 320.0  # points of a column
+_COLUMNS: Final = (284.0, 160.0, 84.0, 0.0)  # from the right end of the list: where course, end, points and pilot end
+_PITCH, _AROUND = 28.0, 150.0  # points of a row of the list, and above and below the list
+_CHART: Final = 130.0  # points of the chart's height
+_BAND: Final = 0.16  # opacity
+_LATEST: Final = 60  # flights on the chart
 
 
-class LogbookScene(ListScene[Entry]):
-    """Logbook scene: flights on the left, newest first; skill and actions on the chosen flight on the right."""
+class LogbookScene(PanelScene):
+    """Flights in a list, newest first; beside it, or below, what can be done with the chosen one, and the estimate.
+
+    Attributes:
+        items: what is listed.
+        chosen: the chosen flight; None if there is none.
+
+    """
 
     def __init__(self, context: Context) -> None:
-        super().__init__(context, texts.LOGBOOK_TITLE, _LAYOUT, empty=texts.LOGBOOK_EMPTY)
+        super().__init__(context)
         self._records = Records(context.user_dir)
-        self._last_thrown = ""
-        manager = self.form.manager
-        box = (MARGIN, _LAYOUT.box.top - 54, 330, 20)
-        self._filter = self.form.add(
-            Choice(manager, box, "", texts.LOGBOOK_FILTERS, 0, lambda _: self._fill(), size=SMALL)
-        )
-        self._kind = self.form.add(
-            Choice(
-                manager,
-                (_LEFT, _KINDS, _WIDTH, 20),
-                "",
-                [texts.BECOMING_KINDS[kind] for kind in KINDS],
-                KINDS.index(self._last_kind()),
-                lambda _: self._plot(),
-                size=SMALL,
-            )
-        )
-        self._charts = Charts([
-            Chart((_LEFT, _CHARTS[0], _WIDTH, _CHART_HEIGHT), texts.BECOMING_TITLE, limits=(0.0, 10.0),
-                  read="{:.1f}".format, read_x=texts.LOGBOOK_FLIGHT.format, empty=texts.BECOMING_NONE),
-            Chart((_LEFT, _CHARTS[1], _WIDTH, _CHART_HEIGHT - 20), texts.LOGBOOK_FUEL, read="{:.1f} s".format,
-                  read_x=texts.LOGBOOK_FLIGHT.format, empty=texts.LOGBOOK_FUEL_NONE),
-        ])  # fmt: skip
-        self.form.add(VirtualPointer(manager, self._charts.box, self._charts.follow))
-        paste_box = (MARGIN + 130, _LAYOUT.foot, 220, VERB_LINE)
-        self._paste = TextButton(manager, paste_box, texts.CODE_PASTE, lambda: paste(context), size=VERB_SIZE)
-        self._reload()
+        self._filter, self._last_thrown = 0, ""
+        self.chosen: Entry | None = None
+        self._read()
+        told = [entry for entry in self._entries if tells(entry)] or self._entries
+        self._kind = KINDS.index(kind_of(told[-1])) if told else 0  # of the last flight that tells something
+        self.build()
 
-    def _last_kind(self) -> str:
-        """Return the kind of start of the last flight that tells something, or else of the last one."""
-        entries = self._records.entries()
-        told = [entry for entry in entries if tells(entry)] or entries
-        return kind_of(told[-1]) if told else KINDS[0]
+    def enter(self) -> None:
+        """Read again what there is, which the scene above may have changed."""
+        self._read()
+        self.build()
 
-    def _below_list(self) -> list[Widget]:
-        """Return the way back, and beside it the way in for a friend's flight."""
-        return [*super()._below_list(), self._paste]
-
-    def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Pass the event to the charts and the widgets."""
-        self._charts.follow(event)
-        return super().handle_event(event)
-
-    def actions(self) -> Table:
-        """Move, choose, go back; the Delete key deletes a flight."""
-        delete = [] if self.form.typing else [Action(pygame.K_DELETE, self._throw_away)]
-        undo = [Action(pygame.K_z, self._undo)] if self._last_thrown in self._thrown and not self.form.typing else []
-        return [*super().actions(), *delete, *undo]
-
-    def update(self) -> Transition | None:
-        """Animate widgets and charts."""
-        self._charts.update(self.context.settings.reduced_motion)
-        return self.form.update()
-
-    # What there is
-
-    @property
-    def _replayable(self) -> bool:
-        return self.chosen is not None and self.chosen.file in self._kept
-
-    def _reload(self) -> None:
-        """Reload the flights from disk."""
+    def _read(self) -> None:
+        """Read the flights from disk."""
         self._entries = self._records.entries()
         self._kept, self._thrown = self._records.kept(), self._records.thrown()
-        self._line = self._records.problem or texts.LOGBOOK_PLACE.format(folder=self._records.folder)
-        self._totals, self._becoming = totals(self._entries), Becoming(self._entries)
-        self._plot()
-        self._fill()
+        self._becoming = Becoming(self._entries)
 
-    def _fill(self) -> None:
-        """List the flights that pass the filter, newest first, or the best flights by their score."""
-        shown = [
-            lambda: self._entries[::-1],
-            lambda: [entry for entry in reversed(self._entries) if entry.landed],
-            lambda: [entry for entry in best(self._entries) if not entry.outdated],
-        ][self._filter.index]()
-        self._show(shown, self.chosen)
+    # Rows
 
-    def _plot(self) -> None:
-        """Draw the curve of the chosen kind of start, and the fuel of landings alone from it."""
-        kind = KINDS[self._kind.index]
-        curve, flights = self._becoming.curves[kind], self._becoming.flights[kind]
-        number, span = np.arange(1, len(curve) + 1), (1.0, float(len(curve)))
-        shares = np.array([(each.mean, each.low, each.high) for each in curve]).reshape(-1, 3)
-        fuel = [entry.fuel if entry.landed and entry.alone else np.nan for entry in flights]
-        series = [
-            Series(number, 10 * share, name, HUMAN, dash=dash, smooth=False)
-            for share, name, dash in zip(shares.T, texts.BECOMING_LINES, ((), _ENDS, _ENDS), strict=True)
-        ]
-        self._charts.charts[0].set(series, span)
-        self._charts.charts[1].set([Series(number, np.array(fuel, float), texts.LOGBOOK_YOU, HUMAN)], span)
+    def describe(self, panel: Panel) -> None:
+        """Add the list, and the chosen flight."""
+        panel.title(texts.LOGBOOK_TITLE)
+        panel.aside(self._records.problem or self._sums)
+        panel.gap(4)
+        left, self._beside = panel.beside((3, 2), _LEAST, 48.0)
+        left.choice("", texts.LOGBOOK_FILTERS, self._filter, self._show, size=SMALL)
+        self.items: list[Entry] = self._shown
+        index = self.items.index(self.chosen) if self.chosen in self.items else 0
+        self.chosen = self.items[index] if self.items else None
+        self._list = left.listing(
+            [self._row(entry) for entry in self.items], lambda _: self._watch(), texts.LOGBOOK_EMPTY, around=_AROUND,
+            index=index, on_choose=self._choose, columns=_COLUMNS, pitch=_PITCH, size=SMALL + 1,
+        )  # fmt: skip
+        left.button(texts.CODE_PASTE, partial(paste, self.context))
+        self.form.focus(self._list)
+        self._describe_chosen(self._beside)
+
+    @property
+    def _shown(self) -> list[Entry]:
+        """The flights that pass the filter, newest first, or the best flights by their score."""
+        newest = self._entries[::-1]
+        return [
+            newest,
+            [entry for entry in newest if entry.landed],
+            [entry for entry in best(self._entries) if not entry.outdated],
+        ][self._filter]
+
+    @property
+    def _sums(self) -> str:
+        sums = totals(self._entries)
+        return texts.LOGBOOK_TOTALS.format(
+            flights=sums.flights, landings=sums.landings, minutes=round(sums.seconds / 60), streak=sums.streak
+        )
+
+    def _describe_chosen(self, column: Column) -> None:
+        """Add what can be done with the chosen flight, why it does not count, and the estimate."""
+        entry = self.chosen
+        if entry and self._replayable:
+            column.button(texts.LOGBOOK_WATCH, self._watch, size=TITLE, colour=INK)
+            more = ((texts.LOGBOOK_RACE, self._race), (texts.CODE_COPY, self._copy))
+            column.words([*more, (texts.LOGBOOK_THROW_AWAY, self._throw_away)])
+        elif entry and entry.file in self._thrown:
+            column.button(texts.LOGBOOK_BRING_BACK, self._bring_back, size=TITLE, colour=INK)
+        if entry:
+            for words in filter(None, (why_in_brackets(entry), self._records.why_gone(entry))):
+                column.aside(words)
+        column.gap(14)
+        column.caption(texts.BECOMING_TITLE)
+        column.choice("", [texts.BECOMING_KINDS[kind] for kind in KINDS], self._kind, self._show_kind, size=SMALL)
+        column.aside(lambda: said(self._becoming.estimate(KINDS[self._kind])))
+        column.picture(_CHART, self._draw_estimate)
 
     def _row(self, entry: Entry) -> Row:
         when, course, end, *more = entry_row(entry)
         return when, course, texts.LOGBOOK_ROW_THROWN if entry.file in self._thrown else end, *more
 
-    def _make_verbs(self) -> list[Widget]:
-        self._why_gone = self._records.why_gone(self.chosen) if self.chosen else ""
-        if self._replayable:
-            return self._buttons(
-                [
-                    (texts.LOGBOOK_WATCH, self._watch),
-                    (texts.LOGBOOK_RACE, self._race),
-                    (texts.CODE_COPY, self._copy),
-                    (texts.LOGBOOK_THROW_AWAY, self._throw_away),
-                ]
-            )
-        if self.chosen and self.chosen.file in self._thrown:
-            return self._buttons([(texts.LOGBOOK_BRING_BACK, self._bring_back)])
-        return []
+    def actions(self) -> Table:
+        """Move, choose, go back; the Delete key throws a flight away, and Z brings it back."""
+        undo = [Action(pygame.K_z, self._undo)] if self._last_thrown in self._thrown else []
+        return [self.form.moves, *super().actions(), Action(pygame.K_DELETE, self._throw_away), *undo]
 
     # What can be done
 
-    def _read(self) -> Record | None:
+    def _show(self, number: int) -> None:
+        self._filter = number
+        self.build()
+        self.form.focus(self.form.widgets[0])
+
+    def _show_kind(self, number: int) -> None:
+        self._kind = number
+
+    def _choose(self, number: int) -> None:
+        self.chosen = self.items[number]
+        self._beside.clear()
+        self._describe_chosen(self._beside)
+
+    @property
+    def _replayable(self) -> bool:
+        return self.chosen is not None and self.chosen.file in self._kept
+
+    def _record(self) -> Record | None:
         """Read the chosen flight; if it is damaged, tell the player and return None."""
         if not self._replayable or self.chosen is None:
             return None
@@ -181,19 +159,16 @@ class LogbookScene(ListScene[Entry]):
             self.context.note(str(error))
             return None
 
-    def _press_row(self) -> Transition | None:
-        return self._watch()
-
     def _watch(self) -> Transition | None:
-        record = self._read()
+        record = self._record()
         return push("replay", record) if record else None
 
     def _race(self) -> Transition | None:
-        record = self._read()
+        record = self._record()
         return push("race", record) if record else None
 
     def _copy(self) -> None:
-        if record := self._read():
+        if record := self._record():
             code = sharing.code(record)
             give(self.context, code, texts.CODE_COPIED.format(count=len(code)))
 
@@ -211,57 +186,48 @@ class LogbookScene(ListScene[Entry]):
             self._tell(self._records.bring_back(self.chosen.file), texts.LOGBOOK_BROUGHT_BACK)
 
     def _tell(self, done: bool, words: str) -> None:
-        """Report what was done, or why it failed."""
-        self._report(words if done else self._records.problem)
+        """Report what was done, or why it failed, and show the flights as they are now."""
+        self.context.note(words if done else self._records.problem)
+        self.enter()
+        self.form.focus(self._list)
 
     # The picture
 
-    def _draw_behind(self, canvas: Canvas) -> None:
-        """Draw the totals and the charts."""
-        _draw_totals(canvas, self._totals)
-        kind, chart = KINDS[self._kind.index], self._charts.charts[0]
-        curve = self._becoming.curves[kind]
-        draw_band(canvas, curve, lambda number, share: chart.place(number, 10 * share))
-        self._charts.draw(canvas)
-        if curve:
-            text = said(self._becoming.estimate(kind))
-            canvas.text(text, (_LEFT, _SAID), size=SMALL, colour=MUTE, room=_WIDTH)
+    def _draw_estimate(self, canvas: Canvas, box: pygame.FRect) -> None:
+        """Draw of how many flights in ten the player would land, flight after flight; nothing before that is known."""
+        if not self._becoming.estimate(KINDS[self._kind]).known:
+            return
+        area = pygame.FRect(box.left, box.top + 12, box.width - 28, box.height - 24)
+        for share in (0.0, 0.5, 1.0):
+            y = area.bottom - area.height * share
+            canvas.line((area.left, y), (area.right, y), FAINT, alpha=0.7)
+            canvas.text(str(round(10 * share)), (area.right + 10, y + 4), size=LABEL, colour=MUTE)
+        curve = self._becoming.curves[KINDS[self._kind]][-_LATEST:]
+        step = area.width / max(20, len(curve))
 
-    def _draw_chosen(self, canvas: Canvas) -> None:
-        """Write below the verbs why a flight does not count, and why it cannot be seen any more."""
-        y = _LAYOUT.verbs[1] + 22 + VERB_LINE * len(self._verbs)
-        bar = why_in_brackets(self.chosen) if self.chosen and self.chosen.bar else ""
-        for text in filter(None, (bar, self._why_gone)):
-            y = draw_wrapped(canvas, text, (_LEFT, y), _WIDTH, colour=MUTE, leading=19)
+        def place(number: float, share: float) -> Point:
+            return area.left + step * number, area.bottom - area.height * share
+
+        for number, estimate in enumerate(curve):
+            (left, top), (right, bottom) = place(number, estimate.high), place(number + 1, estimate.low)
+            canvas.fill(canvas.rect(left, top, right - left, bottom - top), HUMAN, _BAND)
+        points = [place(number + 0.5, estimate.mean) for number, estimate in enumerate(curve)]
+        for start, end in pairwise(points):
+            canvas.line(start, end, HUMAN, 1.5)
+        for point in points[-1:]:
+            canvas.dot(point, 4, HUMAN)
 
 
 def why_in_brackets(entry: Entry) -> str:
-    """Return the points of a flight that does not count, as its row has them, and why it does not."""
-    return f"{texts.LOGBOOK_UNCOUNTED.format(points=entry.score)}: {texts.NOT_COUNTED[entry.bar]}"
-
-
-def _draw_totals(canvas: Canvas, sums: Totals) -> None:
-    percent = f"{100 * sums.landings / sums.flights:.0f}" if sums.flights else "–"
-    figures = (
-        (f"{sums.flights}", ""),
-        (f"{sums.landings}", f"{percent} %"),
-        (f"{sums.seconds / 60:.0f}", "min"),
-        (f"{sums.fuel:.0f}", "s"),
-        (f"{sums.streak}", ""),
-    )
-    y, pitch = _TOTALS
-    for number, (label, (figure, unit)) in enumerate(zip(texts.LOGBOOK_TOTALS, figures, strict=True)):
-        x = MARGIN + number * pitch
-        canvas.text(label, (x, y), size=LABEL, weight="medium", colour=MUTE)
-        box = canvas.text(figure, (x - 1, y + 30), size=TITLE + 4, weight="light", tabular=True)
-        canvas.text(unit, (box.right + 5, y + 30), size=SMALL, colour=MUTE)
+    """Return the points of a flight that does not count, as its row has them, and why; empty if it counts."""
+    points = texts.LOGBOOK_UNCOUNTED.format(points=entry.score)
+    return f"{points}: {texts.NOT_COUNTED[entry.bar]}" if entry.bar else ""
 
 
 def entry_row(entry: Entry) -> Row:
-    """Return a flight as a row of the logbook: when, what, how it ended, how long, points, and who flew."""
+    """Return a flight as a row of the logbook: when, what, how it ended, points, and who flew."""
     when = time.strftime("%Y-%m-%d %H:%M", time.localtime(entry.when))
     points = (texts.LOGBOOK_UNCOUNTED if entry.bar else "{points}").format(points=entry.score)
     by = {1.0: texts.LOGBOOK_YOU, 0.0: texts.LOGBOOK_NETWORK}.get(entry.human, texts.LOGBOOK_SHARED)
-    end, seconds = ending_word(entry.outcome, intact=entry.intact), f"{tenths(entry.seconds):.1f} s"
     course = sharing.course_name(entry.course, entry.leg, entry.spawn, entry.pads)
-    return when, course, end, seconds, points if entry.landed else "–", by
+    return when, course, ending_word(entry.outcome, intact=entry.intact), points if entry.landed else "–", by

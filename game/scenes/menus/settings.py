@@ -41,11 +41,9 @@ class SettingsScene(PanelScene):
 
     """
 
-    first = "picture"
-
-    def __init__(self, context: Context, group: str = "") -> None:
+    def __init__(self, context: Context, group: str = "picture") -> None:
         super().__init__(context)
-        self.group = group or self.first
+        self.group = group
         self._progress = Progress(context.user_dir, context.settings)
         self.build()
 
@@ -199,12 +197,6 @@ class SettingsScene(PanelScene):
         else:
             self.context.apply_settings()
             self.context.note(done)
-
-
-class AssistsScene(SettingsScene):
-    """Settings, opened at how much room a flight gives."""
-
-    first = "flights"
 
 
 def _percent(share: float) -> str:

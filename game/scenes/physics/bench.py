@@ -80,7 +80,7 @@ class Bench:
             sliders: list[Widget] = list(quantity_sliders(self._form.manager, exhibit, self._change))
             self._form.replace([*self._sliders, *self._buttons], [*sliders, *self._buttons])
             self._sliders = sliders
-        self._renew_panel()
+        self.renew()
 
     @property
     def _name(self) -> str:
@@ -111,9 +111,17 @@ class Bench:
         """Show or hide the panel of law and measurement."""
         self._shown = not self._shown
         self.measuring = None
-        self._renew_panel()
+        self.renew()
 
-    def _renew_panel(self) -> None:
+    @property
+    def explained(self) -> list[tuple[Widget, str]]:
+        """The widgets, and what each is for."""
+        what = texts.EXPLAIN_PHYSICS
+        buttons = zip(self._buttons, (what["start"], what["plot"], what["inside"]), strict=True)
+        return [*((slider, what["slider"]) for slider in self._sliders), *buttons]
+
+    def renew(self) -> None:
+        """Make the panel anew, if it is shown."""
         assert self._exhibit
         self.panel = LawPanel(self._exhibit, self._name, self.results) if self._shown else None
         self._offer_measuring()

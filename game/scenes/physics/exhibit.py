@@ -7,16 +7,23 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Final, Literal
 
 import numpy as np
+import pygame
 
 from engine import DT, Body, Circle, Polygon, Shape, Sprite, World
 from engine.shapes import Point
 from engine.vector import Array
+from game.drawing.canvas import Canvas
+from game.drawing.figures import write_figures
+from game.drawing.tokens import INK, SMALL
+from game.world.camera import View
 from game.world.grip import Grip
 
 # Clear height above the ground, below the text at the top, as a share of the view's width.
 CLEAR: Final = 0.35
 _WALL: Final = 4.0
 _WALL_HEIGHT: Final = 200.0
+_GAUGE: Final = 64.0
+_AROUND: Final = 180  # points: labels are written around their places
 _FIXED, _BOXES, _DISCS = range(3)  # layers
 
 
@@ -37,6 +44,27 @@ class Label:
     within: bool | None = None
     fill: float | None = None
     limit: float | None = None
+
+    def draw(self, canvas: Canvas, view: View, poses: Array, covered: pygame.Rect | None) -> None:
+        """Draw it, with its mark and its bar, unless a panel has it `covered`; `poses` (bodies, 3) are as drawn."""
+        place = np.asarray(self.place)
+        if self.body is not None:
+            place = place + poses[self.body.index, :2]
+        x, y = view.points(place).tolist()
+        if covered and covered.inflate(_AROUND, 24).collidepoint(x, y):
+            return
+        left, _ = write_figures(canvas, self.text, (x, y + 4), size=SMALL, centred=True)
+        palette = canvas.palette
+        if self.within is not None:
+            if self.within:
+                canvas.dot((left - 10, y), 2.5, palette.good)
+            else:
+                canvas.marker("triangle", (left - 10, y), 9, palette.warn)
+        if self.fill is not None:
+            canvas.bar((x - _GAUGE / 2, y + 11, _GAUGE, 2), self.fill, INK)
+        if self.limit is not None:
+            tick = x - _GAUGE / 2 + self.limit * _GAUGE
+            canvas.line((tick, y + 8), (tick, y + 16), INK)
 
 
 @dataclass(frozen=True)

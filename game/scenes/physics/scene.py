@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Final
 
@@ -22,9 +23,9 @@ from game.drawing.sky import NightSky
 from game.drawing.tokens import FAINT, HUMAN, INK, MARGIN, MUTE, NIGHT0, SMALL, TEXT, VIEW_SIZE
 from game.input.controls import Command
 from game.panels import readouts
+from game.panels.explained import Explained
 from game.scenes.physics.bench import LEFT, Bench
 from game.scenes.physics.exhibits import EXHIBITS
-from game.scenes.physics.labels import draw_label
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.form_scene import FormScene
@@ -47,6 +48,7 @@ _ROOM: Final = (16.0, 152.0, VIEW_SIZE[0] - 32.0, 444.0)
 _COLUMNS: Final = (758.0, 880.0, 1002.0, 1124.0)
 _REACH: Final = 8.0  # points by which the mouse may miss a body
 _HINTS: Final = 960.0
+_HEAD: Final = _ROOM[1]  # bodies that fly higher pass behind the controls
 _ROOM_LEFT: Final = LEFT - MARGIN - 24.0  # points for the sentences beside the sliders
 _SCALE: Final = (330.0, 702.0)  # left end of the forces' legend, on its baseline
 _SLEEP: Final = (330.0, 677.0)  # left end of the sentence on sleeping bodies, on its baseline
@@ -66,6 +68,7 @@ class PhysicsScene(FormScene):
         self._mouse = (-1.0, -1.0)
         self.contacts_drawn = False
         self.grip: Grip | None = None
+        self.explained = Explained()
         self._sky = NightSky(np.random.default_rng(7), ember=0.35, stars=90)
         words = [texts.EXHIBITS[name][0] for name in self._names]
         manager = self.form.manager
@@ -78,6 +81,10 @@ class PhysicsScene(FormScene):
         contacts = self._row(2, texts.PHYSICS_CONTACTS, texts.PHYSICS_CONTACTS_WORDS, 0, self._show_contacts)
         self._speeds, self._contacts = self.form.add(speeds), self.form.add(contacts)
         self.restart()
+
+    def enter(self) -> None:
+        """Lay the plot out anew: the size of text may have changed."""
+        self.bench.renew()
 
     def exit(self) -> None:
         """Release the gripped body."""
@@ -95,7 +102,9 @@ class PhysicsScene(FormScene):
         self._offer_gravity()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Grip a body, or pass the event to the actions and the widgets."""
+        """Explain on, grip a body, or pass the event to the actions and the widgets."""
+        if self.explained.handle_event(event):
+            return None
         if event.type in (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP) and self._point(event):
             return None
         if event.type == pygame.WINDOWFOCUSLOST:
@@ -103,7 +112,7 @@ class PhysicsScene(FormScene):
         return super().handle_event(event)
 
     def actions(self) -> Table:
-        """Stop and step; show another exhibit, or its contacts; begin anew; pause."""
+        """Stop and step; show another exhibit, or its contacts; begin anew; explain; pause."""
         stop, step, *speeds = self.playback.actions(texts.HINT_STEP)
         return [
             stop,
@@ -112,6 +121,7 @@ class PhysicsScene(FormScene):
             Action(Command.CHOICES, lambda: self._contacts.choose(1 - self._contacts.index), texts.HINT_CONTACTS),
             Action(Command.MODE, self.bench.toggle, texts.HINT_LAW),
             Action(Command.RETRY, self.restart, texts.HINT_RESTART_EXHIBIT),
+            replace(self.explained.action(), gamepad=None),  # its button draws the contacts
             Action(Command.PAUSE, self._pause, texts.HINT_PAUSE),
             Action(Command.PREVIOUS, lambda: self._turn(-1)),
             *speeds,
@@ -129,6 +139,7 @@ class PhysicsScene(FormScene):
         for _ in range(self.playback.steps() if self.bench.measuring is None else 0):
             self._step()
         self.bench.update()
+        self.explained.update()
         return self.form.update()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
@@ -144,12 +155,14 @@ class PhysicsScene(FormScene):
         if self.contacts_drawn:
             draw_contacts(canvas, view, self.exhibit.world, self._weight)
         for label in self.exhibit.labels():
-            draw_label(canvas, view, label, poses, self.bench.panel.box if self.bench.panel else None)
+            label.draw(canvas, view, poses, self.bench.panel.box if self.bench.panel else None)
         if self.grip:
             place = self.grip.place(poses[self.grip.body.index])
             x, y = view.points(place).tolist()
             draw_grip(canvas, (x, y), self._mouse)
+        self._draw_head(canvas)
         self._draw_words(canvas)
+        self.explained.draw(canvas)
 
     # The world
 
@@ -175,6 +188,10 @@ class PhysicsScene(FormScene):
         zoom = WORLD_WIDTH / self.exhibit.width
         return View(scale, (0.0, (_GROUND - VIEW_SIZE[1] / 2) / (POINTS_PER_METRE * zoom)), zoom)
 
+    def _covered(self, point: tuple[float, float]) -> bool:
+        """Whether the plot or the controls lie over a point."""
+        return point[1] < _HEAD or self.bench.covers(point)
+
     def _place(self, point: tuple[float, float]) -> Array:
         return self.view(1.0).metres(point)
 
@@ -182,7 +199,7 @@ class PhysicsScene(FormScene):
         """Index of the body under the mouse, if that is in use, or under the virtual pointer."""
         if not self.context.controls.mouse_in_use and not self._hand.typing:
             return None
-        if self.bench.covers(self._mouse):
+        if self._covered(self._mouse):
             return None
         body = self._outlines.body_at(self._poses, self._place(self._mouse), 0.0)
         return body.index if body else None
@@ -196,7 +213,7 @@ class PhysicsScene(FormScene):
             if event.type == pygame.MOUSEBUTTONUP and event.button == 1:
                 self.grip = None
             return True
-        if event.type != pygame.MOUSEBUTTONDOWN or event.button != 1 or self.bench.covers(self._mouse):
+        if event.type != pygame.MOUSEBUTTONDOWN or event.button != 1 or self._covered(self._mouse):
             return False
         if any(widget.hover_point(*event.pos) for widget in self.form.widgets if widget is not self._hand):
             return False
@@ -249,6 +266,12 @@ class PhysicsScene(FormScene):
             (left, y), (right, _) = view.points((start, end)).tolist()
             canvas.line((left, y), (right, y), FAINT, 1)
 
+    @staticmethod
+    def _draw_head(canvas: Canvas) -> None:
+        """Draw the ground of the controls, behind which bodies fly on."""
+        whole, seen = canvas.whole, canvas.whole.view
+        whole.fill(whole.rect(seen.left, seen.top, seen.width, _HEAD - seen.top), NIGHT0, 0.9)
+
     def _draw_words(self, canvas: Canvas) -> None:
         canvas.text(texts.PHYSICS_TITLE, (MARGIN, 38), size=SMALL, colour=MUTE)
         _, law, live = texts.EXHIBITS[self.chosen]
@@ -268,6 +291,9 @@ class PhysicsScene(FormScene):
         self.form.draw(canvas)
         self.draw_hints(canvas)
         self._draw_state(canvas)
+        for widget, what in ((self._tabs, law), *self.bench.explained, (self._speeds, texts.EXPLAIN_PHYSICS["speed"]),
+                             (self._contacts, texts.EXPLAIN_PHYSICS["contacts"])):  # fmt: skip
+            canvas.explain(widget.box, what)
 
     def _draw_state(self, canvas: Canvas) -> None:
         """Draw on the right that time is stopped, or else how to grab bodies."""
@@ -279,12 +305,13 @@ class PhysicsScene(FormScene):
         canvas.text(text, (right, 62), size=SMALL, colour=colour, align="right", room=right - self._tabs.box.right - 16)
 
     def _readouts(self) -> list[readouts.Readout]:
-        exhibit = self.exhibit
+        exhibit, what = self.exhibit, texts.EXPLAIN_PHYSICS
+        contacts = str(exhibit.contact_count) if exhibit.steps else "–"
         return [
-            readouts.Readout(texts.BODIES, str(len(exhibit.bodies)), ""),
-            readouts.Readout(texts.CONTACT_POINTS, str(exhibit.contact_count) if exhibit.steps else "–", ""),
-            readouts.Readout(texts.KINETIC_ENERGY, f"{exhibit.kinetic_energy:.1f}", "J"),
-            readouts.Readout(texts.STEP_TIME, f"{1e3 * self.step_time:.1f}", "ms"),
+            readouts.Readout(texts.BODIES, str(len(exhibit.bodies)), "", what=what["bodies"]),
+            readouts.Readout(texts.CONTACT_POINTS, contacts, "", what=what["points"]),
+            readouts.Readout(texts.KINETIC_ENERGY, f"{exhibit.kinetic_energy:.1f}", "J", what=what["energy"]),
+            readouts.Readout(texts.STEP_TIME, f"{1e3 * self.step_time:.1f}", "ms", what=what["step"]),
         ]
 
 

@@ -40,8 +40,7 @@ class Piece:
         function: the function that computes it.
         line: number of the line in its file that does; None for the whole function.
         notes: numbers of this case beside lines, by their numbers.
-        pair: the pair of shapes it is about; None if it is about all.
-        impulse: the impulse or push that it is; None for others.
+        impulse: the impulse that it is; None for others.
 
     """
 
@@ -49,50 +48,30 @@ class Piece:
     function: Callable[..., Any]
     line: int | None = None
     notes: dict[int, str] | None = None
-    pair: Pair | None = None
     impulse: Impulse | None = None
 
 
-def pieces_of(record: StepRecord, followed: Pair | None) -> list[Piece]:
-    """Return the pieces of a step: those of one pair, or of every pair if None is followed."""
-    near = record.call(BroadPhase.near)
-    pieces = [Piece("boxes", BroadPhase.near, near.numbers["world"], pair=followed)]
-    pairs = record.pairs if followed is None else [followed]
-    for pair in pairs:
-        pieces += _meeting(record, pair)
-    fall = record.call(integrate_velocity)
-    pieces.append(Piece("forces", integrate_velocity, fall.numbers["velocity"], pair=followed))
-    touching = {pair.contact: pair for pair in pairs if pair.contact is not None}
-    if touching:
+def pieces_of(record: StepRecord, pair: Pair | None) -> list[Piece]:
+    """Return the pieces of a step, as one pair of shapes goes through it; without one if none is near another."""
+    pieces = [Piece("boxes", BroadPhase.near, record.call(BroadPhase.near).numbers["world"])]
+    narrow = NARROW[pair.circles] if pair else None
+    if pair and narrow:
+        finder = narrow if pair.circles else deepest_face
+        pieces.append(Piece("axes", finder, pair.line, _notes(finder, pair.call, pair.number)))
+        if pair.contact is not None:
+            call = record.call(narrow)
+            line = call.numbers["depth" if "depth" in call.numbers else "gap"]
+            pieces.append(Piece("contact", narrow, line, _notes(narrow, call, pair.number)))
+    pieces.append(Piece("forces", integrate_velocity, record.call(integrate_velocity).numbers["velocity"]))
+    if pair and pair.contact is not None:
         solve = record.call(Solver.solve_velocities)
-        pieces.append(
-            Piece("memory", Solver.solve_velocities, max(line.number for line in solve.lines[:-1]), pair=followed)
-        )
-        pieces += _pushes("impulses", record.impulses, touching)
-    move = record.call(integrate_position)
-    pieces.append(Piece("motion", integrate_position, move.numbers["step"], pair=followed))
-    pieces += _pushes("overlap", record.overlaps, touching)
-    pieces.append(Piece("end", World.step, pair=followed))
-    return pieces
-
-
-def _meeting(record: StepRecord, pair: Pair) -> Iterator[Piece]:
-    finder = deepest_face if pair.circles == 0 else NARROW[pair.circles]
-    notes = _notes(finder, pair.call, pair.number)
-    yield Piece("axes", finder, pair.line, notes, pair)
-    if pair.contact is not None:
-        call = record.call(NARROW[pair.circles])
-        notes = _notes(NARROW[pair.circles], call, pair.number)
-        yield Piece(
-            "contact", NARROW[pair.circles], call.numbers["depth" if "depth" in call.numbers else "gap"], notes, pair
-        )
-
-
-def _pushes(kind: str, impulses: list[Impulse], touching: dict[int, Pair]) -> Iterator[Piece]:
-    for impulse in impulses:
-        if pair := touching.get(impulse.contact):
-            notes = _notes(Constraints.relax, impulse.call, impulse.column)
-            yield Piece(kind, Constraints.relax, impulse.call.numbers["velocity"], notes, pair, impulse)
+        pieces.append(Piece("memory", Solver.solve_velocities, max(line.number for line in solve.lines[:-1])))
+        for impulse in record.impulses:
+            if impulse.contact == pair.contact:
+                notes = _notes(Constraints.relax, impulse.call, impulse.column)
+                pieces.append(Piece("impulses", Constraints.relax, impulse.call.numbers["velocity"], notes, impulse))
+    pieces.append(Piece("motion", integrate_position, record.call(integrate_position).numbers["step"]))
+    return [*pieces, Piece("end", World.step)]
 
 
 def _notes(function: Callable[..., Any], call: Call, row: int) -> dict[int, str]:
@@ -115,43 +94,40 @@ _CLOSE: Final = 0.1  # metres below which a length is told in millimetres
 Rows = list[tuple[str, bool]]  # a row's words, and whether it is lit
 
 
-def sentence(record: StepRecord, piece: Piece) -> str:
+def sentence(record: StepRecord, piece: Piece, pair: Pair | None) -> str:
     """Return what happens in a piece."""
-    if piece.kind == "boxes" and not record.pairs:
+    if piece.kind == "boxes" and pair is None:
         return texts.STEP_NOTHING
-    if piece.kind == "axes" and piece.pair and piece.pair.contact is None:
+    if piece.kind == "axes" and pair and pair.contact is None:
         return texts.STEP_APART
-    impulse = piece.impulse
-    runs = record.overlaps if piece.kind == "overlap" else record.impulses
-    figures = {
-        "pairs": len(record.pairs),
-        "all": len(record.exhibit.world.pairs),
-        "iteration": impulse.iteration if impulse else 0,
-        "total": runs[-1].iteration if runs else 0,
-    }
-    return texts.STEP_PIECES[piece.kind][1].format(**figures)
+    return texts.STEP_PIECES[piece.kind][1].format(
+        pairs=len(record.pairs),
+        all=len(record.exhibit.world.pairs),
+        iteration=piece.impulse.iteration if piece.impulse else 0,
+        total=record.impulses[-1].iteration if record.impulses else 0,
+    )
 
 
-def rows(record: StepRecord, piece: Piece) -> Rows:
+def rows(record: StepRecord, piece: Piece, pair: Pair | None) -> Rows:
     """Return the figures of a piece."""
-    pair = piece.pair
     if pair is None:
-        return _warm(record) if piece.kind == "memory" else []
-    if piece.kind == "axes":
-        return list(_axes(pair))
-    if piece.kind == "contact":
-        return list(_points(record, pair))
-    if piece.kind in ("impulses", "overlap"):
-        return list(_impulse(piece))
-    if piece.kind == "forces":
-        return list(_velocities(record, pair, (record.before[1], record.fallen)))
-    if piece.kind == "memory":
-        warm = record.fallen if record.warm is None else record.warm
-        return [*_warm(record), *_velocities(record, pair, (record.fallen, warm))]
-    if piece.kind == "motion":
-        return list(_moved(record, pair, record.steps))
-    if piece.kind == "end":
-        return list(_velocities(record, pair, (record.before[1], record.after[1])))
+        return []
+    match piece.kind:
+        case "axes":
+            return list(_axes(pair))
+        case "contact":
+            return list(_points(record, pair))
+        case "impulses" if piece.impulse:
+            return list(_impulse(piece.impulse))
+        case "forces":
+            return list(_velocities(record, pair, record.before[1], record.fallen))
+        case "memory":
+            warm = record.fallen if record.warm is None else record.warm
+            return [_warm(record), *_velocities(record, pair, record.fallen, warm)]
+        case "motion":
+            return list(_moved(record, pair))
+        case "end":
+            return list(_velocities(record, pair, record.before[1], record.after[1]))
     return []
 
 
@@ -178,37 +154,27 @@ def _points(record: StepRecord, pair: Pair) -> Iterator[tuple[str, bool]]:
         yield texts.STEP_ROWS["point"].format(count=number + 1, size=_MM * depth + 0.0), True
 
 
-def _warm(record: StepRecord) -> Rows:
-    begun = [impulse for impulse in record.impulses if impulse.iteration == 1]
-    size = sum(float(impulse.before[:2].sum()) for impulse in begun)
-    count = sum(bool(impulse.before.any()) for impulse in begun)
-    return [(texts.STEP_ROWS["warm"].format(count=count, size=size), True)]
+def _warm(record: StepRecord) -> tuple[str, bool]:
+    begun = [impulse.before for impulse in record.impulses if impulse.iteration == 1]
+    size, count = sum(float(before[:2].sum()) for before in begun), sum(bool(before.any()) for before in begun)
+    return texts.STEP_ROWS["warm"].format(count=count, size=size), True
 
 
-def _impulse(piece: Piece) -> Iterator[tuple[str, bool]]:
-    impulse, pair = piece.impulse, piece.pair
-    assert impulse is not None
-    assert pair is not None
-    unit = texts.STEP_ROWS["impulse_unit" if piece.kind == "impulses" else "push_unit"]
-    before, after = impulse.before.tolist(), impulse.after.tolist()
+def _impulse(impulse: Impulse) -> Iterator[tuple[str, bool]]:
+    told, before, after = texts.STEP_ROWS, impulse.before.tolist(), impulse.after.tolist()
     for number in (0, 1) if before[1] or after[1] else (0,):
-        words = texts.STEP_ROWS["normal"]
-        yield words.format(count=number + 1, before=_told(before[number]), after=_told(after[number]), unit=unit), True
-    if piece.kind == "impulses":
-        words, cone = texts.STEP_ROWS["friction"], _told(float(impulse.value("cone")))
-        yield words.format(before=_told(before[2]), after=_told(after[2]), unit=unit, cone=cone), True
-        motions = impulse.motion
-        for which, letter in enumerate("AB"):
-            yield from _of_body(letter, *(motion[which] for motion in motions))
-    else:
-        for which, letter in enumerate("AB"):
-            yield _row(f"moved_{letter}", impulse.motion[1][which] * _MM), True
+        words = told["normal"].format(count=number + 1, before=_told(before[number]), after=_told(after[number]))
+        yield words, True
+    cone = _told(float(impulse.value("cone")))
+    yield told["friction"].format(before=_told(before[2]), after=_told(after[2]), cone=cone), True
+    for letter, *motion in zip("AB", *impulse.motion, strict=True):
+        yield from _of_body(letter, *motion)
 
 
-def _velocities(record: StepRecord, pair: Pair, velocities: tuple[Array, Array]) -> Iterator[tuple[str, bool]]:
+def _velocities(record: StepRecord, pair: Pair, before: Array, after: Array) -> Iterator[tuple[str, bool]]:
     for letter, body in zip("AB", pair.bodies, strict=True):
         if record.exhibit.world.params.dynamic[body]:
-            yield from _of_body(letter, *(each[body] for each in velocities))
+            yield from _of_body(letter, before[body], after[body])
         else:
             yield texts.STEP_ROWS[f"fixed_{letter}"], False
 
@@ -218,10 +184,10 @@ def _of_body(letter: str, before: Array, after: Array) -> Iterator[tuple[str, bo
     yield _row(f"before_{letter}", before), False
 
 
-def _moved(record: StepRecord, pair: Pair, steps: Array) -> Iterator[tuple[str, bool]]:
+def _moved(record: StepRecord, pair: Pair) -> Iterator[tuple[str, bool]]:
     for letter, body in zip("AB", pair.bodies, strict=True):
         if record.exhibit.world.params.dynamic[body]:
-            yield _row(f"moved_{letter}", steps[body] * _MM), True
+            yield _row(f"moved_{letter}", record.steps[body] * _MM), True
         else:
             yield texts.STEP_ROWS[f"fixed_{letter}"], False
 

@@ -86,7 +86,7 @@ class Pair:
 
 @dataclass(frozen=True, eq=False)
 class Impulse:
-    """Impulse of one contact in one iteration, two normal parts and one of friction, or a push out of an overlap.
+    """Impulse of one contact in one iteration: two normal parts, and one of friction.
 
     Attributes:
         iteration: from 1 on.
@@ -141,7 +141,6 @@ class StepRecord:
         pairs: pairs of shapes whose boxes overlap, in the order in which they were found.
         contacts: what touched, as the solver left it; None if nothing did.
         impulses: the impulses, in order.
-        overlaps: the pushes out of overlaps, in order.
         call: returns the last call of a function.
 
     """
@@ -163,7 +162,6 @@ class StepRecord:
         relaxed, solved = recorder.calls(Constraints.relax), recorder.calls(Solver.solve_velocities)
         self.warm: Array | None = relaxed[0].arguments["velocity"].reshape(-1, 3) if relaxed else None
         self.impulses = list(self._read_impulses([call for call in relaxed if call.caller in solved]))
-        self.overlaps = list(self._read_impulses([call for call in relaxed if call.caller not in solved]))
 
     def _of_movers(self, values: Array, others: Array) -> Array:
         """Return values (1, movers, 3) of the bodies that move, in the rows of all bodies; `others` for the rest."""

@@ -11,13 +11,12 @@ import pygame
 from engine.vector import Array, right_of
 from game.core import texts
 from game.drawing.canvas import Canvas, Point
-from game.drawing.tokens import INK, LINE, MARGIN, MUTE, NET, SMALL, TEXT, VIEW_SIZE, Colour
+from game.drawing.tokens import INK, LINE, MUTE, NET, SMALL, TEXT, VIEW_SIZE, Colour
 from game.scenes.physics.step_pieces import Piece, written
-from game.scenes.physics.step_record import Axis, Pair, StepRecord
+from game.scenes.physics.step_record import Axis, Impulse, Pair, StepRecord
 from game.world.bodies import Outlines
 from game.world.camera import POINTS_PER_METRE, View
 
-STAGE: Final = pygame.Rect(MARGIN, 148, 580, 396)
 _SHARE: Final = 0.42  # of the stage's height that the two bodies fill
 _WIDER: Final = 2.6  # how much more is shown where all boxes are
 _LARGE: Final = 60.0  # metres: a box beyond that is the floor's or a wall's
@@ -25,6 +24,8 @@ _ARROW: Final = 84.0  # points of the longest arrow
 _NORMAL: Final = 46.0  # points of a normal
 _HEAD: Final = 6.0
 _INSIDE: Final = 44.0  # points from a contact to the letter of a body that cannot move
+_LEGEND: Final = 66.0  # points below the bodies
+Legend = list[tuple[Colour, float, str]]  # colour and length in points of an arrow, and what it means
 
 
 class StepView:
@@ -34,48 +35,46 @@ class StepView:
         self._record = record
         self._outlines = Outlines(record.exhibit.sprites)
 
-    def draw(self, canvas: Canvas, piece: Piece, pair: Pair | None) -> None:
-        """Draw a piece; `pair` is what the picture is about, even where the piece is about all bodies."""
-        record = self._record
-        view = self._view(canvas.scale, pair, wide=piece.kind == "boxes" or pair is None)
+    def draw(self, canvas: Canvas, box: pygame.FRect, piece: Piece, pair: Pair | None) -> None:
+        """Draw a piece in a box, in points, as it is for a pair."""
+        record, self._stage = self._record, pygame.FRect(box.left, box.top, box.width, box.height - _LEGEND)
+        view = self._view(canvas.scale, pair, wide=piece.kind == "boxes")
         surface = canvas.surface
         outside = surface.get_clip()
-        surface.set_clip(canvas.rect(*STAGE).clip(surface.get_rect()))
+        surface.set_clip(canvas.rect(*self._stage).clip(outside))
         self._draw_room(canvas, view)
-        poses = record.after[0] if piece.kind in ("motion", "overlap", "end") else record.before[0]
+        poses = record.after[0] if piece.kind in ("motion", "end") else record.before[0]
         self._outlines.draw(canvas, view, poses, None, held=False)
         if piece.kind == "boxes":
             self._draw_boxes(canvas, view, pair)
+        legend: Legend = []
         if pair:
             if piece.kind == "axes":
                 self._draw_axes(canvas, view, pair)
-            if piece.kind in ("contact", "impulses", "overlap"):
+            if piece.kind in ("contact", "impulses"):
                 self._draw_contact(canvas, view, pair, with_normal=piece.kind == "contact")
             self._draw_letters(canvas, view, pair, poses)
+            if piece.impulse:
+                legend += self._draw_impulse(canvas, view, piece.impulse, pair)
+            if motion := self._motion(piece, pair):
+                legend += self._draw_velocities(canvas, view, pair, poses, motion)
         surface.set_clip(outside)
-        legend: list[tuple[Colour, float, str]] = []
-        if pair and piece.impulse:
-            legend += self._draw_impulse(canvas, view, piece)
-        if pair and (motion := self._motion(piece, pair)):
-            legend += self._draw_velocities(canvas, view, pair, poses, motion)
-        _draw_legend(canvas, legend)
+        self._draw_legend(canvas, legend)
 
     def _view(self, scale: float, pair: Pair | None, *, wide: bool) -> View:
-        record = self._record
+        record, stage = self._record, self._stage
         boxes = record.boxes
         if pair is None:
             low, high = np.array((-record.exhibit.width / 2, 0.0)), np.array((record.exhibit.width / 2, 8.0))
+            per_metre = stage.width / record.exhibit.width
         else:
             chosen = [boxes[body] for body in pair.bodies if (boxes[body, 2:] - boxes[body, :2]).max() < _LARGE]
             moving = [boxes[body] for body in pair.bodies if record.exhibit.world.params.dynamic[body]]
             both = np.array(moving or chosen)
             low, high = both[:, :2].min(axis=0), both[:, 2:].max(axis=0)
-        middle, size = (low + high) / 2, float((high - low).max())
-        per_metre = STAGE.height * (_SHARE if pair is not None else 0.9) / size / (_WIDER if wide and pair else 1.0)
-        if pair is None:
-            per_metre = STAGE.width / record.exhibit.width
-        aside = np.array((VIEW_SIZE[0] / 2 - STAGE.centerx, STAGE.centery - VIEW_SIZE[1] / 2)) / per_metre
-        x, y = (middle + aside).tolist()
+            per_metre = stage.height * _SHARE / float((high - low).max()) / (_WIDER if wide else 1.0)
+        aside = np.array((VIEW_SIZE[0] / 2 - stage.centerx, stage.centery - VIEW_SIZE[1] / 2)) / per_metre
+        x, y = ((low + high) / 2 + aside).tolist()
         return View(scale, (x, y), per_metre / POINTS_PER_METRE)
 
     def _draw_room(self, canvas: Canvas, view: View) -> None:
@@ -100,7 +99,7 @@ class StepView:
                 _arrow(canvas, *self._reach(view, axis), MUTE)
         chosen = pair.axes[pair.chosen]
         start, end = self._reach(view, chosen)
-        if not STAGE.collidepoint(start):  # the middle of a long face, such as the ground's: show it where they meet
+        if not self._stage.collidepoint(start):  # a long face, such as the ground's
             start, end = self._reach(view, chosen, self._middle(pair))
         _arrow(canvas, start, end, NET, 2)
         canvas.text(str(pair.chosen + 1), (end[0] + 8, end[1] + 4), size=SMALL, colour=NET)
@@ -143,34 +142,28 @@ class StepView:
         middle: Array = contacts.points[row][contacts.valid[row]].mean(axis=0)
         return middle
 
-    def _draw_impulse(self, canvas: Canvas, view: View, piece: Piece) -> list[tuple[Colour, float, str]]:
-        """Draw the accumulated impulses on B, or on A if B cannot move; all iterations of a contact have one scale."""
-        contacts, impulse, pair = self._record.contacts, piece.impulse, piece.pair
+    def _draw_impulse(self, canvas: Canvas, view: View, impulse: Impulse, pair: Pair) -> Legend:
+        """Draw the accumulated impulses on B, or on A if B cannot move; all iterations have one scale."""
+        contacts, row = self._record.contacts, impulse.contact
         assert contacts is not None
-        assert impulse is not None
-        assert pair is not None
         on_b = bool(self._record.exhibit.world.params.dynamic[pair.bodies[1]])
-        runs = self._record.impulses if piece.kind == "impulses" else self._record.overlaps
-        most = max((float(np.abs(each.after).max()) for each in runs if each.contact == impulse.contact), default=0.0)
+        runs = (each for each in self._record.impulses if each.contact == row)
+        most = max(float(np.abs(each.after).max()) for each in runs)
         if most < 1e-9:
             return []
         size, length = _scale(most)
-        row = impulse.contact
         normal, along = contacts.normal[row], right_of(contacts.normal[row])
         first, second, rub = (impulse.after * (length / size if on_b else -length / size)).tolist()
-        valid = contacts.valid[row]
         for number, reach in ((0, first), (1, second)):
-            if valid[number]:
+            if contacts.valid[row, number]:
                 _arrow_from(canvas, view, contacts.points[row, number], normal * reach, NET)
-        if piece.kind == "impulses":
-            _arrow_from(canvas, view, self._middle(pair), along * rub, NET)
-        words = texts.STEP_SCALE["impulse" if piece.kind == "impulses" else "push"]
-        return [(NET, length, words.format(size=written(size), body="B" if on_b else "A"))]
+        _arrow_from(canvas, view, self._middle(pair), along * rub, NET)
+        return [(NET, length, texts.STEP_SCALE["impulse"].format(size=written(size), body="B" if on_b else "A"))]
 
     def _motion(self, piece: Piece, pair: Pair) -> tuple[Array, Array] | None:
         """Return the velocities (2, 3) of A and B before and after a piece that changes them."""
         record, bodies = self._record, list(pair.bodies)
-        if piece.kind == "impulses" and piece.impulse:
+        if piece.impulse:
             return piece.impulse.motion
         if piece.kind == "forces":
             return record.before[1][bodies], record.fallen[bodies]
@@ -182,7 +175,7 @@ class StepView:
 
     def _draw_velocities(
         self, canvas: Canvas, view: View, pair: Pair, poses: Array, motion: tuple[Array, Array]
-    ) -> list[tuple[Colour, float, str]]:
+    ) -> Legend:
         record, bodies = self._record, list(pair.bodies)
         every = [record.before[1][bodies], record.fallen[bodies], record.after[1][bodies], *motion]
         most = max(float(np.hypot(each[:, 0], each[:, 1]).max()) for each in every)
@@ -195,6 +188,13 @@ class StepView:
                     _arrow_from(canvas, view, poses[body, :2], velocity[which, :2] * length / size, colour, width)
         words = texts.STEP_SCALE["before"].format(size=written(size))
         return [(MUTE, length, words), (INK, 24.0, texts.STEP_SCALE["after"])]
+
+    def _draw_legend(self, canvas: Canvas, legend: Legend) -> None:
+        left, y, room = self._stage.left, self._stage.bottom + 20.0, self._stage.width - _ARROW - 12
+        for colour, length, words in legend:
+            _arrow(canvas, (left, y - 4), (left + length, y - 4), colour, 2)
+            canvas.text(words, (left + _ARROW + 12, y), size=SMALL, colour=MUTE, room=room)
+            y += 19
 
 
 def _scale(most: float) -> tuple[float, float]:
@@ -220,11 +220,3 @@ def _arrow(canvas: Canvas, start: Point, end: Point, colour: Colour, width: floa
         side = way.rotate(degrees)
         side.scale_to_length(size)
         canvas.line(end, (end[0] + side.x, end[1] + side.y), colour, width)
-
-
-def _draw_legend(canvas: Canvas, legend: list[tuple[Colour, float, str]]) -> None:
-    y = STAGE.bottom + 20.0
-    for colour, length, words in legend:
-        _arrow(canvas, (STAGE.left, y - 4), (STAGE.left + length, y - 4), colour, 2)
-        canvas.text(words, (STAGE.left + _ARROW + 12, y), size=SMALL, colour=MUTE, room=STAGE.width - _ARROW - 12)
-        y += 19

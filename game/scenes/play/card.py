@@ -14,8 +14,8 @@ from game.drawing.cursor import BASELINE, LEADING, Cursor
 from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MEDALS, MUTE, NET, SMALL, TEXT, TITLE
 from game.flight.outcomes import OutcomeCard, RivalOutcome
 from game.panels.readouts import draw_share
-from game.scenes.play.ladder_mark import WIDTH as LADDER_WIDTH
-from game.scenes.play.ladder_mark import draw_ladder
+from game.scenes.play.ladder import WIDTH as LADDER_WIDTH
+from game.scenes.play.ladder import draw_ladder
 from game.ui.hints import Hint, HintRow, hint_lines
 
 if TYPE_CHECKING:

@@ -23,7 +23,7 @@ from game.flight.rescues import Rescues
 from game.panels.landings import Landings
 from game.panels.readouts import Lamp, draw_arrow
 from game.scenes.play.copilot_panel import CopilotPanel
-from game.scenes.play.guardian_words import by_values, dial_words, why_not_saved
+from game.scenes.play.guardian_words import dial_words, why_not_saved
 from game.scenes.play.help_words import HelpWords
 from game.scenes.play.overrides import Overrides
 from game.scenes.play.sentence import wind
@@ -73,14 +73,6 @@ class Cockpit:
     def take(self, event: pygame.event.Event, boxes: dict[str, pygame.FRect]) -> bool:
         """Choose the help; return whether the event meant that."""
         return self.helps and self.help_words.take(event, boxes)
-
-    @property
-    def lacks(self) -> str:
-        """Text that says why a guardian goes by points of reward; empty where it does not, or does not help."""
-        guard, settings = self._flight.guard, self._settings
-        if guard is None or not guard.ahead.problem or settings.copilot != MODES[1] or settings.assist == 0:
-            return ""
-        return by_values(guard.ahead.problem)
 
     def help(self) -> None:
         """Set the co-pilot's assist for the next step from the settings."""

@@ -20,7 +20,8 @@ from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.ground import Ground
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NET, NIGHT0, SMALL, TEXT
+from game.drawing.cursor import LEADING, Cursor
+from game.drawing.tokens import HUMAN, INK, MUTE, NET, NIGHT0, SMALL, TEXT
 from game.flight.credit import Credit
 from game.flight.flight import Flight, Recording
 from game.flight.flight_file import Entry
@@ -35,7 +36,7 @@ from game.world.camera import ClearArea, View
 _MOST: Final = 5  # the highest factor of a row of landings
 _FILLS: Final = 40  # steps in which the tank is seen to fill
 _FADES: Final = 24  # steps in which a new leg appears
-_GAUGE: Final = (120.0, 4.0)
+_GAUGE, _TOLD = 120.0, 220.0  # points of the gauge's width, and of the words over it
 _OVER_PAD: Final = (0.75, 42.0)  # metres and points above the goal at which its mark points down, over its factor
 _EDGE: Final = (90.0, 140.0)  # points that marks keep from the sides, and from the lower edge
 _ANTENNA: Final = 2.0  # metres from the middle of a craft to the word of its contact light
@@ -71,7 +72,7 @@ class Descent(Challenge):
         self.legs = self.total = self.streak = 0
         self._landed = self._relieved = False
         self._counts = True
-        self._points, self._gained, self._since = 0, 0.0, 0
+        self._points, self._gained, self._since, self._bare = 0, 0.0, 0, False
 
     def _start_run(self, seed: int) -> None:
         """Begin a run; over the same ground as the last one, beside the longest so far."""
@@ -114,7 +115,7 @@ class Descent(Challenge):
             return
         spot, score = env.ground.pads[int(env.landed_on[0])], landing_score(env)
         self.streak = self.streak + 1 if own else 0
-        self._points = score * min(self.streak, _MOST)
+        self._points, self._bare = score * min(self.streak, _MOST), spot.bare
         self.total += self._points
         self.legs = self.start.number
         self._next = self.start.after(float(env.fuel[0]), score, bare=spot.bare)
@@ -217,18 +218,17 @@ class Descent(Challenge):
 
     def _draw_landing(self, canvas: Canvas, craft: tuple[float, float], filled: float) -> None:
         """Write above the craft what the landing has earned, over the tank that fills."""
-        (x, y), (width, height) = craft, _GAUGE
-        x, y = min(max(x, canvas.view.left + 2 * _EDGE[0]), canvas.view.right - 2 * _EDGE[0]), y - _CLEAR
+        (x, y), half = craft, _TOLD / 2
+        x = min(max(x, canvas.view.left + half), canvas.view.right - half)
+        rows = Cursor(x - half, y - _CLEAR - 40, _TOLD, canvas.scale, canvas)
         words = texts.DESCENT_LANDED.format(count=self._points) if self._points else texts.DESCENT_RELIEVED
-        colour = HUMAN if self._points else NET
-        canvas.text(words, (x, y - 22), size=TEXT, colour=colour, align="centre")
-        fuel = texts.DESCENT_FUEL.format(seconds=self._gained) if self._gained > 0 else texts.DESCENT_NO_FUEL
-        canvas.text(fuel, (x, y - 4), size=SMALL, colour=MUTE, align="centre")
-        after = self._next.tank
-        now = after - (1 - filled) * self._gained
-        left = x - width / 2
-        canvas.pill((left, y + 6, width, height), FAINT)
-        canvas.pill((left, y + 6, max(height, width * now / TANK), height), canvas.palette.good)
+        rows.in_style(TEXT, HUMAN if self._points else NET).text(words, "centre")
+        rows.gap(LEADING * TEXT)
+        fuel = texts.DESCENT_NO_FUEL if self._bare else texts.DESCENT_FUEL.format(seconds=self._gained)
+        rows.in_style(SMALL, MUTE).text(fuel, "centre")
+        rows.gap(LEADING * SMALL + 2)
+        now = self._next.tank - (1 - filled) * self._gained
+        replace(rows, left=x - _GAUGE / 2, width=_GAUGE).bar(now / TANK, canvas.palette.good)
 
 
 def _draw_veil(canvas: Canvas, strength: float) -> None:

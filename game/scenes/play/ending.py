@@ -3,22 +3,16 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import Final
 
 from game.core.clock import STEP
 from game.core.pace import SlowMotion
-from game.flight import outcomes
 from game.flight.flight import Flight
-from game.flight.last_chance import LastChance
-from game.scenes.play.card import PLACES, ShownCard
-from game.scenes.play.challenge import Challenge
-from game.scenes.play.cockpit import Cockpit
+from game.flight.outcomes import OutcomeCard
+from game.scenes.play.card import ShownCard
 from game.scenes.play.ghost import Ghost
-from game.scenes.play.ladder import rung_of
 from game.ui.hints import Hint
 from game.world.camera import CameraTarget
-from game.world.scenery import Scenery
 
 _CARD_AFTER: Final = 45  # steps from the end of a flight to its card
 _CARD_RISE: Final = 16
@@ -31,14 +25,15 @@ class FlightEnding:
     Attributes:
         calm: whether motion is reduced.
         card: the outcome card; None before the end, and where the flight restarts at once.
+        whole: shot of the whole flight; None likewise.
 
     """
 
     def __init__(self, flight: Flight, pace: SlowMotion, reduced_motion: bool) -> None:
         self._flight, self._pace, self.calm = flight, pace, reduced_motion
         self._since = 0
-        self._whole: CameraTarget | None = None
-        self.card: outcomes.OutcomeCard | None = None
+        self.whole: CameraTarget | None = None
+        self.card: OutcomeCard | None = None
 
     @property
     def due(self) -> bool:
@@ -61,7 +56,7 @@ class FlightEnding:
     @property
     def shot(self) -> CameraTarget | None:
         """Shot for the camera instead of the craft; None to keep following the craft."""
-        return self._whole if self.due else None
+        return self.whole if self.due else None
 
     def follow(self) -> None:
         """Advance by one step; the first step after a crash starts slow motion."""
@@ -74,21 +69,6 @@ class FlightEnding:
         if self._pace.slow and self._since > _CRASH_SEEN:
             self._pace.hurry()
             self._since = _CARD_AFTER
-
-    def make_card(
-        self,
-        cockpit: Cockpit,
-        challenge: Challenge | None,
-        best: int,
-        scenery: Scenery,
-        last_chance: LastChance | None = None,
-    ) -> None:
-        """Make the outcome card; `best` is the score to beat in free flights."""
-        self._whole = scenery.shot_of(cockpit.track.path)
-        unranked = rung_of(self._flight) is not None or (challenge and challenge.name)
-        card = cockpit.card(0 if unranked else best, last_chance)
-        card = replace(card, place=cockpit.track.beside(PLACES, self._whole.view(1.0)))
-        self.card = challenge.card(card, self._flight, cockpit.credit) if challenge else card
 
     def shown_card(self, hints: list[Hint], ghost: Ghost | None, *, advise: bool) -> ShownCard | None:
         """Return the card as it is seen now, with keys at its foot; None while there is none."""

@@ -28,6 +28,7 @@ from game.flight.networks import Network, Policy
 from game.flight.six_futures import SixFutures
 from game.panels.readouts import GAUGES, PILOT, READOUTS, at_touch, draw_flight, flight_readouts
 from game.scenes.play import captions
+from game.scenes.play.card import PLACES
 from game.scenes.play.challenge import Challenge, DrawnFlight
 from game.scenes.play.cockpit import Cockpit
 from game.scenes.play.ending import FlightEnding
@@ -264,7 +265,12 @@ class FlownFlight:
         chance = self._last_chance if self.credit.helped else None
         while chance and not (chance.known or self.flight.outcome is Outcome.LANDED):
             chance.look(_SEARCH)
-        self.ending.make_card(self.cockpit, self.challenge, best, self.scenery, chance)
+        ending, cockpit, challenge = self.ending, self.cockpit, self.challenge
+        ending.whole = self.scenery.shot_of(cockpit.track.path)
+        unranked = rung_of(self.flight) is not None or (challenge and challenge.name)
+        card = cockpit.card(0 if unranked else best, chance)
+        card = replace(card, place=cockpit.track.beside(PLACES, ending.whole.view(1.0)))
+        ending.card = challenge.card(card, self.flight, self.credit) if challenge else card
 
     def write_down(self, records: Records) -> Entry | None:
         """Record the finished flight, and return its line; None if that was done before.

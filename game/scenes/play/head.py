@@ -16,7 +16,7 @@ from game.drawing.canvas import Now
 from game.drawing.cursor import LEADING, Cursor
 from game.drawing.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, TEXT, Colour
 from game.panels.readouts import Lamp
-from game.scenes.play.ladder_mark import WIDTH, draw_ladder
+from game.scenes.play.ladder import WIDTH, draw_ladder
 from game.ui.hints import Hint, HintRow
 
 if TYPE_CHECKING:

@@ -14,12 +14,17 @@ from ai.lander.environment import Outcome
 from ai.lander.spawns import LADDER, RUNGS
 from game.core import texts
 from game.core.settings import TOP_RUNG, Settings
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import FAINT, HUMAN
 from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Entry
 from game.flight.outcomes import OutcomeCard
 
 COUNT: Final = len(RUNGS)
 MISSES: Final = 2  # in a row, after which the next flight begins nearer
+_PITCH: Final = 7.0  # points from rung to rung
+_HIGH: Final = (5.0, 0.7)  # points, of the lowest, and more for each above it
+WIDTH: Final = _PITCH * COUNT  # points of its picture
 
 
 class Ladder:
@@ -68,3 +73,12 @@ def _words(before: int, now: int) -> str:
     if now == before:
         return (texts.LADDER_STAYS if now else texts.LADDER_LOWEST).format(number=now + 1)
     return (texts.LADDER_UP if now > before else texts.LADDER_DOWN).format(number=now + 1)
+
+
+def draw_ladder(canvas: Canvas, left: float, baseline: float, rung: int) -> None:
+    """Draw the ladder from `left`; of a player at its top, all rungs are lit."""
+    low, more = _HIGH
+    for number in range(COUNT):
+        x = left + number * _PITCH
+        lit = number <= rung
+        canvas.line((x, baseline), (x, baseline - low - more * number), HUMAN if lit else FAINT, 2.0)

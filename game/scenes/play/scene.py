@@ -469,7 +469,7 @@ class PlayScene(Scene):
         if self.challenge and self.challenge.next_hint:
             words.append((texts.TUTORIAL_LEAVE, self._leave_challenge))
         words.append((texts.PAUSE_CHOICES if self.challenge is None else texts.PACE, self._choose))
-        return [*words, (texts.ASSISTS_OPEN, lambda: push("assists"))]
+        return [*words, (texts.ASSISTS_OPEN, lambda: push("settings", "flights"))]
 
     def _choose(self) -> Transition | None:
         """Open the choices for the next flights; in a challenge, few can be changed."""

@@ -75,17 +75,14 @@ def test_the_least_is_corrected_that_lands():
 def test_it_asks_for_no_more_futures_than_it_needs():
     guardian = Guardian()
     guardian.plan = plan(MAIN_LEFT)
-    cases = (
-        (MAIN_LEFT, {}, []),
-        (RIGHT, {}, [RIGHT, LEFT, MAIN_RIGHT]),
-        (RIGHT, lands(RIGHT), []),
-        (RIGHT, {RIGHT: Future(None)}, [LEFT, MAIN_RIGHT]),
-        (MAIN, {MAIN: Future(None)}, []),  # corrected, either way it is one of these two
-    )
-    for asked, known, needed in cases:
-        assert guardian.needs(HERE, asked, COAST, known, whole=False) == needed, asked
+    for asked, needed in (
+        (MAIN_LEFT, []),
+        (RIGHT, [RIGHT, LEFT, MAIN_RIGHT]),
+        (MAIN, [MAIN]),  # corrected, either way it is the held plan's
+    ):
+        assert guardian.needs(HERE, asked) == needed, asked
     guardian.plan = None
-    assert set(guardian.needs(HERE, RIGHT, COAST, {RIGHT: Future(None)}, whole=False)) == {*KEYS} - {RIGHT}
+    assert set(guardian.needs(HERE, RIGHT)) == {*KEYS}
 
 
 def test_the_dial_goes_from_one_decision_to_twelve():

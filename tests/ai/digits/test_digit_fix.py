@@ -6,7 +6,6 @@ import pytest
 from ai.digits.classifier import DigitClassifier
 from ai.digits.fix import ENOUGH, STEPS, Fixed, FixStep, fix, steps_to_fix
 from ai.digits.mnist import load_part
-from ai.nn import ModelFormatError
 
 CLASSIC = Path(__file__).parents[3] / "models" / "digits" / "classic"
 
@@ -75,12 +74,6 @@ def test_a_fix_that_cannot_be_kept_says_why(tmp_path, data, misread):
 def test_what_is_no_drawing_or_no_digit_is_refused(data, image, digit):
     with pytest.raises(ValueError, match=r"digit|learn"):
         list(steps_to_fix(DigitClassifier.load(CLASSIC), image, digit, data, np.random.default_rng(0)))
-
-
-def test_a_damaged_network_is_named(tmp_path, data, misread):
-    image, digit = misread
-    with pytest.raises(ModelFormatError):
-        list(fix(tmp_path / "nothing", image, digit, tmp_path / "fixed", train=data, test=data))
 
 
 def test_the_same_fix_is_the_same_network(tmp_path, data, misread):

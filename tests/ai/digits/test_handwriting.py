@@ -54,17 +54,3 @@ def test_a_run_learns_from_hands_as_often_as_asked_and_keeps_the_labels():
     written_on = np.concatenate(seen).any(axis=(1, 2))
     assert 0.15 < written_on.mean() < 0.35
     assert not training.images.any(), "the images themselves stay as they are"
-
-
-def test_without_hands_nothing_is_drawn():
-    labels = np.arange(120, dtype=np.uint8) % 10
-    runs = [
-        DigitTraining(CONFIG.changed(drawn=drawn), 3, (np.zeros((120, 28, 28), np.float32), labels))
-        for drawn in (0.0, 0.25)
-    ]
-    for run in runs:
-        run.advance()
-    weights = [run.classifier.network.layers[0].parameters[0].value for run in runs]
-    start = DigitTraining(CONFIG, 3, (np.zeros((120, 28, 28), np.float32), labels)).classifier.network.layers[0]
-    np.testing.assert_array_equal(weights[0], start.parameters[0].value)
-    assert (weights[1] != weights[0]).any()

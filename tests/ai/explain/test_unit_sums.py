@@ -108,7 +108,7 @@ def test_a_patch_is_what_the_unit_depends_on(case):
             rows, columns = slice(max(top, 0), top + height), slice(max(left, 0), left + width)
             channels = slice(None) if stage.kind == "convolution" else [place[2]]
             changed[rows, columns, channels] = stage.inputs[rows, columns, channels]
-            assert stage.layer.predict(changed)[place] == pytest.approx(unit.output, abs=1e-5)
+            assert stage.layer.predict(changed[None])[0][place] == pytest.approx(unit.output, abs=1e-5)
 
 
 def test_a_receptive_field_holds_all_pixels_that_matter_and_no_row_that_does_not():

@@ -108,38 +108,32 @@ def test_damage_of_any_kind_is_read_or_refused(subject, tmp_path):
     assert "refused" in found or not subject.refusals
 
 
-def _holes(path, _):
+def _holes(path):
     path.touch()
     os.truncate(path, 3_300_000_000)
 
 
-def _outside(run, path, held):
-    (run.parent / "stranger").write_bytes(held)
-    path.symlink_to(run.parent / "stranger")
-
-
-def test_what_is_no_ordinary_file_of_the_folder_is_named(run, subtests):
-    names = ("config.json", "online/config.json", "online/layer-0-bias.npy", "optimizer.npz", "last/config.json",
-             "training.json")  # fmt: skip
+def test_what_is_no_ordinary_file_of_the_folder_is_named(saved, run, subtests):
     damages = {
-        "pipe": lambda path, _: os.mkfifo(path),
-        "device": lambda path, _: path.symlink_to("/dev/zero"),
-        "loop": lambda path, _: path.symlink_to(path.name),
-        "outside": lambda path, held: _outside(run, path, held),
-        "folder": lambda path, _: path.mkdir(),
+        "pipe": os.mkfifo,
+        "device": lambda path: path.symlink_to("/dev/zero"),
+        "loop": lambda path: path.symlink_to(path.name),
+        "outside": lambda path: path.symlink_to(saved / path.relative_to(run)),
+        "folder": Path.mkdir,
         "holes": _holes,
     }
-    for name, damage in product(names, damages):
-        path = run / name
-        held = path.read_bytes()
+    names = ["config", "online/config", "online/layer-0-bias", "optimizer", "last/config", "training"]
+    kinds = {"online/layer-0-bias": ".npy", "optimizer": ".npz"}
+    for name, (damage, make) in product(names, damages.items()):
+        path = run / (name + kinds.get(name, ".json"))
         path.unlink()
-        damages[damage](path, held)
+        make(path)
         with subtests.test(name=name, damage=damage):
             with little_memory(), limited(20), pytest.raises(ModelFormatError) as caught:
                 resume_run(run)
             assert any(path.name in problem or "last" in problem for problem in caught.value.problems)
-        path.rmdir() if path.is_dir() and not path.is_symlink() else path.unlink()
-        path.write_bytes(held)
+        path.rmdir() if damage == "folder" else path.unlink()
+        shutil.copy(saved / path.relative_to(run), path)
 
 
 def test_a_small_archive_cannot_ask_for_much_memory(run):
@@ -156,48 +150,38 @@ def test_a_small_archive_cannot_ask_for_much_memory(run):
         DeepQAgent.load(run)
 
 
-def packed(path, method, names=("steps",)):
+def packed(path, method, names=("steps",), array=3):
     with zipfile.ZipFile(path, "w", method) as archive:
         for name in names:
             held = io.BytesIO()
-            np.save(held, np.array(3))
+            np.save(held, np.array(array))
             archive.writestr(f"{name}.npy", held.getvalue())
-    return path
+    return path.read_bytes()
 
 
-def anything(*_):
-    pass
-
-
-def test_archives_that_numpy_does_not_write_are_refused(tmp_path):
-    path = packed(tmp_path / "a.npz", zipfile.ZIP_STORED)
-    assert read_arrays(path, 1000, anything)["steps"] == 3
-    whole = path.read_bytes()
+def test_archives_that_numpy_does_not_write_are_refused(tmp_path, subtests):
+    path = tmp_path / "a.npz"
+    whole, packer = packed(path, zipfile.ZIP_STORED), zipfile.ZIP_STORED
+    assert read_arrays(path, 1000, lambda *_: None)["steps"] == 3
     encrypted, unknown = bytearray(whole), bytearray(whole)
     directory = whole.rfind(b"PK\1\2")
     encrypted[directory + 8] |= 1
     unknown[directory + 10] = 99
-    for held, said in (
-        (encrypted, "encrypted"),
-        (unknown, "unknown way"),
-        (whole[:-1], "no archive"),
-        (b"", "no archive"),
+    many = packed(path, packer, [f"a{number}" for number in range(2000)])
+    for held, most, said in (
+        (encrypted, 1000, "encrypted"),
+        (unknown, 1000, "unknown way"),
+        (packed(path, zipfile.ZIP_LZMA), 1000, "unknown way"),
+        (whole[:-1], 1000, "no archive"),
+        (b"", 1000, "no archive"),
+        (whole[:-22] + b"PK\6\7" + bytes(16) + whole[-22:], 1000, "no archive"),  # as of more than four gigabytes
+        (many, 10**6, "too many"),
+        (many, 1000, "larger than"),
+        (packed(path, packer, array=[None]), 1000, "steps holds more bytes"),
     ):
         path.write_bytes(held)
-        with pytest.raises(ValueError, match=said):
-            read_arrays(path, 1000, anything)
-    with pytest.raises(ValueError, match="unknown way"):
-        read_arrays(packed(path, zipfile.ZIP_LZMA), 1000, anything)
-    with pytest.raises(ValueError, match="too many"):
-        read_arrays(packed(path, zipfile.ZIP_STORED, [f"a{number}" for number in range(2000)]), 10**6, anything)
-    with pytest.raises(OSError, match="larger than"):
-        read_arrays(path, 1000, anything)
-    path.write_bytes(whole[:-22] + b"PK\6\7" + bytes(16) + whole[-22:])  # as of more than four gigabytes
-    with pytest.raises(ValueError, match="no archive"):
-        read_arrays(path, 1000, anything)
-    np.savez(path, steps=np.array([None], object))
-    with pytest.raises(ValueError, match="steps holds more bytes"):
-        read_arrays(path, 1000, anything)
+        with subtests.test(said=said), pytest.raises((ValueError, OSError), match=said):
+            read_arrays(path, most, lambda *_: None)
 
 
 def test_numbers_of_a_file_are_what_they_should_be():

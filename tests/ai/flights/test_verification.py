@@ -9,14 +9,27 @@ import numpy as np
 
 from ai.flights.code import code_of, flight_of
 from ai.flights.recording import Claim, Easing, Recording, SharedFlight, StickHolder, thrust
-from ai.flights.verification import DAILY, DESCENT, TOLERANCE, begun, earned, fly_again, in_its_place, is_true, verified
+from ai.flights.verification import (
+    DAILY,
+    DESCENT,
+    TOLERANCE,
+    begun,
+    earned,
+    fly_again,
+    in_its_place,
+    is_true,
+    landing_score,
+    verified,
+)
 from ai.lander.descent import LegStart, leg
-from ai.lander.environment import LanderEnv, Outcome
+from ai.lander.environment import LIMITS, PARAMS, LanderEnv, Outcome
+from ai.lander.ground import Ground, Pad
 from ai.lander.missions import MISSIONS, STARTS
 from ai.lander.pilots import ScriptedPilot
 from ai.lander.rules import ACTION_SHARES
 from ai.lander.spawns import RUNGS, SPAWNS
 from game.input.analogue import pushed
+from tests.support import landers
 
 KINDS: dict[str, dict[str, Any]] = {
     "plain": {},
@@ -102,6 +115,14 @@ def test_true_claims_are_true_and_wrong_ones_are_not():
         assert (short.outcome, short.points, short.steps) == (Outcome.FLYING, 0, steps)
 
 
+def test_points_are_fewer_for_a_hard_touch_and_off_the_middle():
+    env = landers.placed((1.2, landers.STAND + 0.1, 0, -0.5), ground=Ground((Pad(0.0, PARAMS.pad_top, 6.0, 3),)))
+    landers.fly(env)
+    hard = env.impact[0, 0] / LIMITS.touch_speed
+    assert hard > 0.2
+    assert landing_score(env) == 3 * round(100 - 40 * hard - 30 * abs(env.position[0, 0]) / 3)
+
+
 def test_a_medal_is_for_the_mission_as_it_is():
     flight, real = flown("a mission")
     assert real.medal == MISSIONS["fall"].medal(real.fuel, real.seconds) > 0
@@ -152,6 +173,7 @@ def test_a_flight_is_true_from_its_place_and_from_elsewhere_not_whatever_it_earn
         placed(DESCENT, leg=LegStart(2, 4.9)),  # a landing brings more
         placed(DESCENT, leg=LegStart(no_spot, 6.0, bare=True)),
         placed(DESCENT, leg=LegStart(), gravity=((0, 0.7),)),
+        placed(DESCENT, leg=LegStart(), easing=Easing(wider_pads=True)),
         placed("tank", leg=LegStart()),
         placed(spawn="rung_3", pads=3),
         *(placed(spawn=spawn) for spawn in set(SPAWNS) - {"random", *RUNGS}),

@@ -7,7 +7,7 @@ import pytest
 
 from ai.lander.anywhere import GROUND, SITES, AnywhereEnv, Site
 from ai.lander.conditions import Conditions
-from ai.lander.environment import LIMITS, NUM_FEATURES, PARAMS, Outcome
+from ai.lander.environment import LIMITS, NUM_FEATURES, OBSERVATION_SCALE, PARAMS, Outcome
 from ai.lander.ground import Ground, Pad
 from ai.lander.pilots import ScriptedPilot
 from ai.lander.sensing import SURROUNDINGS, SURROUNDINGS_SCALE
@@ -66,6 +66,7 @@ def test_limits_of_a_touch_are_those_of_each_site():
     fly(put(env, (12.0, PARAMS.ground + PARAMS.stand + 0.01, 1.6, -0.3)), steps=30)
     assert env.outcome.tolist() == [Outcome.CRASHED] * 2
     assert env.intact.tolist() == [False, True]
+    assert put(env, (18.0, 9.0)).observe()[0, 0] == pytest.approx(18 * OBSERVATION_SCALE[0])
 
 
 def test_sites_are_of_the_kinds_asked_for():
@@ -87,7 +88,7 @@ def test_stricter_limits_hold_and_are_not_told():
         env.strictness = strictness
         fly(env, steps=5)
         assert (env.outcome == outcome).all()
-        assert env.surroundings()[0, -1] / SURROUNDINGS_SCALE[-1] == pytest.approx(LIMITS.touch_speed)
+        assert env.around()[0, -1] / SURROUNDINGS_SCALE[-1] == pytest.approx(LIMITS.touch_speed)
 
 
 @pytest.mark.slow

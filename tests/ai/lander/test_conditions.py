@@ -16,7 +16,7 @@ HARD = Conditions(wind=0.2, gust=0.3, gust_period=4.0, tank=3.0, outage=(2.0, 4.
 
 
 def seen(env, slot=0, pad=None):
-    numbers = env.surroundings(pad)
+    numbers = env.around(pad)
     assert (numbers.dtype, numbers.shape) == (np.float32, (env.num_envs, len(SURROUNDINGS)))
     return dict(zip(SURROUNDINGS, (numbers[slot] / SURROUNDINGS_SCALE).tolist(), strict=True))
 
@@ -132,4 +132,4 @@ def test_of_several_pads_each_has_its_width():
 
 def test_in_a_mirror_only_what_points_aside_changes_its_sign():
     one, other = falling(HARD, 1.5), falling(replace(HARD, wind=-0.2, gust=-0.3, swing=-4.0), 1.5)
-    assert other.surroundings() == pytest.approx(one.surroundings() * SURROUNDINGS_MIRROR, abs=1e-6)
+    assert other.around() == pytest.approx(one.around() * SURROUNDINGS_MIRROR, abs=1e-6)

@@ -77,7 +77,10 @@ def test_a_network_comes_back(tmp_path, dtype):
 
 
 def test_the_folder_can_be_read_by_a_person(saved):
+    edit(lambda config: config["cost"].update(note="?"))(saved)  # keys of other programs are left alone
+    NeuralNetwork.load(saved)
     config = json.loads((saved / "config.json").read_text())
+    assert config["cost"].pop("note") == "?"
     assert config["format"] == "tranquility network"
     assert config["version"] == 1
     assert config["cost"] == {"name": "huber", "delta": 2.5}
@@ -113,15 +116,11 @@ def test_a_network_for_images_comes_back(tmp_path):
 
 IMAGE_DAMAGES = {
     "too few sizes": (0, {"inputs": [6, 5]}, "height, width, channels"),
-    "no sizes": (0, {"inputs": {"height": 6}}, "height, width, channels"),
-    "size as text": (0, {"inputs": [6, "5", 2]}, "width"),
     "huge image": (0, {"inputs": [1 << 20, 1 << 20, 1]}, "height · width · channels"),
     "huge kernel": (0, {"kernel": 1 << 10}, "does not fit"),
     "wide padding": (0, {"padding": 3}, "padding"),
-    "stride none": (0, {"stride": None}, "stride"),
     "other filters": (0, {"filters": 4}, "layer-0-weights.npy"),
     "other image": (1, {"inputs": [6, 5, 1]}, "6 x 5 x 3"),
-    "pool as large as a house": (1, {"size": 30}, "between 2"),
     "everything dropped": (2, {"rate": 1.0}, "rate of dropout"),
     "other values": (3, {"inputs": [3, 2, 2]}, "3 x 2 x 2"),
 }
@@ -143,15 +142,6 @@ def test_a_save_replaces_the_old_folder(saved):
     np.testing.assert_array_equal(NeuralNetwork.load(saved).values, network.values)
     assert not (saved / "layer-9-weights.npy").exists()
     assert [path.name for path in saved.parent.iterdir()] == ["model"]
-
-
-def test_keys_of_other_programs_are_left_alone(saved):
-    path = saved / "config.json"
-    config = json.loads(path.read_text())
-    config["comment"] = "the good one"
-    config["cost"]["note"] = config["layers"][0]["note"] = "?"
-    path.write_text(json.dumps(config))
-    NeuralNetwork.load(saved)
 
 
 def edit(change):
@@ -178,29 +168,21 @@ def put(array):
 DAMAGES = {
     "no config": (lambda folder: (folder / "config.json").unlink(), "config.json"),
     "not JSON": (lambda folder: (folder / "config.json").write_text("{"), "config.json"),
-    "not text": (lambda folder: (folder / "config.json").write_bytes(b"\xff\xfe\x00"), "config.json"),
-    "a list": (lambda folder: (folder / "config.json").write_text("[]"), "tranquility network"),
-    "deep JSON": (lambda folder: (folder / "config.json").write_text("[" * 100_000), "config.json"),
     "another format": (edit(lambda c: c.update(format="onnx")), "tranquility network"),
     "a later version": (edit(lambda c: c.update(version=2)), "version 2"),
     "odd dtype": (edit(lambda c: c.update(dtype="complex64")), "complex64"),
     "no cost": (edit(lambda c: c.pop("cost")), "cost"),
     "unknown cost": (edit(lambda c: c["cost"].update(name="hinge")), "hinge"),
     "bad delta": (edit(lambda c: c["cost"].update(delta=-1)), "delta"),
-    "no delta": (edit(lambda c: c["cost"].pop("delta")), "delta"),
     "no layers": (edit(lambda c: c.update(layers=None)), "layers"),
     "layer no object": (edit(lambda c: c["layers"].insert(0, 3)), "layer 0"),
     "unknown layer": (edit(lambda c: c["layers"][3].update(type="Attention")), "Attention"),
-    "unhashable layer": (edit(lambda c: c["layers"][3].update(type=[])), "layer 3"),
     "unknown activation": (edit(lambda c: c["layers"][4].update(activation={"name": "swish"})), "swish"),
     "bad slope": (edit(lambda c: c["layers"][2]["activation"].update(slope="steep")), "layer 2"),
     "no inputs": (edit(lambda c: c["layers"][0].pop("inputs")), "inputs"),
-    "negative size": (edit(lambda c: c["layers"][0].update(outputs=-4)), "-4"),
     "huge size": (edit(lambda c: c["layers"][0].update(outputs=10**12)), "1000000000000"),
     "large size": (edit(lambda c: c["layers"][0].update(inputs=2**20, outputs=2**20)), "1048576"),
-    "size as text": (edit(lambda c: c["layers"][0].update(outputs="4")), "'4'"),
     "layers that do not fit": (edit(lambda c: c["layers"][3].update(inputs=5)), "takes 5"),
-    "no arrays": (edit(lambda c: c["layers"][0].pop("arrays")), "arrays"),
     "shape belied": (edit(lambda c: c["layers"][0]["arrays"]["bias"].update(shape=[5])), "layer-0-bias"),
     "another folder's file": (
         edit(lambda c: c["layers"][0]["arrays"]["bias"].update(file="../model/layer-0-bias.npy")),
@@ -208,10 +190,7 @@ DAMAGES = {
     ),
     "missing array": (lambda folder: (folder / "layer-5-bias.npy").unlink(), "layer-5-bias.npy"),
     "truncated array": (truncate, "layer-3-weights.npy"),
-    "empty array": (lambda folder: (folder / "layer-3-weights.npy").write_bytes(b""), "layer-3-weights.npy"),
-    "no array": (lambda folder: (folder / "layer-3-weights.npy").write_text("hello"), "layer-3-weights.npy"),
     "wrong shape": (put(np.zeros((4, 3), np.float32)), "layer-0-weights.npy"),
-    "wrong dtype": (put(np.zeros((3, 4), np.int32)), "layer-0-weights.npy"),
     "objects": (put(np.array([[None] * 4] * 3)), "layer-0-weights.npy"),
     "not finite": (put(np.full((3, 4), np.nan, np.float32)), "layer-0-weights.npy"),
 }

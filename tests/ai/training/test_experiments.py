@@ -2,16 +2,13 @@
 
 from dataclasses import fields
 
-import numpy as np
 import pytest
 
 from ai.agent.schedule import exploration_of_each
-from ai.lander.environment import LanderEnv
 from ai.training.config import PRESETS, Config
 from ai.training.experiments import SABOTAGES, Flown, differences, experiment_of, experiments, sabotaged, verdict
 from ai.training.loop import Training
 from tests.support.recordings import recorded
-from tests.support.small import LANDERS
 
 MODERN = PRESETS["modern"]
 KNOBS = [item.name for item in fields(Config) if item.name not in ("env", "reward_weights")] + [
@@ -54,19 +51,6 @@ def test_a_sabotage_is_an_experiment_too(subtests: pytest.Subtests):
     for name in SABOTAGES:
         with subtests.test(name=name):
             assert experiment_of(MODERN, name).applied(MODERN) == sabotaged(MODERN, name)
-
-
-def test_both_begin_with_the_same_decisions():
-    other = experiments(LANDERS, "learning_rate")[0].applied(LANDERS)
-    twins = [Training(config, 5, evaluate_every=0) for config in (LANDERS, other)]
-    for _ in range(10):  # before the first learning step
-        for twin in twins:
-            twin.advance()
-        one, two = (twin.env for twin in twins)
-        assert isinstance(one, LanderEnv)
-        assert isinstance(two, LanderEnv)
-        assert np.array_equal(one.actions, two.actions)
-        assert np.array_equal(one.position, two.position)
 
 
 HEALTHY = recorded("modern healthy")

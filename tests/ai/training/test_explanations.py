@@ -75,15 +75,6 @@ def test_a_moment_in_the_past_has_the_network_of_that_time():
     assert not np.array_equal(early.step.values_before, middle.step.values_before)
 
 
-def test_the_same_moment_gives_the_same_lesson():
-    session = run()
-    for _ in range(60):
-        next(session)
-    one, other = ask(session, 2), ask(session, 2)
-    np.testing.assert_array_equal(one.step.values_after, other.step.values_after)
-    np.testing.assert_array_equal(one.batch_errors, other.batch_errors)
-
-
 @pytest.mark.parametrize(("turns", "slot", "why"), [(60, 6, "no lander 6"), (60, -1, "no lander"), (3, 0, "not begun")])
 def test_what_cannot_be_explained_is_refused(turns, slot, why):
     session = run()

@@ -13,10 +13,10 @@ from ai.training.small_run import SMALL_RUN, Plan, SmallRun, small_runs
 def test_one_engine_landers_move_straight_up_and_down_and_are_paid_as_any_lander():
     env = OneEngineEnv(4, np.random.default_rng(1), (1.0, 8.0))
     sensed = env.reset()
-    assert ((env.height > 1) & (env.height < 8)).all()
-    assert sensed[:, 0] == pytest.approx(env.height * OBSERVATION_SCALE[1], abs=1e-5)
+    assert ((env.altitude > 1) & (env.altitude < 8)).all()
+    assert sensed[:, 0] == pytest.approx(env.altitude * OBSERVATION_SCALE[1], abs=1e-5)
     while not (result := env.step(np.array([0, 1, 0, 1]))).ended.all():
-        assert np.abs(env.lander.position[:, 0]).max() < 1e-2  # a crash shifts it a little
+        assert np.abs(env.position[:, 0]).max() < 1e-2  # a crash shifts it a little
         assert result.reward == pytest.approx(sum(result.components.values()))
     assert set(result.outcome.tolist()) <= {Outcome.CRASHED, Outcome.LANDED, Outcome.OUT_OF_BOUNDS}
 

@@ -129,7 +129,6 @@ def test_transitions_lie_in_blocks_that_are_written_once_and_go_when_they_are_fo
     assert len(held) == training.agent.replay.added // 64
     assert len(files(tmp_path / "run")) == len(blocks) + 1, "and one state"
     AGENTS.save(training, tmp_path / "copy")
-    assert {name: files(tmp_path / "copy")[name].stat().st_ino for name in blocks} == blocks, "linked"
     assert differing(training, resume_run(tmp_path / "copy")) == []
 
 

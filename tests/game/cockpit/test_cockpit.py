@@ -4,36 +4,22 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.agent.decision import Decision, decide
 from ai.lander.environment import PARAMS, Outcome
 from game.core import texts
 from game.core.settings import SettingsFile
 from game.flight import networks
-from game.flight.flight import StickHolder
 from game.flight.logbook import Records
 from game.scenes.play.help_words import HELP, word_of
 from game.scenes.play.overrides import difference
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
+from tests.game.cockpit.test_sharing import Wants
 from tests.support.driver import Driver
 from tests.support.flights import play
 from tests.support.written import words_written
 
 Open = Callable[..., Driver]
 COAST, LEFT, RIGHT, MAIN = range(4)
-
-
-class Wants:
-    """A network that thinks the main engine is worth 10, left 6, and the rest nothing."""
-
-    def q_values(self, observation: np.ndarray) -> np.ndarray:
-        return np.tile(np.array([0, 6, 0, 10, 0, 0], np.float32), (len(observation), 1))
-
-    def act(self, observation: np.ndarray, *, held: np.ndarray | None = None) -> np.ndarray:
-        return self.decide(observation, held=held).action
-
-    def decide(self, observation: np.ndarray, *, held: np.ndarray | None = None) -> Decision:
-        return decide(observation, self.q_values(observation), held)
 
 
 @pytest.fixture(autouse=True)
@@ -124,28 +110,6 @@ def test_without_assist_nothing_of_the_co_pilot_is_seen_or_felt(open_game: Open,
     assert play(driver).flight.share == 1.0
     assert texts.DECISION_TITLE not in words
     assert texts.YOU_FLY in words
-
-
-def test_a_hundred_handovers_with_help_on_lose_no_input_and_stick_no_engine(open_game: Open, context: Context):
-    driver = fly(open_game, context, assist=0.5, three_pads=True)
-    held = False
-    for turn in range(100):
-        if turn % 10 == 0:
-            start_at(driver, 0, 18, 0, 0, 0, 0)
-        driver.key(pygame.K_TAB)
-        if turn % 3 == 0:
-            (up if held else down)(driver, pygame.K_LEFT)
-            held = not held
-        driver.frames(1)
-        flight = play(driver).flight
-        wanted = LEFT if held and flight.hand is StickHolder.HUMAN else MAIN
-        assert flight.env.actions[0] == wanted
-    driver.app.context.settings.assist = 0.0
-    if held:
-        up(driver, pygame.K_LEFT)
-    start_at(driver, 0, 18, 0, 0, 0, 0)
-    driver.frames(2)
-    assert flight.env.actions[0] == COAST
 
 
 def test_the_card_of_a_shared_flight_names_the_co_pilot_and_its_moments(open_game: Open, context: Context, monkeypatch):

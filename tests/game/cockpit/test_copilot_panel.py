@@ -2,7 +2,6 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.agent.decision import Decision, decide
 from ai.copilot.copilot import Mode
 from game.core import texts
 from game.drawing.canvas import Canvas
@@ -10,19 +9,14 @@ from game.flight.flight import Flight
 from game.panels.landings import Landing, Landings, RecentLandings
 from game.scenes.play.copilot_panel import CopilotPanel
 from tests.support.drawn import Drawn, read_panel
+from tests.support.reading import Weighs
 
 
-class Wavers:
+class Wavers(Weighs):
     """A network that wants something else in every step that it is asked in, most of what it flies."""
 
     def q_values(self, observation: np.ndarray) -> np.ndarray:
         return np.sin(1e4 * observation[:, :1] * np.arange(1, 7)).astype(np.float32)
-
-    def act(self, observation: np.ndarray, *, held: np.ndarray | None = None) -> np.ndarray:
-        return self.decide(observation, held=held).action
-
-    def decide(self, observation: np.ndarray, *, held: np.ndarray | None = None) -> Decision:
-        return decide(observation, self.q_values(observation), held)
 
 
 def test_the_panel_shows_what_is_flown_from_the_first_step_after_a_hand_over(subtests: pytest.Subtests):

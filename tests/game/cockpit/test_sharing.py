@@ -1,18 +1,18 @@
 import numpy as np
 import pytest
 
-from ai.agent.decision import Decision, decide
 from ai.copilot.copilot import Mode
 from ai.lander.environment import Outcome
 from game.flight.flight import DECISION_STEPS, Flight, StickHolder
 from game.flight.forecast import coast_path
 from game.flight.handicap import HANDS, OWN, Handicap
 from game.flight.surface import surface_height
+from tests.support.reading import Weighs
 
 COAST, LEFT, RIGHT, MAIN = range(4)
 
 
-class Wants:
+class Wants(Weighs):
     """A network that thinks one action is worth 10, another one a bit less, and the others nothing."""
 
     def __init__(self, best: int = MAIN, good: int = LEFT, worth: float = 6.0) -> None:
@@ -23,12 +23,6 @@ class Wants:
     def q_values(self, observation: np.ndarray) -> np.ndarray:
         self.asked += 1
         return np.tile(self.values, (len(observation), 1))
-
-    def act(self, observation: np.ndarray, *, held: np.ndarray | None = None) -> np.ndarray:
-        return self.decide(observation, held=held).action
-
-    def decide(self, observation: np.ndarray, *, held: np.ndarray | None = None) -> Decision:
-        return decide(observation, self.q_values(observation), held)
 
 
 class Falls(Wants):

@@ -2,6 +2,7 @@
 
 import dataclasses
 from collections.abc import Callable
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -14,13 +15,15 @@ from ai.digits.mnist import load_part
 from ai.nn import CostFunctions, FullyConnectedLayer, LayerNormalisation, NeuralNetwork
 from game.core import source, texts
 from game.core.assets import MODELS_DIR
+from game.drawing import typeface
+from game.drawing.canvas import Canvas
 from game.scenes.digits import unit_walk as patch_code
 from game.scenes.digits.answer import DigitRow
 from game.scenes.digits.inside import DigitInsideScene
 from game.scenes.digits.patch_sums import figure
 from game.scenes.digits.pickers import MapPicker, TilesPicker
 from game.scenes.digits.stage_row import StageRow
-from game.scenes.digits.unit_walk import code_of
+from game.scenes.digits.unit_walk import UnitWalk, code_of
 from game.scenes.digits.why_not import WhyNotScene, sentences
 from game.ui.context import Context
 from tests.support.driver import Driver
@@ -171,6 +174,38 @@ def test_the_window_slides_by_itself_until_it_is_touched(open_game: Open, modern
     driver.move(pickers(driver, MapPicker)[1].place(3, 3).center)
     assert not scene(driver).sliding
     assert walk.place[:2] == (3, 3)
+
+
+def test_the_window_begins_on_ink_and_slides_over_ink_alone(modern, nine):
+    walk = UnitWalk(modern, nine)
+    assert walk.value(len(walk.stages)) == walk.probabilities.max(), "the way ends at the answer"
+    for _ in range(150):
+        top, left, bottom, right = walk.field
+        assert nine[top:bottom, left:right].any()
+        walk.slide()
+
+
+def test_figures_in_a_matrix_do_not_touch_at_any_size_of_text(inside: Driver, monkeypatch):
+    written: list[tuple[pygame.FRect, str]] = []
+    plain = Canvas.text
+
+    def text(canvas: Canvas, string: str, position: Any, **how: Any) -> pygame.FRect:
+        width = canvas.text_width(string, size=how["size"], tabular=True)
+        if how.get("align") == "centre" and how.get("tabular"):
+            written.append((pygame.FRect(position[0] - width / 2, position[1], width, 1), string))
+        return plain(canvas, string, position, **how)
+
+    monkeypatch.setattr(Canvas, "text", text)
+    for factor in (1.6, 1.0):
+        written.clear()
+        typeface.grow(factor)
+        inside.frames(1)
+        rows = [[box for box, _ in written if box.top == top] for top in {box.top for box, _ in written}]
+        assert sum(map(len, rows)) == 75
+        for row in rows:
+            boxes = sorted(row, key=lambda box: box.left)
+            assert all(one.right + 3 < other.left for one, other in pairwise(boxes)), factor
+    typeface.grow(1.0)
 
 
 def test_with_reduced_motion_nothing_slides_unasked(inside: Driver):

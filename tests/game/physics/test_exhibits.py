@@ -105,7 +105,3 @@ def test_spin_is_kept_and_a_push_beside_the_middle_turns_as_well():
     for bar, turning in zip(spin.bars, (0.0, -figures["spin"]), strict=True):
         assert bar.velocity[0] == pytest.approx((figures["pace"], 0.0), abs=1e-9)
         assert float(bar.angular_velocity[0]) == pytest.approx(turning)
-
-
-def test_every_exhibit_has_its_words():
-    assert texts.EXHIBITS.keys() == EXHIBITS.keys()

@@ -102,7 +102,7 @@ def test_values_spread_over_the_range_can_be_chosen(subtests: pytest.Subtests):
 
 
 def test_every_exhibit_has_words_for_its_law_and_its_quantities():
-    assert texts.LAWS.keys() == EXHIBITS.keys()
+    assert texts.LAWS.keys() == texts.EXHIBITS.keys() == EXHIBITS.keys()
     assert texts.QUANTITIES.keys() == {quantity for _, quantity in QUANTITIES}
 
 

@@ -8,13 +8,14 @@ import pytest
 
 from game.core import texts
 from game.drawing.tokens import HUMAN
-from game.scenes.physics import step_scene as physics_step
 from game.scenes.physics.scene import GRAVITIES, PhysicsScene
 from game.scenes.physics.step_scene import PhysicsStepScene
+from game.ui.rows import ChoiceRow
 from game.ui.widgets import Slider, TextButton
 from game.world.bodies import scale_force
 from tests.support.driver import Driver
 from tests.support.screens import fallen
+from tests.support.written import words_written
 
 Open = Callable[..., Driver]
 MOON, EARTH = GRAVITIES
@@ -225,50 +226,57 @@ def test_pieces_are_walked_through_without_a_mouse(open_game: Open, pad: bool):
 def test_pieces_are_chosen_and_followed_with_the_mouse(open_game: Open):
     driver = open_game(lambda context: PhysicsStepScene(context, fallen()))
     scene = step(driver)
-    tabs = driver.choice(texts.STEP_PIECES["impulses"][0])
-    number = list(tabs.options).index(texts.STEP_PIECES["impulses"][0])
-    driver.click((tabs.row.lefts[number] + 4, tabs.box.centery))
+    driver.frames(2)
+    word = texts.STEP_PIECES["impulses"][0]
+    tabs = driver.choice(word)
+    assert isinstance(tabs, ChoiceRow)
+    driver.click(tabs._places[list(tabs.options).index(word)].center)
     assert scene.piece.kind == "impulses"
     assert scene.piece.impulse is not None
     assert scene.piece.impulse.iteration == 1
-    few = len(scene.pieces)
-    follow = driver.choice(texts.STEP_FOLLOWED[1])
-    driver.click((follow.row.lefts[1] + 4, follow.box.centery))
-    assert len(scene.pieces) > 10 * few
-    assert scene.piece.kind == "impulses"
     driver.click(driver.hints()[texts.HINT_NEXT_PIECE])
     assert scene.piece is scene.pieces[scene.place]
+    assert scene.piece.impulse.iteration == 2
 
 
-def test_a_step_in_which_nothing_meets_says_so(open_game: Open):
-    driver = open_game(PhysicsScene, "drag")
-    driver.frames(20)
-    press(driver, texts.LAW_STEP)
-    scene = step(driver)
-    assert [piece.kind for piece in scene.pieces] == ["boxes", "forces", "motion", "end"]
-    for _ in scene.pieces:
-        driver.key(pygame.K_PERIOD)
-        driver.frames(2)
-    assert scene.pair is None
+# What stands on the screen
 
 
-def test_the_step_is_shown_without_source_code(open_game: Open, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(physics_step, "source_of", lambda function: None)
-    driver = open_game(lambda context: PhysicsStepScene(context, fallen()))
-    for _ in step(driver).pieces:
-        driver.key(pygame.K_PERIOD)
+def test_f1_explains_one_thing_after_the_other(open_game: Open, monkeypatch: pytest.MonkeyPatch):
+    driver, words = open_game(PhysicsScene, "stack"), words_written(monkeypatch)
+    explained = gallery(driver).explained
+    driver.key(pygame.K_F1)
+    assert explained.stepping
+    told = set()
+    for _ in range(12):
+        words.clear()
+        driver.frames(1)
+        told |= {what for what in texts.EXPLAIN_PHYSICS.values() if what[:20] in " ".join(words)}
+        driver.key(pygame.K_F1)
+    assert told == set(texts.EXPLAIN_PHYSICS.values())
+    driver.key(pygame.K_ESCAPE)
+    assert not gallery(driver).explained.stepping
 
 
-@pytest.mark.parametrize("size", ["normal", "largest"])
-def test_every_kind_of_piece_is_drawn_at_other_sizes(open_game: Open, size: str):
-    driver = open_game(lambda context: PhysicsStepScene(context, fallen()))
-    driver.app.context.settings.text_size = size
-    driver.app.context.apply_settings()
-    driver.resize((1000, 800))
-    scene = step(driver)
-    pictures = set()
-    for piece in range(len(scene.pieces)):
-        scene.place = piece
-        scene.draw(driver.app.canvas, 0.0)
-        pictures.add(pygame.image.tobytes(driver.app.canvas.surface, "RGB"))
-    assert len(pictures) > 8
+def test_what_flies_behind_the_controls_is_not_gripped_there(open_game: Open):
+    driver = open_game(PhysicsScene, "stack")
+    scene = gallery(driver)
+    [box, *_] = scene.exhibit.bodies
+    for y, gripped in ((140.0, False), (170.0, True)):
+        place = (430.0, y)
+        box.position = scene.view(1.0).metres(place)
+        scene.playback.stopped = True
+        scene.playback.step()
+        driver.post(pygame.MOUSEBUTTONDOWN, pos=driver.to_window(place), button=1)
+        assert (scene.grip is not None) is gripped
+        driver.post(pygame.MOUSEBUTTONUP, pos=driver.to_window(place), button=1)
+
+
+def test_the_plot_follows_the_size_of_text(open_game: Open):
+    driver = open_game(PhysicsScene, "stack")
+    driver.key(pygame.K_g)
+    before = gallery(driver).bench.panel
+    driver.key(pygame.K_ESCAPE)
+    assert driver.top_name == "PauseScene"
+    driver.key(pygame.K_ESCAPE)
+    assert gallery(driver).bench.panel is not before

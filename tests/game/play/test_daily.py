@@ -5,6 +5,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from datetime import date, timedelta
 
+import numpy as np
 import pygame
 import pytest
 
@@ -21,6 +22,7 @@ from game.scenes.play.calendar import DaysScene
 from game.scenes.play.daily import DailyStart
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
+from game.ui.rows import ListRow
 from tests.support.driver import Driver
 from tests.support.flights import kept, play
 
@@ -211,11 +213,24 @@ def test_a_gamepad_alone_gets_there_flies_and_copies(open_game: Open, context: C
     assert clipboard[-1].startswith("Tranquility ")
 
 
-def test_card_list_and_line_agree_on_who_comes_down_softly_beside_the_pad(context: Context):
-    beside = Attempt(TODAY.isoformat(), Outcome.CRASHED.name, intact=True)
-    Days(context.user_dir).note(beside)
-    read = Days(context.user_dir).attempts[TODAY.isoformat()]
-    assert read == beside
-    assert texts.BESIDE_RESULT in read.line
-    assert texts.RIVAL_RESULTS["CRASHED"] not in read.line
-    assert replace(read, intact=False).result == texts.RIVAL_RESULTS["CRASHED"]
+def test_card_list_and_line_agree_on_who_comes_down_softly_beside_the_pad(
+    open_game: Open, context: Context, clipboard: list[str]
+):
+    day = date(2026, 11, 22)  # with level ground between two of its pads
+    driver = open_game(lambda context: PlayScene(context, 0, challenge=DailyStart(day, Days(context.user_dir))))
+    driver.frames(3)
+    scene, env = play(driver), play(driver).flight.env
+    scene.flown.waiting = False
+    height = float(env.ground.height(np.array([-4.95]))[0])
+    env.place(np.ones(1, bool), np.array([[-4.95, height + 1.1, 0.0, -0.1, 0.0, 0.0]]))
+    while scene.ending.shown < 1:
+        driver.skip()
+    assert scene.flight.intact
+    assert scene.ending.card.title == texts.BESIDE_TITLE
+    driver.key(pygame.K_k)
+    told = Days(context.user_dir).attempts[day.isoformat()]
+    assert clipboard[-1] == told.line == f"Tranquility {day} · {texts.BESIDE_RESULT} · first attempt"
+    driver = open_game(lambda context: DaysScene(context, day))
+    driver.frames(2)
+    assert driver.the(ListRow).rows[0][1] == texts.BESIDE_RESULT
+    assert replace(told, intact=False).result == texts.RIVAL_RESULTS["CRASHED"]

@@ -262,21 +262,6 @@ def test_a_key_held_meanwhile_must_be_let_go_first(open_game: Open, written: lis
     assert texts.TUTORIAL_LET_GO in written
 
 
-def test_to_try_again_is_always_in_the_hints(open_game: Open):
-    driver = open_game(PlayScene, 4)
-    driver.frames(2)
-    assert texts.HINT_RETRY in driver.hints()
-    driver.key(pygame.K_UP)
-    driver.frames(20)
-    assert texts.HINT_RETRY not in driver.hints()  # in flight there is one sentence
-    driver.key(pygame.K_ESCAPE)
-    assert texts.PAUSE_RETRY in [widget.label for widget in driver.form.widgets]
-    driver.key(pygame.K_ESCAPE)
-    end(driver, TOO_FAST)
-    driver.frames(2)
-    assert texts.HINT_RETRY in driver.hints()
-
-
 # The rescue
 
 

@@ -211,13 +211,6 @@ def test_a_friends_code_is_sent_on_as_it_came(open_game: Open, record: Record, c
     assert clipboard[-1] == code
 
 
-def test_a_flight_of_the_logbook_is_copied(open_game: Open, record: Record, clipboard: list[str]):
-    driver = open_game(LogbookScene)
-    driver.frames(2)
-    driver.press_on(texts.CODE_COPY)
-    assert sharing.flight_in(clipboard[-1]).recording == record.recording
-
-
 def test_without_a_clipboard_the_code_is_written_to_a_file(
     open_game: Open, context: Context, record: Record, monkeypatch: pytest.MonkeyPatch
 ):

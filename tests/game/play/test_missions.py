@@ -25,7 +25,6 @@ from game.scenes.play.challenge import FlownMission
 from game.scenes.play.missions import MissionsScene
 from game.scenes.play.sentence import surroundings, wind
 from game.ui.context import Context
-from game.ui.listing import Listing
 from game.ui.rows import ListRow
 from tests.support.driver import Driver
 from tests.support.flights import kept, play, scripted
@@ -314,10 +313,9 @@ def test_a_flight_is_flown_on_from_the_moment_that_is_shown(book: Driver):
 
 
 def test_a_flight_thrown_away_says_so_in_its_row_and_z_brings_it_back(book: Driver):
-    listing = book.the(Listing)
-    ending = listing.rows[0][2]
+    ending = book.the(ListRow).rows[0][2]
     book.key(pygame.K_DELETE)
-    assert listing.rows[0][2] == texts.LOGBOOK_ROW_THROWN != ending
+    assert book.the(ListRow).rows[0][2] == texts.LOGBOOK_ROW_THROWN != ending
     book.key(pygame.K_z)
-    assert listing.rows[0][2] == ending
+    assert book.the(ListRow).rows[0][2] == ending
     assert Records(book.app.context.user_dir).kept()

@@ -279,12 +279,3 @@ def test_a_device_with_one_sign_for_both_turns_names_it_once(open_game: Open):
     assert challenge.words(flight, controls).startswith(f"{controls.word(Held.LEFT)} or {controls.word(Held.RIGHT)} ")
     driver.move((640, 360))
     assert " or " not in challenge.words(flight, controls).split(".")[0]
-
-
-@pytest.mark.parametrize("device", DEVICES)
-def test_it_is_flown_again_from_the_settings(open_game: Open, device: str):
-    player = Player(open_game(SettingsScene, "flights"), device)
-    player.choose(texts.TUTORIAL_OPEN)
-    assert tutorial(player).lesson.name == "fire"
-    player.press("pause")
-    assert player.top_name == "SettingsScene"

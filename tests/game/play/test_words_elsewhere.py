@@ -12,7 +12,7 @@ from game.core import texts
 from game.core.worker import WorkerState
 from game.digits import percent
 from game.flight import networks
-from game.scenes.digits.answer import best_two
+from game.scenes.digits.reader import best_two
 from game.scenes.digits.scene import DigitsScene
 from game.scenes.train.digits import DigitTrainingScene
 from game.scenes.train.scene import TrainScene

@@ -12,11 +12,11 @@ from ai.lander.missions import MISSIONS
 from game.core import texts
 from game.flight.logbook import Records, best
 from game.scenes.menus.menu import MenuScene
-from game.scenes.menus.settings import AssistsScene, SettingsScene
+from game.scenes.menus.settings import SettingsScene
 from game.scenes.play.challenge import FlownMission
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
-from game.ui.switch_scan import DWELL, HELD, SwitchScan
+from game.ui.switch_scan import DWELL, HELD
 from tests.support.driver import Driver
 from tests.support.one_switch import SlowSwitch
 from tests.support.player import DEVICES, Player
@@ -42,15 +42,6 @@ def test_every_assist_is_switched_and_saved_by_each_device(open_game: Open, cont
     assert {name: saved[name] for name in before} == {name: not value for name, value in before.items()}
 
 
-def test_the_mouse_switches_them_too(open_game: Open, context: Context):
-    settle(context)
-    game = open_game(AssistsScene)
-    game.click(game.widget(texts.SETTINGS["wider_pads"][0]).box.center)
-    game.frames(2)
-    assert context.settings.wider_pads
-    assert game.saved()["wider_pads"]
-
-
 def test_it_is_reached_from_the_pause(open_game: Open, context: Context):
     settle(context)
     player = Player(open_game(PlayScene, 3), "pad")
@@ -59,7 +50,7 @@ def test_it_is_reached_from_the_pause(open_game: Open, context: Context):
     player.frames(5)
     player.press("pause")
     player.choose(texts.ASSISTS_OPEN)
-    assert (player.top_name, player.top.group) == ("AssistsScene", "flights")
+    assert (player.top_name, player.top.group) == ("SettingsScene", "flights")
     player.press("back")
     assert "PauseScene" in player.top_name
 
@@ -98,16 +89,6 @@ def test_a_press_for_thrust_is_named_and_counts_like_any_other(open_game: Open, 
     assert set(play.flight.recording.actions[2:]) == {3}  # it stayed on
     assert texts.ASSIST_WORDS["toggle_thrust"] in play.ending.card.assists
     assert play.credit.counts
-
-
-def test_without_assists_the_card_says_nothing_of_them(open_game: Open, context: Context):
-    settle(context)
-    game = open_game(PlayScene, 3)
-    game.frames(3)
-    game.key(pygame.K_UP)
-    while game.top.ending.card is None:
-        game.skip(10)
-    assert game.top.ending.card.assists == ""
 
 
 def test_wider_pads_chosen_before_the_first_touch_are_there_at_once(open_game: Open, context: Context):
@@ -208,7 +189,7 @@ def test_the_whole_way_with_one_switch(open_game: Open, context: Context):
 
 def test_one_switch_turns_a_slider_round_and_every_assist_off_again(open_game: Open, context: Context):
     settle(context, one_switch=True, pace=0.9)
-    game = open_game(AssistsScene)
+    game = open_game(SettingsScene, "flights")
     game.skip(20)
     switch = Switch(game, "keys")
     for pace in (1.0, 0.2):
@@ -220,21 +201,3 @@ def test_one_switch_turns_a_slider_round_and_every_assist_off_again(open_game: O
     assert not context.settings.one_switch
     game.key(pygame.K_SPACE)  # an ordinary press again
     assert context.settings.one_switch
-
-
-def test_a_mouse_that_moves_still_clicks_beside_it(open_game: Open, context: Context):
-    settle(context, one_switch=True)
-    game = open_game(AssistsScene)
-    game.skip(20)
-    game.click(game.widget(texts.SETTINGS["untimed"][0]).box.center)
-    game.frames(2)
-    assert context.settings.untimed
-
-
-def test_without_the_assist_nothing_scans(open_game: Open, context: Context):
-    settle(context)
-    game = open_game(MenuScene)
-    first = game.form.focused
-    game.skip(3 * DWELL)
-    assert game.form.focused is first
-    assert isinstance(game.app.scan, SwitchScan)

@@ -143,15 +143,3 @@ def test_a_key_mutes_everywhere_and_says_so(open_game: Open, context: Context, s
         game.key(pygame.K_F10)
         assert (context.settings.muted, game.said) == (muted, said)
         assert game.saved()["muted"] is muted
-
-
-def test_mute_on_the_page_follows_the_key(open_game: Open, context: Context):
-    settle(context)
-    game = open_game(SettingsScene, "sound")
-    toggle = game.widget(texts.SETTINGS["muted"][0])
-    game.key(pygame.K_F10)
-    game.frames(2)
-    assert toggle.value
-    game.click(toggle.box.center)
-    game.frames(2)
-    assert not context.settings.muted

@@ -94,16 +94,6 @@ def test_slower_and_faster(watching: Driver, key: int, times: int, speed: float)
     assert steps(watching) - before == pytest.approx(40 * speed, abs=1)
 
 
-def test_arrows_choose_how_many_and_the_same_starts_stay(watching: Driver):
-    first = scene(watching).swarm.poses.before[0].copy()
-    watching.keys(pygame.K_DOWN, pygame.K_RIGHT)
-    assert scene(watching).swarm.env.num_envs == 16
-    assert np.abs(scene(watching).swarm.poses.now[0] - first).max() < 0.5
-    watching.keys(pygame.K_RIGHT, pygame.K_RIGHT)
-    assert scene(watching).swarm.env.num_envs == 256
-    watching.frames(3)
-
-
 def test_the_mouse_chooses_words_and_landers(watching: Driver):
     choice = watching.choice("16")
     watching.click((choice.row.lefts[1] + 4, choice.box.centery))
@@ -211,26 +201,6 @@ def test_a_missing_network_is_listed_with_what_is_wrong_and_another_flies(watchi
     assert not watch.problem
     watching.frames(60)
     assert watching.top is watch
-
-
-def test_landings_are_counted_and_a_resize_is_survived(watching: Driver):
-    watching.keys(pygame.K_DOWN, pygame.K_RIGHT, pygame.K_PLUS, pygame.K_PLUS)
-    watching.resize((900, 700))
-    watching.skip(400)
-    assert scene(watching).swarm.landed > 5
-    watching.resize((1280, 720))
-    watching.frames(2)
-
-
-def test_menu_leads_to_watch_and_back(open_game: Open):
-    driver = open_game()
-    driver.keys(pygame.K_DOWN, pygame.K_RETURN)
-    assert driver.top_name == "WatchScene"
-    driver.frames(5)
-    driver.keys(pygame.K_ESCAPE, pygame.K_ESCAPE)
-    assert driver.top_name == "WatchScene"
-    driver.key(pygame.K_BACKSPACE)
-    assert driver.top_name == "MenuScene"
 
 
 def test_motion_reduced_in_a_pause_brings_the_camera_to_rest(watching: Driver):

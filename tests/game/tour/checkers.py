@@ -293,8 +293,9 @@ NOT_AT = {
 }
 # Screens in rows and columns, which are laid out anew for every window.
 FLOWING = {
-    "MenuScene", "FlightsScene", "SettingsScene", "AssistsScene", "BindingsScene", "QuestionDialog", "NameDialog",
-    "ListDialog", "sound", "controls", "ChoicesScene", "PauseScene", "FlightPauseScene, of a flight",
+    "MenuScene", "FlightsScene", "SettingsScene", "BindingsScene", "QuestionDialog", "NameDialog",
+    "ListDialog", "sound", "controls", "ChoicesScene", "PauseScene", "FlightPauseScene, of a flight", "DaysScene",
+    "MissionsScene", "LogbookScene", "PhysicsStepScene",
 }  # fmt: skip
 IN_FLIGHT = {
     "Play, in flight", "mission, in flight", "descent, in flight", "daily, in flight", "tutorial, in flight",
@@ -306,7 +307,9 @@ ONLY_AT = {
         "WatchScene", "ReplayScene", "Play", "swarm", "mission", "TrainScene", "PhysicsScene", "Play, in flight",
         "tutorial", "mission, card",
     },
-    at_first_sight_there_is_little_to_read_and_to_choose_from: FLOWING | {"Play", "mission", "daily", "descent"},
+    at_first_sight_there_is_little_to_read_and_to_choose_from: FLOWING
+    - {"MissionsScene", "LogbookScene"}  # whose lists are long
+    | {"Play", "mission", "daily", "descent"},
     in_flight_there_is_one_sentence: IN_FLIGHT,
 }  # fmt: skip
 

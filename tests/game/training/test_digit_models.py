@@ -52,9 +52,8 @@ def test_names_are_those_of_folders_and_none_hides_another(context: Context):
 def test_networks_of_any_shape_are_explained(context: Context, config):
     reader = Reader()
     assert reader.load("own", save(context, "own", config))
-    why = reader.explain("own", np.eye(28, dtype=np.float32))
-    assert np.isfinite(why.saliency).all()
-    assert 0 < len(why.filters) <= 32
+    why = reader.saliency("own", np.eye(28, dtype=np.float32))
+    assert np.isfinite(why).all()
 
 
 def test_all_of_them_can_be_chosen_by_keys_and_from_the_list(open_game: Callable[..., Driver], own: list[str]):

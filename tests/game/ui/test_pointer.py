@@ -9,16 +9,11 @@ import pytest
 from ai.agent.network import build_network
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.training.config import Config
-from game.flight.flight import Flight
-from game.flight.logbook import Records
-from game.scenes.logbook.scene import LogbookScene
 from game.scenes.physics.scene import PhysicsScene
 from game.scenes.train.base import INSIDE
 from game.scenes.train.scene import TrainScene
-from game.ui.context import Context
 from game.ui.virtual_pointer import VirtualPointer
 from tests.support.driver import Driver
-from tests.support.flights import NOON, fly_out
 from tests.support.player import DEVICES, Player
 
 Open = Callable[..., Driver]
@@ -100,21 +95,6 @@ def test_who_looks_elsewhere_lets_go(take: Take):
     place = pointer(player).place.copy()
     player.frames(5)
     assert pointer(player).place == place
-
-
-def test_a_chart_says_what_is_under_the_pointer(take: Take, context: Context):
-    records = Records(context.user_dir)
-    for number in range(3):
-        records.keep(fly_out(Flight(number)), NOON + number, alone=True)
-    player = take(LogbookScene)
-    chart, other = player.top._charts.charts
-    bring(player, chart.plot.center)
-    assert chart.pointed
-    assert not other.pointed
-    assert np.isclose(chart.cursor, 2.0, atol=0.1)
-    player.press("back")
-    assert not chart.pointed
-    assert player.top_name == "LogbookScene"
 
 
 def test_the_network_of_a_run_can_be_pointed_into(take: Take):
