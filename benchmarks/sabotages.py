@@ -1,6 +1,6 @@
 """What the sabotage cards say was measured: shares of training flights that landed, over several seeds.
 
-    python -m benchmarks.sabotages [--seeds 3]    # seven runs a seed, some ten seconds of one core each
+    python -m benchmarks.sabotages [--seeds 4]    # seven runs a seed, some ten seconds of one core each
 
 Each part is taken away from the modern preset, and each run is trained for 100,000 decisions. A share is of the latest
 hundred training flights, with their chance moves; a line gives its mean over the seeds, and the 95 % interval of that
@@ -41,7 +41,7 @@ def share(name: str, seed: int) -> float:
 def main() -> None:
     """Measure each card, print a line for it, and write the file that the cards read."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--seeds", type=int, default=4)
     seeds = parser.parse_args().seeds
     names = (MEASURED, *CARDS)
     with Pool() as pool:

@@ -136,6 +136,6 @@ def test_a_pixel_tells_its_ink(open_game: Open):
 def test_frame_cards_take_a_click_while_keys_move_a_pointer(driver: Driver):
     driver.key(pygame.K_RETURN)
     assert driver.top.pointer.typing
-    for number in (3, 5):
-        driver.click(driver.top.strip.box(number).center)
-        assert driver.top.current == number
+    for card in (3, 5):
+        driver.click(driver.top.strip.box(card).center)
+        assert driver.top.current == card
