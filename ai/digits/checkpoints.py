@@ -74,8 +74,6 @@ def read_settings(folder: Path) -> tuple[DigitConfig, int, int]:
         described = read_as(_TrainingFile, read_json(inside(folder, TRAINING_FILE)))
         preset = DIGIT_PRESETS[described.preset].to_json()
         config = DigitConfig.from_json(preset | DigitConfig.renamed(described.changes))
-    except OSError as error:
-        raise ModelFormatError(folder, [f"{TRAINING_FILE}: {error.strerror or error}"]) from error
-    except (ValueError, TypeError, ArithmeticError) as error:
+    except (OSError, ValueError, TypeError, ArithmeticError) as error:
         raise ModelFormatError(folder, [f"{TRAINING_FILE}: {problem_in(error)}"]) from error
     return config, described.seed, described.step

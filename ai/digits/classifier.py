@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from ai.digits.mnist import MnistError, load_mnist, load_part
 from ai.digits.preprocessing import SIDE, Image, Stages, preprocess, preprocess_strokes, stages
-from ai.files import CONFIG, FolderKind, check_header, inside, read_json
+from ai.files import CONFIG, FolderKind, check_header, inside, problem_in, read_json
 from ai.files import NETWORK as NETWORK_KIND
 from ai.nn import ModelFormatError, NeuralNetwork, atomic_folder, recover_folder
 from ai.nn.costs import softmax
@@ -108,7 +108,5 @@ def read_description(folder: str | Path) -> dict[str, Any]:
     recover_folder(folder)
     try:
         return check_header(read_json(inside(folder, DIGITS_FILE)), FORMAT, (VERSION,))
-    except OSError as error:
-        raise ModelFormatError(folder, [f"{DIGITS_FILE}: {error.strerror or error}"]) from error
-    except ValueError as error:
-        raise ModelFormatError(folder, [f"{DIGITS_FILE}: {error}"]) from error
+    except (OSError, ValueError) as error:
+        raise ModelFormatError(folder, [f"{DIGITS_FILE}: {problem_in(error)}"]) from error

@@ -295,9 +295,7 @@ class History:
             history.reward_scale = described.reward_scale or _scale_beside(folder)
         except FileNotFoundError:
             return cls(columns)
-        except OSError as error:
-            raise ModelFormatError(folder, [f"{HISTORY_FILE}: {error.strerror or error}"]) from error
-        except (ValueError, KeyError, TypeError, ArithmeticError) as error:
+        except (OSError, ValueError, KeyError, TypeError, ArithmeticError) as error:
             raise ModelFormatError(folder, [f"{HISTORY_FILE}: {problem_in(error)}"]) from error
         return history
 

@@ -16,15 +16,15 @@ from ai.training.config import PRESETS
 from ai.training.loop import Training
 from ai.training.tasks import LANDER_SYMMETRY
 
+MODERN = replace(PRESETS["modern"], num_envs=8, batch_size=16, gradient_steps=2, learning_starts=32, n_step=3,
+                 hidden=(16, 12), replay_size=2000)  # fmt: skip
 SMALL = {
-    "modern": replace(PRESETS["modern"], num_envs=8, batch_size=16, gradient_steps=2, learning_starts=32, n_step=3,
-                      hidden=(16, 12), replay_size=2000),
-    "double": replace(PRESETS["modern"], num_envs=8, batch_size=16, gradient_steps=2, learning_starts=32, n_step=3,
-                      hidden=(16, 12), replay_size=2000, target_judges=True, double=True),
+    "modern": MODERN,
+    "double": replace(MODERN, target_judges=True, double=True),
     "classic": replace(PRESETS["classic"], hidden=(16, 12), batch_size=16, learning_starts=32),
-    "all": replace(PRESETS["modern"], num_envs=8, batch_size=16, gradient_steps=1, learning_starts=32, n_step=2,
-                   hidden=(16,), replay_size=2000, prioritised=True, dueling=True, normalise_inputs=True,
-                   activation="leaky_relu", cost="mse", double=False, gradient_clip=0.1, optimizer="momentum"),
+    "all": replace(MODERN, gradient_steps=1, n_step=2, hidden=(16,), prioritised=True, dueling=True,
+                   normalise_inputs=True, activation="leaky_relu", cost="mse", double=False, gradient_clip=0.1,
+                   optimizer="momentum"),
 }  # fmt: skip
 
 
@@ -46,12 +46,18 @@ class Drawn(ReplayBuffer):
         return self.drawn
 
 
-def unobserved(before, cell, agent):
-    """The same step by an agent that nobody looks at: it is handed the same minibatch, and learns."""
+def minibatch(before, cell):
+    """The minibatch of the lesson, with the memory in the row of it that is returned."""
     row = len(before.weights) // 2
     cells = Transition(*(np.array(part) for part in before.cells))
     for part, own in zip(cells, cell, strict=True):
         part[row] = own
+    return cells, row
+
+
+def unobserved(before, cell, agent):
+    """The same step by an agent that nobody looks at: it is handed the same minibatch, and learns."""
+    cells, _ = minibatch(before, cell)
     twin = DeepQAgent(9, 6, before.config.changed(gradient_steps=1, success_pass=False), np.random.default_rng(5),
                       symmetry=LANDER_SYMMETRY, replay=Drawn(cells, before.weights))  # fmt: skip
     twin.copy_from(agent)
@@ -85,10 +91,7 @@ def test_the_step_is_the_one_that_is_taken_when_nobody_looks(case):
 
 def test_the_target_is_the_agents(case):
     agent, before, cell, lesson, _ = case
-    row = len(before.weights) // 2
-    cells = Transition(*(np.array(part) for part in before.cells))
-    for part, own in zip(cells, cell, strict=True):
-        part[row] = own
+    cells, row = minibatch(before, cell)
     if agent.normalizer:
         cells = cells._replace(state=agent.normalizer(cells.state), next_state=agent.normalizer(cells.next_state))
     targets, values = agent.targets(cells)

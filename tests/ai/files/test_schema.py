@@ -70,13 +70,8 @@ def test_what_is_wrong_is_named_with_its_place(subtests):
 def test_one_message_names_everything_that_is_wrong_and_is_short_all_the_same():
     with pytest.raises(SchemaError) as caught:
         read_as(Cart, {"wheels": [{"radius": -1, "spokes": 0}, 5], "locked": "y" * 1000})
-    assert [problem.partition(":")[0] for problem in caught.value.problems] == [
-        "name is missing",
-        "wheels[0].radius",
-        "wheels[0].spokes",
-        "wheels[1]",
-        "locked",
-    ]
+    named = [problem.partition(":")[0] for problem in caught.value.problems]
+    assert named == ["name is missing", "wheels[0].radius", "wheels[0].spokes", "wheels[1]", "locked"]
     assert len(str(caught.value)) < 300
     with pytest.raises(SchemaError, match="; and more") as caught:
         read_as(Cart, WHOLE | {"wheels": ["x"] * 500})
@@ -100,18 +95,15 @@ def test_sound_fields_are_told_from_the_others():
     assert [problem.partition(" ")[0] for problem in problems] == ["wheels", "worn:"]
 
 
-@pytest.mark.parametrize(
-    ("values", "said"),
-    [
+def test_a_file_says_its_format_and_a_version_that_can_be_read():
+    for values, said in (
         ([], "does not say that this is a 'cart'"),
         ({"format": "car", "version": 1}, "'cart'"),
         ({"format": "cart"}, "format version null; this program reads version 1 and 2"),
         ({"format": "cart", "version": True}, "version true"),
         ({"format": "cart", "version": "x" * 1000}, "version 'xxx"),
-    ],
-)
-def test_a_file_says_its_format_and_a_version_that_can_be_read(values, said):
-    with pytest.raises(ValueError, match=said) as caught:
-        check_header(values, "cart", (1, 2))
-    assert len(str(caught.value)) < 100
+    ):
+        with pytest.raises(ValueError, match=said) as caught:
+            check_header(values, "cart", (1, 2))
+        assert len(str(caught.value)) < 100
     assert check_header({"format": "cart", "version": 2}, "cart", (1, 2))["version"] == 2
