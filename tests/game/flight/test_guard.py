@@ -143,19 +143,21 @@ def test_a_craft_hangs_until_a_plan_is_found_but_not_for_long(agent):
 
 
 def test_it_says_since_when_no_plan_is_held_and_why(agent):
-    for why in ("off", "process", "none"):
+    for why in ("off", "process", "none", "looking"):
         flight = guarded(agent)
-        if why == "none":
+        if why == "looking":
+            flight.guard.ahead.known = dict
+            fly(flight, lambda _: (0, None), most=40)  # so long that it may have been too late for another reason
+        if why in ("none", "looking"):
             flight.guard.ahead.known = lambda: dict.fromkeys(KEYS, Future(None))
-        fly(flight, lambda _: (0, None), most=8)
+        fly(flight, lambda _: (0, None), most=48 if why == "looking" else 8)
         if why == "off":
             flight.help(0.0, "guardian")
         elif why == "process":
             flight.guard.ahead.problem = "no process"
-        fly(flight, lambda _: (0, None), most=9)
-        assert why_not_saved(flight, None) == texts.GUARDIAN_BARE[why].format(
-            since="0.0" if why == "none" else "0.1"
-        ), why
+        fly(flight, lambda _: (0, None), most=len(flight.recording.actions) + 1)
+        since = "0.1" if why in ("off", "process") else "0.0"
+        assert why_not_saved(flight, None) == texts.GUARDIAN_BARE[why].format(since=since), why
 
 
 def test_without_its_process_or_at_nought_nothing_is_guarded(agent):
