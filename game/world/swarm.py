@@ -111,9 +111,8 @@ class LearningSwarm:
         view = View(canvas.scale, self._centre, self._zoom)
         area = canvas.rect(*self.box)
         canvas.surface.set_clip(area)
-        canvas.surface.blit(
-            _moon((area.width, round(area.height + _BELOW * VIEW_SIZE[1] * self._zoom * canvas.scale))), area
-        )
+        below = round(_BELOW * VIEW_SIZE[1] * self._zoom * canvas.scale)
+        canvas.surface.blit(_moon((area.width, area.height + below)).picture, area)
         draw_pad(canvas, view, (0.0, PARAMS.pad_top), PARAMS.pad_width, self._time)
         if self.swarm_state is None:
             canvas.surface.set_clip(None)
@@ -166,13 +165,26 @@ class LearningSwarm:
             canvas.marker("triangle_down", (x, y - 1), 6, colour)
 
 
+class _Moon:
+    """The landscape behind a swarm, dimmed: rough at once, and painted again until it is whole."""
+
+    def __init__(self, size: tuple[int, int]) -> None:
+        self._land = Backdrop(size, np.random.default_rng(_MOON), reduced_motion=True)
+        self._picture, self._veil = pygame.Surface(size), pygame.Surface(size)
+        self._veil.fill(NIGHT0)
+        self._veil.set_alpha(90)
+        self._whole = False
+
+    @property
+    def picture(self) -> pygame.Surface:
+        """The picture as far as it is painted."""
+        if not self._whole:
+            self._land.paint(self._picture, earth=_EARTH)
+            self._picture.blit(self._veil, (0, 0))
+            self._whole = self._land.whole
+        return self._picture
+
+
 @lru_cache(maxsize=4)
-def _moon(size: tuple[int, int]) -> pygame.Surface:
-    """Return the landscape behind the swarm, dimmed."""
-    picture = pygame.Surface(size)
-    Backdrop(size, np.random.default_rng(_MOON), reduced_motion=True).paint(picture, earth=_EARTH)
-    veil = pygame.Surface(size)
-    veil.fill(NIGHT0)
-    veil.set_alpha(90)
-    picture.blit(veil, (0, 0))
-    return picture
+def _moon(size: tuple[int, int]) -> _Moon:
+    return _Moon(size)

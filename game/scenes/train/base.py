@@ -180,6 +180,8 @@ class TrainingScene(FormScene, ABC):
         pointers = self._pointers()
         self._describe(self.panel)
         self._describe_foot(self._foot)
+        for row in (*self.panel.rows, *self._foot.rows):
+            row.what = ""  # a word that is read needs no tooltip; the help of a knob stands at the foot
         form.replace(before, [*pointers, *body.widgets, *foot.widgets])
         if focused is not None and focused not in form.widgets:
             alike = (each for each in form.widgets if type(each) is type(focused) and each.label == focused.label)

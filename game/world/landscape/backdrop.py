@@ -58,6 +58,11 @@ class Backdrop:
         self._far = InPieces(partial(_paint_far, size, self._chances, reduced_motion, look))
         self._plains: dict[tuple[float, bool], InPieces[_Plain]] = {}
 
+    @property
+    def whole(self) -> bool:
+        """Whether all of it that was painted so far is painted in full."""
+        return self._far.whole and all(plain.whole for plain in self._plains.values())
+
     def under(self, look: Theme) -> Backdrop:
         """Return the same land under another theme: another world, or other light."""
         other = copy(self)
