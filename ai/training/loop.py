@@ -8,7 +8,7 @@ around it: schedules of the environment, episodes that end and begin, statistics
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Generator, Mapping
 from copy import deepcopy
 from dataclasses import dataclass
 from itertools import repeat
@@ -320,3 +320,16 @@ def passed(before: int, now: int, every: int) -> bool:
     a run was interrupted.
     """
     return every > 0 and now // every > before // every
+
+
+def run(config: Config, seed: int = 0, **options: Any) -> Generator[Progress, Config | None, None]:
+    """Train without end, yielding after each decision of all landers; send a Config to change the live knobs.
+
+    `options` are those of `Training`. Raises what `task_of` raises, and DivergenceError when a number is no longer
+    finite.
+    """
+    training = Training(config, seed, **options)
+    while True:
+        changed = yield training.advance()
+        if changed is not None:
+            training.apply_live(changed)

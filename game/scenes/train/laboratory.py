@@ -22,7 +22,8 @@ from ai.training.experiments import (
 )
 from game.core import texts
 from game.core.scene import Transition
-from game.drawing.tokens import HUMAN, MUTE, NET, SMALL, TITLE
+from game.drawing.tokens import HUMAN, INK, MUTE, NET, SMALL, TITLE
+from game.scenes.train.cards import CARDS, measured
 from game.scenes.train.knobs import KnobsPanel
 from game.training.knob_descriptions import KnobDescription, figure, label
 from game.training.run import TrainingRun
@@ -156,8 +157,9 @@ class ExperimentPages:
     def _picks(self, column: Column) -> None:
         column.text(texts.TRAIN_EXPERIMENTS, size=TITLE)
         column.aside(texts.LAB_INTRODUCED)
-        for name, (word, told, *_) in LANDER.sabotages.items():
-            column.button(word, partial(self._ask, name, word), told)
+        for name in CARDS:
+            word, told = texts.SABOTAGES[name]
+            column.button(word, partial(self._ask, name, word), told, colour=INK)
         descriptions = {each.name: each for each in LANDER.knob_descriptions}
         for name in self._knobs.first:
             column.aside(texts.LAB_TURN.format(knob=descriptions[name].label))
@@ -237,5 +239,4 @@ class ExperimentPages:
             return ""
         if what == "why":
             return texts.SABOTAGE_WHY[sabotage]
-        measured = f"{texts.LAB_MEASURED}: {texts.SABOTAGES[sabotage][2]}"
-        return measured if laboratory.split.config == PRESETS[MEASURED] else ""
+        return measured(sabotage) if sabotage in CARDS and laboratory.split.config == PRESETS[MEASURED] else ""

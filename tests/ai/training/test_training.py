@@ -1,6 +1,6 @@
 import json
 from dataclasses import replace
-from itertools import count
+from itertools import count, islice
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from ai.lander.environment import LIMITS, LanderEnv, Outcome
 from ai.lander.pilots import NoPilot, ScriptedPilot
 from ai.training.checkpoints import AGENTS
 from ai.training.config import PRESETS, Config
-from ai.training.loop import Training
+from ai.training.loop import Training, run
 from ai.training.run import Limit
 from ai.training.tasks import Evaluation, LanderTask, evaluate
 
@@ -55,6 +55,17 @@ def test_progress_tells_the_pace_by_the_clock_it_is_given():
     training = Training(SMALL, 0, **QUICK)
     training.clock = map(float, count(0, 0.5)).__next__
     assert [training.advance() for _ in range(10)][-1].steps_per_second == 8 * 4 / 0.5
+
+
+def test_a_run_is_a_generator_that_takes_live_knobs():
+    training, progress = advanced(SMALL, 10)
+    running = run(SMALL, 0, **QUICK)
+    *_, last = islice(running, 10)
+    assert (last.decisions, last.loss) == (progress.decisions, progress.loss)
+    changed = SMALL.changed(learning_rate=1e-4)
+    training.apply_live(changed)
+    assert running.send(changed).loss == training.advance().loss
+    assert next(running).loss == training.advance().loss
 
 
 def test_live_knobs_act_at_once():

@@ -6,13 +6,14 @@ import numpy as np
 import pygame
 import pytest
 
+from ai.digits.mnist import load_part
 from ai.digits.preprocessing import redrawn
 from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.drawing.canvas import Canvas
 from game.scenes.digits.answer import draw_answer, draw_fix
 from game.scenes.digits.fixing import FixRunner
-from game.scenes.digits.reader import Reader, Reading, Switches, Verdict
+from game.scenes.digits.reader import Reader, Reading, Switches, Verdict, best_two
 
 
 @pytest.fixture(scope="module")
@@ -56,6 +57,20 @@ def test_a_damaged_folder_falls_back_on_the_next(reader: Reader, tmp_path):
     assert "modern" in fresh.classifiers
     assert not fresh.load("classic", tmp_path)
     assert "classic" not in fresh.classifiers
+
+
+def test_saliency_is_of_the_best_answer_against_the_next(reader: Reader):
+    image = load_part("test")[0][18]
+    for name in ("modern", "classic"):
+        classifier = reader.classifiers[name]
+        first, second = best_two(classifier.network.predict(classifier.shaped(image))[0])
+        one, other = (
+            classifier.network.input_gradient(classifier.shaped(image), np.eye(10, dtype=np.float32)[[digit]])
+            for digit in (first, second)
+        )
+        said = (one - other).reshape(28, 28) * image
+        expected = np.sign(said) * np.sqrt(np.abs(said) / np.abs(said).max())
+        np.testing.assert_allclose(reader.saliency(name, image), expected, atol=2e-3)
 
 
 def test_two_networks_have_to_agree_to_be_sure(reader: Reader):

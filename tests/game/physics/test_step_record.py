@@ -127,6 +127,8 @@ def test_every_piece_has_words_figures_and_a_line_of_its_function(subtests: pyte
                 assert ("impulses" in kinds) is any(
                     piece.impulse is not None and piece.kind == "impulses" for piece in pieces
                 )
+                of_pair = {piece.impulse.contact for piece in pieces if piece.impulse}
+                assert of_pair <= {followed and followed.contact}
                 for piece in pieces[:40] + pieces[-10:]:
                     source = source_of(piece.function)
                     assert source is not None

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 
+import pygame
 import pytest
 
 from ai.explain.agent_lesson import Lesson
@@ -130,3 +131,11 @@ def test_a_pixel_tells_its_ink(open_game: Open):
     told = driver.top.frame.pointed.explanation
     assert told.lines == (texts.LESSON_PIXEL.format(row=21, column=11),)
     assert told.rows[0].figure == f"{float(lesson.image[20, 10]):.3f}"
+
+
+def test_frame_cards_take_a_click_while_keys_move_a_pointer(driver: Driver):
+    driver.key(pygame.K_RETURN)
+    assert driver.top.pointer.typing
+    for card in (3, 5):
+        driver.click(driver.top.strip.box(card).center)
+        assert driver.top.current == card

@@ -162,6 +162,18 @@ def test_what_has_landed_and_was_left_without_a_name_outlives_a_start(
     assert [run.name for run in driver.top.library.runs()] == [name]
 
 
+def test_a_run_whose_place_a_changed_setting_takes_is_in_the_list(train: Driver) -> None:
+    start(train)
+    scene = train.top
+    scene.knobs.turn("n_step", 3)
+    train.frames(2)
+    train.press_on(texts.KNOBS_APPLY)
+    train.wait(lambda: scene.library.runs() and scene.lander_run.config.n_step == 3)
+    (kept,) = scene.library.runs()
+    assert not kept.problem
+    assert kept.decisions > 0
+
+
 def test_a_saved_run_goes_on_in_the_scene_that_is_there(train: Driver) -> None:
     start(train)
     scene = train.top

@@ -17,6 +17,7 @@ from ai.training.loop import Training
 from game.core import texts
 from game.core.worker import WorkerState
 from game.scenes.train.base import KNOBS
+from game.scenes.train.cards import CARDS, FILE, measured
 from game.scenes.train.knob import Knob
 from game.scenes.train.scene import TrainScene
 from game.training.knob_descriptions import knob_descriptions
@@ -287,3 +288,16 @@ def test_an_earlier_moment_shows_both_swarms_of_it(train: Driver) -> None:
     train.press_on(texts.REWIND_NOW)
     train.frames(2)
     assert scene.split_view.swarms[1].swarm_state is run.twin.swarm_state
+
+
+def test_each_card_says_what_was_measured_of_it(train: Driver) -> None:
+    train.top.pages.open()
+    train.frames(2)
+    shown = [each.label for each in train.form.widgets]
+    shares = read_json(FILE)["shares"]
+    for name in CARDS:
+        assert texts.SABOTAGES[name][0] in shown
+        assert texts.SABOTAGE_WHY[name]
+        said = measured(name)
+        for part in (*shares[name], *shares["modern"]):
+            assert f"{100 * part:.0f}" in said, name

@@ -1,0 +1,59 @@
+"""What the sabotage cards say was measured: shares of training flights that landed, over several seeds.
+
+    python -m benchmarks.sabotages [--seeds 4]    # seven runs a seed, some ten seconds of one core each
+
+Each part is taken away from the modern preset, and each run is trained for 100,000 decisions. A share is of the latest
+hundred training flights, with their chance moves; a line gives its mean over the seeds, and the 95 % interval of that
+mean (Student's t), within 0 and 1. The cards read the file that this writes. Another processor learns otherwise from
+the same seed, so single seeds tell nothing.
+"""
+
+from __future__ import annotations
+
+import os
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is imported, or it has no effect
+
+import argparse
+import json
+from multiprocessing import Pool
+from typing import Final
+
+from ai.files import write_text
+from ai.training.config import PRESETS
+from ai.training.experiments import MEASURED, sabotaged
+from ai.training.loop import Training
+from ai.training.statistics import mean_of_shares
+from game.scenes.train.cards import CARDS, FILE
+
+DECISIONS: Final = 100_000
+
+
+def share(name: str, seed: int) -> float:
+    """Return the share that landed in the end."""
+    config = PRESETS[MEASURED]
+    training = Training(config if name == MEASURED else sabotaged(config, name), seed=seed, evaluate_every=0)
+    while training.agent.decisions < DECISIONS:
+        progress = training.advance()
+    return float(progress.success_rate)
+
+
+def main() -> None:
+    """Measure each card, print a line for it, and write the file that the cards read."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--seeds", type=int, default=4)
+    seeds = parser.parse_args().seeds
+    names = (MEASURED, *CARDS)
+    with Pool() as pool:
+        landed = pool.starmap(share, [(name, seed) for name in names for seed in range(seeds)], chunksize=1)
+    shares = {}
+    for number, name in enumerate(names):
+        each = landed[number * seeds : (number + 1) * seeds]
+        mean, low, high = mean_of_shares(each)
+        shares[name] = [round(part, 3) for part in (mean, max(low, 0.0), min(high, 1.0))]
+        print(f"{name:18} {mean:4.0%} ({low:.0%} to {high:.0%})  {' '.join(f'{one:.0%}' for one in each)}", flush=True)
+    write_text(FILE, json.dumps({"decisions": DECISIONS, "seeds": seeds, "shares": shares}, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    main()
