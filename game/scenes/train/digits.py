@@ -50,6 +50,7 @@ _HEAD: Final = 172.0  # of the display, for the title and a heading
 _LEFT: Final = 28.0
 _NUMBERS: Final = 24.0  # beside and above the matrix, for its digits
 _LARGEST: Final = 330.0  # matrix
+_SMALLEST: Final = 150.0  # matrix: in a smaller one, its digits would touch
 _LEAST: Final = 180.0  # points beside it for the digits of a cell
 _EVERY: Final = 12  # frames between two drawings of the charts
 
@@ -101,7 +102,7 @@ class DigitTrainingScene(TrainingScene):
     @property
     def _key(self) -> Hashable:
         run = self.digit_run
-        return self.view, run.alive, run.stopping, run.unfinished, self._fallen is not None
+        return self.view, run.alive, run.stopping, run.unfinished, self._fallen is not None, self._shows_misread
 
     @property
     def _fallen(self) -> tuple[float, float] | None:
@@ -109,18 +110,25 @@ class DigitTrainingScene(TrainingScene):
         run = self.digit_run
         return fallen(run.history) if run.alive and not run.stopping else None
 
+    @property
+    def _shows_misread(self) -> bool:
+        """Whether something was read already, and there is room to read what."""
+        return not self.view and self.matrix.confusion is not None and self.matrix.box.width >= _SMALLEST
+
     def _pointers(self) -> list[Widget]:
         manager, nowhere = self.form.manager, (0, 0, 1, 1)
         self._pointer = VirtualPointer(manager, nowhere, self.charts.follow)
         if self.view:
             self._shown: Widget = Scrubber(manager, self.charts, self.film.choose, lambda: None, self.charts.zoom_by)
-        else:
+        elif self._shows_misread:
             if self.matrix not in self.form.widgets:
                 cell, before = self.matrix.cell, self.matrix
                 self._shown = self.matrix = ConfusionMatrix(manager, before.box)
                 self.matrix.set(before.confusion)
                 self.matrix.cell = cell
             self._shown = self.matrix
+        else:
+            return [self._pointer]
         return [self._pointer, self._shown]
 
     def _place(self, place: Layout) -> None:
@@ -291,17 +299,14 @@ class DigitTrainingScene(TrainingScene):
         self.draw_title(canvas, texts.DIGIT_RUN_TITLE, digit_status(self.digit_run))
         if self.view:
             self.film.draw(canvas, self._area)
-        else:
+        elif self._shows_misread:
             self._draw_misread(canvas)
 
     def _draw_misread(self, canvas: Canvas) -> None:
         """Draw the headings of the matrix, and the chosen cell's digits."""
         box, run = self.matrix.box, self.digit_run
         place = (box.left - _NUMBERS, box.top - _NUMBERS - 4)
-        said = texts.MATRIX_TITLE if self.matrix.confusion is not None else texts.MATRIX_EMPTY
-        heading = canvas.text(said, place, size=LABEL, colour=MUTE, weight="medium")
-        if self.matrix.confusion is None:
-            return
+        heading = canvas.text(texts.MATRIX_TITLE, place, size=LABEL, colour=MUTE, weight="medium")
         if run.test is not None and run.kept_epoch is not None:
             of_best = texts.MATRIX_OF_BEST.format(epoch=run.kept_epoch)
             canvas.text(of_best, (heading.right + 12, place[1]), size=LABEL, colour=MUTE)
