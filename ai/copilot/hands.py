@@ -177,6 +177,7 @@ def _holding(action: int | None) -> MakePilot:
 # Hands by name: some good, many with faults; then stuck keys, a weak stick, and somebody who wants to crash.
 HANDS: Final[dict[str, MakePilot]] = {
     "good": lambda slots, rng, good: good,  # noqa: ARG005
+    "scripted": lambda slots, rng, good: ScriptedPilot(),  # noqa: ARG005
     "gains drawn anew": lambda slots, rng, good: ScriptedPilot(drawn_gains(slots, rng, 0.6)),  # noqa: ARG005
     "late": _scripted(late=lambda slots, rng: rng.integers(4, 7, slots)),
     "sticky keys": _scripted(sticky=0.75),
