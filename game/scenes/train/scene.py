@@ -453,7 +453,8 @@ class TrainScene(TrainingScene):
             canvas.fill(canvas.rect(*display), NIGHT0, _BEHIND if edited else 1.0)
             self.inside.draw(canvas)
             return
-        canvas.fill(canvas.rect(*display), NIGHT0)
+        top = display.top if self.split_view.shown else swarm.bottom  # one swarm fills its box
+        canvas.fill(canvas.rect(display.left, top, display.width, display.bottom - top), NIGHT0)
         if self.split_view.shown:
             self.split_view.draw(canvas, alpha)
         elif self.moment is not None:

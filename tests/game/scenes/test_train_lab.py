@@ -298,6 +298,8 @@ def test_each_card_says_what_was_measured_of_it(train: Driver) -> None:
     for name in CARDS:
         assert texts.SABOTAGES[name][0] in shown
         assert texts.SABOTAGE_WHY[name]
-        said = measured(name)
-        for part in (*shares[name], *shares["modern"]):
-            assert f"{100 * part:.0f}" in said, name
+        (other, low, high), (healthy, least, most) = (
+            [100 * part for part in shares[each]] for each in (name, "modern")
+        )
+        told = {"other": other, "low": low, "high": high, "healthy": healthy, "least": least, "most": most}
+        assert measured(name) == texts.LAB_MEASURED.format(seeds=4, decisions=100_000, **told), name
