@@ -50,7 +50,7 @@ _HEAD: Final = 172.0  # of the display, for the title and a heading
 _LEFT: Final = 28.0
 _NUMBERS: Final = 24.0  # beside and above the matrix, for its digits
 _LARGEST: Final = 330.0  # matrix
-_SMALLEST: Final = 150.0  # matrix: in a smaller one, its digits would touch
+_SMALLEST: Final = 135.0  # matrix: in a smaller one, its digits would touch
 _LEAST: Final = 180.0  # points beside it for the digits of a cell
 _EVERY: Final = 12  # frames between two drawings of the charts
 

@@ -242,6 +242,17 @@ def test_a_name_that_cannot_be_had_is_refused(tmp_path: Path, name: str):
 # The matrix
 
 
+def test_nothing_stands_for_what_is_misread_until_something_was_read(train: Driver):
+    scene = train.top
+    assert scene.matrix not in scene.form.widgets
+    scene.digit_run.confusion = confusion()
+    train.frames(3)
+    assert scene.matrix in scene.form.widgets
+    train.write_in("largest")
+    train.frames(3)
+    assert scene.matrix not in scene.form.widgets, "its digits would lie on each other"
+
+
 def test_the_worst_cell_is_shown_until_another_is_chosen(train: Driver):
     scene = train.top
     scene.digit_run.confusion = confusion()
@@ -311,8 +322,9 @@ def test_filters_go_back_to_any_moment_of_the_run(beside: Driver, device: str, m
     assert film.at is None, "at the end it follows the run again"
     scene.digit_run.filters.append(FilterMoment(10.0, 100, np.ones((5, 4, 4), np.float16)))
     assert film.moment.step == 100
+    scene.digit_run.confusion = confusion()
     beside.choice(texts.DIGIT_RUN_VIEWS[0]).choose(0)
-    beside.frames(2)
+    beside.frames(3)
     assert scene.matrix in beside.form.widgets
     assert scrubber not in beside.form.widgets
 
