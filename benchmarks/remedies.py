@@ -43,7 +43,7 @@ NEAR: Final = PRESETS["modern"].changed(
 )  # fmt: skip
 HEALTHY: Final = 38_000  # decisions before a setting is turned
 WITH_FAULT: Final = 200_000  # most decisions with it before a hint is given up
-RECOVERY: Final = 80_000  # after the last remedy
+RECOVERY: Final = 240_000  # after the last remedy
 PACE, ALONE = 10_000.0, 500.0  # decisions a second of the clock that hints go by: of many landers, and of one
 TURNS: Final[dict[str, dict[str, Any]]] = {
     "epsilon_end 1": {"epsilon_end": 1.0},
@@ -51,6 +51,7 @@ TURNS: Final[dict[str, dict[str, Any]]] = {
     "rates 1": {"learning_rate": 1.0, "final_learning_rate": 1.0},
     "steadiness 1": {"steadiness": 1.0},
     "rates 1 and back": {"learning_rate": 1.0, "final_learning_rate": 1.0},
+    "paid for staying away": {"reward_weights.distance": -5.0, "reward_weights.time": 5.0},
     "edited": {},
 }
 FROM_THE_START: Final[dict[str, Callable[[Config], dict[str, Any]]]] = {

@@ -156,7 +156,7 @@ class DeepQAgent:
         DivergenceError when a number is no longer finite.
         """
         config = self.config
-        if self.paused or self.replay.added < config.learning_starts:
+        if self.paused or self.replay.added < config.learning_starts or not self.replay.size:
             return None
         self.optimizer.learning_rate = learning_rate(config, self.decisions)
         self.optimizer.clip = config.gradient_clip

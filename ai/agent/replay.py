@@ -92,6 +92,10 @@ class ReplayBuffer:
     def update_priorities(self, rows: Ints, errors: Floats) -> None:
         """Take the errors (n,) of the transitions at `rows` as their priorities; without effect in uniform replay."""
 
+    def clear(self) -> None:
+        """Forget all transitions."""
+        self._drop(self.size)
+
     def _drop(self, count: int) -> None:
         self.start = (self.start + count) % self.capacity
         self.size -= count

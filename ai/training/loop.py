@@ -145,8 +145,12 @@ class Training(Run):
         return steps / spent if spent > 0 else 0.0
 
     def apply_live(self, config: Config) -> None:
-        """Take over the live knobs of another configuration."""
-        self.config = config = self.config.with_live(config)
+        """Take over the live knobs of another configuration; what was paid otherwise is forgotten."""
+        paid, self.config = self.config.reward_weights, self.config.with_live(config)
+        config = self.config
+        if config.reward_weights != paid:
+            for buffer in self.buffers.values():
+                buffer.clear()
         self.task.apply_live(config, self.env)
         self.agent.apply_live(config)
         self.agent.action_chances = self.task.action_chances

@@ -152,6 +152,13 @@ def _as_before(run: RecentCurves) -> Mapping[str, Any]:
     return {each.name: each.before for each in run.blamed() if each.name != EDITED}
 
 
+def _before_other_pay(run: RecentCurves) -> int | None:
+    """Where the run was before its pay was changed: what it learned of the other pay would stay for long."""
+    turned = [each.decisions for each in run.blamed() if each.name.startswith("reward_weights.")]
+    checkpoint = run.history.checkpoint_at(min(turned)) if turned else None
+    return checkpoint.decisions if checkpoint else None
+
+
 def _before_edit(run: RecentCurves) -> int | None:
     edited = [each.decisions for each in run.blamed() if each.name == EDITED]
     checkpoint = run.history.checkpoint_at(edited[0]) if edited else None
@@ -199,7 +206,7 @@ RULES: Final = (
         of_settings=True,
     ),
     HintRule("damaged", _damaged, back_to=_before_damage),
-    HintRule("changed", lambda run: bool(_as_before(run)), _as_before),
+    HintRule("changed", lambda run: bool(_as_before(run)), _as_before, _before_other_pay),
     HintRule("edited", lambda run: any(each.name == EDITED for each in run.blamed()), back_to=_before_edit),
     HintRule("loss_explodes", _loss_explodes),
     HintRule("q_runs_away", _q_runs_away),

@@ -68,6 +68,19 @@ def test_a_run_is_a_generator_that_takes_live_knobs():
     assert next(running).loss == training.advance().loss
 
 
+@pytest.mark.parametrize("prioritised", [False, True])
+def test_what_was_paid_otherwise_is_forgotten(prioritised):
+    training, _ = advanced(SMALL.changed(prioritised=prioritised), 30)
+    training.apply_live(training.config.changed(learning_rate=1e-4))
+    assert len(training.agent.replay) > 100
+    training.apply_live(training.config.turned("reward_weights.time", 5.0))
+    assert len(training.agent.replay) == 0
+    for _ in range(20):
+        progress = training.advance()
+    assert np.isfinite(progress.loss)
+    assert 0 < len(training.agent.replay) <= (20 + SMALL.n_step) * 8  # and what was open
+
+
 def test_live_knobs_act_at_once():
     training = Training(SMALL, 0, **QUICK)
     training.advance()
