@@ -1,6 +1,6 @@
 """Try the remedies of the hints: break a run on purpose, press Apply whenever a hint offers something, and look again.
 
-    python -m benchmarks.remedies [--only WORD] [--output tests/ai/training/remedies.json]    # five seconds a case
+    python -m benchmarks.remedies [--only WORD] [--output tests/ai/training/remedies.json]    # fifteen seconds a case
 
 *Modern* with a small network and starts near the pad lands after two seconds. A setting of it is turned then, or is
 wrong from the beginning. A run whose setting was turned is also left alone. A line has the share of the last hundred

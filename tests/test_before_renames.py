@@ -8,7 +8,10 @@ import numpy as np
 import pytest
 
 from ai.agent import DeepQAgent
+from ai.digits.checkpoints import read_settings
+from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DigitConfig
+from ai.nn import ModelFormatError
 from ai.training.checkpoints import resume_digit_run, resume_run
 from ai.training.config import Config, load_agent
 from ai.training.history import History, SettingChange
@@ -102,15 +105,16 @@ def test_a_run_of_then_goes_on_and_is_saved_under_the_names_of_now(tmp_path):
     ]
 
 
-def test_a_digit_run_resumes_with_the_same_settings_and_network():
+def test_a_digit_run_without_a_state_says_so_and_its_settings_and_network_are_read():
     rng, expected = np.random.default_rng(EXPECTED["digit_run"]["data_seed"]), EXPECTED["digit_run"]
     images, labels = rng.random((40, 28, 28), dtype=np.float32), rng.integers(0, 10, 40)
-    training = resume_digit_run(DATA / "digit_run", data=(images, labels))
+    with pytest.raises(ModelFormatError, match="its state is gone"):
+        resume_digit_run(DATA / "digit_run", data=(images, labels))
+    config, _, step = read_settings(DATA / "digit_run")
     came_since = {"drawn": 0.0}  # and changes nothing of a run of then
-    assert_same_settings(training.config, expected["config"] | came_since, RENAMED_DIGITS)
-    assert training.step == expected["step"]
-    assert_same_values(training.best_classifier().predict(images[:3]), expected["values"])
-    training.advance()
+    assert_same_settings(config, expected["config"] | came_since, RENAMED_DIGITS)
+    assert step == expected["step"]
+    assert_same_values(DigitClassifier.load(DATA / "digit_run").predict(images[:3]), expected["values"])
 
 
 def test_a_flight_replays_to_the_pose_it_ended_in():
