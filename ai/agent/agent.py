@@ -152,11 +152,10 @@ class DeepQAgent:
     def learn(self) -> float | None:
         """Take `config.gradient_steps` steps, and a second pass over successes if asked for; return `loss`.
 
-        None until `config.learning_starts` transitions have been stored, and while it is `paused`. Raises
-        DivergenceError when a number is no longer finite.
+        None until it is `ready`, and while it is `paused`. Raises DivergenceError when a number is no longer finite.
         """
         config = self.config
-        if self.paused or self.replay.added < config.learning_starts or not self.replay.size:
+        if self.paused or not self.ready:
             return None
         self.optimizer.learning_rate = learning_rate(config, self.decisions)
         self.optimizer.clip = config.gradient_clip
@@ -243,6 +242,11 @@ class DeepQAgent:
                 values += tau * (self.online.values - values)  # in place: the property's setter would copy them again
 
     # Values and decisions
+
+    @property
+    def ready(self) -> bool:
+        """Whether `config.learning_starts` transitions have been stored, and some are there."""
+        return self.replay.added >= self.config.learning_starts and self.replay.size > 0
 
     @property
     def network(self) -> NeuralNetwork:

@@ -138,7 +138,7 @@ class _HandedBatch(ReplayBuffer):
 
     def __init__(self, cells: Transition, weights: Floats) -> None:
         super().__init__(len(weights), cells.state.shape[1])
-        self.added, self._drawn = 2**62, (cells, np.arange(len(weights)), weights)
+        self.added, self.size, self._drawn = 2**62, len(weights), (cells, np.arange(len(weights)), weights)
 
     def sample(self, count: int, rng: np.random.Generator) -> tuple[Transition, Ints, Floats]:  # noqa: ARG002
         """Return the minibatch."""

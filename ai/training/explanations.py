@@ -88,8 +88,7 @@ class Explanations:
 
     @property
     def _learns(self) -> bool:
-        agent = self._training.agent
-        return agent.replay.added >= max(1, agent.config.learning_starts)
+        return self._training.agent.ready
 
     def _now(self) -> _Moment:
         agent = self._training.agent

@@ -38,9 +38,12 @@ class LearningSwarm:
 
     Attributes:
         box: where they fly, in points; all of their world is seen, and more land or sky beside it.
+        head: points of it, from above, under a title: no lander there gets a word.
         chosen: slot of the lander that the player has chosen; None without one.
 
     """
+
+    head = 0.0
 
     def __init__(self, box: pygame.typing.RectLike = (0, 0, 836, 434)) -> None:
         self.chosen: int | None = None
@@ -155,7 +158,7 @@ class LearningSwarm:
         thrust = np.array([self._burning()[slot], steer == 2, steer == 1], dtype=float)
         draw_craft(canvas, view, LANDER, pose, thrust, 1.0, self._frame, min(1.0, 1.5 * size))
         x, y = view.points(pose[:2]).tolist()
-        if word:
+        if word and y > self.box.top + self.head:
             width = canvas.text_width(word, size=LABEL)
             edge = width / 2 + 8  # a lander may fly out of the picture, the word may not
             x = min(max(x, self.box.left + edge), self.box.right - edge)

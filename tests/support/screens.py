@@ -109,6 +109,7 @@ def daily(context: Context) -> PlayScene:
 FLOWN: dict[str, Make] = {
     "sound": lambda context: SettingsScene(context, "sound"),
     "controls": lambda context: SettingsScene(context, "controls"),
+    "flights": lambda context: SettingsScene(context, "flights"),
     "friend": friend,
     "daily": daily,
     "Play": lambda context: PlayScene(context, 3),

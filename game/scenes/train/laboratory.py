@@ -216,10 +216,10 @@ class ExperimentPages:
         column.text(lambda: self._told("came"), size=SMALL, colour=NET)
         column.text(lambda: self._told("why"), size=SMALL)
         column.text(lambda: self._told("measured"), size=SMALL, colour=MUTE)
-        column.button(texts.LAB_KNOBS, self.close)
         column.words([
             (texts.LAB_KEEP_RUN, partial(laboratory.keep, experiment=False)),
             (texts.LAB_KEEP_EXPERIMENT, partial(laboratory.keep, experiment=True)),
+            (texts.LAB_KNOBS, self.close),
         ])  # fmt: skip
 
     def _told(self, what: Literal["now", "came", "why", "measured"]) -> str:

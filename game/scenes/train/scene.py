@@ -112,6 +112,7 @@ class TrainScene(TrainingScene):
         head = min(_HEAD, 0.4 * place.swarm.height)
         for swarm in (self.swarm, self.rewind.swarm):
             swarm.place(place.swarm)
+            swarm.head = head
         halves = pygame.FRect(place.swarm.left, place.swarm.top + head, place.swarm.width, place.swarm.height - head)
         self.split_view.place(halves)
         self.training_charts.place(place.charts)

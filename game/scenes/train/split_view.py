@@ -12,7 +12,7 @@ from game.core import texts
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
-from game.drawing.tokens import INK, LINE, NET, NIGHT0, SMALL, TEXT, Colour
+from game.drawing.tokens import LINE, NET, NIGHT0, SMALL, TEXT, Colour
 from game.scenes.train.laboratory import Laboratory
 from game.training.beside import EarlierRun
 from game.training.run import TrainingRun
@@ -113,11 +113,11 @@ class SplitView:
                 picture.surface, canvas.rect(box.left + number * swarm.box.width, box.top, *swarm.box.size)
             )
         canvas.line((box.centerx, box.top), (box.centerx, box.bottom), LINE)
-        self._write(canvas, 0, texts.SPLIT_HEALTHY, texts.SPLIT_ALIKE, self._split, NET)
-        self._write(canvas, 1, chosen.name, self._laboratory.differs, twin, RUN_STYLES[_STYLE][0])
+        self._write(canvas, 0, texts.SPLIT_HEALTHY, self._split, NET)
+        self._write(canvas, 1, chosen.name, twin, RUN_STYLES[_STYLE][0])
 
-    def _write(self, canvas: Canvas, half: int, name: str, told: str, run: TrainingRun, colour: Colour) -> None:
-        """Write a run's name, the share that lands and what is different, below its swarm."""
+    def _write(self, canvas: Canvas, half: int, name: str, run: TrainingRun, colour: Colour) -> None:
+        """Write a run's name and the share that lands below its swarm."""
         width = self._box.width / 2 - 2 * _MARGIN
         left = self._box.left + half * self._box.width / 2 + _MARGIN
         cursor = Cursor(left, self._box.bottom - _SAID + 6, width, canvas.scale, canvas, size=TEXT, colour=colour)
@@ -126,7 +126,5 @@ class SplitView:
             row = -1 if self._moments is None else run.history.row_at(self._moments[half])
             figure = texts.SPLIT_LANDED.format(percent=100 * Flown(run.history, run.config).landed_at(row))
         cursor.pair(name, figure)
-        ended = run.state in (WorkerState.FAILED, WorkerState.ENDED)
-        small = cursor.in_style(SMALL, canvas.palette.warn if ended else INK)
-        canvas.text(texts.SPLIT_ENDED if ended else told, (left, small.baseline), size=SMALL, colour=small.colour,
-                    room=width)  # fmt: skip
+        if run.state in (WorkerState.FAILED, WorkerState.ENDED):
+            cursor.in_style(SMALL, canvas.palette.warn).text(texts.SPLIT_ENDED)

@@ -40,7 +40,7 @@ class Drawn(ReplayBuffer):
 
     def __init__(self, cells, weights):
         super().__init__(len(weights), cells.state.shape[1])
-        self.added, self.drawn = 10**6, (cells, np.arange(len(weights)), weights)
+        self.added, self.size, self.drawn = 10**6, len(weights), (cells, np.arange(len(weights)), weights)
 
     def sample(self, count, rng):
         return self.drawn

@@ -294,7 +294,7 @@ NOT_AT = {
 # Screens in rows and columns, which are laid out anew for every window.
 FLOWING = {
     "MenuScene", "FlightsScene", "SettingsScene", "BindingsScene", "QuestionDialog", "NameDialog",
-    "ListDialog", "sound", "controls", "ChoicesScene", "PauseScene", "FlightPauseScene, of a flight", "DaysScene",
+    "ListDialog", "sound", "controls", "flights", "ChoicesScene", "PauseScene", "FlightPauseScene, of a flight", "DaysScene",
     "MissionsScene", "LogbookScene", "PhysicsStepScene", "TrainScene", "DigitTrainingScene",
 }  # fmt: skip
 IN_FLIGHT = {
