@@ -113,7 +113,11 @@ def _held(run: RecentCurves) -> bool:
 
 
 def _rises(column: str, by: float) -> Callable[[RecentCurves], bool]:
-    return lambda run: min(run.gained(column), run.now(column) - run.before(column)) > by
+    """Return whether a curve is well above what it was, and its latest number not as far below its highest since."""
+    return lambda run: (
+        min(run.gained(column), run.now(column) - run.before(column)) > by
+        and run.highest(column) - run.now(column) <= by
+    )
 
 
 def _falls(column: str, by: float) -> Callable[[RecentCurves], bool]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import inspect
+import re
 import textwrap
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -13,12 +14,13 @@ from pathlib import Path
 from typing import Any, Final
 
 _ROOT: Final = Path(__file__).parents[2]
+_FOR_TOOLS: Final = re.compile(r"\s+# (?:noqa|fmt|type): ?.*")  # remarks that only tools read
 Mark = str | Callable[..., Any]  # what a line is found by: a variable, or a function that is called in it
 
 
 @dataclass(frozen=True)
 class Source:
-    """Source code of a function, without its docstring.
+    """Source code of a function, without its docstring and remarks for tools.
 
     Attributes:
         path: file it stands in, from the project's folder on.
@@ -64,7 +66,8 @@ def source_of(function: Callable[..., Any]) -> Source | None:
     assert isinstance(tree, ast.FunctionDef)
     ast.increment_lineno(tree, first - 1)
     silent = _docstring_lines(tree)
-    kept = [(number, line) for number, line in enumerate(text.splitlines(), first) if number not in silent]
+    lines = [_FOR_TOOLS.sub("", line) for line in text.splitlines()]
+    kept = [(number, line) for number, line in enumerate(lines, first) if number not in silent]
     shown = path.relative_to(_ROOT).as_posix() if path.is_relative_to(_ROOT) else path.name
     return Source(shown, function.__qualname__, tuple(kept), tree)
 

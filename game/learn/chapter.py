@@ -73,6 +73,11 @@ class Chapter(ABC):
         """Whether motion is reduced."""
         return self.context.settings.reduced_motion
 
+    @property
+    def running(self) -> bool:
+        """Whether an agent learns, and `why` must wait for it."""
+        return False
+
     def row(self, number: int, height: float = ROW) -> pygame.Rect:
         """Return the box of a row of the panel, counted from 0."""
         return pygame.Rect(PANEL.left, PANEL.top + number * ROW, PANEL.width, height)

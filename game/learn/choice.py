@@ -46,7 +46,6 @@ class ChoiceChapter(MomentChapter):
     """
 
     key = "choice"
-    answer = None
     door = Route("watch")
 
     def __init__(self, context: Context, manager: PointsManager) -> None:
@@ -122,13 +121,16 @@ class ChoiceChapter(MomentChapter):
 
     def why(self, guess: int | None) -> str:  # noqa: ARG002
         """Return the value of each action that was tried, and what came of it."""
-        return " ".join(
+        told = " ".join(
             texts.LEARN_CHOICE_WHY[came.landed].format(
                 action=texts.said(ACTION_NAMES[action]), value=signed(float(self.values[action])),
                 came=signed(came.points),
             )
             for action, came in self.results.items()
         )  # fmt: skip
+        best = self.results.get(self.best)
+        surprises = best is not None and best.points < max(came.points for came in self.results.values())
+        return f"{told} {texts.LEARN_CHOICE_SURPRISE}" if surprises else told
 
     def code(self) -> Sequence[Code]:
         """Return where the six values come from, and where the highest is taken."""

@@ -15,12 +15,12 @@ from ai.training.small_run import SMALL_RUN, Plan
 from game.core import texts
 from game.core.scene import Route
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import HUMAN, INK, MUTE, NET, SMALL, TEXT
+from game.drawing.tokens import HUMAN, MUTE, NET, SMALL, TEXT
 from game.learn.chapter import STAGE, Code
 from game.learn.runs import RunsChapter, draw_axis, draw_curve, draw_landers
 from game.ui.context import Context
 from game.ui.widget import PointsManager, Widget
-from game.ui.widgets import Choice, TextButton
+from game.ui.widgets import Choice
 
 DARING: Final = (0.0, 0.05, 0.2, 1.0)  # shares of random actions, to choose from
 # Nothing is paid for coming nearer or slower: only time, fuel, feet on the pad and the end count.
@@ -72,8 +72,7 @@ class DaringChapter(RunsChapter):
             label_width=120,
             size=SMALL,
         )
-        start = TextButton(self.manager, self.row(3), texts.LEARN_RUNS_START[bool(self.seed)], self.start, colour=INK)
-        return [choice, start]
+        return [choice, self.starter(texts.LEARN_RUNS_START[bool(self.seed)])]
 
     def _choose(self, index: int) -> None:
         self.choice = index

@@ -25,7 +25,7 @@ from game.learn.chapter import STAGE, Code
 from game.learn.runs import RunsChapter, draw_landers
 from game.ui.context import Context
 from game.ui.widget import PointsManager, Widget
-from game.ui.widgets import Choice, TextButton
+from game.ui.widgets import Choice
 
 KINDS: Final = ("even", "surprising", "latest")
 YESTERDAY: Final = 600  # decisions from high up; then flights begin low
@@ -90,8 +90,7 @@ class MemoryChapter(RunsChapter):
     def widgets(self) -> list[Widget]:
         """Return the choice, and the button that starts."""
         choice = Choice(self.manager, self.row(1), "", texts.LEARN_MEMORY_KINDS, self.choice, self._choose, size=SMALL)
-        start = TextButton(self.manager, self.row(3), texts.LEARN_MEMORY_START, self.start, colour=INK)
-        return [choice, start]
+        return [choice, self.starter(texts.LEARN_MEMORY_START)]
 
     def _choose(self, index: int) -> None:
         self.choice = index

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import ClassVar, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 import pygame
@@ -45,6 +45,8 @@ _MIDDLE: Final = (0.0, 9.4)  # metres, of the picture
 _METRES: Final = 50.0  # across the picture
 _PATH: Final = mix(NIGHT1, NET, 0.6)
 _LINE: Final = STAGE.top + 366  # y of the line of points
+_ANSWERS: Final = (150.0, 80.0, 20.0)  # points of the answers, before that of less than 0
+_ASKED: Final = range(80, 121)  # decisions until the end, that are about the hundred of the question
 
 
 class Judged(NamedTuple):
@@ -56,6 +58,7 @@ class Judged(NamedTuple):
         came: the discounted pay that came.
         plain: the same pay without the discount.
         decisions: decisions until the end.
+        decision: the network's at the moment.
 
     """
 
@@ -64,6 +67,7 @@ class Judged(NamedTuple):
     came: float
     plain: float
     decisions: int
+    decision: Decision
 
 
 class MomentChapter(Chapter):
@@ -79,7 +83,6 @@ class MomentChapter(Chapter):
     """
 
     key = "moment"
-    answer: ClassVar[int | None] = 2
     door = Route("watch")
 
     def __init__(self, context: Context, manager: PointsManager) -> None:
@@ -111,6 +114,7 @@ class MomentChapter(Chapter):
                 self._decide()
             self.env.step(self.decision.action)
         self._decide()
+        self._first = self.decision
         self.value = float(self.points.max())
         self._lander = DrawnLander(self.env)
         self._path = [self.env.position[0].copy()]
@@ -177,10 +181,17 @@ class MomentChapter(Chapter):
             self._path.append(self.env.position[0].copy())
         if self.env.outcome[0] != Outcome.FLYING:
             decisions = -(-self._steps // DECISION_STEPS)
-            self.judged.append(Judged(self.guess, self.value, self.came, self.plain, decisions))
+            self.judged.append(Judged(self.guess, self.value, self.came, self.plain, decisions, self._first))
             self.tried = True
 
     # What it tells
+
+    def verdict(self) -> int | None:
+        """Return the answer next to what came of the last moment; None if it was not about a hundred decisions."""
+        last = self.judged[-1]
+        if last.decisions not in _ASKED:
+            return None
+        return len(_ANSWERS) if last.came < 0 else int(np.argmin(np.abs(np.array(_ANSWERS) - last.came)))
 
     def why(self, guess: int | None) -> str:  # noqa: ARG002
         """Return the last moment's numbers, and how far off both judges were on average."""
@@ -202,10 +213,11 @@ class MomentChapter(Chapter):
         """Return the network's answer, its unit, and the target it was taught with."""
         if self.agent is None:
             return [Code(DeepQAgent.q_values), Code(in_points), Code(DeepQAgent.targets)]
-        config, values = self.agent.config, self.decision.values
-        assert values is not None
-        best = f"{float(values.max()):.3f}"
-        scaled = f"{best} / {config.reward_scale:g} = {signed(float(self.points.max()))}"
+        config, told = self.agent.config, self.judged[-1].decision if self.judged else self._first
+        assert told.values is not None
+        assert told.points is not None
+        best = f"{float(told.values.max()):.3f}"
+        scaled = f"{best} / {config.reward_scale:g} = {signed(float(told.points.max()))}"
         return [
             Code(DeepQAgent.q_values, NeuralNetwork.predict, {
                 NeuralNetwork.predict: texts.LEARN_MOMENT_BEST.format(value=best),

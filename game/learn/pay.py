@@ -146,7 +146,7 @@ class PayChapter(Chapter):
             self._worker = None
 
     @property
-    def training(self) -> bool:
+    def running(self) -> bool:
         """Whether a run goes on."""
         return self._worker is not None
 
@@ -155,7 +155,7 @@ class PayChapter(Chapter):
         keys = list(PAYS)
         words = [texts.LEARN_PAY_NAMES[key] for key in keys]
         pay = Choice(self.manager, self.row(0), "", words, keys.index(self.pay), self._choose, gap=18)
-        label = texts.LEARN_PAY_STOP if self.training else texts.LEARN_PAY_TRAIN
+        label = texts.LEARN_PAY_STOP if self.running else texts.LEARN_PAY_TRAIN
         return [pay, TextButton(self.manager, self.row(1), label, self.train)]
 
     def _choose(self, index: int) -> None:
@@ -166,7 +166,7 @@ class PayChapter(Chapter):
     def train(self) -> None:
         """Begin a run on the chosen pay, or end the one that goes on."""
         self.changed = True
-        if self.training:
+        if self.running:
             self.close()
             return
         self._clear()

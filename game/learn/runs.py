@@ -18,11 +18,12 @@ from game.core import texts
 from game.core.worker import Worker, WorkerState
 from game.drawing.canvas import Canvas
 from game.drawing.prose import draw_wrapped
-from game.drawing.tokens import FAINT, LABEL, LINE, MUTE, SMALL, Colour
+from game.drawing.tokens import FAINT, INK, LABEL, LINE, MUTE, SMALL, Colour
 from game.learn.chapter import STAGE, Chapter
 from game.learn.small_flight import inside, view_in
 from game.ui.context import Context
 from game.ui.widget import PointsManager
+from game.ui.widgets import TextButton
 from game.world.craft import draw_crowd, draw_fires
 
 PACE: Final = 40.0  # decisions a second: four times as fast as they would fly
@@ -86,6 +87,10 @@ class RunsChapter(Chapter):
     def running(self) -> bool:
         """Whether the runs go on."""
         return self._worker is not None and self._worker.state in (WorkerState.STARTING, WorkerState.RUNNING)
+
+    def starter(self, label: str) -> TextButton:
+        """Return the button that starts the runs; it is lit while none goes on."""
+        return TextButton(self.manager, self.row(3), label, self.start, colour=MUTE if self.running else INK)
 
     @property
     def over(self) -> bool:

@@ -16,13 +16,13 @@ from ai.training.small_run import SMALL_RUN
 from game.core import texts
 from game.core.scene import Route
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import HUMAN, INK, LABEL, MUTE, NET, SMALL, TEXT
+from game.drawing.tokens import HUMAN, LABEL, MUTE, NET, NIGHT0, SMALL, TEXT
 from game.learn.chapter import STAGE, Code
 from game.learn.runs import RunsChapter, draw_axis, draw_curve, draw_landers
 from game.panels.q_values import signed
 from game.ui.context import Context
 from game.ui.widget import PointsManager, Widget
-from game.ui.widgets import Choice, TextButton
+from game.ui.widgets import Choice
 
 EVERY: Final = (1, 10, 100, 1)  # gradient steps between two copies, to choose from; the last with normalised layers
 NORMALISED: Final = len(EVERY) - 1
@@ -74,8 +74,7 @@ class TargetChapter(RunsChapter):
             label_width=96,
             size=SMALL,
         )
-        start = TextButton(self.manager, self.row(3), texts.LEARN_RUNS_START[bool(self.seed)], self.start, colour=INK)
-        return [choice, start]
+        return [choice, self.starter(texts.LEARN_RUNS_START[bool(self.seed)])]
 
     def _choose(self, index: int) -> None:
         self.choice = index
@@ -111,9 +110,9 @@ class TargetChapter(RunsChapter):
 
     def code(self) -> Sequence[Code]:
         """Return how a target is made, and when the target network is copied."""
-        every = EVERY[self.choice]
+        every, discount = EVERY[self.choice], texts.LEARN_TARGET_DISCOUNT.format(discount=SMALL_RUN.discount)
         return [
-            Code(DeepQAgent.targets, "targets", {"discount": f"γ = {SMALL_RUN.discount:g}"}),
+            Code(DeepQAgent.targets, "targets", {"discount": discount}),
             Code(DeepQAgent._next_value, "values", {"values": texts.LEARN_TARGET_JUDGE}),
             Code(DeepQAgent._update_target, "gradient_steps", {
                 "gradient_steps": texts.LEARN_TARGET_EVERY.format(every=every),
@@ -138,12 +137,15 @@ class TargetChapter(RunsChapter):
             draw_axis(canvas, chart, [(float(_height(np.array(tick))), word) for tick, word in _TICKS])
             bound = chart.bottom - _CHART * float(_height(np.array(BOUND)))
             canvas.line((chart.left, bound), (chart.right, bound), MUTE, 1.5)
-            canvas.text(texts.LEARN_TARGET_BOUND.format(bound=f"{BOUND:g}"), (chart.right, bound + 14), size=LABEL,
-                        colour=MUTE, align="right", room=chart.width)  # fmt: skip
+            if state is not None:
+                values = self.history(run, "value")
+                draw_curve(canvas, chart, _height(values), colour, self.LENGTH)
+            said = texts.LEARN_TARGET_BOUND.format(bound=f"{BOUND:g}")
+            width = min(canvas.text_width(said, size=LABEL), chart.width)
+            canvas.fill(canvas.rect(chart.right - width - 4, bound - 18, width + 4, 16), NIGHT0)
+            canvas.text(said, (chart.right, bound - 6), size=LABEL, colour=MUTE, align="right", room=chart.width)
             if state is None:
                 continue
-            values = self.history(run, "value")
-            draw_curve(canvas, chart, _height(values), colour, self.LENGTH)
             told = texts.LEARN_TARGET_EXPECTS.format(points=_figure(float(values[-1])))
             canvas.text(told, (box.left, box.bottom + 30), size=TEXT, tabular=True, room=_HALF * 0.62)
             if state.landed is not None:

@@ -106,13 +106,15 @@ class ChapterScene(FormScene):
         """Move, press, turn the page; the chapter's own keys; go back."""
         own = self.chapter.actions() if self.page == _TRY else ()
         again = [Action(Command.RETRY, self.restart, texts.LEARN_AGAIN)] if self.page == _TRY else []
-        last = self.page == len(PAGES) - 1
+        on = texts.LEARN_NEXT_PAGE
+        if self.page == len(PAGES) - 1:
+            on = texts.LEARN_NEXT_CHAPTER if following(self.key) else ""
         return [
             self.form.moves,
             self.form.changes,
             *own,
             *again,
-            Action(Command.NEXT, self._go_on, texts.LEARN_NEXT_CHAPTER if last else texts.LEARN_NEXT_PAGE),
+            Action(Command.NEXT, self._go_on, on),
             Action(Command.PREVIOUS, partial(self._turn, -1)),
             self.form.goes_back(texts.HINT_BACK),
         ]
@@ -240,7 +242,7 @@ class ChapterScene(FormScene):
 
     def _draw_why(self, canvas: Canvas) -> None:
         left, y, _ = _COLUMN
-        told = self._told or texts.LEARN_TRY_FIRST
+        told = self._told or (texts.LEARN_STILL_LEARNS if self.chapter.running else texts.LEARN_TRY_FIRST)
         guess = self._progress.guess(self.key)
         if guess is None:
             y = self._write(canvas, told, y)

@@ -77,6 +77,7 @@ class Chart:
         self.pointed = False  # whether the mouse is over this one
         self._marker: tuple[float, str] | None = None
         self.caption = self.painted_caption = ""  # below the chart: as set, and as the sheet was painted
+        self.painted_latest = ""
         self._painted: Painted | None = None  # until the numbers or the window change
         self._behind = PaintedRuns()
         self._stale = True
@@ -222,7 +223,7 @@ class Chart:
 
     def _paint(self, canvas: Canvas) -> Painted:
         self.redraws += 1
-        self.painted_caption = self.caption
+        self.painted_caption, self.painted_latest = self.caption, self.latest
         sheet = canvas.sheet(self.box.width + 2 * _MARGIN, self.box.height + 2 * _MARGIN)
         box = pygame.FRect(_MARGIN, _MARGIN, *self.box.size)
         plot = pygame.FRect(box.x, box.y + _HEADER, *self.plot.size)

@@ -52,6 +52,12 @@ class RecentCurves:
         first, middle = self._halves(share)
         return mean(self.history[name][first:middle])
 
+    def highest(self, name: str, share: float = 0.3, points: int = 8) -> float:
+        """Return the highest mean of so many points of a column in the last share of the run."""
+        values = _finite(self.history[name][self._halves(share)[0] :])
+        windows = np.lib.stride_tricks.sliding_window_view(values, min(points, len(values)))
+        return float(windows.mean(axis=1).max())
+
     def is_late(self) -> bool:
         """Whether a run should be landing by now."""
         return self.last("decisions", 1) >= ENOUGH or self.last("episodes", 1) >= _FLIGHTS

@@ -215,7 +215,7 @@ RULES: Final = (
     HintRule("target_stands", _target_stands, _nearer_target, of_settings=True),
     HintRule("short_sight", _short_sight),
     HintRule("no_guide", _no_guide),
-    HintRule("crashes", _crashes, _for_crashes),
+    HintRule("crashes", lambda run: _crashes(run) and run.best() < 0.6, _for_crashes),  # "still": it never landed
     HintRule("hovers", _hovers),
     HintRule("small_memory", _small_memory, _more_memory, of_settings=True),
     HintRule("overfed", _overfed, _fewer_steps, of_settings=True),

@@ -207,6 +207,11 @@ class TrainingCharts:
         seconds = place if self.axis == 0 else place / 100.0 * float(history["seconds"][-1])
         return float(np.interp(seconds, history["seconds"], history["decisions"]))
 
+    @property
+    def landed(self) -> str:
+        """Share that lands, in percent, as its chart was last painted; a dash or nothing before any is known."""
+        return self._all[0].painted_latest
+
     def draw(self, canvas: Canvas) -> None:
         """Draw the charts, and what is said of them as it was when they were painted."""
         self.charts.draw(canvas)

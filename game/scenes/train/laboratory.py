@@ -238,5 +238,5 @@ class ExperimentPages:
         if came is None or not sabotage:
             return ""
         if what == "why":
-            return texts.SABOTAGE_WHY[sabotage]
+            return "" if came == "as_well" else texts.SABOTAGE_WHY[sabotage]
         return measured(sabotage) if sabotage in CARDS and laboratory.split.config == PRESETS[MEASURED] else ""

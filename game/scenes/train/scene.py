@@ -463,5 +463,9 @@ class TrainScene(TrainingScene):
         else:
             self.swarm.draw(canvas, alpha, paused=paused)
         canvas.line((swarm.left, swarm.bottom), (swarm.right, swarm.bottom), LINE)
-        self.draw_title(canvas, texts.TRAIN_TITLE, lander_status(self.lander_run, self.moment, self.rewind.row))
         self.training_charts.draw(canvas)
+        status = lander_status(self.lander_run, self.moment, self.rewind.row)
+        painted = self.training_charts.landed
+        if self.moment is None and status.figure and painted.isdigit():  # one number for both
+            status = status._replace(figure=painted)
+        self.draw_title(canvas, texts.TRAIN_TITLE, status)

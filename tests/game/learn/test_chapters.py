@@ -284,7 +284,7 @@ def trained(chapter: Any, pay: str) -> Flown:
     choice, _ = chapter.widgets()
     choice.choose(list(PAYS).index(pay))
     chapter.train()
-    assert chapter.training
+    assert chapter.running
     while pay not in chapter.results:
         chapter.update()
         assert not chapter.note
@@ -306,7 +306,7 @@ def test_each_pay_teaches_what_it_pays_for(made: Made, monkeypatch: pytest.Monke
     assert str(landing.landed) in told
     assert str(haste.crashed) in told
     chapter.close()
-    assert not chapter.training
+    assert not chapter.running
 
 
 def test_the_flights_after_a_run_are_those_of_its_network(made: Made, monkeypatch: pytest.MonkeyPatch):
@@ -334,7 +334,7 @@ def test_a_run_that_fails_is_told_and_another_can_begin(made: Made, monkeypatch:
     chapter.train()
     for _ in range(3):
         chapter.update()
-    assert not chapter.training
+    assert not chapter.running
     assert "it diverged" in chapter.note
 
 

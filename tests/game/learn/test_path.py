@@ -192,6 +192,6 @@ def test_leaving_a_chapter_ends_its_run(open_game: Open, context: Context):
     scene.turn_to(1)
     driver.press_on(texts.LEARN_PAY_TRAIN)
     driver.frames(5)
-    assert scene.chapter.training
+    assert scene.chapter.running
     driver.app.close()
-    assert not scene.chapter.training
+    assert not scene.chapter.running
