@@ -254,7 +254,7 @@ class PayChapter(Chapter):
             flown = self.trial.flown()
             told = texts.LEARN_PAY_FLIGHTS.format(count=FLIGHTS, seconds=self.trial.env.time.max(), **vars(flown))
             write_figures(canvas, told, (left, y), size=SMALL + 1, colour=INK)
-        elif self.training:
+        elif self.running:
             canvas.bar((left, y + 10, STAGE.width, 3), self.decisions / DECISIONS, NET)
             told = texts.LEARN_PAY_TRAINING.format(decisions=self.decisions, most=DECISIONS)
             write_figures(canvas, told, (left, y), size=SMALL + 1, colour=INK)
