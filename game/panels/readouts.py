@@ -148,7 +148,7 @@ def _now(name: str, value: float, limit: float = math.inf) -> str:
     """Say what a read-out means now."""
     if name == "descent" and value < 0:
         return texts.EXPLAIN_CLIMBING.format(value=-value)
-    said = texts.EXPLAIN_READOUTS_NOW[name].format(value=value, limit=limit)
+    said = texts.EXPLAIN_READOUTS_NOW[name].format(value=round(value, 1) + 0.0, limit=limit)  # no minus before 0
     return f"{said} {texts.EXPLAIN_BEYOND}" if value > limit else said
 
 
