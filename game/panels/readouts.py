@@ -83,12 +83,12 @@ class Readout:
 
 
 def _altitude(env: LanderEnv, slot: int) -> Readout:
-    altitude = float(env.altitude[slot])
-    return Readout(texts.ALTITUDE, f"{max(0.0, altitude):.1f}", "m", now=partial(_now, "altitude", altitude))
+    altitude = max(0.0, float(env.altitude[slot]))
+    return Readout(texts.ALTITUDE, f"{altitude:.1f}", "m", now=partial(_now, "altitude", altitude))
 
 
 def _descent(env: LanderEnv, slot: int) -> Readout:
-    descent = -float(env.velocity[slot, 1])
+    descent = 0.0 - float(env.velocity[slot, 1])  # no minus before 0
     shown = descent if abs(descent) >= _STILL else 0.0
     return _limited("descent", texts.DESCENT, shown, env.limits.touch_speed, descent)
 
@@ -148,7 +148,7 @@ def _now(name: str, value: float, limit: float = math.inf) -> str:
     """Say what a read-out means now."""
     if name == "descent" and value < 0:
         return texts.EXPLAIN_CLIMBING.format(value=-value)
-    said = texts.EXPLAIN_READOUTS_NOW[name].format(value=round(value, 1) + 0.0, limit=limit)  # no minus before 0
+    said = texts.EXPLAIN_READOUTS_NOW[name].format(value=value, limit=limit)
     return f"{said} {texts.EXPLAIN_BEYOND}" if value > limit else said
 
 
