@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from itertools import product
 from typing import Final
 
@@ -23,6 +24,7 @@ _COVER: Final = 0.96  # opacity of the panel, over any background
 # first. The rows near the upper and the lower edge, and then those between them.
 _ACROSS: Final = (0.5, 0.25, 0.75, 0.0, 1.0)
 _DOWN: Final = (0.10, 0.92, 0.15, 0.03, 0.0, 0.875, 0.86, 0.20, 0.80, 0.26, 0.74, 0.32, 0.68, 0.38, 0.62, 0.44, 0.56)
+_WORDS: Final = 8  # times as bad as a picture are words that are hidden
 _PLACES: Final = tuple(product(_WIDTHS, _ACROSS, _DOWN))
 
 
@@ -51,9 +53,14 @@ class Note:
         self._left = max(0, self._left - 1)
         if not self._left:
             return
-        reading, taken = canvas.reading, [*canvas.words, *canvas.looked_at]
-        if _covers(reading, self._box_at(reading, self._place), taken):
-            covered = {place: _covers(reading, self._box_at(reading, place), taken) for place in _PLACES}
+        reading = canvas.reading
+
+        def cost(place: tuple[float, float, float]) -> int:
+            box = self._box_at(reading, place)
+            return _WORDS * _covers(reading, box, canvas.words) + _covers(reading, box, canvas.looked_at)
+
+        if cost(self._place):
+            covered = {place: cost(place) for place in _PLACES}
             if covered[self._place] > min(covered.values()):
                 self._place = min(_PLACES, key=covered.__getitem__)
 
@@ -86,7 +93,7 @@ class Note:
             words.text(self.text, "centre", alpha)
 
 
-def _covers(reading: Canvas, box: pygame.FRect, taken: list[pygame.Rect]) -> int:
+def _covers(reading: Canvas, box: pygame.FRect, taken: Iterable[pygame.Rect]) -> int:
     """Return how many pixels of these areas a note would hide."""
     place = reading.rect(*box)
     return sum(place.clip(area).w * place.clip(area).h for area in taken)

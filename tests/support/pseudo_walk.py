@@ -115,6 +115,7 @@ def listed(driver: Driver) -> None:
     """Open the list of sabotages, without the run of an earlier visit."""
     if isinstance(driver.top, QuestionDialog):
         driver.press_on(texts.TRAIN_LEFT_DISCARD)
+        driver.skip(310)  # until the note on it has gone
     driver.top.knobs.set_config(LANDERS, 3)
     driver.top.pages.open()
     driver.frames(2)
