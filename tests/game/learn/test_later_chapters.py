@@ -78,9 +78,7 @@ def test_the_value_is_the_networks_own_and_what_comes_is_the_discounted_pay(made
         assert judged.came == pytest.approx(came, abs=0.05)
         assert judged.decisions == len(pays)
         assert chapter.tried
-        agrees = (
-            2 if number == 0 else None
-        )  # about 20 points; the other flights are shorter
+        agrees = 2 if number == 0 else None  # about 20 points; the other flights are shorter
         assert chapter.verdict() == agrees
         chapter.turn()
         assert signed(judged.value) in str([code.notes for code in chapter.code()]), "the moment that was judged"
