@@ -78,9 +78,7 @@ def test_the_value_is_the_networks_own_and_what_comes_is_the_discounted_pay(made
         assert judged.came == pytest.approx(came, abs=0.05)
         assert judged.decisions == len(pays)
         assert chapter.tried
-        agrees = (
-            2 if number == 0 else None
-        )  # about 20 points; the other flights are shorter
+        agrees = 2 if number == 0 else None  # about 20 points; the other flights are shorter
         assert chapter.verdict() == agrees
         chapter.turn()
         assert signed(judged.value) in str([code.notes for code in chapter.code()]), "the moment that was judged"
@@ -258,6 +256,10 @@ def test_six_values_and_what_comes_of_each_are_the_networks_own(made: Made):
         assert chapter.results[action].landed == (env.outcome[0] == Outcome.LANDED)
     best, worst = chapter.results[chapter.best], chapter.results[chapter.worst]
     assert best.landed
+    assert (texts.LEARN_CHOICE_SURPRISE in chapter.why(None)) == (best.points < worst.points)
+    chapter.results[chapter.worst] = worst._replace(points=best.points + 1.0)
+    assert texts.LEARN_CHOICE_SURPRISE in chapter.why(None)
+    chapter.results[chapter.worst] = worst
     expected = 0 if not worst.landed else 1 if best.points - worst.points <= 5 else 2
     assert chapter.verdict() == expected
     assert chapter.tried
