@@ -2,11 +2,13 @@
 
 from functools import cache
 
+import numpy as np
 import pytest
 
 from ai.training.captions import ABOUT, CAPTION_RULES, CHARTS, Caption, caption
+from ai.training.config import Config
 from ai.training.hints import RULES, Adviser, RecentCurves
-from ai.training.history import History
+from ai.training.history import History, Point
 from tests.support.recordings import growing, names, recorded
 
 EACH = 8  # points between two looks
@@ -51,6 +53,20 @@ def test_a_caption_agrees_with_the_number_above_it(subtests: pytest.Subtests):
                             assert now["loss"] != now["loss"], at
     assert {("success", "steady"), ("success", "rises"), ("success", "falls")} <= said
     assert {("epsilon", "falls"), ("success", ""), ("loss", "rises"), ("loss", "falls")} <= said
+
+
+def test_a_curve_that_falls_again_is_not_said_to_rise(subtests: pytest.Subtests):
+    for last, name in ((0.97, "high"), (0.85, "rises"), (0.75, None)):
+        peak = 0.97 if last == 0.75 else last
+        curve = np.interp(np.arange(300), (0, 200, 240, 280, 300), (0.2, 0.6, 0.6, peak, last))
+        with subtests.test(last=last):
+            history = History()
+            for row, success in enumerate(curve.tolist()):
+                history.append(Point(seconds=row, decisions=1000.0 * row, episodes=10.0 * row, success=success,
+                                     mean_return=100.0, loss=0.05, mean_q=0.7, epsilon=0.05, stage=0.0,
+                                     steps_per_second=0.0, landed=success))  # fmt: skip
+            found = captions(RecentCurves(history, Config())).get("success")
+            assert (found.name if found else None) == name
 
 
 @cache

@@ -91,6 +91,10 @@ def test_each_rule_holds_for_what_it_is_about(subtests: pytest.Subtests):
             assert holding(curve, config) == {name}
 
 
+def test_a_run_that_landed_is_not_said_to_crash_still():
+    assert holding(later(0.9, **CRASHES)) == {"collapsed"}
+
+
 def test_gradients_that_are_cut_short_are_counted():
     for share, found in ((0.9, {"clipped"}), (0.4, set())):
         run = RecentCurves(history(points()), MODERN, clipped_share=share)

@@ -256,6 +256,10 @@ def test_six_values_and_what_comes_of_each_are_the_networks_own(made: Made):
         assert chapter.results[action].landed == (env.outcome[0] == Outcome.LANDED)
     best, worst = chapter.results[chapter.best], chapter.results[chapter.worst]
     assert best.landed
+    assert (texts.LEARN_CHOICE_SURPRISE in chapter.why(None)) == (best.points < worst.points)
+    chapter.results[chapter.worst] = worst._replace(points=best.points + 1.0)
+    assert texts.LEARN_CHOICE_SURPRISE in chapter.why(None)
+    chapter.results[chapter.worst] = worst
     expected = 0 if not worst.landed else 1 if best.points - worst.points <= 5 else 2
     assert chapter.verdict() == expected
     assert chapter.tried

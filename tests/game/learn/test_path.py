@@ -195,3 +195,26 @@ def test_leaving_a_chapter_ends_its_run(open_game: Open, context: Context):
     assert scene.chapter.running
     driver.app.close()
     assert not scene.chapter.running
+
+
+def test_the_last_page_of_the_path_names_no_next_chapter(open_game: Open, context: Context):
+    settle(context)
+    for key in (KEYS[-1], KEYS[0]):
+        scene = open_game(ChapterScene, key).top
+        scene.turn_to(3)
+        told = [getattr(action, "hint", "") for action in scene.actions()]
+        assert (texts.LEARN_NEXT_CHAPTER in told) == (key == KEYS[0])
+
+
+def test_a_page_read_too_early_says_that_the_run_still_learns(open_game: Open, context: Context, monkeypatch):
+    settle(context)
+    driver = open_game(ChapterScene, "pay")
+    driver.top.turn_to(1)
+    driver.press_on(texts.LEARN_PAY_TRAIN)
+    driver.top.turn_to(2)
+    words = words_written(monkeypatch)
+    driver.frames(2)
+    assert any(texts.LEARN_STILL_LEARNS.startswith(word) for word in words if len(word) > 5)
+    driver.top.chapter.close()
+    driver.frames(2)
+    assert any(texts.LEARN_TRY_FIRST.startswith(word) for word in words if len(word) > 5)

@@ -7,6 +7,8 @@ import pygame
 import pytest
 
 from ai.agent.agent import DeepQAgent
+from ai.nn.layer import Layer
+from ai.training.loop import Training
 from game.core.source import source_of
 from game.drawing.canvas import Canvas
 from game.panels.code_listing import draw_listing
@@ -21,6 +23,15 @@ def test_the_source_has_the_lines_of_the_file_but_not_the_docstring():
     for number, text in source.lines:
         assert lines[number - first].strip() == text.strip()
     assert not any('"""' in text for _, text in source.lines)
+
+
+@pytest.mark.parametrize("function", [Layer.single_step, Training.advance])
+def test_remarks_for_tools_are_not_shown(function):
+    raw = inspect.getsource(function)
+    assert "# noqa" in raw or "# fmt" in raw
+    shown = "\n".join(line for _, line in source_of(function).lines)
+    assert "# noqa" not in shown
+    assert "# fmt" not in shown
 
 
 def test_a_function_without_a_source_has_none():
