@@ -32,8 +32,8 @@ class OutcomeCard:
     score: str = ""
     medal: int = 0  # 3 for gold, 2, 1, 0 for none
     ring: bool = False  # whether it was landed together with the network
-    stepped_in: int | None = None  # how often the co-pilot intervened; None where nobody could
-    saved: int | None = None  # how often a guardian saved the person; None where none could tell, or without a landing
+    stepped_in: int = 0  # how often the co-pilot intervened: as many as there are diamonds on the path
+    watched: bool = False  # whether a guardian that can tell has watched over it, to a landing
     place: float = 0.5  # where the card stands across the window, 0 to 1
     intact: bool = False  # whether the craft came down whole beside the pad
     rung: int | None = None  # place on the ladder of starts, None off it
@@ -43,11 +43,11 @@ class OutcomeCard:
 
     @property
     def told(self) -> str:
-        """Text that says how often the co-pilot saved the person or stepped in; empty if there is nothing to say."""
-        if self.saved is not None:
-            few = texts.CARD_SAVED
-            return few[self.saved] if self.saved < len(few) else texts.CARD_SAVED_OFTEN.format(times=self.saved)
-        return texts.SHARE_MOMENTS.format(times=self.stepped_in) if self.stepped_in else ""
+        """Text that says how often the co-pilot stepped in; empty if there is nothing to say."""
+        times, few = self.stepped_in, texts.CARD_SAVED
+        if not (times or self.watched):
+            return ""
+        return few[times] if times < len(few) else texts.CARD_SAVED_OFTEN.format(times=times)
 
 
 @dataclass(frozen=True)

@@ -28,16 +28,18 @@ class Rescues:
         self.throughout: float = -1.0  # before the first step
         self._since = _CALM
 
-    def follow(self, flight: Flight) -> None:
-        """Count the step just flown."""
+    def follow(self, flight: Flight) -> bool:
+        """Count the step just flown; return whether a rescue begins with it."""
         guards = flight.shared and flight.guarded
         self._since += 1
         assist = flight.decision.assist if guards and flight.decision is not None else 0.0
         self.throughout = assist if self.throughout in (-1.0, assist) else 0.0
         self.guarded |= guards
         if guards and flight.overridden and (flight.guard is None or flight.guard.saves):
-            self.times += self._since >= _CALM
-            self._since = 0
+            begins, self._since = self._since >= _CALM, 0
+            self.times += begins
+            return begins
+        return False
 
     def saved(self, flight: Flight) -> int | None:
         """Return how often the person was saved in a flight that is over; None unless it was guarded and landed.

@@ -83,12 +83,12 @@ class Readout:
 
 
 def _altitude(env: LanderEnv, slot: int) -> Readout:
-    altitude = float(env.altitude[slot])
-    return Readout(texts.ALTITUDE, f"{max(0.0, altitude):.1f}", "m", now=partial(_now, "altitude", altitude))
+    altitude = max(0.0, float(env.altitude[slot]))
+    return Readout(texts.ALTITUDE, f"{altitude:.1f}", "m", now=partial(_now, "altitude", altitude))
 
 
 def _descent(env: LanderEnv, slot: int) -> Readout:
-    descent = -float(env.velocity[slot, 1])
+    descent = 0.0 - float(env.velocity[slot, 1])  # no minus before 0
     shown = descent if abs(descent) >= _STILL else 0.0
     return _limited("descent", texts.DESCENT, shown, env.limits.touch_speed, descent)
 

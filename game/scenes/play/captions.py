@@ -63,7 +63,7 @@ def flight_actions(
     hints = {Command.PAUSE: texts.HINT_LEAVE if leaves else texts.HINT_PAUSE, Command.RETRY: texts.HINT_RETRY}
     if not challenge:
         hints[Command.CHOICES] = texts.CHOICES_HINT
-    elif challenge.next_hint:
+    elif not challenge.through:
         hints[Command.NEXT] = challenge.next_hint
     if flight.network and not flight.over:
         taken = flight.hand is StickHolder.NETWORK

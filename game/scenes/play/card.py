@@ -57,7 +57,7 @@ class ShownCard:
         width = min(_WIDEST, view.width - 2 * _AROUND)
         rows = Cursor(0.0, 0.0, width - 2 * _MARGIN, canvas.scale)
         self._write(rows)
-        height = rows.y + self._foot(canvas, width) + 0.6 * _MARGIN
+        height = rows.y + self._foot(canvas, width) + _MARGIN
         left = view.left + _AROUND + self.card.place * (view.width - 2 * _AROUND - width)
         if width < 0.6 * view.width and self.card.place != PLACES[0]:  # beside the path, but not at the very edge
             left += 48 * (1 if self.card.place < 0.5 else -1)
@@ -72,7 +72,7 @@ class ShownCard:
     def hint_rows(self, canvas: Canvas) -> list[HintRow]:
         """Return the keys at its foot."""
         box = self.box(canvas)
-        return hint_lines(self.hints, canvas, (box.left + _MARGIN, box.bottom - 10), box.width - 2 * _MARGIN)
+        return hint_lines(self.hints, canvas, (box.left + _MARGIN, box.bottom - 22), box.width - 2 * _MARGIN)
 
     def draw(self, canvas: Canvas) -> None:
         """Draw it."""
@@ -175,7 +175,7 @@ class ShownCard:
         rows.gap(LEADING * TEXT + 4)
 
     def _write_share(self, rows: Cursor) -> None:
-        """Write who flew how much, and how often the co-pilot saved the person or stepped in."""
+        """Write who flew how much, and how often the co-pilot stepped in."""
         card, canvas = self.card, rows.canvas
         if told := card.told:
             rows.gap(4)
@@ -185,7 +185,7 @@ class ShownCard:
                 canvas.marker("diamond", (rows.left + 6, words.baseline - 4), 8, NET)
             words.text(told)
             rows.y = words.y
-            if canvas and card.saved is not None:
+            if canvas and card.watched:
                 canvas.explain((rows.left, top, rows.width, words.y - top), texts.EXPLAIN_CARD_SAVED)
         rows.gap(18)
         if canvas:

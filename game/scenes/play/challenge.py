@@ -319,7 +319,7 @@ class FlownMission(Challenge):
         return self.mission.medal(float(flight.env.fuel[0]), float(flight.env.time[0]))
 
     def card(self, card: OutcomeCard, flight: Flight, credit: Credit) -> OutcomeCard:
-        """Return the card with the medal in place of points, and what the next medal asks, or why there is none."""
+        """Return the card with the medal beside the points, and what the next medal asks, or why there is none."""
         if not card.good:
             return replace(card, advice=_advice(flight.env) or card.advice)
         if not credit.counts:
@@ -327,7 +327,8 @@ class FlownMission(Challenge):
                 return replace(card, score=texts.MISSION_TOGETHER, ring=True)
             return replace(card, score=card.score if credit.bar in ("practice", "assists") else texts.MEDALS[0])
         medal = credit.medal
-        return replace(card, score=texts.MEDALS[medal], medal=medal, reason=self._missing(medal, flight))
+        score = texts.DIAL_JOIN.join(filter(None, (card.score, texts.MEDALS[medal])))
+        return replace(card, score=score, medal=medal, reason=self._missing(medal, flight))
 
     def _missing(self, medal: int, flight: Flight) -> str:
         if medal == 3:

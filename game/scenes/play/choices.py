@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-import pygame
-
 from game.core import texts
 from game.core.scene import Pop, Scene
 from game.core.settings import GRAVITY_SHARES, PACES, TOP_RUNG, Settings
 from game.drawing.tokens import INK
 from game.flight.handicap import HANDS
-from game.input.controls import Command, key_name
+from game.input.controls import Command
 from game.scenes.play.cockpit import MODES
 from game.scenes.play.help_words import GUARDIAN, HELP, OTHER, choose, means, word_of
 from game.ui.actions import Action, Table
@@ -113,8 +111,7 @@ class ChoicesScene(PanelScene):
             texts.PACE, settings.pace, PACES, lambda pace: self._set("pace", round(pace, 2)), step=0.1,
             figure=_percent, aside=texts.CHOICES_PACE_HELP,
         )  # fmt: skip
-        controls = self.context.controls
-        key = controls.word(Command.MODE) if controls.gamepad_in_use else key_name(pygame.K_F1)
+        key = self.context.controls.word(Command.MODE)
         self._toggle(right, "show_thinking", texts.SHOW_THINKING, texts.SHOW_THINKING_HELP.format(key=key))
         if not self._challenge:
             self._toggle(right, "teach", *texts.CHOICES_TEACH)

@@ -80,10 +80,9 @@ class Cockpit:
 
     def follow(self, futures: SixFutures | None = None) -> None:
         """Update the displays after a step."""
-        stepped_in = self.overrides.follow(self._flight)
-        self.track.follow(self._flight, stepped_in)
+        stepped_in, saved = self.overrides.follow(self._flight), self.rescues.follow(self._flight)
+        self.track.follow(self._flight, saved if self._flight.guarded else stepped_in)
         self.copilot_panel.follow(self._flight, futures)
-        self.rescues.follow(self._flight)
         self.credit.follow()
 
     def breathe(self) -> None:
@@ -107,9 +106,9 @@ class Cockpit:
         if not credit.helped:
             return card
         bare = "" if card.good else why_not_saved(self._flight, last_chance)
-        saved = self.rescues.saved(self._flight)
+        watched = self.rescues.saved(self._flight) is not None
         advice = "" if bare else card.advice  # why it was not saved says more
-        return replace(card, stepped_in=self.overrides.times, saved=saved, bare=bare, advice=advice)
+        return replace(card, stepped_in=len(self.track.moments), watched=watched, bare=bare, advice=advice)
 
     @property
     def coasting(self) -> tuple[float, bool] | None:

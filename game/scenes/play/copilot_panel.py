@@ -72,7 +72,8 @@ class CopilotPanel:
         decision = flight.alone if alone else flight.decision if flight.shared else None
         if decision is None and futures:
             self.shown, self._seen, self._likely = True, None, []
-            self.values, self.why, self._override = landings_of(futures, flight), (texts.SIX_FUTURES_WHY, "", ""), None
+            self.values, self._override = landings_of(futures, flight), None
+            self.why = ("" if flight.shared else texts.SIX_FUTURES_WHY, "", "")
             return
         self.shown = decision is not None
         if decision is None or decision is self._seen:

@@ -54,6 +54,11 @@ def sentence(decision: SharedDecision) -> str:
     return texts.GUARDIAN_SAVED[after.value].format(asked=name, seconds=seconds)
 
 
+def is_late(decision: SharedDecision) -> bool:
+    """Whether a guardian has changed what was asked for because that had not been flown ahead in time."""
+    return bool(decision.overridden[0]) and Landings.of(decision).asked[1] is Landing.UNKNOWN
+
+
 def why_not_saved(flight: Flight, last_chance: LastChance | None) -> str:
     """Say of a helped flight that was lost why it was not saved, and what would have."""
     from ai.copilot.copilot import Mode

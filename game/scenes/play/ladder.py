@@ -57,8 +57,9 @@ class Ladder:
             if self._misses >= MISSES:
                 self._settings.rung, self._misses = max(0, rung - 1), 0
         # What a landing counts for, helped or not, is said once, by the line of the ladder.
+        words = _words(rung, self._settings.rung) if mine or not landed else texts.LADDER_NOT_FLOWN
         reason = texts.OUTCOMES[Outcome.LANDED.name][1] if landed else card.reason
-        return replace(card, reason=reason, rung=self._settings.rung, climb=_words(rung, self._settings.rung))
+        return replace(card, reason=reason, rung=self._settings.rung, climb=words)
 
 
 def rung_of(flight: Flight) -> int | None:

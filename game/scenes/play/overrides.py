@@ -9,13 +9,14 @@ from game.core import texts
 from game.drawing.shapes import Shape
 from game.drawing.tokens import HUMAN, NET, Colour
 from game.flight.flight import Flight, StickHolder
-from game.scenes.play.guardian_words import sentence
+from game.scenes.play.guardian_words import is_late, sentence
 
 if TYPE_CHECKING:
     from ai.copilot.copilot import SharedDecision
 
 _LASTS: Final = 75  # steps that a message stays after the last override: long enough to be read
 _FADES: Final = 14
+_LATE: Final = 3  # decisions in a row that come too late, from which on that is said
 
 
 class Overrides:
@@ -32,16 +33,20 @@ class Overrides:
         self._word = ""
         self._decision: SharedDecision | None = None  # the latest
         self._said = ""  # what a guardian has to say about it
+        self._late = 0  # decisions in a row, up to it, for which a guardian had not looked ahead in time
 
     def follow(self, flight: Flight) -> bool:
         """Update after a step; return whether the co-pilot has just stepped in."""
-        begins = flight.overridden and self._since > _FADES
+        begins, seen = flight.overridden and self._since > _FADES, self.word
         self._since = 0 if flight.overridden else self._since + 1
         if flight.decision is not self._decision:
             self._decision = flight.decision
             guarded = flight.decision if flight.shared and flight.guarded else None
             self._said = sentence(guarded) if guarded else ""
-        if flight.overridden:
+            self._late = self._late + 1 if guarded and is_late(guarded) else 0
+        if flight.overridden and 0 < self._late < _LATE:
+            self._word = seen
+        elif flight.overridden:
             self._word = self._said or difference(flight.asked, flight.recording.actions[-1])
         elif self._said:
             self._word, self._since = self._said, min(self._since, _FADES + 1)

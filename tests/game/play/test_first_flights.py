@@ -17,6 +17,7 @@ from game.flight import networks
 from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Entry
 from game.flight.logbook import Records, best, best_alone
+from game.flight.outcomes import outcome_card
 from game.flight.replay import FlightReplay
 from game.scenes.play.help_words import HELP
 from game.scenes.play.ladder import Ladder
@@ -169,6 +170,14 @@ def test_the_choices_move_on_the_ladder_and_off_it(open_game: Open):
         driver.keys(*[direction] * 12)
         driver.key(pygame.K_ESCAPE)
         assert play(driver).flight.recording.spawn == spawn
+
+
+def test_a_landing_that_the_network_flew_leads_no_rung_up_and_the_card_says_which_do():
+    settings, flight = Settings(rung=0), Flight(7, ScriptedPilot(), LADDER.spawn(0))
+    flight.hand_over()
+    card = Ladder(settings, []).climb(fly_out(flight), outcome_card(flight.env, flight.share))
+    assert flight.outcome is Outcome.LANDED
+    assert (settings.rung, card.climb) == (0, texts.LADDER_NOT_FLOWN)
 
 
 def test_flights_from_the_ladder_replay_but_do_not_measure_skill(context: Context):

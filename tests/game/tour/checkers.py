@@ -294,8 +294,8 @@ NOT_AT = {
 # Screens in rows and columns, which are laid out anew for every window.
 FLOWING = {
     "MenuScene", "FlightsScene", "SettingsScene", "BindingsScene", "QuestionDialog", "NameDialog",
-    "ListDialog", "sound", "controls", "flights", "ChoicesScene", "PauseScene", "FlightPauseScene, of a flight", "DaysScene",
-    "MissionsScene", "LogbookScene", "PhysicsStepScene", "TrainScene", "DigitTrainingScene",
+    "ListDialog", "sound", "controls", "flights", "ChoicesScene", "PauseScene", "FlightPauseScene, of a flight",
+    "DaysScene", "MissionsScene", "LogbookScene", "PhysicsStepScene", "TrainScene", "DigitTrainingScene",
 }  # fmt: skip
 IN_FLIGHT = {
     "Play, in flight", "mission, in flight", "descent, in flight", "daily, in flight", "tutorial, in flight",
