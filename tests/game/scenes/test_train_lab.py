@@ -11,7 +11,7 @@ import pytest
 
 from ai.files import read_json
 from ai.training.config import Config, in_force
-from ai.training.experiments import experiment_of
+from ai.training.experiments import VERDICTS, experiment_of
 from ai.training.history import History
 from ai.training.loop import Training
 from game.core import texts
@@ -256,6 +256,15 @@ def test_the_guess_can_be_skipped_or_the_sabotage_flown_alone(train: Driver) -> 
     assert scene.knobs.config.layer_normalisation is False, "flown alone, it is the run's own setting"
     assert scene.lander_run.twin.config.discount == 0.8
     assert scene.laboratory.chosen.guess is None
+
+
+def test_why_a_part_matters_is_told_only_where_it_was_missed(train: Driver) -> None:
+    train.press_on(texts.TRAIN_EXPERIMENTS)
+    train.press_on(texts.SABOTAGES["no_replay"][0])
+    train.press_on(texts.LAB_SKIP)
+    laboratory, pages = train.top.laboratory, train.top.pages
+    for laboratory.came in (None, *VERDICTS):
+        assert bool(pages._told("why")) == (laboratory.came not in (None, "as_well"))
 
 
 def test_captions_follow_the_run(train: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
