@@ -29,7 +29,7 @@ _WORD: Final = 22.0
 class FlightsScene(PanelScene):
     """What can be flown, and what was."""
 
-    most = 440.0
+    most = 360.0
 
     def __init__(self, context: Context, background: MenuBackground | None = None, today: date | None = None) -> None:
         super().__init__(context)
