@@ -37,7 +37,7 @@ class MenuScene(PanelScene):
     """Main menu, the first screen."""
 
     def __init__(self, context: Context) -> None:
-        super().__init__(context, lambda: None)
+        super().__init__(context, self._back)
         self._background = MenuBackground(context)
         self.build()
 
@@ -73,7 +73,7 @@ class MenuScene(PanelScene):
         self._background.draw(canvas.whole, alpha)
 
     def actions(self) -> Table:
-        """Move, choose, switch to the full screen; Escape does nothing, for Enter may follow."""
+        """Move, choose, switch to the full screen; Escape leads to Quit."""
         return [
             self.form.moves,
             self.form.confirms(texts.HINT_CHOOSE),
@@ -104,3 +104,11 @@ class MenuScene(PanelScene):
         if name == "play" and self.context.settings.tutored:
             return push("flights", self._background)
         return push(name)  # a newcomer's first flight teaches
+
+    def _back(self) -> Transition | None:
+        """Move the focus to Quit; if it is there already, leave the game."""
+        last = self.form.widgets[-1]
+        if self.form.focused is last:
+            return Quit()
+        self.form.focus(last)
+        return None
