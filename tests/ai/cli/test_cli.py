@@ -5,6 +5,7 @@ import shlex
 import signal
 import subprocess
 import sys
+from concurrent.futures import Future
 from dataclasses import replace
 from pathlib import Path
 
@@ -175,7 +176,26 @@ def full(*_, **__):
     raise OSError(28, "No space left on device")
 
 
+class AtOnce:
+    """Executor that does its work at once, so that no test depends on when a thread comes to it."""
+
+    def __init__(self, max_workers):
+        assert max_workers == 1
+
+    def submit(self, work):
+        future = Future()
+        try:
+            future.set_result(work())
+        except OSError as error:
+            future.set_exception(error)
+        return future
+
+    def shutdown(self):
+        pass
+
+
 def test_a_disk_that_is_full_for_a_while_ends_no_training(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(ai.training.run, "ThreadPoolExecutor", AtOnce)
     monkeypatch.setattr(ai.training.run, "FIRST_SECONDS", 0.0)
     monkeypatch.setattr(ai.training.run, "KEEP_SECONDS", 0.0)
     advance = Training.advance
