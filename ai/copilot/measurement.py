@@ -21,7 +21,7 @@ from ai.lander.pilots import Pilot
 from ai.lander.rules import ACTION_SHARES
 from ai.training.statistics import wilson
 
-SOME: Final = ("slow", "inverted", "holds right", "a key each second", "thrust 0.3",
+SOME: Final = ("slow", "holds right", "a key each second", "thrust 0.3",
                "adversary, random")  # fmt: skip
 ALONE: Final = "alone"
 VALUES: Final = "guardian by values"  # without futures
