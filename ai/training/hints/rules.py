@@ -152,17 +152,19 @@ def _as_before(run: RecentCurves) -> Mapping[str, Any]:
     return {each.name: each.before for each in run.blamed() if each.name != EDITED}
 
 
-def _before_other_pay(run: RecentCurves) -> int | None:
-    """Where the run was before its pay was changed: what it learned of the other pay would stay for long."""
-    turned = [each.decisions for each in run.blamed() if each.name.startswith("reward_weights.")]
+def _before_turn(run: RecentCurves, name: str) -> int | None:
+    """Where the run was before what is to blame was changed, if its name begins so: what came of it would stay."""
+    turned = [each.decisions for each in run.blamed() if each.name.startswith(name)]
     checkpoint = run.history.checkpoint_at(min(turned)) if turned else None
     return checkpoint.decisions if checkpoint else None
 
 
+def _before_other_pay(run: RecentCurves) -> int | None:
+    return _before_turn(run, "reward_weights.")
+
+
 def _before_edit(run: RecentCurves) -> int | None:
-    edited = [each.decisions for each in run.blamed() if each.name == EDITED]
-    checkpoint = run.history.checkpoint_at(edited[0]) if edited else None
-    return checkpoint.decisions if checkpoint else None
+    return _before_turn(run, EDITED)
 
 
 def _for_crashes(run: RecentCurves) -> Mapping[str, Any]:
