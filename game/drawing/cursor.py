@@ -63,16 +63,18 @@ class Cursor:
         pixels = round((size or self.size) * self.scale, 2)
         return typeface.span(words, pixels, self.weight, tabular) / self.scale
 
-    def text(self, words: str, align: Align = "left", alpha: float = 1.0) -> pygame.FRect:
-        """Write words on as many lines as they need, and go on below; return the box of all of them."""
+    def text(self, words: str, align: Align = "left", alpha: float = 1.0, *, tabular: bool = False) -> pygame.FRect:
+        """Write words on as many lines as they need, and go on below; return the box of all of them.
+
+        `tabular` is for words with figures that change: see `Canvas.text`.
+        """
         top = self.y
         shift = {"left": 0.0, "centre": 0.5, "right": 1.0}[align]
         for line in lines(words, self.size, self.weight, self.width, self.scale):
             if self.canvas:
                 place = (self.left + shift * self.width, self.baseline)
-                self.canvas.text(
-                    line, place, size=self.size, colour=self.colour, weight=self.weight, align=align, alpha=alpha
-                )
+                self.canvas.text(line, place, size=self.size, colour=self.colour, weight=self.weight, align=align,
+                                 alpha=alpha, tabular=tabular)  # fmt: skip
             self.y += LEADING * self.size
         return pygame.FRect(self.left, top, self.width, self.y - top)
 

@@ -8,7 +8,6 @@ the room that there is.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
 from types import MappingProxyType
@@ -23,8 +22,6 @@ from game.ui.rows import ButtonRow, ChoiceRow, EntryRow, ListRow, RowWidget, Sli
 from game.ui.widget import Widget
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from game.core.scene import Transition
     from game.drawing.canvas import Canvas, Now
     from game.ui.form import Form, Part
@@ -61,6 +58,10 @@ class Column:
         self.rows.append(Row(write, what, now))
         return self.rows[-1]
 
+    def explain(self, what: str) -> None:
+        """Say what the last row is, for whoever asks."""
+        self.rows[-1].what = what
+
     def clear(self) -> None:
         """Take all rows away with their widgets, which are the last of the form, to describe others."""
         self._form.replace(self._widgets, ())
@@ -73,9 +74,23 @@ class Column:
         """Add a title."""
         self.text(words, size=size, weight=weight)
 
-    def text(self, words: Words, *, size: float = TEXT, colour: Colour = INK, weight: Weight = "regular") -> None:
-        """Add a paragraph."""
-        self.add(lambda cursor: _write(cursor, cursor.in_style(size, colour, weight), words))
+    def text(
+        self,
+        words: Words,
+        *,
+        size: float = TEXT,
+        colour: Colour = INK,
+        weight: Weight = "regular",
+        tabular: bool = False,
+    ) -> None:
+        """Add a paragraph; `tabular` if its figures change."""
+
+        def write(cursor: Cursor) -> None:
+            styled = cursor.in_style(size, colour, weight)
+            styled.text(_said(words), tabular=tabular)
+            cursor.y = styled.y
+
+        self.add(write)
 
     def aside(self, words: Words) -> None:
         """Add small muted words that explain what stands above."""
@@ -272,24 +287,14 @@ class Panel(Column):
         if not self.overflows:
             self.write(replace(self._cursor(canvas.scale, canvas), seen=None))
             return
-        with _clipped(canvas, self.box):
+        # Rings around widgets at its sides are seen.
+        with canvas.clipped((0, self.box.top, canvas.view.width, self.box.height)):
             self.write(self._cursor(canvas.scale, canvas))
         share = self.box.height / self.height
         top = self.box.top + self.box.height * self.scrolled / self.height
         right = self.box.right + 12
         canvas.pill((right, self.box.top, 3, self.box.height), FAINT, 0.4)
         canvas.pill((right, top, 3, self.box.height * share), MUTE)
-
-
-@contextmanager
-def _clipped(canvas: Canvas, box: pygame.FRect) -> Iterator[None]:
-    """Draw within a box alone; rings around widgets at its sides are seen."""
-    before = canvas.surface.get_clip()
-    canvas.surface.set_clip(canvas.rect(0, box.top, canvas.view.width, box.height).clip(before))
-    try:
-        yield
-    finally:
-        canvas.surface.set_clip(before)
 
 
 def _write_words(buttons: Sequence[ButtonRow], cursor: Cursor) -> None:
@@ -306,8 +311,3 @@ def _write_words(buttons: Sequence[ButtonRow], cursor: Cursor) -> None:
 
 def _said(words: Words) -> str:
     return words if isinstance(words, str) else words()
-
-
-def _write(cursor: Cursor, styled: Cursor, words: Words) -> None:
-    styled.text(_said(words))
-    cursor.y = styled.y

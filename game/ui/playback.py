@@ -12,6 +12,7 @@ from game.core.clock import TimeScale
 from game.drawing.tokens import SMALL
 from game.input.controls import Command
 from game.ui.actions import Action
+from game.ui.panel import Column
 from game.ui.widget import PointsManager
 from game.ui.widgets import Choice
 
@@ -44,10 +45,15 @@ class Playback:
     def row(self, manager: PointsManager, box: pygame.typing.RectLike) -> Choice:
         """Return the row of speeds, a widget to be added to a form."""
         now = self._speeds.index(self._clock.rate)
-        self._row = Choice(
+        self._row: Choice = Choice(
             manager, box, texts.WATCH_SPEED, self.words, now, self._choose, label_width=LABEL_WIDTH, size=SMALL
         )
         return self._row
+
+    def describe(self, column: Column) -> None:
+        """Add the row of speeds."""
+        now = self._speeds.index(self._clock.rate)
+        self._row = column.choice(texts.WATCH_SPEED, self.words, now, self._choose, SMALL)
 
     def actions(
         self,

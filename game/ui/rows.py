@@ -17,6 +17,7 @@ from game.ui.entry import Entry
 from game.ui.listing import Listing, Row
 from game.ui.series import run_style
 from game.ui.tooltip import draw_swatch
+from game.ui.virtual_pointer import VirtualPointer
 from game.ui.widget import OnPress, PointsManager, Widget, mix
 from game.ui.widgets import Choice, Slider, TextButton, Toggle, draw_switch
 
@@ -311,6 +312,57 @@ class EntryRow(RowWidget, Entry):
         cursor.take(28.0)
         if cursor.canvas:
             Entry.paint(self, cursor.canvas)
+
+
+class PictureRow(RowWidget, VirtualPointer):
+    """Picture that is pointed at, by the mouse or a virtual pointer: `tell` gets their events, in points.
+
+    Args:
+        manager: the form's manager.
+        label: what it is called.
+        height: of the picture in points, given the width.
+        tell: receives the events: all motion, and each press within the picture until it is released.
+        draw: draws it; without, whoever draws behind the panel does.
+        more: as for a `VirtualPointer`.
+
+    Attributes:
+        picture: where it is, in points.
+
+    """
+
+    pad = 0.0
+
+    def __init__(
+        self,
+        manager: PointsManager,
+        label: str,
+        height: Callable[[float], float],
+        tell: Callable[[pygame.event.Event], object],
+        draw: Callable[[Canvas, pygame.FRect], None] = lambda *_: None,
+        **more: Any,
+    ) -> None:
+        super().__init__(manager, _NOWHERE, tell, **more)
+        self.label, self._height, self._draw = label, height, draw
+        self.picture = pygame.FRect(self.box)
+
+    def write(self, cursor: Cursor) -> None:
+        """Draw the picture, and the pointer while it is active."""
+        box = cursor.take(self._height(cursor.width))
+        if cursor.canvas is None:
+            self.picture = box
+        else:
+            self._draw(cursor.canvas, box)
+            self.draw_pointer(cursor.canvas)
+
+    def process_event(self, event: pygame.event.Event) -> bool:
+        """Pass on what the mouse does."""
+        down, up = event.type == pygame.MOUSEBUTTONDOWN, event.type == pygame.MOUSEBUTTONUP
+        if (down or up) and event.button != 1:
+            return False
+        ends, self.held = up and self.held, (self.held and not up) or (down and self.hover_point(*event.pos))
+        if event.type == pygame.MOUSEMOTION or ends or (down and self.held):
+            self._hear(event)
+        return self.held or ends
 
 
 class ListRow(RowWidget, Listing):

@@ -55,6 +55,8 @@ class VirtualPointer(Widget):
         """Activate the pointer, unless a real mouse is in use."""
         self.typing = self.ringed
         if self.typing:
+            if not self.box.collidepoint(self.place):
+                self.place.update(self.box.center)
             self._tell(pygame.MOUSEMOTION)
 
     def process_event(self, event: pygame.event.Event) -> bool:  # noqa: ARG002
@@ -134,6 +136,10 @@ class VirtualPointer(Widget):
     def paint(self, canvas: Canvas) -> None:
         """Draw the focus ring, and the pointer while it is active."""
         super().paint(canvas)
+        self.draw_pointer(canvas)
+
+    def draw_pointer(self, canvas: Canvas) -> None:
+        """Draw the pointer while it is active."""
         if self.typing:
             x, y = self.place
             canvas.dot((x, y), 9, NIGHT0, 0.6)  # visible on bright ink, too
