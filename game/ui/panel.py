@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from game.ui.widget import OnPress
 
 W = TypeVar("W", bound=RowWidget)
-Write = Callable[[Cursor], None]
+Write = Callable[[Cursor], object]
 Words = str | Callable[[], str]  # a function for words that change
 _ABOVE: Final = 24.0  # points kept above and below the widget in focus while the panel scrolls
 _WORDS: Final = 28.0  # points between two words side by side
@@ -84,13 +84,7 @@ class Column:
         tabular: bool = False,
     ) -> None:
         """Add a paragraph; `tabular` if its figures change."""
-
-        def write(cursor: Cursor) -> None:
-            styled = cursor.in_style(size, colour, weight)
-            styled.text(_said(words), tabular=tabular)
-            cursor.y = styled.y
-
-        self.add(write)
+        self.add(lambda cursor: cursor.styled(_said(words), size, colour, weight, tabular=tabular))
 
     def aside(self, words: Words) -> None:
         """Add small muted words that explain what stands above."""
@@ -108,11 +102,11 @@ class Column:
         """Add a bar."""
         self.add(lambda cursor: cursor.bar(share(), colour))
 
-    def picture(self, height: float, draw: Callable[[Canvas, pygame.FRect], None]) -> None:
-        """Add a drawing of its own, over the whole column."""
+    def picture(self, height: float | Callable[[float], float], draw: Callable[[Canvas, pygame.FRect], None]) -> None:
+        """Add a drawing of its own, over the whole column; its height may follow from the width."""
 
         def write(cursor: Cursor) -> None:
-            box = cursor.take(height)
+            box = cursor.take(height(cursor.width) if callable(height) else height)
             if cursor.canvas:
                 draw(cursor.canvas, box)
 

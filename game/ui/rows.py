@@ -28,7 +28,7 @@ _NOWHERE: Final = (0, 0, 1, 1)  # until it is laid out
 _PAD: Final = 8.0  # points above and below what a row says
 _SWITCH: Final = (32.0, 16.0)
 _LABELS: Final = 150.0  # points for the label before a slider or a choice
-_FIGURES: Final = 56.0
+_FIGURES: Final = 66.0
 _TRACK: Final = 120.0  # the shortest track beside its label
 _WORDS: Final = 24.0  # between two options
 _ROWS: Final = 8  # of a list, at most
@@ -323,6 +323,7 @@ class PictureRow(RowWidget, VirtualPointer):
         height: of the picture in points, given the width.
         tell: receives the events: all motion, and each press within the picture until it is released.
         draw: draws it; without, whoever draws behind the panel does.
+        square: whether it is as wide as high, instead of as its column.
         more: as for a `VirtualPointer`.
 
     Attributes:
@@ -339,20 +340,30 @@ class PictureRow(RowWidget, VirtualPointer):
         height: Callable[[float], float],
         tell: Callable[[pygame.event.Event], object],
         draw: Callable[[Canvas, pygame.FRect], None] = lambda *_: None,
+        *,
+        square: bool = False,
         **more: Any,
     ) -> None:
         super().__init__(manager, _NOWHERE, tell, **more)
-        self.label, self._height, self._draw = label, height, draw
+        self.label, self._height, self._draw, self._square = label, height, draw, square
         self.picture = pygame.FRect(self.box)
 
     def write(self, cursor: Cursor) -> None:
         """Draw the picture, and the pointer while it is active."""
         box = cursor.take(self._height(cursor.width))
+        if self._square:
+            box.width = box.height
         if cursor.canvas is None:
             self.picture = box
         else:
             self._draw(cursor.canvas, box)
             self.draw_pointer(cursor.canvas)
+
+    def lay(self, cursor: Cursor) -> None:
+        """Lay it out, no wider than the picture."""
+        super().lay(cursor)
+        if cursor.canvas is None:
+            self.rect.width = round(self.picture.width)
 
     def process_event(self, event: pygame.event.Event) -> bool:
         """Pass on what the mouse does."""

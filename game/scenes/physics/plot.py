@@ -112,8 +112,7 @@ class LawPlot:
         """Add the formula, the chart, and what there is to say; `progress` tells of a range that is being measured."""
         column.aside(texts.LAW_FORMULA.format(formula=self._formula))
         column.add(self._write_chart)
-        column.add(lambda cursor: cursor.in_style(SMALL, MUTE).text(self._quantity, "centre"))
-        column.gap(20)
+        column.add(lambda cursor: cursor.styled(self._quantity, SMALL, MUTE, align="centre"))
         column.add(lambda cursor: self._write_sentences(cursor, progress()))
 
     def _write_chart(self, cursor: Cursor) -> None:
@@ -127,9 +126,7 @@ class LawPlot:
 
     def _write_sentences(self, cursor: Cursor, progress: str) -> None:
         for words, colour in self.sentences(progress):
-            styled = cursor.in_style(SMALL, colour)
-            styled.text(words)
-            cursor.y = styled.y
+            cursor.styled(words, SMALL, colour)
 
     def sentences(self, progress: str) -> list[tuple[str, Colour]]:
         """Return what is said under the chart, each sentence with its colour."""

@@ -201,7 +201,8 @@ class PhysicsScene(PanelScene):
         words = [texts.EXHIBITS[name][0] for name in EXHIBITS]
         panel.choice(texts.PHYSICS_TITLE, words, list(EXHIBITS).index(self.chosen), self._choose)
         panel.explain(texts.EXHIBITS[self.chosen][1])
-        left, right = panel.beside((2, 1), least=_LEAST, apart=40.0)
+        panel.gap()
+        left, right = panel.beside((9, 4), least=_LEAST, apart=40.0)
         left.text(texts.EXHIBITS[self.chosen][1])
         left.text(self._said, size=SMALL, colour=MUTE, tabular=True)
         left.gap()
@@ -241,13 +242,13 @@ class PhysicsScene(PanelScene):
             self.plot.describe(column, self._progress)
             column.button(texts.LAW_CANCEL if self.measuring else texts.LAW_MEASURE, self.measure, size=SMALL)
             return
-        for words, figure, key in (
+        for words, read, key in (
             (texts.BODIES, lambda: str(len(self.exhibit.bodies)), "bodies"),
             (texts.CONTACT_POINTS, lambda: str(self.exhibit.contact_count) if self.exhibit.steps else "–", "points"),
             (texts.KINETIC_ENERGY, lambda: f"{self.exhibit.kinetic_energy:.1f} J", "energy"),
             (texts.STEP_TIME, lambda: f"{1e3 * self.step_time:.1f} ms", "step"),
         ):
-            column.pair(words, figure)
+            column.pair(words, read)
             column.explain(what[key])
 
     def _said(self) -> str:
@@ -324,9 +325,7 @@ class PhysicsScene(PanelScene):
         if self.exhibit.world.asleep.any():
             rows.append((texts.PHYSICS_ASLEEP, MUTE))
         for words, colour in rows:
-            row = cursor.in_style(SMALL, colour)
-            row.text(words)
-            cursor.y = row.y
+            cursor.styled(words, SMALL, colour)
         if self.contacts_drawn:
             line = cursor.in_style(SMALL)
             if cursor.canvas:
