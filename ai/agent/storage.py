@@ -25,8 +25,8 @@ from ai.files import (
     read_arrays,
     read_json,
 )
-from ai.nn import ModelFormatError, NeuralNetwork, Optimizer, atomic_folder, recover_folder
-from ai.nn.limits import WIDEST
+from ai.nn import ModelFormatError, NeuralNetwork, Optimizer, recover_folder
+from ai.nn.layer import WIDEST
 from ai.nn.storage import noted
 
 if TYPE_CHECKING:
@@ -47,17 +47,8 @@ _FORMERLY: Final = "train_count"  # the name of `gradient_steps` in older files
 _SLACK: Final = 1 << 16  # bytes of an archive beside its numbers
 
 
-def save_agent(agent: DeepQAgent, folder: str | Path) -> None:
-    """Write an agent to a folder, whole or not at all.
-
-    Raises OSError if it cannot be written, FileExistsError if the folder holds something else.
-    """
-    with atomic_folder(folder, KIND) as temporary:
-        write_agent(agent, temporary)
-
-
 def write_agent(agent: DeepQAgent, folder: Path) -> None:
-    """Write an agent's files into a new folder; `save_agent` does so safely. Raises OSError."""
+    """Write an agent's files into a new folder; `DeepQAgent.save` does so safely. Raises OSError."""
     described = {
         "format": FORMAT,
         "version": VERSION,
@@ -77,7 +68,7 @@ def write_agent(agent: DeepQAgent, folder: Path) -> None:
 
 
 def read_agent(folder: str | Path, make: Callable[[int, int, AgentConfig], A]) -> A:
-    """Read what `save_agent` wrote; `make` makes the agent of its numbers of features and actions and its settings.
+    """Read what `write_agent` wrote; `make` makes the agent of its numbers of features and actions and its settings.
 
     Raises ModelFormatError, which names everything that is wrong.
     """
@@ -130,16 +121,13 @@ def _sizes(network: NeuralNetwork) -> list[Any]:
 
 def _read_state(path: Path, optimizer: Optimizer, values: Floats) -> dict[str, Any]:
     """Read the arrays of an optimizer of the parameters `values`; raises OSError, or ValueError for any others."""
-    remembers = optimizer.remembers
+    shapes = {"steps": (), **dict.fromkeys(optimizer.remembers, values.shape)}
 
     def expect(name: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
-        steps = name == "steps" and shape == () and dtype.kind in "iu"
-        if not steps and not (
-            name in remembers and shape == values.shape and dtype.kind == "f" and dtype.itemsize <= 8
-        ):
+        if shape != shapes.get(name) or dtype.kind not in "iuf" or dtype.itemsize > 8:
             raise ValueError(f"{name} is no state of {type(optimizer).__name__} of {len(values):,} parameters")
 
-    return read_arrays(path, len(remembers) * values.size * 8 + _SLACK, expect)
+    return read_arrays(path, len(shapes) * values.size * 8 + _SLACK, expect)
 
 
 def agent_state(agent: DeepQAgent) -> dict[str, Any]:

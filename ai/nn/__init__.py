@@ -1,7 +1,7 @@
 """A neural network library on NumPy: layers, costs, optimizers and a folder format, every gradient by hand.
 
-To read in this order: parameter, activations, costs, layer, layers, optimizers, network; then limits and
-storage, and images, which agents do without.
+To read in this order: parameter, activations, costs, layer, layers, optimizers, network; then storage, and images,
+which agents do without.
 """
 
 from ai.files import atomic_folder, recover_folder

@@ -10,9 +10,8 @@ import numpy.typing as npt
 
 from ai.files import atomic_folder
 from ai.nn.costs import Cost, CostFunction
-from ai.nn.layer import Layer
+from ai.nn.layer import Layer, check_next
 from ai.nn.layers import ActivationLayer, DropoutLayer
-from ai.nn.limits import check_next
 from ai.nn.optimizers import SGD, Optimizer
 from ai.nn.parameter import Array, pack
 from ai.nn.storage import read_network, write_network
@@ -87,7 +86,7 @@ class NeuralNetwork:
         layer.join(self.rng, self.dtype)
         if isinstance(layer, ActivationLayer):
             for before in self.layers:
-                before.initialisation = before.initialisation or layer.activation.initialisation
+                before.initialise = before.initialise or layer.activation.initialise
         self.layers.append(layer)
         for name in ("_flat", "_single"):  # made anew when needed
             self.__dict__.pop(name, None)

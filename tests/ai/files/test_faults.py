@@ -48,7 +48,7 @@ from ai.nn import (
     NeuralNetwork,
     atomic_folder,
 )
-from ai.nn.limits import MOST_LAYERS
+from ai.nn.layer import MOST_LAYERS
 from ai.training.checkpoints import AGENTS, resume_run
 from ai.training.config import PRESETS, gym_config
 from ai.training.demonstrations import Demonstration
