@@ -170,7 +170,7 @@ class LogbookScene(PanelScene):
     def _copy(self) -> None:
         if record := self._record():
             code = sharing.code(record)
-            give(self.context, code, texts.CODE_COPIED.format(count=len(code)))
+            give(self.context, code, texts.CODE_COPIED)
 
     def _throw_away(self) -> None:
         if self.chosen and self._replayable:
