@@ -94,8 +94,8 @@ class ConvolutionLayer(FullyConnectedLayer):
         framed = self.kept("framed_error", self._frame(len(error)), self.dtype)
         framed.fill(0)
         for x, y in self._blocks(len(error)):
-            part = _columns(error, x, y)
-            sent = self._block("sent", (self.kernel, self.kernel, channels, x.stop - x.start, y.stop - y.start, len(error)))
+            part, places = _columns(error, x, y), (x.stop - x.start, y.stop - y.start, len(error))
+            sent = self._block("sent", (self.kernel, self.kernel, channels, *places))
             np.matmul(self.weights, part, out=sent.reshape(len(self.weights), -1))
             for i, j in np.ndindex(self.kernel, self.kernel):
                 columns, rows = _strided(x, i, stride), _strided(y, j, stride)
