@@ -26,7 +26,7 @@ from game.scenes.play.scene import CRASHES, PlayScene
 from game.scenes.play.tutorial import Tutorial
 from game.ui.context import Context
 from tests.support.driver import Driver
-from tests.support.flights import fly_out, kept, play
+from tests.support.flights import challenge_of, fly_out, kept, play
 from tests.support.player import DEVICES, Player
 from tests.support.reading import Weighs
 
@@ -278,7 +278,7 @@ def test_a_key_held_meanwhile_must_be_let_go_first(open_game: Open, written: lis
 
 def test_a_rescue_that_does_not_come_down_is_landed_by_the_network(open_game: Open):
     driver = open_game(PlayScene, 0, challenge=Tutorial())
-    challenge, controls = play(driver).challenge, driver.app.context.controls
+    challenge, controls = challenge_of(driver), driver.app.context.controls
     while challenge.lesson.name != "rescue":
         challenge.skip() if challenge.lesson.name != "dial" else challenge.follow(play(driver).flight)
     flight = play(driver).flight
@@ -297,7 +297,7 @@ def test_a_rescue_that_does_not_come_down_is_landed_by_the_network(open_game: Op
 @pytest.mark.parametrize("device", DEVICES)
 def test_the_dial_is_turned_by_the_player_and_theirs_stays_as_it_was(open_game: Open, written: list[str], device: str):
     driver = player = Player(open_game(PlayScene, 0, challenge=Tutorial()), device)
-    while (challenge := play(driver).challenge).lesson.name != "dial":
+    while (challenge := challenge_of(driver)).lesson.name != "dial":
         challenge.skip()
     play(driver).retry()
     driver.frames(2)
@@ -324,7 +324,7 @@ def test_the_dial_is_turned_by_the_player_and_theirs_stays_as_it_was(open_game: 
 
 def test_who_skips_the_dial_skips_the_rescue(open_game: Open):
     driver = open_game(PlayScene, 0, challenge=Tutorial())
-    while play(driver).challenge and play(driver).challenge.lesson.name != "dial":
+    while play(driver).challenge and challenge_of(driver).lesson.name != "dial":
         driver.key(pygame.K_n)
     driver.key(pygame.K_n)
     assert play(driver).challenge.free

@@ -27,7 +27,7 @@ from game.scenes.play.scene import PlayScene, fly_on
 from game.scenes.play.tutorial import Tutorial
 from game.ui.context import Context
 from tests.support.driver import Driver
-from tests.support.flights import fly_out, kept, play
+from tests.support.flights import challenge_of, fly_out, kept, play
 from tests.support.reading import OnlyFlies, Reading, Weighs, flew, pattern
 
 Open = Callable[..., Driver]
@@ -279,7 +279,7 @@ def test_a_flight_that_is_no_landing_is_told_of_alike_everywhere(
     set_off(reading, way)
     end(reading.driver, outcome)
     if scene == "tutorial":  # which begins again, and says why
-        page, challenge = reading.page(), play(reading.driver).challenge
+        page, challenge = reading.page(), challenge_of(reading.driver)
         assert not page.who
         assert challenge.why in page.words
         return
