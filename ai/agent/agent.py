@@ -42,10 +42,10 @@ from ai.agent.network import build_network, make_optimizer
 from ai.agent.normalizer import Normalizer
 from ai.agent.replay import ReplayBuffer, Transition, make_replay
 from ai.agent.schedule import importance, learning_rate, target_rate
-from ai.agent.storage import KIND, read_agent, write_agent
+from ai.agent.storage import read_agent, save_agent
 from ai.agent.symmetry import Symmetry
 from ai.environment import Bools, Doubles, Env, Floats, Ints, StepResult
-from ai.nn import NeuralNetwork, Optimizer, atomic_folder
+from ai.nn import NeuralNetwork, Optimizer
 
 TOGETHER: Final = 1024  # states that are judged at a time: fewer calls, and what layers make of them stays in the cache
 
@@ -311,8 +311,7 @@ class DeepQAgent:
 
         Raises OSError if it cannot be written, FileExistsError if the folder holds something else.
         """
-        with atomic_folder(folder, KIND) as temporary:
-            write_agent(self, temporary)
+        save_agent(self, folder)
 
     @classmethod
     def load(cls, folder: str | Path, rng: np.random.Generator | None = None) -> Self:

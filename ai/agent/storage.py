@@ -18,14 +18,16 @@ from ai.files import (
     NETWORK,
     FolderKind,
     array_like,
+    atomic_folder,
     check_header,
     count_of,
     inside,
     number_of,
     read_arrays,
     read_json,
+    recover_folder,
 )
-from ai.nn import ModelFormatError, NeuralNetwork, Optimizer, recover_folder
+from ai.nn import ModelFormatError, NeuralNetwork, Optimizer
 from ai.nn.layer import WIDEST
 from ai.nn.storage import noted
 
@@ -47,8 +49,14 @@ _FORMERLY: Final = "train_count"  # the name of `gradient_steps` in older files
 _SLACK: Final = 1 << 16  # bytes of an archive beside its numbers
 
 
+def save_agent(agent: DeepQAgent, folder: str | Path) -> None:
+    """Write an agent to a folder, whole or not at all; raises as `DeepQAgent.save` says."""
+    with atomic_folder(folder, KIND) as temporary:
+        write_agent(agent, temporary)
+
+
 def write_agent(agent: DeepQAgent, folder: Path) -> None:
-    """Write an agent's files into a new folder; `DeepQAgent.save` does so safely. Raises OSError."""
+    """Write an agent's files into a new folder; `save_agent` does so safely. Raises OSError."""
     described = {
         "format": FORMAT,
         "version": VERSION,

@@ -19,6 +19,11 @@ class Symmetry:
     features: Ints  # (features,) which feature stands in each place
     actions: Ints  # (actions,) which action each becomes
 
+    def mirrored(self, states: Floats) -> Floats:
+        """Return the mirror images of states (..., features)."""
+        mirrored: Floats = self.signs * states[..., self.features]
+        return mirrored
+
     def apply(self, transitions: Transition, batch_size: int, count: int) -> Transition:
         """Return minibatches, one after another (batches · batch_size), with the first `count` of each mirrored.
 
@@ -29,7 +34,7 @@ class Symmetry:
         action = transitions.action.copy()
         for states in (state, next_state):
             batches = states.reshape(-1, batch_size, states.shape[-1])
-            batches[:, :count] = self.signs * batches[:, :count, self.features]
+            batches[:, :count] = self.mirrored(batches[:, :count])
         batches = action.reshape(-1, batch_size)
         batches[:, :count] = self.actions[batches[:, :count]]
         return transitions._replace(state=state, next_state=next_state, action=action)

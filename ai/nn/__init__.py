@@ -4,7 +4,6 @@ To read in this order: parameter, activations, costs, layer, layers, optimizers,
 which agents do without.
 """
 
-from ai.files import atomic_folder, recover_folder
 from ai.nn.activations import Activation, ActivationFunctions
 from ai.nn.costs import Cost, CostFunctions, softmax
 from ai.nn.images import ConvolutionLayer, FlattenLayer, MaxPoolingLayer
@@ -39,8 +38,6 @@ __all__ = [
     "NeuralNetwork",
     "Optimizer",
     "Parameter",
-    "atomic_folder",
-    "recover_folder",
     "register_layer",
     "softmax",
 ]

@@ -8,6 +8,7 @@ are gathered almost at the speed of memory (docs/adr/0009-images-batch-last-in-m
 
 from collections.abc import Iterator, Mapping
 from itertools import product
+from math import prod
 from typing import Any
 
 import numpy as np
@@ -52,7 +53,8 @@ class ConvolutionLayer(FullyConnectedLayer):
     def forward_propagate(self, input_data: Array) -> Array:
         """Return each window times the weights, plus the bias: (batch, height, width, filters)."""
         _check_images(self, input_data)
-        self.input = np.asarray(input_data, self.dtype, order="F")
+        self.input = self.kept("input", input_data.shape, self.dtype)
+        self.input[...] = input_data
         return self._convolve(self.input, self.kept("output", (len(input_data), *self.outputs), self.dtype))
 
     def predict(self, input_data: Array) -> Array:
@@ -76,8 +78,9 @@ class ConvolutionLayer(FullyConnectedLayer):
         total = self.kept("error", (len(error), *self.inputs), self.dtype)
         total.fill(0)
         for x, y in self._blocks(len(error)):
-            sent = self.weights @ _columns(error, x, y)
-            sent = sent.reshape(self.kernel, self.kernel, self.inputs[2], x.stop - x.start, -1, len(error))
+            places = x.stop - x.start, y.stop - y.start, len(error)
+            sent = self._block("sent", (self.kernel, self.kernel, self.inputs[2], *places))
+            np.matmul(self.weights, _columns(error, x, y), out=sent.reshape(len(self.weights), -1))
             for i, j in np.ndindex(self.kernel, self.kernel):
                 total.T[:, x.start + i : x.stop + i, y.start + j : y.stop + j] += sent[i, j]
         return total
@@ -92,8 +95,18 @@ class ConvolutionLayer(FullyConnectedLayer):
 
     def _windows(self, images: Array, x: slice, y: slice) -> Array:
         """Return windows of some outputs as the columns of a matrix, (kernel · kernel · channels, windows · batch)."""
-        windows = sliding_window_view(images.T, (self.kernel, self.kernel), (1, 2))[:, x, y]
-        return windows.transpose(4, 5, 0, 1, 2, 3).reshape(len(self.weights), -1)
+        windows = sliding_window_view(images.T, (self.kernel, self.kernel), (1, 2))[:, x, y].transpose(4, 5, 0, 1, 2, 3)
+        matrix = self._block("matrix", windows.shape)
+        matrix[...] = windows
+        return matrix.reshape(len(self.weights), -1)
+
+    def _block(self, name: str, shape: tuple[int, ...]) -> Array:
+        """Return memory for a block, the same at each call: fresh pages would take longer than what is put there."""
+        size = prod(shape)
+        memory = self.__dict__.get(name)
+        if memory is None or memory.size < size or memory.dtype != self.dtype:
+            memory = self.__dict__[name] = np.empty(size, self.dtype)
+        return memory[:size].reshape(shape)
 
     def _blocks(self, batch: int) -> Iterator[tuple[slice, slice]]:
         """Yield which columns and rows of outputs are worked at together: some whole columns, or a part of one."""

@@ -16,6 +16,7 @@ import numpy.typing as npt
 from ai.files import (
     CONFIG,
     NETWORK,
+    atomic_folder,
     brief,
     check_header,
     inside,
@@ -72,16 +73,17 @@ class ModelFormatError(ValueError):
         self.folder = Path(folder)
 
 
-def write_network(folder: Path, cost: Cost, layers: list[Layer], dtype: npt.DTypeLike) -> None:
-    """Write a network's files into an existing folder; raises ValueError if it cannot be saved."""
-    config = {
-        "format": FORMAT,
-        "version": VERSION,
-        "dtype": np.dtype(dtype).name,
-        "cost": _described(cost),
-        "layers": [_write_layer(folder, index, layer) for index, layer in enumerate(layers)],
-    }
-    (folder / CONFIG).write_text(json.dumps(config, indent=2) + "\n", encoding="utf-8")
+def save_network(folder: str | Path, cost: Cost, layers: list[Layer], dtype: npt.DTypeLike) -> None:
+    """Write a network to a folder, whole or not at all; raises as `NeuralNetwork.save` says."""
+    with atomic_folder(folder) as temporary:
+        config = {
+            "format": FORMAT,
+            "version": VERSION,
+            "dtype": np.dtype(dtype).name,
+            "cost": _described(cost),
+            "layers": [_write_layer(temporary, index, layer) for index, layer in enumerate(layers)],
+        }
+        (temporary / CONFIG).write_text(json.dumps(config, indent=2) + "\n", encoding="utf-8")
 
 
 def _write_layer(folder: Path, index: int, layer: Layer) -> dict[str, Any]:

@@ -48,7 +48,7 @@ def test_bodies_may_be_added_in_any_order():
     for other in flown[1:]:
         assert other == pytest.approx(flown[0], abs=1e-6)
     place = world.bodies[0].position.copy()
-    late = world.add(BOX, [(0.0, 9.6), (3.0, 9.6)], [0.0, 0.1])
+    late = world.add(BOX, np.array([(0.0, 9.6), (3.0, 9.6)]), [0.0, 0.1])
     assert np.array_equal(world.bodies[0].position, place)
     assert late.position.tolist() == [[0.0, 9.6], [3.0, 9.6]]
     assert late.angle.tolist() == [0.0, 0.1]

@@ -24,6 +24,7 @@ from ai.files import (
     MOST,
     append_line,
     array_like,
+    atomic_folder,
     claimed_folder,
     count_of,
     inside,
@@ -46,7 +47,6 @@ from ai.nn import (
     CostFunctions,
     ModelFormatError,
     NeuralNetwork,
-    atomic_folder,
 )
 from ai.nn.layer import MOST_LAYERS
 from ai.training.checkpoints import AGENTS, resume_run

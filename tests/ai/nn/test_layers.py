@@ -123,8 +123,8 @@ def test_a_layer_alone_returns_its_input_error_whatever_the_order_in_memory(name
     x = examples_of(layer)
     error = np.random.default_rng(8).normal(size=layer.predict(x).shape)
     expected = numerical_gradient(lambda: np.sum(layer.predict(x) * error), x.reshape(-1)).reshape(x.shape)
-    for order in "CF":
-        given = np.array(x, order=order), np.array(error, order=order)
+    for turn in (np.array, np.asfortranarray):
+        given = turn(x), turn(np.array(error))
         np.testing.assert_allclose(layer.forward_propagate(given[0]), layer.predict(x))
         np.testing.assert_allclose(layer.predict(given[0]), layer.predict(x))
         np.testing.assert_allclose(layer.backward_propagate(given[1]), expected, rtol=1e-6, atol=1e-8)
