@@ -114,6 +114,7 @@ class PilotProcess:
         self._waiting -= 1
         kind, told = block[:1], block[1:]
         if block == _ENDED:
+            self._answers.put(_ENDED)  # for whoever asks again
             self.close()
             raise PilotError("its process has ended")
         if kind == PROBLEM:
@@ -144,7 +145,7 @@ def _talk(
         while block := read_block(process.stdout):  # type: ignore[arg-type]
             answers.put(block)
             if (question := questions.get()) is None:
-                return
+                break
             write_block(process.stdin, question)  # type: ignore[arg-type]
     except (OSError, ValueError):  # it has ended, or was closed meanwhile
         pass

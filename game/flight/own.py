@@ -42,11 +42,9 @@ def measure(user_dir: Path, models_dir: Path, path: Path) -> Iterator[list[Any]]
     known = {each.name for each in shelf.measured() if each.name.startswith(_MARK)}
     with closing(MeasuredPilot(path)) as own:
         yield from _measured(shelf, path.stem, own)
+    policies = networks.Policies(models_dir, user_dir)
     for name in RIVALS:
-        if _MARK + name in known:
-            continue
-        policy = networks.Policies(models_dir, user_dir)[name].policy
-        if policy:
+        if _MARK + name not in known and name in policies.names and (policy := policies[name].policy):
             yield from _measured(shelf, _MARK + name, policy)
 
 
