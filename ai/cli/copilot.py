@@ -94,10 +94,8 @@ def _table(arguments: argparse.Namespace) -> int:
     return _told(arguments, tables)
 
 
-def _own(
-    arguments: argparse.Namespace, agent: DeepQAgent, helps: list[Help]
-) -> dict[str, list[AssistedFlights]]:
-    """Return the tables of a player's file as the hands that are helped; raises ValueError for what is wrong with it."""
+def _own(arguments: argparse.Namespace, agent: DeepQAgent, helps: list[Help]) -> dict[str, list[AssistedFlights]]:
+    """Return the tables of a player's file as the hands that are helped; raises ValueError if it fails."""
     from ai.copilot.measurement import rows
     from ai.pilots.own import MeasuredPilot
 

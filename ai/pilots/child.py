@@ -145,7 +145,9 @@ def _paying(pay: Callable[..., Any]) -> Answer:
     def answer(question: bytes) -> bytes:
         rows = np.frombuffer(question, float).reshape(2, len(_PARTS), -1).copy()
         before, after = (
-            Situation(*(row.astype(np.intp) if part.type == "Ints" else row for part, row in zip(_PARTS, half, strict=True)))
+            Situation(
+                *(row.astype(np.intp) if part.type == "Ints" else row for part, row in zip(_PARTS, half, strict=True))
+            )
             for half in rows
         )
         given = pay(before, after.actions, after)

@@ -82,9 +82,7 @@ class OwnPilot:
 
     work = 100_000  # multiplications that a decision may well take the time of, for those who ask for many
 
-    def __init__(
-        self, path: Path, patience: float = PATIENCE, clock: Callable[[], float] = time.monotonic
-    ) -> None:
+    def __init__(self, path: Path, patience: float = PATIENCE, clock: Callable[[], float] = time.monotonic) -> None:
         self.path, self.problem, self.ready = path, "", False
         self._patience, self._clock = patience, clock
         self._flying: PilotProcess | None = None

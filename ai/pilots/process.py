@@ -134,11 +134,10 @@ class PilotProcess:
         self._end()
 
 
-def _talk(
-    process: subprocess.Popen[bytes], questions: SimpleQueue[bytes | None], answers: SimpleQueue[bytes]
-) -> None:
+def _talk(process: subprocess.Popen[bytes], questions: SimpleQueue[bytes | None], answers: SimpleQueue[bytes]) -> None:
     """Send and receive in a thread: a process that reads or writes half of it blocks nobody else."""
-    assert process.stdin and process.stdout
+    assert process.stdin
+    assert process.stdout
     try:
         for _ in range(3):  # what the file is
             write_block(process.stdin, questions.get() or b"")  # type: ignore[arg-type]

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Generator
 from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from ai.lander.environment import LanderEnv, Outcome
-from ai.lander.pilots import Pilot, ScriptedPilot
+from ai.lander.pilots import Pilot
 from ai.pilots.own import MeasuredPilot, OwnPilot
 from ai.pilots.shelf import Measured, Shelf
-from ai.training.tasks import FlightSums, finished, flown
+from ai.training.tasks import FlightSums, flown
 from game.flight import networks
 from game.flight.flight_file import Entry
 
@@ -32,7 +32,7 @@ def take(context: Context, path: Path) -> None:
     context.pilot = OwnPilot(path)
 
 
-def measure(user_dir: Path, models_dir: Path, path: Path) -> Iterator[list[Any]]:
+def measure(user_dir: Path, models_dir: Path, path: Path) -> Generator[list[Any], None, None]:
     """Measure a file's pilot, then those rivals that never were, and write it down; a generator for a worker.
 
     Yields lists of messages: how much of a pilot's flights is over, 0 to 1, and each `Measured`. Raises PilotError for
@@ -69,7 +69,7 @@ def by_hand(entries: list[Entry]) -> tuple[Measured, int] | None:
     return Measured("", len(landings) / len(flown), seconds, fuel), len(flown)
 
 
-def _measured(shelf: Shelf, name: str, pilot: Pilot) -> Iterator[list[Any]]:
+def _measured(shelf: Shelf, name: str, pilot: Pilot) -> Generator[list[Any], None, None]:
     env = LanderEnv(STARTS, _SEED)
     env.reset()
     trial = flown(pilot, env)

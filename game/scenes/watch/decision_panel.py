@@ -1,4 +1,4 @@
-"""Decision panel of a pilot that flies alone: the values and nine inputs of the decision flown, and the map's legend."""
+"""Decision panel of a pilot that flies alone: values and inputs of the decision flown, and the legend of the map."""
 
 from __future__ import annotations
 

@@ -47,9 +47,7 @@ class Hand(Widget):
 
     """
 
-    def __init__(
-        self, manager: PointsManager, lander: Watched, clear: pygame.Rect, view: pygame.FRect = PAGE
-    ) -> None:
+    def __init__(self, manager: PointsManager, lander: Watched, clear: pygame.Rect, view: pygame.FRect = PAGE) -> None:
         super().__init__(manager, clear, texts.TOUCH_LANDER)
         self._lander, self._clear, self._view = lander, clear, view
         self.part, self.dragging = PLACE, False

@@ -1,4 +1,4 @@
-"""The files that docs/pilots.md shows for networks from elsewhere fly; where the libraries are missing, on stand-ins."""
+"""The files that docs/pilots.md shows for networks from elsewhere fly; one without its library, on a stand-in."""
 
 import re
 from importlib.util import find_spec
@@ -9,7 +9,9 @@ import pytest
 
 from ai.pilots.own import MeasuredPilot
 
-SHOWN = re.findall(r"flown by tests/.*?```python\n(.*?)```", (Path(__file__).parents[3] / "docs" / "pilots.md").read_text(), re.S)
+SHOWN = re.findall(
+    r"flown by tests/.*?```python\n(.*?)```", (Path(__file__).parents[3] / "docs" / "pilots.md").read_text(), re.S
+)
 # As much of each library as the file calls: a policy that fires its main engine where the second number is negative.
 STABLE_BASELINES3 = """
 class DQN:

@@ -2,6 +2,7 @@
 
 import os
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -19,7 +20,7 @@ HELD = np.array([5])
 class Fake:
     """Process that answers with the number in its file; a letter says what it does instead."""
 
-    all: list["Fake"] = []
+    all: ClassVar[list["Fake"]] = []
 
     def __init__(self, path: Path, source: str, kind: str) -> None:
         self.does, self.gone = source, False

@@ -2,6 +2,7 @@
 
 import errno
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -60,12 +61,12 @@ def test_an_editor_is_opened_on_the_file_and_none_is_told(tmp_path: Path, monkey
         def wait(self):
             pass
 
-    monkeypatch.setattr(shelf.sys, "platform", "linux")
+    monkeypatch.setattr(sys, "platform", "linux")
     monkeypatch.setattr(subprocess, "Popen", Opened)
     shelf.edit(tmp_path / "pilot.py")
     assert called == [["xdg-open", str(tmp_path / "pilot.py")]]
     monkeypatch.undo()
-    monkeypatch.setattr(shelf.sys, "platform", "linux")
+    monkeypatch.setattr(sys, "platform", "linux")
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(OSError, match="xdg-open"):
         shelf.edit(tmp_path / "pilot.py")

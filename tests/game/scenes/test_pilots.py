@@ -104,9 +104,7 @@ def test_what_goes_wrong_with_a_new_file_is_told(
         assert not watching.top._files
 
 
-def test_it_is_measured_beside_the_others_and_kept(
-    watching: Driver, context: Context, monkeypatch: pytest.MonkeyPatch
-):
+def test_it_is_measured_beside_the_others_and_kept(watching: Driver, context: Context, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(own, "STARTS", 20)
     monkeypatch.setattr(pilots, "Worker", InlineWorker)
     shelf.Shelf(context.user_dir).new()
