@@ -1,6 +1,6 @@
 """A pilot of your own. Whenever you save this file, the new one flies."""
 
-from ai.pilots import COAST, LEFT, MAIN, MAIN_LEFT, MAIN_RIGHT, RIGHT, drift, fall, height, spin, tilt
+from ai.pilots import COAST, LEFT, MAIN, MAIN_LEFT, MAIN_RIGHT, RIGHT, drift, fall, feet, height, offset, spin, tilt
 
 
 def act(observation):

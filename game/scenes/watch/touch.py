@@ -278,7 +278,8 @@ class Hand(Widget):
             across, down = (np.array(tip) - 9 * way + side * 5 * np.array([-way[1], way[0]])).tolist()
             canvas.line(tip, (across, down), HUMAN, width)
         speed = math.hypot(*self._lander.state[2:4])
-        place = (tip[0] + 10 * float(way[0]), tip[1] + 16 * float(way[1]) + 4)
+        lowest = self._view.bottom - _FOOT  # read-outs are below
+        place = (tip[0] + 10 * float(way[0]), min(tip[1] + 16 * float(way[1]) + 4, lowest))
         align: Align = "centre" if abs(way[0]) < 0.4 else "left" if way[0] > 0 else "right"
         canvas.text(texts.TOUCH_SPEED.format(speed=speed), place, size=SMALL, colour=HUMAN, align=align, tabular=True)
 

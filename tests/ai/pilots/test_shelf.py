@@ -73,10 +73,18 @@ def test_an_editor_is_opened_on_the_file_and_none_is_told(tmp_path: Path, monkey
 
 
 @pytest.mark.parametrize(
-    ("path", "least", "most"), [(TEMPLATES / "pilot.py", 0.1, 0.6), (EXAMPLES / "pilot_by_hand.py", 0.9, 1.0)]
+    ("path", "aim", "least", "most"),
+    [
+        (TEMPLATES / "pilot.py", "0.0", 0.1, 0.4),
+        (TEMPLATES / "pilot.py", "-0.3 * offset(observation)", 0.85, 1.0),  # what it asks for
+        (EXAMPLES / "pilot_by_hand.py", "0.0", 0.95, 1.0),
+    ],
 )
-def test_the_template_nearly_lands_and_the_example_does(path: Path, least: float, most: float):
-    pilot = MeasuredPilot(path)
+def test_the_template_nearly_lands_and_the_example_does(
+    tmp_path: Path, path: Path, aim: str, least: float, most: float
+):
+    (tmp_path / "pilot.py").write_text(path.read_text().replace("aim = 0.0", f"aim = {aim}"))
+    pilot = MeasuredPilot(tmp_path / "pilot.py")
     score = evaluate(pilot, 100, 7)
     pilot.close()
     assert least <= score.success <= most
