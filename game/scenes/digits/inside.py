@@ -8,7 +8,7 @@ import numpy as np
 import pygame
 
 from ai.explain.unit_sums import Place
-from ai.nn import ConvolutionLayer, FullyConnectedLayer, MaxPoolingLayer
+from ai.nn import ConvolutionLayer, FullyConnectedLayer
 from game.core import texts
 from game.core.scene import Transition, push
 from game.digits.cells import CellPicker
@@ -124,10 +124,7 @@ class DigitInsideScene(PanelScene):
     @property
     def _step(self) -> int:
         """Pixels of the input from one window to the next."""
-        match self.walk.stage.layer:
-            case ConvolutionLayer(stride=step) | MaxPoolingLayer(size=step):
-                return step
-        return 1
+        return self.walk.stage.window[2]
 
     # Rows
 
