@@ -86,7 +86,6 @@ class CellPicker(RowWidget):
         self.window = (row, column, row + 1, column + 1)
 
     def write(self, cursor: Cursor) -> None:
-        """Draw the name, the picture and the edge around what is chosen."""
         cursor.caption(self.label)
         if cursor.canvas is None:
             self._lay_grid(cursor)
@@ -109,7 +108,6 @@ class CellPicker(RowWidget):
         self.grid = pygame.FRect(cursor.left, cursor.y, width, height)
 
     def lay(self, cursor: Cursor) -> None:
-        """Lay it out, no wider than the picture."""
         super().lay(cursor)
         if cursor.canvas is None:
             self.rect.width = min(self.rect.width, round(self.grid.width))
@@ -130,16 +128,13 @@ class CellPicker(RowWidget):
     # Choosing
 
     def press(self) -> None:
-        """Take hold of the cell, unless a mouse is in use."""
         self.typing = self.ringed and self.count > 1
 
     def hints(self, controls: Controls) -> list[Hint]:
-        """Return the hints while the cell is held."""
         leave = Hint(controls.word(Command.BACK), texts.PATCH_LET_GO, self._let_go)
         return [Hint(controls.arrows, texts.HINT_MOVE), leave]
 
     def take(self, event: pygame.event.Event) -> bool:
-        """Move the cell that is held, or let go of it."""
         if not self.typing:
             return False
         code = getattr(event, "key", getattr(event, "button", 0))
@@ -161,7 +156,6 @@ class CellPicker(RowWidget):
         return True
 
     def process_event(self, event: pygame.event.Event) -> bool:
-        """Choose the cell under the mouse."""
         if event.type == pygame.MOUSEMOTION and self.hover_point(*event.pos) and self.grid.collidepoint(event.pos):
             x, y = event.pos
             row = int((y - self.grid.top) * self.rows / self.grid.height)
@@ -170,7 +164,6 @@ class CellPicker(RowWidget):
         return super().process_event(event)
 
     def ease(self, at_once: bool) -> None:
-        """Move on while an arrow is held."""
         super().ease(at_once)
         if self.typing and not self.focused:
             self._let_go()

@@ -87,11 +87,9 @@ class ListScene(FormScene, ABC, Generic[Item]):
         self._beside: list[Widget] = []  # the verbs, and what is below the list
 
     def enter(self) -> None:
-        """Read again what there is, which the scene above may have changed."""
         self._reload()
 
     def actions(self) -> Table:
-        """Move, choose, go back."""
         return [self.form.moves, *super().actions()]
 
     @property
@@ -170,7 +168,6 @@ class ListScene(FormScene, ABC, Generic[Item]):
         self.form.focus(self._list)
 
     def draw(self, canvas: Canvas, alpha: float) -> None:  # noqa: ARG002
-        """Draw the list, and the chosen item beside it."""
         self._sky.draw(canvas)
         canvas.text(self._title, (MARGIN, 84), size=34, weight="light")
         line = shortened(canvas, self._line, SMALL, _LINE_ROOM)

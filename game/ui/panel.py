@@ -235,7 +235,6 @@ class Panel(Column):
         return self.height > self.box.height + 1
 
     def lay_out(self, box: pygame.FRect, scale: float) -> None:
-        """Lay the rows out in their room, at so many pixels a point, and scroll to the widget that got the focus."""
         same, self.box = box == self.box, box
         self._measure(scale)
         focused = self._form.focused
@@ -267,7 +266,6 @@ class Panel(Column):
         self.scroll(0.0)
 
     def scroll(self, points: float) -> bool:
-        """Scroll down by so many points, as far as there is more; return whether it moved."""
         before = self.scrolled
         self.scrolled = min(max(before + points, 0.0), max(0.0, self.height - self.box.height))
         return self.scrolled != before
@@ -277,7 +275,6 @@ class Panel(Column):
         return self.scroll(-_WHEEL * notches)
 
     def draw(self, canvas: Canvas) -> None:
-        """Draw the rows that are seen, and how far the panel is scrolled."""
         if not self.overflows:
             self.write(replace(self._cursor(canvas.scale, canvas), seen=None))
             return

@@ -46,12 +46,10 @@ class ChoiceOrList(Choice):
             self.row = TextButtonRow(options, self.box.left + label_width, self._open_left - _GAP, size)
 
     def press(self) -> Transition | None:
-        """Open the list, or take the option under the mouse."""
         x = self.mouse_x
         return self._on_open() if x is None or x >= self._open_left - 4 else super().press()
 
     def paint(self, canvas: Canvas) -> None:
-        """Draw the options, and the word that opens the list if not all options fit."""
         super().paint(canvas)
         if len(self.row.pages) > 1:
             baseline = self.box.centery + 0.36 * self._size

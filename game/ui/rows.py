@@ -49,7 +49,6 @@ class RowWidget(Widget):
     seen: pygame.FRect | None = None
 
     def lay(self, cursor: Cursor) -> None:
-        """Lay it out, or paint it: the first time without a canvas."""
         top = cursor.y
         if cursor.canvas and self.ringed and self.warmth > 0.02:
             ring = pygame.Rect(self.box.topleft, (round(self.reach) or self.box.width, self.box.height))
@@ -65,7 +64,6 @@ class RowWidget(Widget):
             self.rect = self.relative_rect = box
 
     def write(self, cursor: Cursor) -> None:
-        """Write what it says, and go on below."""
         raise NotImplementedError
 
     def hover_point(self, hover_x: float, hover_y: float) -> bool:
@@ -100,7 +98,6 @@ class ButtonRow(RowWidget, TextButton):
         return cursor.in_style(self._size, weight=self._weight).measured(self.label) + 1
 
     def write(self, cursor: Cursor) -> None:
-        """Write the words, the line under them, the figure and the explanation."""
         label, top = cursor.in_style(self._size, self.tint(), self._weight), cursor.y
         wide, figure = min(label.measured(self.label), cursor.width), self._figure()
         label.text(self.label)
@@ -122,7 +119,6 @@ class ButtonRow(RowWidget, TextButton):
             cursor.aside(aside)
 
     def lay(self, cursor: Cursor) -> None:
-        """Lay it out without a ring, as its line shows the focus, and no wider than what it says."""
         ringed, self.ringed = self.ringed, False
         super().lay(cursor)
         self.ringed = ringed
@@ -146,7 +142,6 @@ class RunRow(ButtonRow):
         self.pad = 3.0
 
     def write(self, cursor: Cursor) -> None:
-        """Draw the piece of the line, and write the name beside it."""
         if cursor.canvas:
             middle = cursor.y + LEADING * self._size / 2
             draw_swatch(cursor.canvas, (cursor.left, middle), *run_style(self.style))
@@ -164,7 +159,6 @@ class ToggleRow(RowWidget, Toggle):
         super().__init__(manager, _NOWHERE, label, value, change, hint=aside)
 
     def write(self, cursor: Cursor) -> None:
-        """Write the label, the explanation, and draw the switch."""
         words = replace(cursor, width=cursor.width - _SWITCH[0] - 2 * STEP)
         words.colour = mix(mix(MUTE, INK, 0.6), INK, self.warmth)
         if cursor.canvas:
@@ -198,7 +192,6 @@ class SliderRow(RowWidget, Slider):
         self._aside = aside
 
     def write(self, cursor: Cursor) -> None:
-        """Write the label and the figure, and draw the track and its handle."""
         words = replace(cursor, colour=mix(mix(MUTE, INK, 0.6), INK, self.warmth))
         left = cursor.left
         if cursor.width - _LABELS - _FIGURES >= _TRACK and cursor.measured(self.label) <= _LABELS - STEP:
@@ -252,7 +245,6 @@ class ChoiceRow(RowWidget, Choice):
         self._places: list[pygame.FRect] = []
 
     def press(self) -> Transition | None:
-        """Choose the word under the mouse; without a mouse, the next one."""
         if self.ringed:
             self.choose((self.index + 1) % len(self.options))
             return None
@@ -263,7 +255,6 @@ class ChoiceRow(RowWidget, Choice):
         return None
 
     def write(self, cursor: Cursor) -> None:
-        """Write the label and the words, with a line under the chosen one."""
         words = cursor.in_style(self._size, mix(mix(MUTE, INK, 0.6), INK, self.warmth))
         widths = [words.measured(option) for option in self.options]
         left = cursor.left
@@ -308,7 +299,6 @@ class EntryRow(RowWidget, Entry):
         super().__init__(manager, _NOWHERE, "", text, accept, on_cancel=cancel, limit=limit, fits=fits)
 
     def write(self, cursor: Cursor) -> None:
-        """Draw the line."""
         cursor.take(28.0)
         if cursor.canvas:
             Entry.paint(self, cursor.canvas)
@@ -331,7 +321,7 @@ class PictureRow(RowWidget, VirtualPointer):
 
     """
 
-    pad = 0.0
+    pad, follows_mouse = 0.0, False
 
     def __init__(
         self,
@@ -349,7 +339,6 @@ class PictureRow(RowWidget, VirtualPointer):
         self.picture = pygame.FRect(self.box)
 
     def write(self, cursor: Cursor) -> None:
-        """Draw the picture, and the pointer while it is active."""
         box = cursor.take(self._height(cursor.width))
         if self._square:
             box.width = box.height
@@ -360,13 +349,11 @@ class PictureRow(RowWidget, VirtualPointer):
             self.draw_pointer(cursor.canvas)
 
     def lay(self, cursor: Cursor) -> None:
-        """Lay it out, no wider than the picture."""
         super().lay(cursor)
         if cursor.canvas is None:
             self.rect.width = round(self.picture.width)
 
     def process_event(self, event: pygame.event.Event) -> bool:
-        """Pass on what the mouse does."""
         down, up = event.type == pygame.MOUSEBUTTONDOWN, event.type == pygame.MOUSEBUTTONUP
         if (down or up) and event.button != 1:
             return False
@@ -397,14 +384,12 @@ class ListRow(RowWidget, Listing):
         self._around, self._most, self.first = around, _ROWS, first
 
     def lay(self, cursor: Cursor) -> None:
-        """Lay it out, with the chosen row in view once the height is another."""
         before = self.room
         super().lay(cursor)
         if self.room != before:
             self._show_chosen()
 
     def write(self, cursor: Cursor) -> None:
-        """Draw the rows."""
         if self._around and cursor.seen and cursor.canvas is None:
             self._most = max(4, int((cursor.seen.height - self._around) / self._pitch))
         cursor.take(self._pitch * min(max(len(self.rows), 1), self._most))

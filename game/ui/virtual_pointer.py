@@ -52,7 +52,6 @@ class VirtualPointer(Widget):
         self._pressed_by: int | None = None  # the key or gamepad button that holds the mouse button down
 
     def press(self) -> None:
-        """Activate the pointer, unless a real mouse is in use."""
         self.typing = self.ringed
         if self.typing:
             if not self.box.collidepoint(self.place):
@@ -60,17 +59,14 @@ class VirtualPointer(Widget):
             self._tell(pygame.MOUSEMOTION)
 
     def process_event(self, event: pygame.event.Event) -> bool:  # noqa: ARG002
-        """Ignore real mouse events, which are for the widgets below."""
         return False
 
     def hints(self, controls: Controls) -> list[Hint]:
-        """Return the hints for the active pointer."""
         hold = [Hint(controls.word(Command.CONFIRM), self._hold)] if self._hold else []
         leave = Hint(controls.word(Command.BACK), self._leave, self._lay_aside)
         return [Hint(controls.arrows, texts.HINT_MOVE), *hold, leave]
 
     def take(self, event: pygame.event.Event) -> bool:
-        """Move, press or end the active pointer; false if it is inactive."""
         if not self.typing:
             return False
         code = getattr(event, "key", getattr(event, "button", None))
@@ -102,7 +98,6 @@ class VirtualPointer(Widget):
         return True
 
     def ease(self, at_once: bool) -> None:
-        """Move on in the direction that is held."""
         super().ease(at_once)
         if self.typing and not self.focused:
             self._lay_aside()
@@ -134,7 +129,6 @@ class VirtualPointer(Widget):
         self._hear(pygame.Event(kind, pos=(self.place.x, self.place.y), button=1, rel=(0, 0), buttons=(0, 0, 0)))
 
     def paint(self, canvas: Canvas) -> None:
-        """Draw the focus ring, and the pointer while it is active."""
         super().paint(canvas)
         self.draw_pointer(canvas)
 

@@ -43,15 +43,12 @@ class TextButton(Widget):
         return self.box.centery + 0.36 * self._size
 
     def press(self) -> Transition | None:
-        """Call the button's action."""
         return self._on_press()
 
     def tint(self) -> Colour:
-        """Return the word's colour: its own, or ink when in focus."""
         return mix(self._colour, INK, self.warmth)
 
     def paint(self, canvas: Canvas) -> None:
-        """Draw the word, and the growing line under it."""
         left, baseline = self.box.left, self.baseline
         box = canvas.text(
             self.label, (left, baseline), size=self._size, weight=self._weight, colour=self.tint(), room=self.box.width
@@ -80,25 +77,21 @@ class Toggle(Widget):
         self._slid = float(value)
 
     def press(self) -> None:
-        """Change to the other state."""
         self.value = not self.value
         self._on_change(self.value)
 
     def shift(self, direction: int) -> bool:
-        """Switch off with left, on with right; false if it is so already, so that the focus moves on."""
         if self.value == (direction > 0):
             return False
         self.press()
         return True
 
     def ease(self, at_once: bool) -> None:
-        """Animate the switch's knob."""
         super().ease(at_once)
         target = float(self.value)
         self._slid = target if at_once else self._slid + (target - self._slid) * 1.4 * EASE
 
     def paint(self, canvas: Canvas) -> None:
-        """Draw the label, the hint under it and the switch."""
         super().paint(canvas)
         box = self.box
         middle = box.centery
@@ -161,7 +154,6 @@ class Slider(Widget):
             self._on_change(value)
 
     def shift(self, direction: int) -> bool:
-        """Move to the next step or tick, or by a twentieth of the track."""
         if self._step:
             low, value = self.limits[0], self.value
             steps = math.floor(direction * (value - low) / self._step + 1e-6) + 1
@@ -181,7 +173,6 @@ class Slider(Widget):
             self.shift(1)
 
     def drag(self, x: float) -> None:
-        """Move the handle to the mouse."""
         left, right = self._track
         self._set_fraction((x - left) / (right - left))
 
@@ -194,7 +185,6 @@ class Slider(Widget):
         return math.log(value) if self._logarithmic else value
 
     def paint(self, canvas: Canvas) -> None:
-        """Draw label, track, handle and figure."""
         super().paint(canvas)
         box, (left, right) = self.box, self._track
         baseline, middle = box.centery + 5, box.centery
@@ -245,18 +235,15 @@ class Choice(Widget):
             self._on_change(index)
 
     def press(self) -> Transition | None:
-        """Choose the option under the mouse; without a mouse, the next option."""
         self.choose(self.row.pressed(self.mouse_x, self.index))
         return None
 
     def shift(self, direction: int) -> bool:
-        """Choose the option to the left or right; false at either end, so that the focus moves on."""
         before = self.index
         self.choose(self.index + direction)
         return self.index != before
 
     def paint(self, canvas: Canvas) -> None:
-        """Draw the label and the options."""
         super().paint(canvas)
         baseline = self.box.centery + 0.36 * self._size
         canvas.text(self.label, (self.box.left, baseline), size=self._size, colour=self.tint(), room=self._label_room)

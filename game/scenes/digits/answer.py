@@ -51,14 +51,12 @@ class DigitBars(RowWidget):
         return pygame.FRect(self.box.left, self.box.top + self.pad + digit * _ROW, self.box.width, _ROW)
 
     def press(self) -> Transition | None:
-        """Take the digit under the mouse; without a mouse, the one that the keys are at."""
         if not self.ringed:
             mouse = self.ui_manager.get_mouse_position()
             self.digit = next((each for each in range(_DIGITS) if self.place(each).collidepoint(mouse)), self.digit)
         return self._on_press(self.digit)
 
     def take(self, event: pygame.event.Event) -> bool:
-        """Go to the next digit; false at either end, so that the focus moves on."""
         step = {Command.UP: -1, Command.DOWN: 1}.get(command) if (command := translate(event)) else None
         if step is None or not 0 <= self.digit + step < _DIGITS:
             return False
@@ -70,7 +68,6 @@ class DigitBars(RowWidget):
         self.digit = (self.digit + 1) % _DIGITS
 
     def ease(self, at_once: bool) -> None:
-        """Ease the bars towards the values."""
         super().ease(at_once)
         part = 1.0 if at_once else _EASE
         self.shown = [
@@ -79,7 +76,6 @@ class DigitBars(RowWidget):
         ]
 
     def write(self, cursor: Cursor) -> None:
-        """Draw each digit, a bar for the chosen network, and a thin one for the other below."""
         box = cursor.take(_DIGITS * _ROW)
         if (canvas := cursor.canvas) is None:
             return

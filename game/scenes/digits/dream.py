@@ -83,7 +83,6 @@ class DreamScene(PanelScene):
         self._bars.best = self._bars.digit = self.digit
 
     def actions(self) -> Table:
-        """Choose a digit by its key, or the next one; restart; go back."""
         return [
             *one_of_ten(self.context.controls, self.choose, lambda: self.digit),
             Action(Command.RETRY, self.restart, texts.DREAM_AGAIN.lower()),
@@ -91,7 +90,6 @@ class DreamScene(PanelScene):
         ]
 
     def update(self) -> Transition | None:
-        """Take one step of the dream shown large or, once that is done, of the next unfinished one."""
         dream = next((each for each in (self.dreams[self.digit], *self.dreams) if not each.done), None)
         if dream is not None:
             dream.advance()
@@ -99,7 +97,6 @@ class DreamScene(PanelScene):
         return super().update()
 
     def describe(self, panel: Panel) -> None:
-        """Add the large dream, the network's reading of it, and the others."""
         left, right = panel.beside(COLUMNS, least=LEAST, apart=40.0)
         left.text(lambda: texts.DREAM_TITLE.format(numeral=texts.NUMERALS[self.digit]), size=TITLE)
         left.aside(lambda: texts.DREAM_LINE.format(numeral=texts.NUMERALS[self.digit]))

@@ -57,7 +57,6 @@ class DigitInsideScene(PanelScene):
         self.build()
 
     def actions(self) -> Table:
-        """Go through the stages; let the window slide; show the code; go back."""
         slide = texts.HINT_STOP if self.sliding else texts.PATCH_SLIDE
         return [
             Action(Command.NEXT, lambda: self._choose(self.walk.number + 1), texts.PATCH_ON),
@@ -68,7 +67,6 @@ class DigitInsideScene(PanelScene):
         ]
 
     def update(self) -> Transition | None:
-        """Let the window slide, after a moment to look."""
         self._steps += 1
         if self.sliding and self._steps > _FIRST and self._steps % _PACE == 0:
             self.walk.slide()
@@ -129,7 +127,6 @@ class DigitInsideScene(PanelScene):
     # Rows
 
     def describe(self, panel: Panel) -> None:
-        """Add the stages, and of the one looked at what it reads, its sum, and what it gives or its code."""
         self._reads: CellPicker | None = None
         self._read_maps: CellPicker | None = None
         self._gives: CellPicker | None = None

@@ -59,7 +59,6 @@ class QuizScene(PanelScene):
         self.restart()
 
     def exit(self) -> None:
-        """End the current stroke."""
         self.pad.lift()
 
     @property
@@ -68,12 +67,10 @@ class QuizScene(PanelScene):
         return self.context.reading().rect(*self.pad.rect)
 
     def update(self) -> Transition | None:
-        """Look for digits of strangers, and animate the widgets."""
         self.contest.look()
         return super().update()
 
     def lay_out(self) -> None:
-        """Lay the rows out, and the pad in its place."""
         super().lay_out()
         if self._pen:
             self.pad.rect = self._pen.picture
@@ -123,7 +120,6 @@ class QuizScene(PanelScene):
         return current is not None and current.kind == "draw" and current.answer is None
 
     def actions(self) -> Table:
-        """Undo and clear while a digit is drawn, or choose one by its key; go on; go back."""
         table = list(super().actions())
         if self._draws:
             return [
@@ -142,7 +138,6 @@ class QuizScene(PanelScene):
     # Rows
 
     def describe(self, panel: Panel) -> None:
-        """Add the pad or a stranger's digit, the question or what came of it, and the score."""
         current, self._pen = self.contest.round, None
         left, right = panel.beside(COLUMNS, least=LEAST, apart=40.0)
         left.text(texts.QUIZ_TITLE, size=TITLE)

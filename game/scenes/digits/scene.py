@@ -71,18 +71,15 @@ class DigitsScene(PanelScene):
         self._take_anew()
 
     def enter(self) -> None:
-        """Refresh the list of networks."""
         self.fixing.refresh()
         if self.chosen not in self.fixing.networks:
             self.live.chosen = NAMES[0]
         self._take_anew()
 
     def exit(self) -> None:
-        """End the current stroke."""
         self.pad.lift()
 
     def close(self) -> None:
-        """End the process that learns."""
         self.fixing.close()
 
     @property
@@ -106,13 +103,11 @@ class DigitsScene(PanelScene):
         return self.live.probabilities
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Lift the pen with the window's focus; every other event is the form's, of which the pad is a part."""
         if event.type == pygame.WINDOWFOCUSLOST:
             self.pad.lift()
         return super().handle_event(event)
 
     def actions(self) -> Table:
-        """Choose another network, go back; undo and clear; correct by a digit's key."""
         return [
             Action(Command.NEXT, lambda: self._turn(1), texts.DIGITS_HINT_NETWORK),
             Action(Command.PREVIOUS, lambda: self._turn(-1)),
@@ -124,12 +119,10 @@ class DigitsScene(PanelScene):
         ]
 
     def lay_out(self) -> None:
-        """Lay the rows out, and the pad in its place."""
         super().lay_out()
         self.pad.rect = self._pen.picture
 
     def update(self) -> Transition | None:
-        """Read the drawing if it changed, and see whether a fix is done."""
         self.live.update()
         if self.fixing.poll():
             self._load(self.fixing.name)
@@ -139,7 +132,6 @@ class DigitsScene(PanelScene):
     # Rows
 
     def describe(self, panel: Panel) -> None:
-        """Add the pad, the answer and its explanation."""
         left, right = panel.beside(COLUMNS, least=LEAST, apart=40.0)
         left.text(texts.DIGITS_TITLE, size=TITLE)
         left.gap()

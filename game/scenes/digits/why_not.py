@@ -89,7 +89,6 @@ class WhyNotScene(PanelScene):
         self.build()
 
     def actions(self) -> Table:
-        """Ask about a digit by its key, or the next one; change the ink; go back."""
         return [
             *one_of_ten(self.context.controls, self.ask, lambda: self.asked),
             Action(Command.RETRY, self._restore, texts.WHY_NOT_UNDO.lower()),
@@ -97,7 +96,6 @@ class WhyNotScene(PanelScene):
         ]
 
     def update(self) -> Transition | None:
-        """Measure the effect of the next squares of ink."""
         if self.contrast and not self.contrast.done:
             self.contrast.advance()
             self._steps += 1
@@ -135,7 +133,6 @@ class WhyNotScene(PanelScene):
     # Rows
 
     def describe(self, panel: Panel) -> None:
-        """Add the digit, the answer, and the evidence."""
         left, right = panel.beside(COLUMNS, least=LEAST, apart=40.0)
         left.text(texts.WHY_NOT_TITLE.format(digit=self.asked), size=TITLE)
         left.aside(texts.WHY_NOT_LINE)

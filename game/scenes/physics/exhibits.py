@@ -65,7 +65,6 @@ class Stack(Exhibit):
         return "standing" if len(self.standing()) > 1 else "fallen"
 
     def figures(self) -> dict[str, float]:
-        """Return the weight of the highest column and its ground force; with none standing, those of all bodies."""
         standing = self.standing()
         weighed, push = standing, self.push(self.floor, standing[0]) if standing else 0.0
         if len(standing) <= 1:
@@ -131,7 +130,6 @@ class Heap(Exhibit):
         return "touched" if self.touched.any() else "untouched"
 
     def figures(self) -> dict[str, float]:
-        """Return the mechanical energy at the start and now."""
         return {"first": self.at_first, "left": self.energy}
 
 
@@ -193,11 +191,9 @@ class Impacts(Exhibit):
             self.result = speed(last)
 
     def figures(self) -> dict[str, float]:
-        """Return the kinetic energy at the start and now, and the restitution."""
         return {**self.values, "first": self.energy_at_first, "now": self.kinetic_energy}
 
     def labels(self) -> list[Label]:
-        """Label each rail with the number of discs that moved at first, and that move on it now."""
         labels = []
         for number, rail in enumerate(self.rails):
             discs = self.on_rail(number)
@@ -259,7 +255,6 @@ class Spin(Exhibit):
             self.result = abs(float(self.bars[1].angular_velocity[0]))
 
     def figures(self) -> dict[str, float]:
-        """Return the impulse, and the speed and spin that it gives to the bars."""
         pace = self.values["impulse"] / self.bars[1].mass
         return {**self.values, "pace": pace, "spin": self.law(self.gravity, self.values)}
 
@@ -268,7 +263,6 @@ class Spin(Exhibit):
         return [float(body.angular_velocity[0]) * body.inertia for body in self.turning]
 
     def labels(self) -> list[Label]:
-        """Label the spinning bodies and the bars with their speeds."""
         labels = []
         for body, momentum in zip(self.turning, self.angular_momenta(), strict=True):
             spin = round(float(body.angular_velocity[0]), 2) + 0.0  # never -0.00

@@ -66,12 +66,10 @@ class Slopes(Exhibit):
             self.result = (pace - self._pace) / ((last - first) * DT)
 
     def figures(self) -> dict[str, float]:
-        """Return the slope, its tangent, and the number of boxes that have slid."""
         degrees = self.values["degrees"]
         return {"degrees": degrees, "tangent": math.tan(math.radians(degrees)), "slid": len(self.slid)}
 
     def labels(self) -> list[Label]:
-        """Label each box with the slope it lies on, and whether that exceeds its friction."""
         labels = []
         for box, friction in zip(self.boxes, self.frictions, strict=True):
             tangent, words, within = self.steepness(box), texts.SLOPE_FRICTION.format(friction=friction), None
@@ -149,12 +147,10 @@ class Bounce(Exhibit):
         return "rising" if self.rising[self.which] else "falling"
 
     def figures(self) -> dict[str, float]:
-        """Return the bounce height that the law predicts for one ball, and the measured one."""
         expected, peak = float(self.expected[self.which]), float(self.peaks[self.which])
         return {**self.values, "expected": expected, "peak": peak}
 
     def labels(self) -> list[Label]:
-        """Label the columns, and each mark with the predicted and the measured height."""
         labels = []
         for number, restitution in enumerate(self.restitutions.tolist()):
             x, expected = float(self.columns[number]), float(self.expected[number])
@@ -237,11 +233,9 @@ class DragRace(Exhibit):
         return math.sqrt(mass * self.gravity / quadratic) if quadratic else math.inf
 
     def figures(self) -> dict[str, float]:
-        """Return the terminal speed of the light disc with linear drag, and its current or last speed."""
         return {"mass": self.values["mass"], "terminal": self.terminal(self.which), "speed": self.speed}
 
     def labels(self) -> list[Label]:
-        """Put a gauge beside each disc, the terminal speed marked; name the lanes."""
         labels = []
         fastest = math.sqrt(2 * self.gravity * self.top)
         for number, (disc, (name, mass, _, _)) in enumerate(zip(self.discs, self.lanes, strict=True)):

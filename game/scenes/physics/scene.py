@@ -72,7 +72,6 @@ class PhysicsScene(PanelScene):
         self._show()
 
     def exit(self) -> None:
-        """Release the gripped body."""
         self.grip = None
 
     # The exhibit
@@ -136,7 +135,6 @@ class PhysicsScene(PanelScene):
         self.build()
 
     def update(self) -> Transition | None:
-        """Take as many steps as the chosen speed makes due; begin anew after a change; measure on."""
         for _ in range(0 if self.measuring else self.playback.steps()):
             self._step()
         if self._waits is not None:
@@ -166,7 +164,6 @@ class PhysicsScene(PanelScene):
     # Keys
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Explain on, point at the plot, or leave the event to the widgets and the actions."""
         if self.explained.handle_event(event):
             return None
         if event.type == pygame.WINDOWFOCUSLOST:
@@ -176,7 +173,6 @@ class PhysicsScene(PanelScene):
         return super().handle_event(event)
 
     def actions(self) -> Table:
-        """Stop and step; show another exhibit, its contacts or its plot; begin anew; explain; pause."""
         stop, step, *speeds = self.playback.actions(texts.HINT_STEP)
         return [
             stop,
@@ -197,7 +193,6 @@ class PhysicsScene(PanelScene):
     # Rows
 
     def describe(self, panel: Panel) -> None:
-        """Add the exhibits; on the left what happens, on the right what can be changed and read."""
         words = [texts.EXHIBITS[name][0] for name in EXHIBITS]
         panel.choice(texts.PHYSICS_TITLE, words, list(EXHIBITS).index(self.chosen), self._choose)
         panel.explain(texts.EXHIBITS[self.chosen][1])
@@ -333,14 +328,12 @@ class PhysicsScene(PanelScene):
             cursor.gap(20)
 
     def draw_behind(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the sky, and the room between its last two steps."""
         super().draw_behind(canvas, alpha)
         between = self.playback.between(alpha)
         with canvas.clipped(self.panel.box):
             self._draw_room(canvas, self._poses_before + between * (self._poses - self._poses_before))
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the room and the panel, and what is explained."""
         super().draw(canvas, alpha)
         for button, what in self._told:
             canvas.explain(button.box, what)

@@ -65,7 +65,6 @@ class PhysicsStepScene(PanelScene):
         return -1.0 if contacts is None or pair.contact is None else float(contacts.impulse[pair.contact, :2].sum())
 
     def describe(self, panel: Panel) -> None:
-        """Add the kinds of pieces, what happens, the slider, and the picture, with its code and numbers if wanted."""
         panel.aside(texts.STEP_TITLE)
         self._kinds = list(dict.fromkeys(piece.kind for piece in self.pieces))
         words, chosen = [texts.STEP_PIECES[kind][0] for kind in self._kinds], self._kinds.index(self.piece.kind)
@@ -114,7 +113,6 @@ class PhysicsStepScene(PanelScene):
         self.build()
 
     def actions(self) -> Table:
-        """Next piece; another pair; the code; back to the gallery."""
         pairs = [
             Action(Command.NEXT, lambda: self._other_pair(1), texts.HINT_NEXT_PAIR),
             Action(Command.PREVIOUS, lambda: self._other_pair(-1)),

@@ -135,7 +135,7 @@ def test_arrows_take_hold_of_the_window_and_let_go(inside: Driver, device: str):
     player.hold("up", down=False)
     assert walk.place[0] < row - 5
     player.press("back")
-    assert not digit.typing
+    assert not inside.form.typing
     assert inside.top_name == "DigitInsideScene"
     at = walk.place
     player.press("down")
@@ -197,6 +197,7 @@ def test_figures_in_a_matrix_do_not_touch_at_any_size_of_text(inside: Driver, mo
         return plain(canvas, string, position, **how)
 
     monkeypatch.setattr(Canvas, "text", text)
+    inside.resize((1920, 1080))
     for size in ("largest", "normal"):
         inside.write_in(size)
         inside.frames(2)

@@ -136,7 +136,7 @@ def test_undo_and_clear_by_keys_words_and_pad(drawing: Driver):
 def test_the_network_that_is_looked_into_is_chosen_by_mouse_keys_and_pad(drawing: Driver):
     draw(drawing, strokes(5))
     seen = {}
-    for press in (lambda: drawing.key(pygame.K_RIGHT), lambda: drawing.button(pygame.CONTROLLER_BUTTON_RIGHTSHOULDER)):
+    for press in (lambda: drawing.key(pygame.K_n), lambda: drawing.button(pygame.CONTROLLER_BUTTON_RIGHTSHOULDER)):
         press()
         seen[scene(drawing).chosen] = scene(drawing).live.why
     assert list(seen) == ["classic", "modern"]

@@ -139,14 +139,13 @@ def test_ten_rounds_and_again(open_game: Callable[..., Driver], classifier):
     game = open_game(QuizScene, classifier)
     game.frames(2)
     scene = game.top
-    elements = scene.form.manager.get_sprite_group()
     while current := scene.contest.round:
         if current.kind == "draw":
             stroke(game, SEVEN)
             game.key(pygame.K_RETURN)
         else:
             game.key(pygame.K_0 + current.digit)
-        shown = {each for each in elements.sprites() if isinstance(each, Widget)}
+        shown = {each for each in scene.form.manager.get_sprite_group().sprites() if isinstance(each, Widget)}
         assert shown == {*scene.form.widgets}, "words that have done their work are gone"
         game.key(pygame.K_RETURN)
     assert scene.contest.score("read") == (5, 5)
