@@ -197,13 +197,15 @@ def test_figures_in_a_matrix_do_not_touch_at_any_size_of_text(inside: Driver, mo
         return plain(canvas, string, position, **how)
 
     monkeypatch.setattr(Canvas, "text", text)
-    inside.resize((1920, 1080))
     for size in ("largest", "normal"):
         inside.write_in(size)
         inside.frames(2)
         written.clear()
         scene(inside).build()  # paints all anew
         inside.app.draw()
+        while scene(inside).panel.scroll(150.0):
+            scene(inside).lay_out()
+            inside.app.draw()
         assert sum(map(len, written.values())) == 75
         for row in written.values():
             boxes = sorted(row, key=lambda box: box.left)
