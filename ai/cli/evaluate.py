@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-from functools import reduce
 from typing import TYPE_CHECKING, Any, Final
 
 from ai.cli import command_line as cli
@@ -85,11 +84,12 @@ def _agent_and_task(arguments: argparse.Namespace) -> tuple[DeepQAgent, Task[Any
 def _flown(arguments: argparse.Namespace, agent: DeepQAgent, episodes: int) -> Score:
     """Fly the flights, in shards; in several processes if that is asked for."""
     from ai.sweep.shards import results, shards
+    from ai.training.tasks import Evaluation
 
     parts = shards(agent, episodes, arguments.seed, arguments.spawn or "random")
     with cli.progress_bar(len(parts), "flying", unit="shard", disable=True if len(parts) == 1 else None) as bar:
         sums = results(parts, arguments.workers or 1, bar.update)
-    return reduce(type(sums[0]).plus, sums).evaluation()
+    return Evaluation.of(sum(sums[1:], sums[0]))
 
 
 @cli.refusing

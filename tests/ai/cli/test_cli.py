@@ -9,10 +9,10 @@ from concurrent.futures import Future
 from dataclasses import replace
 from pathlib import Path
 
+import ai.training.checkpoints
 import numpy as np
 import pytest
 
-import ai.training.checkpoints
 import ai.training.run
 from ai.agent.agent import DeepQAgent
 from ai.agent.storage import write_agent

@@ -18,7 +18,7 @@ from ai.nn import (
     FullyConnectedLayer,
     NeuralNetwork,
 )
-from ai.training.checkpoints import resume_digit_run
+from ai.training.run import resume
 from main import main
 
 ROOT = Path(__file__).parents[3]
@@ -90,7 +90,7 @@ def test_numbers_that_run_away_end_in_a_sentence_and_the_work_is_kept(tmp_path, 
     assert {"": "What was best until then is", "unmeasured": "has not been measured"}[trouble] in told
     assert run.exists()
     if not trouble:
-        assert resume_digit_run(run).classifier.network.values.max() < 1e30, "a wreck is nothing to go on from"
+        assert resume(DigitTraining, run).classifier.network.values.max() < 1e30, "a wreck is nothing to go on from"
 
 
 def write_diary(folder):

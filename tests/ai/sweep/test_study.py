@@ -19,8 +19,8 @@ from ai.sweep.report import told
 from ai.sweep.space import knob_space
 from ai.sweep.study import FinishedTrial, Study, StudyError, find, write_files
 from ai.sweep.trial import Asked, SeedRun, Trial
-from ai.training.checkpoints import DIGITS
 from ai.training.config import PRESETS
+from ai.training.run import save
 from main import main
 from tests.support.studies import TINY, finished_study, networks_in, run_alone, tiny_plan
 
@@ -251,7 +251,7 @@ def test_a_trial_of_digits_is_that_of_train_digits(tmp_path):
     training = DigitTraining(config.changed(learning_rate=0.01), 3)
     while not training.done:
         training.advance()
-    DIGITS.save(training, tmp_path / "alone", final=True)
+    save(training, tmp_path / "alone", final=True)
     write_files(runs, tmp_path / "swept")
     assert networks_in(tmp_path / "alone") == networks_in(tmp_path / "swept" / "seed-3")
     assert result.value == training.best

@@ -18,7 +18,7 @@ MODERN = PRESETS["modern"]
 NAN = float("nan")
 HEALTHY = Point(
     seconds=0.0, decisions=0.0, episodes=0.0, success=0.97, mean_return=100.0, loss=0.05, mean_q=0.7, epsilon=0.05,
-    stage=0.0, steps_per_second=5e4, landed=0.97, crashed=0.02, out_of_bounds=0.0, timed_out=0.01,
+    stage=0.0, crashed=0.02, out_of_bounds=0.0, timed_out=0.01,
 )  # fmt: skip
 Curve = Callable[[float], Point]  # of the share of the run that is over
 
@@ -63,11 +63,11 @@ def test_a_healthy_run_is_left_alone(base: str):
 
 
 def test_a_run_that_has_just_begun_is_left_alone():
-    falls = points(success=0.0, landed=0.0, crashed=0.6, timed_out=0.4, epsilon=0.9, loss=0.3, mean_q=-0.5)
+    falls = points(success=0.0, crashed=0.6, timed_out=0.4, epsilon=0.9, loss=0.3, mean_q=-0.5)
     assert holding(falls, points=50, decisions=50_000) == set()
 
 
-LANDS_NOTHING = {"success": 0.0, "landed": 0.0}
+LANDS_NOTHING = {"success": 0.0}
 CRASHES = LANDS_NOTHING | {"crashed": 0.97, "out_of_bounds": 0.02, "timed_out": 0.01}
 HOVERS = LANDS_NOTHING | {"crashed": 0.0, "out_of_bounds": 0.02, "timed_out": 0.98}
 
@@ -83,7 +83,7 @@ def test_each_rule_holds_for_what_it_is_about(subtests: pytest.Subtests):
         ("crashes", points(**CRASHES), MODERN),
         ("hovers", points(**HOVERS), MODERN),
         ("small_memory", points(), MODERN.changed(replay_size=256)),
-        ("overfed", points(landed=0.4), MODERN.changed(num_envs=1)),
+        ("overfed", points(success=0.9), MODERN.changed(num_envs=1)),
         ("random", points(epsilon=0.6), MODERN),
         ("plateau", points(success=0.4), MODERN),
     ]:
@@ -114,7 +114,7 @@ def test_rules_hold_their_peace(subtests: pytest.Subtests):
         (later(0.999, success=0.3), MODERN),  # one bad point
         (later(0.9, success=0.75), MODERN),
         (points(mean_q=2.9), MODERN),
-        (points(crashed=0.7, landed=0.3, success=0.3 + 0.6), MODERN),
+        (points(crashed=0.1, success=0.9), MODERN),
         (lambda share: replace(HEALTHY, success=0.05 + 0.7 * share), MODERN),  # slow, but it gets better
         (lambda share: replace(HEALTHY, stage=float(share > 0.9), success=0.1 if share > 0.9 else 0.97), MODERN),
         (lambda share: replace(HEALTHY, loss=NAN if share < 0.5 else 0.05), MODERN),
@@ -126,7 +126,7 @@ def test_rules_hold_their_peace(subtests: pytest.Subtests):
 
 
 def test_no_number_stops_a_rule(subtests: pytest.Subtests):
-    for column in ["loss", "mean_q", "success", "epsilon", "landed", "crashed", "timed_out"]:
+    for column in ["loss", "mean_q", "success", "epsilon", "crashed", "timed_out"]:
         with subtests.test(column=column):
             for when in (0.0, 0.5, 0.999):
                 holding(later(when, **{column: NAN}))
@@ -158,10 +158,10 @@ def test_what_a_flight_can_pay_follows_the_weights():
 @pytest.mark.parametrize(
     ("name", "curve", "config", "cure"),
     [
-        ("crashes", points(), sabotaged(MODERN, "plain_steps"), {"optimizer": "adam"}),
+        ("crashes", points(), MODERN.changed(optimizer="sgd"), {"optimizer": "adam"}),
         ("rate_too_high", points(), sabotaged(MODERN, "rate_times_100"),
          {"learning_rate": 2e-3, "final_learning_rate": 3e-4}),
-        ("overfed", points(), sabotaged(MODERN, "one_lander"), {"num_envs": 256}),
+        ("overfed", points(), MODERN.changed(num_envs=1), {"num_envs": 256}),
         ("random", points(), MODERN.changed(epsilon_end=0.5), {"epsilon_end": 0.05}),
         ("random", points(), PRESETS["classic"], {"epsilon_decay": 0.995}),
     ],
@@ -200,7 +200,7 @@ def watch(adviser: Adviser, run: History, config: Config = MODERN, start: int = 
     for checkpoint in run.checkpoints:
         growing.append(checkpoint)
     for number, row in enumerate(numbers):
-        growing.append(replace(Point(*row[:14].tolist()), parts=tuple(row[14:].tolist())))
+        growing.append(replace(Point(*row[:12].tolist()), parts=tuple(row[12:].tolist())))
         if number >= start:
             shown.append(adviser.advise(growing, config))
     return shown
@@ -251,7 +251,7 @@ def test_an_applied_hint_goes_and_can_be_undone_and_does_not_come_back_at_once()
     adviser = Adviser(config)
     growing, moments = History(), []
     for row in run.points:
-        growing.append(Point(*row[:14].tolist()))
+        growing.append(Point(*row[:12].tolist()))
         if adviser.advise(growing, config):
             moments.append(float(row[0]))
             adviser.apply()
@@ -300,7 +300,7 @@ def live(config: Config, decisions: int, pace: float) -> list[str]:
         progress = training.advance()
         run.append(Point(
             progress.decisions / pace, progress.decisions, progress.episodes, progress.success_rate,
-            progress.mean_return, progress.loss, progress.mean_q, progress.epsilon, 0.0, 0.0, *progress.shares,
+            progress.mean_return, progress.loss, progress.mean_q, progress.epsilon, 0.0, *progress.shares[1:],
         ))  # fmt: skip
         hint = adviser.advise(run, config)
         shown.append(hint.name if hint else "")
@@ -311,7 +311,6 @@ def test_nothing_is_said_of_a_run_that_starts_well():
     assert set(live(MODERN.changed(gradient_steps=1), 30_000, 1_000)) == {""}
 
 
-@pytest.mark.parametrize(("name", "hint"), [("no_replay", "small_memory"), ("one_lander", "overfed")])
-def test_what_is_plain_from_the_settings_is_said_soon(name: str, hint: str):
-    config = sabotaged(MODERN, name)
-    assert live(config, 20 * config.num_envs, 5 * config.num_envs)[-1] == hint
+def test_what_is_plain_from_the_settings_is_said_soon():
+    for config, hint in ((sabotaged(MODERN, "no_replay"), "small_memory"), (MODERN.changed(num_envs=1), "overfed")):
+        assert live(config, 20 * config.num_envs, 5 * config.num_envs)[-1] == hint

@@ -18,11 +18,11 @@ from ai.training.history import (
     Validation,
 )
 
-NUMBERS = list(COLUMNS[:10])
+NUMBERS = list(COLUMNS[:9])
 
 
 def point(number):
-    return Point(**dict.fromkeys(NUMBERS, float(number)), landed=0.25, parts=tuple(range(len(PARTS))))
+    return Point(**dict.fromkeys(NUMBERS, float(number)), crashed=0.25, parts=tuple(range(len(PARTS))))
 
 
 def checkpoint(number, scale=None):
@@ -45,7 +45,7 @@ def test_columns_are_what_was_told():
     history = full_history()
     assert len(history) == 10
     assert history["decisions"].tolist() == list(range(10))
-    assert history["landed"].tolist() == [0.25] * 10
+    assert history["crashed"].tolist() == [0.25] * 10
     assert history.parts.shape == (10, len(PARTS))
     assert history[PARTS[-1]].tolist() == [len(PARTS) - 1] * 10
     with pytest.raises(KeyError):
