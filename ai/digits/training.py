@@ -225,7 +225,7 @@ class DigitTraining(Run):
         return described, best.write
 
     @classmethod
-    def begun(cls, folder: Path, *, data: tuple[Images, Labels] | None = None, env: None = None) -> Self:  # noqa: ARG003
+    def begun(cls, folder: Path, *, data: tuple[Images, Labels] | None = None, **_: Any) -> Self:
         """Return the run that a folder describes, without its state; raises ModelFormatError."""
         config, seed, step = read_settings(folder)
         try:

@@ -166,10 +166,11 @@ class LanderSession(Session[Training]):
         flown = 1.0 if self.training.statistics.known else np.nan
         agent = self.training.agent
         learnt = 1.0 if agent.gradient_steps > self._began_learning and not agent.paused else np.nan
+        _, crashed, out_of_bounds, timed_out = (flown * share for share in progress.shares)
         return Point(
             self.training.seconds, progress.decisions, progress.episodes, flown * progress.success_rate,
             flown * progress.mean_return, learnt * progress.loss, learnt * progress.mean_q, progress.epsilon,
-            progress.stage, *(flown * share for share in progress.shares[1:]), parts=progress.parts or NOTHING_PAID,
+            progress.stage, crashed, out_of_bounds, timed_out, progress.parts or NOTHING_PAID,
         )  # fmt: skip
 
     def _checkpoint(self, success: float) -> Checkpoint:

@@ -256,7 +256,7 @@ class Training(Run):
         return described, write
 
     @classmethod
-    def begun(cls, folder: Path, *, env: str | None = None) -> Self:
+    def begun(cls, folder: Path, *, env: str | None = None, **_: Any) -> Self:
         """Return the run that a folder describes, without its state; raises ModelFormatError, as `load_agent`."""
         best, _ = load_agent(folder, env=env)
         try:

@@ -150,8 +150,9 @@ class Evaluation(Score):
         """Return the means of a number of flights, from their sums as `flown` returns them."""
         counts, (returns, landing_seconds, landing_fuel, switches, seconds) = sums[: len(Outcome)], sums[-5:].tolist()
         episodes, landed = int(counts.sum()), int(counts[Outcome.LANDED])
+        success, crash, out_of_bounds, time_out = (counts[Outcome.LANDED :] / episodes).tolist()
         return cls(
-            episodes, *(counts[Outcome.LANDED :] / episodes).tolist(), returns / episodes,
+            episodes, success, crash, out_of_bounds, time_out, returns / episodes,
             landing_seconds / landed if landed else None, landing_fuel / landed if landed else None, switches / seconds,
         )  # fmt: skip
 

@@ -19,9 +19,10 @@ import pytest
 from ai.digits.config import DIGIT_PRESETS
 from ai.digits.training import DigitTraining
 from ai.lander.environment import LanderEnv
+from ai.run import TRAINING_FILE
 from ai.training.config import PRESETS
 from ai.training.loop import Training
-from ai.training.run import TRAINING_FILE, save
+from ai.training.run import save
 from main import main
 
 ROOT = Path(__file__).parents[3]

@@ -20,7 +20,7 @@ from ai.training.history import (
 
 
 def point(number):
-    return Point(*[float(number)] * 9, crashed=0.25, parts=tuple(range(len(PARTS))))
+    return Point(**dict.fromkeys(COLUMNS[:9], float(number)), crashed=0.25, parts=tuple(range(len(PARTS))))
 
 
 def checkpoint(number, scale=None):

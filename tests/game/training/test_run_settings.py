@@ -179,7 +179,7 @@ def test_a_configuration_from_elsewhere_is_named_after_what_is_nearest(run_setti
 
 def test_a_run_that_begins_with_what_was_chosen_keeps_its_name(run_settings: RunSettings):
     run_settings.turn("discount", 0.9)
-    run_settings.turn("n_step", 1)  # nearer to a sabotage than to modern
+    run_settings.turn("layer_normalisation", False)  # nearer to a sabotage than to modern
     run_settings.set_config(run_settings.config, run_settings.seed)
     assert run_settings.named == ("modern", "")
 
