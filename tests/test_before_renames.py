@@ -75,7 +75,9 @@ def test_a_run_resumes_with_the_same_settings_networks_and_counts():
 def test_a_history_shows_the_same_marks_by_the_words_of_now():
     history, expected = History.read(DATA / "run"), EXPECTED["run"]
     assert len(history) == expected["points"]
-    assert history.points[-1].tolist() == expected["last_point"]
+    assert history.points[-1].tolist() == expected["last_point"][:9] + expected["last_point"][11:], (
+        "two columns are gone"
+    )
     assert [each.decisions for each in history.checkpoints] == expected["checkpoints"]
     names = ["gradient_steps", "target_update_interval", "tau", "reward_weights.time"]
     assert [{**vars(mark), "seconds": 0.0} for mark in history.setting_changes] == [

@@ -258,7 +258,7 @@ class Training(Run):
     @classmethod
     def begun(cls, folder: Path, *, env: str | None = None, **_: Any) -> Self:
         """Return the run that a folder describes, without its state; raises ModelFormatError, as `load_agent`."""
-        best, _ = load_agent(folder, env=env)
+        best = load_agent(folder, env=env)[0]
         try:
             last, config = load_agent(inside(folder, LAST), env=env)
             described = read_json(inside(folder, TRAINING_FILE))

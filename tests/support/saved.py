@@ -120,7 +120,9 @@ def _demonstrations(folder: Path, version: int) -> None:
 
 def _read_demonstrations(folder: Path) -> Any:
     found = demonstrations.read(folder / "demonstrations.json")
-    demonstrations.relive([each for each in found if len(each.actions) < 10], PRESETS["modern"])
+    for each in found:
+        if len(each.actions) < 10:
+            demonstrations.relive(each, PRESETS["modern"])
     return found[0].seed if found else None
 
 

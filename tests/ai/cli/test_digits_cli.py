@@ -9,7 +9,7 @@ import pytest
 
 import ai.digits.training
 from ai.digits.classifier import DigitClassifier
-from ai.digits.mnist import load_part
+from ai.digits.mnist import TRAIN, load_part
 from ai.digits.training import SPLIT_SEED, DigitTraining
 from ai.nn import (
     ActivationFunctions,
@@ -34,7 +34,7 @@ def data():
 @pytest.fixture
 def few(monkeypatch, data):
     """Let the commands learn from few images."""
-    monkeypatch.setattr(ai.digits.training, "load_part", lambda part: data)
+    monkeypatch.setattr(ai.digits.training, "load_part", lambda part: data if part == TRAIN else load_part(part))
 
 
 @pytest.mark.usefixtures("few")

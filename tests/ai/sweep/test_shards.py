@@ -98,7 +98,7 @@ def test_evaluating_a_model_sends_what_was_read_and_leaves_nothing_behind(monkey
 
 def test_an_agent_that_was_sent_flies_alike():
     (shard,) = shards(AGENT, 5, 3, "hard")
-    assert pickle.loads(pickle.dumps(shard))() == shard()
+    assert np.array_equal(pickle.loads(pickle.dumps(shard))(), shard())
     sent = received(packed(AGENT))
     assert np.array_equal(sent.network.values, AGENT.network.values)
     assert not sent.folder.exists()

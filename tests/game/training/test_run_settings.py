@@ -135,8 +135,8 @@ def test_a_preset_waits_whole_in_a_run(run_settings: RunSettings, heard: list[An
 
 def test_a_sabotage_of_live_knobs_alone_takes_effect_at_once(run_settings: RunSettings, heard: list[Any]):
     run_settings.set_running(True)
-    run_settings.load(("modern", "no_target"))
-    assert heard == [("tau", 1.0)]
+    run_settings.load(("modern", "short_sight"))
+    assert heard == [("discount", 0.8)]
     assert not run_settings.waiting
     assert not run_settings.changed
 
