@@ -175,8 +175,7 @@ def test_a_killed_trial_of_the_lander_goes_on_bit_for_bit(tmp_path):
 def test_a_trial_of_digits_goes_on_from_a_checkpoint_as_if_nothing_had_been(tmp_path, monkeypatch):
     drawn = np.random.default_rng(0)
     part = drawn.random((600, 28, 28), np.float32), drawn.integers(10, size=600).astype(np.uint8)
-    for module in ("training", "checkpoints"):
-        monkeypatch.setattr(f"ai.digits.{module}.load_part", lambda _: part)
+    monkeypatch.setattr("ai.digits.training.load_part", lambda _: part)
     config = DIGIT_PRESETS["classic"].changed(hidden=(8,), batch_size=50, epochs=2, augmentation=0.0, held_out=100)
     plan = digits_plan(config, 2)
     asked = Asked(0, {"learning_rate": 0.01})
