@@ -4,9 +4,8 @@ import pytest
 from ai.copilot.copilot import Mode
 from ai.lander.environment import Outcome
 from game.flight.flight import DECISION_STEPS, Flight, StickHolder
-from game.flight.forecast import coast_path
+from game.flight.forecast import coast_path, surface_height
 from game.flight.handicap import HANDS, OWN, Handicap
-from game.flight.surface import surface_height
 from tests.support.reading import Weighs
 
 COAST, LEFT, RIGHT, MAIN = range(4)
