@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from game.ui.panel import Column, Panel
 
 _LEAST: Final = 320.0  # points of a column
-_COLUMNS: Final = (160.0, 52.0, 0.0)  # from the right end of the list: where course, end and points end
+_COLUMNS: Final = (150.0, 0.0)  # from the right end of the list: where course and result end
 _PITCH: Final = 30.0  # points of a row of the list
 _CHART: Final = 130.0  # points of the chart's height
 _BAND: Final = 0.16  # opacity
@@ -111,8 +111,8 @@ class LogbookScene(PanelScene):
             column.picture(_CHART, self._draw_estimate)
 
     def _row(self, entry: Entry) -> Row:
-        when, course, end, points = entry_row(entry)
-        return when, course, texts.LOGBOOK_ROW_THROWN if entry.file in self._thrown else end, points
+        when, course, result = entry_row(entry)
+        return when, course, texts.LOGBOOK_ROW_THROWN if entry.file in self._thrown else result
 
     def actions(self) -> Table:
         """Move, choose, go back; the Delete key throws a flight away, and Z brings it back."""
@@ -219,8 +219,8 @@ def why_in_brackets(entry: Entry) -> str:
 
 
 def entry_row(entry: Entry) -> Row:
-    """Return a flight as a row of the logbook: the day, what, how it ended, and points."""
+    """Return a flight as a row of the logbook: the day, what, and its points or how it ended."""
     points = (texts.LOGBOOK_UNCOUNTED if entry.bar else "{points}").format(points=entry.score)
     course = sharing.course_name(entry.course, entry.leg, entry.spawn, entry.pads)
-    end = ending_word(entry.outcome, intact=entry.intact)
-    return time.strftime("%Y-%m-%d", time.localtime(entry.when)), course, end, points if entry.landed else "–"
+    result = points if entry.landed else ending_word(entry.outcome, intact=entry.intact)
+    return time.strftime("%Y-%m-%d", time.localtime(entry.when)), course, result
