@@ -76,14 +76,6 @@ def test_a_tap_of_one_step_is_heard_at_once_and_let_go_at_once():
     assert flight.env.actions[0] == MAIN
 
 
-def test_a_decision_lasts_four_steps_while_nothing_changes():
-    network = Wants()
-    flight = shared(network)
-    for _ in range(3 * DECISION_STEPS):
-        flight.step(LEFT)
-    assert network.asked == 3
-
-
 @pytest.mark.parametrize("pads", [1, 3])
 def test_a_hundred_handovers_under_a_shared_stick_lose_no_input_and_stick_no_engine(pads: int):
     flight = shared(assist=0.5, pads=pads)
