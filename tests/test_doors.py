@@ -27,7 +27,7 @@ OPENED = {
     "game.core.collection": ({"shutil.copytree"}, "of plain files alone, links as links"),
     "game.drawing.typeface": ({"pygame.font.Font"}, "comes with the program"),
     "game.export.gif": ({"path.open"}, "writes"),
-    "game.lesson.door": ({"self.open"}, "a dialog"),
+    "game.panels.lesson_door": ({"self.open"}, "a dialog"),
     "game.scenes.train.base": ({"self.open"}, "a part of the panel"),
     "game.scenes.train.scene": ({"self.open", "super().open", "self.pages.open"}, "a part of the panel"),
     "game.start": ({"context.sound.open"}, "the sound device"),

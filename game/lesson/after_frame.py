@@ -12,10 +12,10 @@ from ai.explain.recorder import Function
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import EMBER, FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET
-from game.lesson.figures import number, points, signed
 from game.lesson.frame import PICTURE, SMALL_PICTURE, Explanation, Frame, Spot, rows_of
 from game.lesson.pulls import Pulls
 from game.lesson.step import LearningStep
+from game.panels.figures import number, points, signed
 
 _WEIGHTS: Final = 8
 _ROW: Final = 25.0

@@ -19,7 +19,6 @@ from game.lesson.after_frame import AfterFrame
 from game.lesson.alone_frame import AloneFrame
 from game.lesson.code import in_points_of_reward
 from game.lesson.error_frame import ErrorFrame
-from game.lesson.figures import number, points
 from game.lesson.frame import Frame
 from game.lesson.gradient_frame import GradientFrame
 from game.lesson.moment_frame import HappenedFrame, MomentFrame, said_action
@@ -27,6 +26,7 @@ from game.lesson.network_frame import NetworkFrame
 from game.lesson.part import Part
 from game.lesson.step import LearningStep
 from game.lesson.target_frame import TargetFrame
+from game.panels.figures import number, points
 
 _NETWORK: Final = (0.0, 8.0, 752.0, 426.0)
 

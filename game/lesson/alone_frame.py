@@ -14,10 +14,10 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
 from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, NIGHT0, SMALL, TEXT, TITLE
-from game.lesson.figures import points
 from game.lesson.frame import PICTURE, SMALL_PICTURE, Frame
 from game.lesson.moment_frame import said_action
 from game.lesson.step import LearningStep
+from game.panels.figures import points
 
 _CHART: Final = pygame.FRect(64, 136, 440, 250)
 _OTHERS: Final = 560.0  # left end of the six values

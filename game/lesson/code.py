@@ -18,9 +18,9 @@ from game.drawing.canvas import Canvas, Point
 from game.drawing.paint_cache import PaintCache
 from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import INK, LABEL, LINE, MUTE, NET
-from game.lesson.figures import number
 from game.lesson.frame import WITHIN
 from game.panels.code_listing import draw_listing
+from game.panels.figures import number
 from game.ui.tooltip import TooltipRow, draw_tooltip
 
 CODE: Final = pygame.Rect(824, 216, 416, 448)

@@ -22,12 +22,12 @@ from game.drawing.canvas import Canvas, Point
 from game.drawing.paint import mix
 from game.drawing.tokens import FAINT, INK, LABEL, LINE, MUTE, NET, TITLE
 from game.lesson.after_frame import AfterFrame
-from game.lesson.figures import number, signed
 from game.lesson.frame import PICTURE, SMALL_PICTURE, Explanation, Frame, Spot, rows_of
 from game.lesson.gradient_frame import GradientFrame
 from game.lesson.network_frame import NetworkFrame
 from game.lesson.part import Part
 from game.lesson.step import LearningStep
+from game.panels.figures import number, signed
 
 _SIDE: Final = 28
 _PIXEL: Final = 14.0  # points

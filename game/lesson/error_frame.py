@@ -16,8 +16,8 @@ from ai.nn.costs import COSTS, Cost
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import EMBER, FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET
-from game.lesson.figures import number, points, signed
 from game.lesson.frame import PICTURE, SMALL_PICTURE, Explanation, Frame, Spot, rows_of
+from game.panels.figures import number, points, signed
 
 Curve = Callable[[float], float]
 

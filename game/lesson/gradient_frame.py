@@ -16,10 +16,10 @@ from ai.nn.optimizers import Adam, Momentum
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL
-from game.lesson.figures import number, signed
 from game.lesson.frame import PICTURE, SMALL_PICTURE, Explanation
 from game.lesson.network_frame import NetworkFrame
 from game.lesson.step import LearningStep, WeightPlace
+from game.panels.figures import number, signed
 
 _NETWORK: Final = (0.0, 26.0, 752.0, 254.0)
 _BELOW: Final = 316.0  # first baseline under the network

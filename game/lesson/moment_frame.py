@@ -17,8 +17,8 @@ from ai.lander.environment import ACTION_NAMES, OBSERVATION_SCALE, PARAMS, Outco
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import FAINT, INK, LABEL, LINE, MUTE, NET, VIEW_SIZE
-from game.lesson.figures import number, points
 from game.lesson.frame import PICTURE, SMALL_PICTURE, Explanation, Frame, Spot, rows_of
+from game.panels.figures import number, points
 from game.panels.reward_bar import PART_COLOURS
 from game.world.camera import HOME, POINTS_PER_METRE, View
 from game.world.craft import draw_craft

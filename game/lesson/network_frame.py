@@ -15,9 +15,9 @@ from ai.nn import Array
 from game.core import texts
 from game.drawing.canvas import Canvas, Point
 from game.drawing.tokens import INK, LINE, MUTE, NET
-from game.lesson.figures import number, points, signed
 from game.lesson.frame import PICTURE, SMALL_PICTURE, Explanation, Frame, Spot
 from game.lesson.step import LearningStep, WeightPlace
+from game.panels.figures import number, points, signed
 from game.panels.network_plan import Show
 from game.panels.network_view import NetworkView
 from game.ui.tooltip import TooltipRow

@@ -17,9 +17,9 @@ from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
 from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, TITLE
-from game.lesson.figures import points
 from game.lesson.frame import PICTURE, SMALL_PICTURE, Explanation, Frame, rows_of
 from game.lesson.moment_frame import said_action
+from game.panels.figures import points
 
 _SUM: Final = 34.0  # baseline of the sum
 _WORDS: Final = 56.0  # of the words under its parts

@@ -17,9 +17,9 @@ from game.input.controls import Command
 from game.lesson.agent_frames import agent_frames
 from game.lesson.code import CODE, CodeWalk
 from game.lesson.digit_frames import digit_frames
-from game.lesson.door import ImageDoor
 from game.lesson.frame import PICTURE, Frame
 from game.lesson.strip import STRIP, FilmStrip
+from game.panels.lesson_door import ImageDoor
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.form_scene import FormScene

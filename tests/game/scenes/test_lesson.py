@@ -17,10 +17,10 @@ from game.lesson.agent_frames import agent_frames
 from game.lesson.alone_frame import AloneFrame
 from game.lesson.code import CODE
 from game.lesson.error_frame import ErrorFrame
-from game.lesson.figures import number, points
 from game.lesson.frame import SMALL_PICTURE
 from game.lesson.gradient_frame import GradientFrame
 from game.lesson.moment_frame import in_units, sensed
+from game.panels.figures import number, points
 from game.scenes.lesson import LessonScene
 from tests.support.driver import Driver
 from tests.support.lessons import SMALL, in_view, lesson_from, lesson_of, shown

@@ -7,11 +7,11 @@ import pytest
 
 from ai.explain.agent_lesson import Lesson
 from game.core import texts
-from game.lesson.figures import number, points
 from game.lesson.frame import Explanation
 from game.lesson.gradient_frame import GradientFrame
 from game.lesson.network_frame import NetworkFrame
 from game.lesson.step import WeightPlace
+from game.panels.figures import number, points
 from game.scenes.lesson import LessonScene
 from game.ui.tooltip import TooltipRow
 from tests.support.driver import Driver

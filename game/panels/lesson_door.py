@@ -24,17 +24,15 @@ class Door:
     def __init__(self, run: TrainingRun, note: Callable[[str], object]) -> None:
         self._run, self._note = run, note
         self._shown = run.lesson
-        self._asked = False
-        self._waited = 0  # frames
+        self._asked, self._waited = False, 0  # whether one was asked for, and how many frames ago
 
-    def _ask(self, explain: Callable[[TrainingRun], object]) -> None:
-        """Ask the run for a lesson, unless it is over: say so then."""
+    def ask(self, slot: int, moment: int | None = None) -> None:
+        """Ask for the lesson of a lander, at a moment of the run, or of an image; say so if the run is over."""
         if not self._run.alive:
             self._note(texts.LESSON_NO_RUN)
             return
-        self._shown, self._asked = self._run.lesson, True
-        self._waited = 0
-        explain(self._run)
+        self._shown, self._asked, self._waited = self._run.lesson, True, 0
+        self._run.explain(slot, moment)
 
     def answer(self) -> Lesson | DigitLesson | None:
         """Return the lesson that was asked for, once it has come; None before and afterwards. Call it once a frame."""
@@ -82,7 +80,7 @@ class LessonDoor(Door):
     def open(self) -> None:
         """Ask for the lesson of the chosen lander, or of the one that explores least, at the moment that is shown."""
         chosen = self._swarm().chosen
-        self._ask(lambda run: run.explain(CAREFUL if chosen is None else chosen, self._moment()))
+        self.ask(CAREFUL if chosen is None else chosen, self._moment())
 
     def update(self) -> Transition | None:
         """Open the lesson once it has come."""
@@ -95,15 +93,11 @@ class ImageDoor(Door):
 
     def open(self) -> None:
         """Ask for the lesson of the first image."""
-        self._ask(lambda run: run.explain(0))
+        self.ask(0)
 
     def another(self, lesson: DigitLesson) -> None:
-        """Ask for the lesson of the image after that of a lesson; the first one comes after the last one.
-
-        It is of the batch that the run stands before: the next one, if the run went on since the lesson.
-        """
-        row = (lesson.step.row + 1) % len(lesson.labels)
-        self._ask(lambda run: run.explain(row))
+        """Ask for the lesson of the image after that of a lesson, or of the first one, in the batch that comes next."""
+        self.ask((lesson.step.row + 1) % len(lesson.labels))
 
     def update(self) -> Transition | None:
         """Open the lesson once it has come; the door goes with it."""
