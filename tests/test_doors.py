@@ -37,7 +37,7 @@ STARTED = {
     "ai.training.gym_task": ({"self._gymnasium.make"}, "`check_env` stands before every file's name"),
     "game.core.worker": ({"pickle.loads"}, "the pipe to its own worker"),
     "game.core.worker_process": ({"pickle.loads"}, "the pipe from its own window"),
-    "game.learn.path": ({"import_module"}, "names of its own table"),
+    "game.scenes.learn.path": ({"import_module"}, "names of its own table"),
     "game.scenes": ({"import_module"}, "names of its own table"),
     "game.scenes.ahead": ({"import_module"}, "names of its own table"),
     "tranquility.__main__": ({"import_module"}, "names of its own table"),

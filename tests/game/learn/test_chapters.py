@@ -12,15 +12,15 @@ from ai.nn import SGD
 from ai.nn.optimizers import Adam
 from game.core import texts
 from game.core.source import source_of
-from game.learn import downhill, plane
-from game.learn.backwards import BackwardsChapter
-from game.learn.chapter import Chapter
-from game.learn.downhill import DownhillChapter
-from game.learn.neuron import GOAL, HINT, NeuronChapter
-from game.learn.path import PATH, chapter_type
-from game.learn.pay import ASKED, DECISIONS, FLIGHTS, PAYS, Flown, PayChapter, config_of
-from game.learn.plane import PlaneChapter
-from game.scenes.chapter import placed
+from game.scenes.learn import downhill, plane
+from game.scenes.learn.backwards import BackwardsChapter
+from game.scenes.learn.chapter import Chapter
+from game.scenes.learn.downhill import DownhillChapter
+from game.scenes.learn.neuron import GOAL, HINT, NeuronChapter
+from game.scenes.learn.path import PATH, chapter_type
+from game.scenes.learn.pay import ASKED, DECISIONS, FLIGHTS, PAYS, Flown, PayChapter, config_of
+from game.scenes.learn.plane import PlaneChapter
+from game.scenes.learn.scene import placed
 from game.ui.context import Context
 from game.ui.form import Form
 from tests.support import inline_worker
@@ -296,7 +296,7 @@ def test_each_pay_teaches_what_it_pays_for(made: Made, monkeypatch: pytest.Monke
     inline_worker.install(monkeypatch.setattr)
     chapter = made(PayChapter)
     landing = trained(chapter, "landing")
-    monkeypatch.setattr("game.learn.pay.DECISIONS", 8_000)  # it does not take long to learn to fall
+    monkeypatch.setattr("game.scenes.learn.pay.DECISIONS", 8_000)  # it does not take long to learn to fall
     haste = trained(chapter, "haste")
     assert landing.landed > 0.5 * FLIGHTS
     assert haste.crashed > 0.6 * FLIGHTS
@@ -311,7 +311,7 @@ def test_each_pay_teaches_what_it_pays_for(made: Made, monkeypatch: pytest.Monke
 
 def test_the_flights_after_a_run_are_those_of_its_network(made: Made, monkeypatch: pytest.MonkeyPatch):
     inline_worker.install(monkeypatch.setattr)
-    monkeypatch.setattr("game.learn.pay.DECISIONS", 64 * 40)
+    monkeypatch.setattr("game.scenes.learn.pay.DECISIONS", 64 * 40)
     chapter = made(PayChapter)
     chapter.train()
     while chapter.trial is None:
@@ -330,7 +330,7 @@ def test_a_run_that_fails_is_told_and_another_can_begin(made: Made, monkeypatch:
     inline_worker.install(monkeypatch.setattr)
     chapter = made(PayChapter)
 
-    monkeypatch.setattr("game.learn.pay.live", _failing)
+    monkeypatch.setattr("game.scenes.learn.pay.live", _failing)
     chapter.train()
     for _ in range(3):
         chapter.update()

@@ -16,16 +16,14 @@ from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.core.scene import Push
 from game.flight.logbook import Records
-from game.learn import runs as runs_module
-from game.learn.chapter import Chapter
-from game.learn.choice import ChoiceChapter
-from game.learn.daring import DaringChapter
-from game.learn.memory import KINDS, MemoryChapter
-from game.learn.moment import MOMENTS, MomentChapter
-from game.learn.own import OwnChapter
-from game.learn.runs import RunsChapter
-from game.learn.target import TargetChapter
 from game.panels.q_values import signed
+from game.scenes.learn import runs as runs_module
+from game.scenes.learn.chapter import Chapter
+from game.scenes.learn.duels import DaringChapter, TargetChapter
+from game.scenes.learn.memory import KINDS, MemoryChapter
+from game.scenes.learn.moment import MOMENTS, ChoiceChapter, MomentChapter
+from game.scenes.learn.own import OwnChapter
+from game.scenes.learn.runs import RunsChapter
 from game.ui.context import Context
 from game.ui.form import Form
 from tests.support.flights import landed
@@ -116,7 +114,7 @@ def test_a_missing_network_is_said_and_the_chapter_stays_usable(context: Context
 def test_a_run_learns_to_its_end_and_tells_its_own_numbers(made: Made, kind, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(kind, "LENGTH", 90)
     if kind is MemoryChapter:
-        monkeypatch.setattr("game.learn.memory.YESTERDAY", 45)
+        monkeypatch.setattr("game.scenes.learn.memory.YESTERDAY", 45)
         monkeypatch.setattr(kind, "PLAN", kind.PLAN._replace(change=45))
     chapter = made(kind)
     assert isinstance(chapter, RunsChapter)
@@ -163,7 +161,7 @@ def test_a_guess_gets_its_verdict_from_this_very_run(made: Made, kind, monkeypat
 
 def test_each_memory_that_was_tried_is_compared(made: Made, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(MemoryChapter, "LENGTH", 60)
-    monkeypatch.setattr("game.learn.memory.YESTERDAY", 30)
+    monkeypatch.setattr("game.scenes.learn.memory.YESTERDAY", 30)
     monkeypatch.setattr(MemoryChapter, "PLAN", MemoryChapter.PLAN._replace(change=30))
     chapter = made(MemoryChapter)
     for number in range(len(KINDS)):

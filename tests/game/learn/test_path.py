@@ -7,11 +7,10 @@ import pytest
 
 from game.core import texts
 from game.core.settings import Settings
-from game.learn.path import PATH, following
-from game.learn.progress import PAGES, Progress
-from game.scenes import chapter as chapter_scene
-from game.scenes.chapter import ChapterScene
-from game.scenes.learn import LearnScene
+from game.scenes.learn import scene as chapter_scene
+from game.scenes.learn.list import LearnScene
+from game.scenes.learn.path import PAGES, PATH, Progress, following
+from game.scenes.learn.scene import ChapterScene
 from game.scenes.menus.menu import MenuScene
 from game.ui.context import Context
 from tests.support.driver import Driver

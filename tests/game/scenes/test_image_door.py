@@ -7,7 +7,7 @@ import pytest
 
 from game.core import texts
 from game.core.worker import WorkerState
-from game.scenes.lesson import LessonScene
+from game.scenes.lesson.scene import LessonScene
 from game.scenes.train.digits import DigitTrainingScene
 from game.ui.hints import HintRow
 from tests.support.driver import Driver

@@ -7,12 +7,6 @@ from typing import Any
 import numpy as np
 import pygame
 import pytest
-
-from ai.agent.decision import in_points
-from ai.explain.agent_lesson import Lesson
-from ai.nn.costs import COSTS
-from game.core import texts
-from game.drawing.canvas import Canvas
 from game.lesson.agent_frames import agent_frames
 from game.lesson.alone_frame import AloneFrame
 from game.lesson.code import CODE
@@ -20,8 +14,14 @@ from game.lesson.error_frame import ErrorFrame
 from game.lesson.frame import SMALL_PICTURE
 from game.lesson.gradient_frame import GradientFrame
 from game.lesson.moment_frame import in_units, sensed
+
+from ai.agent.decision import in_points
+from ai.explain.agent_lesson import Lesson
+from ai.nn.costs import COSTS
+from game.core import texts
+from game.drawing.canvas import Canvas
 from game.panels.figures import number, points
-from game.scenes.lesson import LessonScene
+from game.scenes.lesson.scene import LessonScene
 from tests.support.driver import Driver
 from tests.support.lessons import SMALL, in_view, lesson_from, lesson_of, shown
 from tests.support.written import words_written

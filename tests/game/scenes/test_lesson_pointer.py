@@ -4,15 +4,15 @@ from collections.abc import Callable
 
 import pygame
 import pytest
-
-from ai.explain.agent_lesson import Lesson
-from game.core import texts
 from game.lesson.frame import Explanation
 from game.lesson.gradient_frame import GradientFrame
 from game.lesson.network_frame import NetworkFrame
 from game.lesson.step import WeightPlace
+
+from ai.explain.agent_lesson import Lesson
+from game.core import texts
 from game.panels.figures import number, points
-from game.scenes.lesson import LessonScene
+from game.scenes.lesson.scene import LessonScene
 from game.ui.tooltip import TooltipRow
 from tests.support.driver import Driver
 from tests.support.lessons import SMALL, digit_lesson_of, in_view, lesson_of, shown
