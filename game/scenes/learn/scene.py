@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Final
@@ -31,6 +32,7 @@ PREDICT, TRY, WHY, CODE = range(len(PAGES))
 _SHARES, _LEAST, _APART = (1.0, 1.8), 240.0, 36.0  # of the columns of words and of the picture
 _BODY: Final = SMALL + 1.5
 _OPEN: Final[Colour] = (190, 198, 214)  # an answer that was not given
+_AROUND, _LOWEST = 250.0, 0.42  # points above and below the picture; its least height, as a share of its width
 _LISTING, _NOTES = 420.0, 230.0  # height of a listing, and width of what stands beside its lines
 _INDENT: Final = 18.0  # of a verdict, behind its line
 
@@ -149,13 +151,18 @@ class ChapterScene(PanelScene):
         if self.page == CODE:
             self._describe_listing(right)
         else:
-            self._picture = right.add(lambda cursor: (cursor.take(self.chapter.shape * cursor.width), None)[1])
+            self._picture = right.add(self._leave_room)
             right.gap(4)
             self.chapter.below(right)
         panel.gap(10)
         labels = (*texts.LEARN_ON, texts.LEARN_TO_CHAPTER if following(self.key) else texts.LEARN_TO_LIST)
         door = [(words["door"], lambda: Push(self.chapter.door))] if self.page >= WHY else []
         panel.words([(labels[self.page], self._go_on), *door])
+
+    def _leave_room(self, cursor: Cursor) -> None:
+        """Leave room for the picture: as high as it should be, or as all else leaves room for in the window."""
+        wide, room = cursor.width, cursor.seen.height - _AROUND if cursor.seen else math.inf
+        cursor.take(min(self.chapter.shape * wide, max(room, _LOWEST * wide)))
 
     def _describe_predict(self, column: Column) -> None:
         column.text(self.chapter.words["lead"], size=_BODY, colour=MUTE)
