@@ -8,6 +8,7 @@ are gathered almost at the speed of memory (docs/adr/0009-images-batch-last-in-m
 
 from collections.abc import Iterator
 from itertools import product
+from math import prod
 from typing import Any
 
 import numpy as np
@@ -93,8 +94,9 @@ class ConvolutionLayer(FullyConnectedLayer):
         framed = self.kept("framed_error", self._frame(len(error)), self.dtype)
         framed.fill(0)
         for x, y in self._blocks(len(error)):
-            part = _columns(error, x, y)
-            sent = (self.weights @ part).reshape(self.kernel, self.kernel, channels, x.stop - x.start, -1, len(error))
+            part, places = _columns(error, x, y), (x.stop - x.start, y.stop - y.start, len(error))
+            sent = self._block("sent", (self.kernel, self.kernel, channels, *places))
+            np.matmul(self.weights, part, out=sent.reshape(len(self.weights), -1))
             for i, j in np.ndindex(self.kernel, self.kernel):
                 columns, rows = _strided(x, i, stride), _strided(y, j, stride)
                 reached = framed.T[:, columns, rows]
@@ -121,7 +123,17 @@ class ConvolutionLayer(FullyConnectedLayer):
         """Return windows as the columns of a matrix, (kernel · kernel · channels, windows · batch)."""
         windows = sliding_window_view(framed.T, (self.kernel, self.kernel), (1, 2))
         windows = windows[:, :: self.stride, :: self.stride][:, x, y].transpose(4, 5, 0, 1, 2, 3)
-        return windows.reshape(len(self.weights), -1)
+        matrix = self._block("matrix", windows.shape)
+        matrix[...] = windows
+        return matrix.reshape(len(self.weights), -1)
+
+    def _block(self, name: str, shape: tuple[int, ...]) -> Array:
+        """Return memory for a block, the same at each call: fresh pages would take longer than what is put there."""
+        size = prod(shape)
+        memory = self.__dict__.get(name)
+        if memory is None or memory.size < size or memory.dtype != self.dtype:
+            memory = self.__dict__[name] = np.empty(size, self.dtype)
+        return memory[:size].reshape(shape)
 
     def _blocks(self, batch: int) -> Iterator[tuple[slice, slice]]:
         """Yield which columns and rows of outputs are worked at together: some whole columns, or a part of one."""
