@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, ClassVar, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import pygame
@@ -47,12 +47,11 @@ class DuelChapter(RunsChapter):
     """Two agents; the right one is as the player chooses. A chart of one quantity stands below each."""
 
     door, shape = Route("train"), 0.56
-    label: ClassVar[str]
 
     @property
     @abstractmethod
-    def options(self) -> Sequence[str]:
-        """The words of the choices."""
+    def options(self) -> tuple[str, Sequence[str]]:
+        """What is chosen, and the words of the choices."""
 
     @abstractmethod
     def name(self, run: int, choice: int) -> str:
@@ -73,7 +72,8 @@ class DuelChapter(RunsChapter):
 
     def controls(self, column: Column) -> None:
         """Add the choice, and the button that starts."""
-        column.choice(self.label, self.options, self.choice, self.choose)
+        label, words = self.options
+        column.choice(label, words, self.choice, self.choose)
         self.starter(column, texts.LEARN_RUNS_START[bool(self.seed)])
 
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
@@ -96,16 +96,16 @@ class DuelChapter(RunsChapter):
 class TargetChapter(DuelChapter):
     """A guess from a guess: the left agent's target network is a copy made every 100 gradient steps."""
 
-    key, label = "target", texts.LEARN_TARGET_LABEL
+    key = "target"
 
     def configs(self) -> Sequence[Config]:
         """Return the configurations: that of all small runs, and the same with the chosen copies."""
         return SMALL_RUN, config_of(self.choice)
 
     @property
-    def options(self) -> Sequence[str]:
+    def options(self) -> tuple[str, Sequence[str]]:
         """The steps between two copies."""
-        return [*map(str, EVERY[:NORMALISED]), texts.LEARN_TARGET_NORMALISED]
+        return texts.LEARN_TARGET_LABEL, [*map(str, EVERY[:NORMALISED]), texts.LEARN_TARGET_NORMALISED]
 
     def name(self, run: int, choice: int) -> str:
         """Return how often an agent copies its network."""
@@ -169,7 +169,7 @@ def config_of(choice: int) -> Config:
 class DaringChapter(DuelChapter):
     """Daring: the left agent never takes a random action, the right one as often as chosen."""
 
-    key, label, first = "daring", texts.LEARN_DARING_LABEL, 1
+    key, first = "daring", 1
     PLAN = Plan(heights=(5.0, 8.0))
 
     def configs(self) -> Sequence[Config]:
@@ -180,9 +180,9 @@ class DaringChapter(DuelChapter):
         ]
 
     @property
-    def options(self) -> Sequence[str]:
+    def options(self) -> tuple[str, Sequence[str]]:
         """The shares of random actions."""
-        return list(map(percent, DARING))
+        return texts.LEARN_DARING_LABEL, list(map(percent, DARING))
 
     def name(self, run: int, choice: int) -> str:
         """Return how often an agent acts at random."""

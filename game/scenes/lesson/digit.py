@@ -94,4 +94,5 @@ class DigitFrame(Frame):
 
     def describe(self, column: Column) -> None:
         """Add the table."""
-        column.add(table(self._head, lambda: self._lines))
+        left, _ = column.beside((3, 2), _LEAST)
+        left.add(table(self._head, lambda: self._lines))

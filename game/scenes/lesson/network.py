@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from game.drawing.cursor import Cursor
     from game.ui.panel import Column
 
-_HEIGHTS: Final[dict[Show, float]] = {"weights": 400.0, "activations": 400.0, "gradients": 250.0}
+_HEIGHTS: Final[dict[Show, float]] = {"weights": 370.0, "activations": 370.0, "gradients": 190.0}
 _TERMS: Final = 6  # products of a unit's sum that are written out one by one; the others are summed
 _MOST_NAMED: Final = 12  # inputs up to which their names stand beside them
 _UNNAMED: Final = (" " * 32,)  # keeps the room of a name free, for the legend below
@@ -58,6 +58,7 @@ class NetworkFrame(Frame):
         column.add(self._write_network)
 
     def _write_network(self, cursor: Cursor) -> None:
+        cursor.gap(10)
         box = cursor.take(_HEIGHTS[self.show])
         if cursor.canvas is None:
             self.view.place(box)

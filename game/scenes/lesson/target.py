@@ -33,7 +33,7 @@ class TargetFrame(Frame):
     def describe(self, column: Column) -> None:
         """Add the sum, and who picks and judges the value in it."""
         column.add(formula(self._sum))
-        column.gap(8)
+        column.gap(4)
         left, right = column.beside((1, 1), _LEAST)
         left.add(table(self._head(), self._values))
         for words in self._roles():
