@@ -156,7 +156,7 @@ class MemoryChapter(RunsChapter):
         top = box.top + _WALL * box.height + 30
         for side, (name, count) in enumerate(((day, SMALL_RUN.num_envs), (texts.LEARN_MEMORY_TESTS, TESTED))):
             area = pygame.FRect(box.left + side * (half + 32), top, half, box.bottom - top)
-            canvas.text(name, (area.left, top - 6), size=SMALL, colour=(NET, INK)[side], room=0.72 * half)
+            canvas.text(name, (area.left, top - 6), size=SMALL, colour=(NET, INK)[side], room=0.76 * half)
             flown = None if state is None else state.tested if side else state.flown
             draw_landers(canvas, area, flown, self.last[0] if state and not side else None, len(self.states), count)
             share = (state.passed if side else state.landed) if state else None
