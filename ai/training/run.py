@@ -9,7 +9,7 @@ from concurrent.futures import Future, ThreadPoolExecutor, wait
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
-from ai.nn import atomic_folder
+from ai.files import atomic_folder
 from ai.run import TRAINING_FILE, Run
 from ai.training.messages import Saved, problem_of
 from ai.training.state import State, StateWriter, going_on, read_state
