@@ -34,6 +34,7 @@ LANGUAGE: Final[str]
 damaged: Final[str]  # the path of a catalogue that cannot be read
 
 def said(sentence: str, /) -> str: ...
+def choose(language: str = "") -> bool: ...
 
 '''
 

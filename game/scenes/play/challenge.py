@@ -55,7 +55,7 @@ class Challenge:
         bar: key in `texts.NOT_COUNTED` of why its flights do not count as the player's own; empty if they may.
         alone: whether the network may neither help nor take over.
         next_hint: hint of the key for what comes next; empty where it does nothing.
-        copy_hint: hint of the key that copies what a friend is told.
+        copy_hint: hint of the key that copies what a friend is told; empty for the usual words.
         title, line: name of the challenge, for the corner.
         goal: goal of the flight, for the corner as well.
         opening: text while the craft hangs and waits; empty to leave the middle free.
@@ -79,8 +79,7 @@ class Challenge:
     eases = False
     easing = AS_IT_IS
     elsewhere = False
-    copy_hint = texts.CODE_HINT_COPY
-    next_hint = again_hint = new_hint = ""
+    copy_hint = next_hint = again_hint = new_hint = ""
     title = line = goal = opening = ""
     total = 0
     compares = True
@@ -190,10 +189,9 @@ class Duel(Challenge):
     """Duel: one start after another against a rival."""
 
     fixed = False
-    title = texts.DUEL
 
     def __init__(self, rival: Policy, name: str) -> None:
-        self._rival, self._name = rival, name
+        self._rival, self._name, self.title = rival, name, texts.DUEL
         self.line = texts.DUEL_RIVAL.format(name=name)
         self.opening = texts.DUEL_BEGIN.format(name=name)
 
@@ -205,10 +203,8 @@ class Duel(Challenge):
 class Race(Challenge):
     """Race: the start of a recorded flight, against its ghost."""
 
-    title = texts.RACE
-
     def __init__(self, record: Record, name: str) -> None:
-        self._record, self._name = record, name
+        self._record, self._name, self.title = record, name, texts.RACE
         self.elsewhere = flown_elsewhere(record.recording)
         self.line = texts.DUEL_RIVAL.format(name=name)
         self.opening = texts.DUEL_BEGIN.format(name=name)
@@ -229,10 +225,9 @@ class ContinuedFlight(Challenge):
     """Fly on from a moment of a recorded flight, whose own continuation flies beside as a ghost."""
 
     bar = "flown_on"
-    title = texts.FLY_ON
-    opening = texts.FLY_ON_BEGIN
 
     def __init__(self, flight_replay: FlightReplay, name: str) -> None:
+        self.title, self.opening = texts.FLY_ON, texts.FLY_ON_BEGIN
         self._recording, self._step, self._name = flight_replay.record.recording, flight_replay.at, name
         self._moment = flight_replay.flight.env.snapshot()
         self.elsewhere = flown_elsewhere(self._recording)
@@ -263,20 +258,20 @@ def _as_begun(recording: Recording, seed: int, network: Policy | None) -> Flight
 class FlownMission(Challenge):
     """A mission of the campaign, beside a ghost: a recorded flight or, without one, the network."""
 
-    title = texts.MISSION
     eases = True
 
     def __init__(
         self,
         mission: Mission,
         rival: Record | None = None,
-        rival_name: str = texts.MISSION_RIVAL,
+        rival_name: str = "",
         following: Callable[[], Challenge] | None = None,
     ) -> None:
         self.mission, self.name, self.elsewhere = mission, mission.name, mission.elsewhere
         self._following = following
         self._own: Recording | None = None  # the player's own landing just before, to be raced next
-        self._rival, self._rival_name = rival, rival_name
+        self._rival, self._rival_name = rival, rival_name or texts.MISSION_RIVAL
+        self.title = texts.MISSION
         self.line, self.opening = texts.MISSIONS[mission.name]
         self.goal = texts.MISSION_GOAL.format(fuel=mission.gold[0], seconds=mission.gold[1])
 

@@ -36,7 +36,7 @@ class PauseScene(PanelScene):
     Args:
         below: the paused scene.
         retry: function that restarts the scene below; None for no such entry.
-        retry_word: label of that entry.
+        retry_word: label of that entry; empty for the usual one.
         more: function that returns further entries and their actions; called each time the column is built.
 
     """
@@ -48,7 +48,7 @@ class PauseScene(PanelScene):
         context: Context,
         below: Scene,
         retry: Callable[[], None] | None = None,
-        retry_word: str = texts.PAUSE_RETRY,
+        retry_word: str = "",
         more: Callable[[], list[tuple[str, OnPress]]] = list,
     ) -> None:
         super().__init__(context)
@@ -67,7 +67,7 @@ class PauseScene(PanelScene):
         panel.gap(8)
         rows: list[tuple[str, OnPress]] = [(texts.PAUSE_RESUME, Pop)]
         if self._retry:
-            rows.append((self._retry_word, self._begin_anew))
+            rows.append((self._retry_word or texts.PAUSE_RETRY, self._begin_anew))
         rows += [*self._more(), (texts.PAUSE_SETTINGS, _open_settings), (texts.PAUSE_LEAVE, lambda: Pop(2))]
         for label, press in rows:
             panel.button(label, press, size=_WORD, weight="light", colour=INK)

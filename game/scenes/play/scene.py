@@ -208,7 +208,7 @@ class PlayScene(Scene):
         card = self.ending.card
         if card is None:
             return []
-        hint = (self.challenge or Challenge).copy_hint
+        hint = (self.challenge or Challenge).copy_hint or texts.CODE_HINT_COPY
         copy = [Action(pygame.K_k, self._copy, hint, Command.STEP)] if self.flown.record else []
         offer = [Action(Command.HANDOVER, self._accept_help, texts.HELP_HINT)] if self._offer.made else []
         nearer = card.rung is not None and card.rung < (rung_of(self.flight) or 0)

@@ -56,9 +56,9 @@ class Tutorial(Challenge):
     """
 
     kept = False
-    title, next_hint = texts.TUTORIAL_TITLE, texts.TUTORIAL_SKIP
 
     def __init__(self) -> None:
+        self.title, self.next_hint = texts.TUTORIAL_TITLE, texts.TUTORIAL_SKIP
         self._lessons = list(LESSONS)
         self._number = self._done_for = self.praise = 0
         self._begun = 0  # number of times that the lesson was begun
