@@ -100,7 +100,7 @@ def figure(value: Any) -> str:
     if isinstance(value, float):
         written = f"{value:.6g}"
         return f"{value:.7f}".rstrip("0") if "e-" in written else written.replace("-", "−")
-    return f"{value:,}".replace(",", "\u2009").replace("-", "−")
+    return f"{value:,}".replace(",", "\u00a0").replace("-", "−")
 
 
 def told(changes: Mapping[str, Any]) -> str:
