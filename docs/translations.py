@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import string
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import fields
 from datetime import UTC, datetime
 from pathlib import Path
@@ -105,12 +105,12 @@ def merged(translated: Catalog, english_texts: Catalog) -> Catalog:
     """Return all texts with their translations; one that was made from other English is fuzzy, and keeps that."""
     before = {_name(message): message for message in translated if message.id}
     for message in english_texts:
-        if message.id and (known := before.get(_name(message))) and any(known.string):
+        if message.id and (known := before.get(_name(message))) and any(_forms(known.string)):
             message.flags |= known.flags & {"fuzzy"}
             message.previous_id = known.previous_id
             if known.id != message.id:
                 message.flags.add("fuzzy")
-                message.previous_id = [known.id] if isinstance(known.id, str) else list(known.id)
+                message.previous_id = _forms(known.id)
             if isinstance(known.id, str) == isinstance(message.id, str):
                 message.string = known.string
     return english_texts
@@ -122,17 +122,18 @@ def untranslated(translated: Catalog, english_texts: Catalog) -> list[str]:
         _name(message)
         for message in english_texts
         if message.id
-        and not ((known := translated.get(message.id, message.context)) and any(known.string) and not known.fuzzy)
+        and not (
+            (known := translated.get(message.id, message.context)) and any(_forms(known.string)) and not known.fuzzy
+        )
     ]
 
 
 def faults(translated: Catalog) -> Iterator[str]:
     """Yield what is wrong with translations: other braces than the English, missing forms."""
     for message in translated:
-        told = [message.string] if isinstance(message.string, str) else list(message.string)
+        told, forms = _forms(message.string), _forms(message.id)
         if not message.id or not any(told) or message.fuzzy:
             continue
-        forms = [message.id] if isinstance(message.id, str) else list(message.id)
         if len(forms) > 1 and (len(told) != translated.num_plurals or not all(told)):
             yield f"{_name(message)}: plural forms are missing"
         # The form for one may say the number in a word.
@@ -144,6 +145,10 @@ def faults(translated: Catalog) -> Iterator[str]:
 def braces(text: str) -> set[str]:
     """Return the names in a text's braces."""
     return {field for _, field, _, _ in string.Formatter().parse(text) if field is not None}
+
+
+def _forms(text: str | Sequence[str] | None) -> list[str]:
+    return [text or ""] if isinstance(text, str | None) else list(text)
 
 
 def _name(message: Message) -> str:
