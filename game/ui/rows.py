@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
@@ -17,9 +18,8 @@ from game.ui.entry import Entry
 from game.ui.listing import Listing, Row
 from game.ui.series import run_style
 from game.ui.tooltip import draw_swatch
-from game.ui.virtual_pointer import VirtualPointer
-from game.ui.widget import OnPress, PointsManager, Widget, mix
-from game.ui.widgets import Choice, Slider, TextButton, Toggle, draw_switch
+from game.ui.widget import EASE, OnPress, PointsManager, Widget, mix
+from game.ui.widgets import Choice, TextButton, draw_switch
 
 if TYPE_CHECKING:
     from game.drawing.canvas import Canvas
@@ -150,13 +150,31 @@ class RunRow(ButtonRow):
         cursor.y = name.y
 
 
-class ToggleRow(RowWidget, Toggle):
+class ToggleRow(RowWidget):
     """Switch at the right end, its label and an explanation on the left."""
 
     def __init__(
         self, manager: PointsManager, label: str, value: bool, change: Callable[[bool], None], aside: str = ""
     ) -> None:
-        super().__init__(manager, _NOWHERE, label, value, change, hint=aside)
+        super().__init__(manager, _NOWHERE, label)
+        self.value, self._on_change, self._aside = value, change, aside
+        self._slid = float(value)
+
+    def press(self) -> None:
+        self.value = not self.value
+        self._on_change(self.value)
+
+    def shift(self, direction: int) -> bool:
+        """Switch off with left, on with right; false if it is so already, so that the focus moves on."""
+        if self.value == (direction > 0):
+            return False
+        self.press()
+        return True
+
+    def ease(self, at_once: bool) -> None:
+        super().ease(at_once)
+        target = float(self.value)
+        self._slid = target if at_once else self._slid + (target - self._slid) * 1.4 * EASE
 
     def write(self, cursor: Cursor) -> None:
         words = replace(cursor, width=cursor.width - _SWITCH[0] - 2 * STEP)
@@ -167,14 +185,19 @@ class ToggleRow(RowWidget, Toggle):
             draw_switch(cursor.canvas, box, self._slid)
             cursor.canvas.cover(cursor.canvas.rect(*box))
         words.text(self.label)
-        if self._hint:
+        if self._aside:
             words.gap(2)
-            words.aside(self._hint)
+            words.aside(self._aside)
         cursor.y = words.y
 
 
-class SliderRow(RowWidget, Slider):
-    """Slider: its label on the left or above, the figure at the right end, an explanation below."""
+class SliderRow(RowWidget):
+    """Slider: its label on the left or above, the figure at the right end, an explanation below.
+
+    `ticks` are values that have a name; it stops at them as well as after each `step`.
+    """
+
+    by_arrows = True
 
     def __init__(
         self,
@@ -188,8 +211,47 @@ class SliderRow(RowWidget, Slider):
         aside: str = "",
         ticks: Mapping[float, str] = MappingProxyType({}),
     ) -> None:
-        super().__init__(manager, _NOWHERE, label, value, limits, change, step=step, figure=figure, ticks=ticks)
-        self._aside = aside
+        super().__init__(manager, _NOWHERE, label)
+        self.value, self.limits, self._on_change = value, limits, change
+        self._step, self._figure, self._aside, self._ticks = step, figure, aside, ticks
+        self._track = (0.0, 1.0)
+
+    @property
+    def fraction(self) -> float:
+        """Position of the handle on its track, 0 to 1."""
+        return self._fraction_of(self.value)
+
+    def _fraction_of(self, value: float) -> float:
+        low, high = self.limits
+        return min(max((value - low) / (high - low), 0.0), 1.0)
+
+    def set(self, value: float) -> None:
+        """Set the value, clipped to the limits and rounded to a step or a tick."""
+        low, high = self.limits
+        stops = low + round((value - low) / self._step) * self._step, *self._ticks
+        value = min(max(min(stops, key=lambda stop: abs(stop - value)), low), high)
+        if value != self.value:
+            self.value = value
+            self._on_change(value)
+
+    def shift(self, direction: int) -> bool:
+        """Move to the next step or tick."""
+        low, value = self.limits[0], self.value
+        steps = math.floor(direction * (value - low) / self._step + 1e-6) + 1
+        stops = low + direction * steps * self._step, *self._ticks
+        self.set(min((stop for stop in stops if direction * (stop - value) > 0), key=lambda stop: abs(stop - value)))
+        return True
+
+    def advance(self) -> None:
+        """Move the handle one step to the right, or from the right end to the left one."""
+        if self.value >= self.limits[1]:
+            self.set(self.limits[0])
+        else:
+            self.shift(1)
+
+    def drag(self, x: float) -> None:
+        (left, right), (low, high) = self._track, self.limits
+        self.set(low + min(max((x - left) / (right - left), 0.0), 1.0) * (high - low))
 
     def write(self, cursor: Cursor) -> None:
         words = replace(cursor, colour=mix(mix(MUTE, INK, 0.6), INK, self.warmth))
@@ -201,14 +263,14 @@ class SliderRow(RowWidget, Slider):
             words.text(self.label)
         middle, right = words.y + LEADING * cursor.size / 2, cursor.right - _FIGURES
         if canvas := cursor.canvas:
-            canvas.bar((left, middle - 1, right - left, 2), self.fraction, self._colour)
+            canvas.bar((left, middle - 1, right - left, 2), self.fraction, NET)
             canvas.cover(canvas.rect(left, middle - 8, right - left, 16))
             for value in self._ticks:
                 x = left + self._fraction_of(value) * (right - left)
                 canvas.line((x, middle - 5), (x, middle + 5), MUTE)
             canvas.dot((left + self.fraction * (right - left), middle), 5 + self.warmth, INK)
             place = (cursor.right, words.baseline)
-            canvas.text(self._figure(self.value), place, colour=self._colour, align="right", tabular=True)
+            canvas.text(self._figure(self.value), place, colour=NET, align="right", tabular=True)
         else:
             self._track = (left, right)
         cursor.y = words.y + LEADING * cursor.size
@@ -302,65 +364,6 @@ class EntryRow(RowWidget, Entry):
         cursor.take(28.0)
         if cursor.canvas:
             Entry.paint(self, cursor.canvas)
-
-
-class PictureRow(RowWidget, VirtualPointer):
-    """Picture that is pointed at, by the mouse or a virtual pointer: `tell` gets their events, in points.
-
-    Args:
-        manager: the form's manager.
-        label: what it is called.
-        height: of the picture in points, given the width.
-        tell: receives the events: all motion, and each press within the picture until it is released.
-        draw: draws it; without, whoever draws behind the panel does.
-        square: whether it is as wide as high, instead of as its column.
-        more: as for a `VirtualPointer`.
-
-    Attributes:
-        picture: where it is, in points.
-
-    """
-
-    pad, follows_mouse = 0.0, False
-
-    def __init__(
-        self,
-        manager: PointsManager,
-        label: str,
-        height: Callable[[float], float],
-        tell: Callable[[pygame.event.Event], object],
-        draw: Callable[[Canvas, pygame.FRect], None] = lambda *_: None,
-        *,
-        square: bool = False,
-        **more: Any,
-    ) -> None:
-        super().__init__(manager, _NOWHERE, tell, **more)
-        self.label, self._height, self._draw, self._square = label, height, draw, square
-        self.picture = pygame.FRect(self.box)
-
-    def write(self, cursor: Cursor) -> None:
-        box = cursor.take(self._height(cursor.width))
-        if self._square:
-            box.width = box.height
-        if cursor.canvas is None:
-            self.picture = box
-        else:
-            self._draw(cursor.canvas, box)
-            self.draw_pointer(cursor.canvas)
-
-    def lay(self, cursor: Cursor) -> None:
-        super().lay(cursor)
-        if cursor.canvas is None:
-            self.rect.width = round(self.picture.width)
-
-    def process_event(self, event: pygame.event.Event) -> bool:
-        down, up = event.type == pygame.MOUSEBUTTONDOWN, event.type == pygame.MOUSEBUTTONUP
-        if (down or up) and event.button != 1:
-            return False
-        ends, self.held = up and self.held, (self.held and not up) or (down and self.hover_point(*event.pos))
-        if event.type == pygame.MOUSEMOTION or ends or (down and self.held):
-            self._hear(event)
-        return self.held or ends
 
 
 class ListRow(RowWidget, Listing):

@@ -14,7 +14,7 @@ from ai.digits.strokes import draw_segments
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK, LINE, NIGHT0, Colour
-from game.ui.rows import PictureRow
+from game.ui.virtual_pointer import PictureRow
 from game.ui.widget import PointsManager
 
 SIDE: Final = 520  # units along a side of every pad, whatever its size on the screen

@@ -29,7 +29,7 @@ from game.ui.context import Context
 from game.ui.hints import Hint
 from game.ui.panel import Column, Panel
 from game.ui.panel_scene import PanelScene
-from game.ui.rows import PictureRow
+from game.ui.virtual_pointer import PictureRow
 
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier

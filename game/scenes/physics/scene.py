@@ -27,13 +27,15 @@ from game.ui.context import Context
 from game.ui.panel import Column, Panel
 from game.ui.panel_scene import PanelScene
 from game.ui.playback import Playback
-from game.ui.rows import ButtonRow, PictureRow, SliderRow
+from game.ui.rows import ButtonRow, SliderRow
+from game.ui.virtual_pointer import PictureRow
 from game.world.bodies import Outlines, draw_contacts, draw_force_scale, draw_grip
 from game.world.camera import View
 from game.world.grip import Grip
 
 GRAVITIES: Final = (1.62, 9.81)
 SPEEDS: Final = (0.25, 0.5, 1.0)
+_MORE: Final = "physics"  # name in the settings of what stays open
 _LEAST: Final = 300.0  # points of a column
 _REACH: Final = 8.0  # points by which the mouse may miss a body
 _BUDGET: Final = 6e-3  # seconds of a frame for measuring, during which the exhibit waits
@@ -173,11 +175,11 @@ class PhysicsScene(PanelScene):
         return super().handle_event(event)
 
     def actions(self) -> Table:
-        stop, step, *speeds = self.playback.actions(texts.HINT_STEP)
+        stop, step, *speeds = self.playback.actions(texts.HINT_STEP if self.more else "")
         return [
             stop,
             step,
-            Action(Command.NEXT, lambda: self._turn(1), texts.HINT_NEXT_EXHIBIT),
+            Action(Command.NEXT, lambda: self._turn(1)),
             Action(Command.RETRY, self.restart, texts.HINT_RESTART_EXHIBIT),
             replace(self.explained.action(), gamepad=None),  # its button draws the contacts
             Action(Command.PAUSE, self._pause, texts.HINT_PAUSE),
@@ -205,13 +207,6 @@ class PhysicsScene(PanelScene):
             PictureRow(self.form.manager, texts.POINTER, self._height, self._point, hold=texts.POINTER_GRIP)
         )
         left.add(self._write_legend)
-        gravity, speed, contacts = left.beside((5, 3, 3), least=120.0)
-        if not self.exhibit.weightless:
-            gravity.choice("", texts.PHYSICS_GRAVITIES, self._gravity, self._choose_gravity, SMALL)
-        self.playback.describe(speed)
-        speed.explain(texts.EXPLAIN_PHYSICS["speed"])
-        contacts.toggle(texts.PHYSICS_CONTACTS, self.contacts_drawn, lambda _: self.toggle_contacts())
-        contacts.explain(texts.EXPLAIN_PHYSICS["contacts"])
         self._describe_bench(right)
 
     def _describe_bench(self, column: Column) -> None:
@@ -228,15 +223,23 @@ class PhysicsScene(PanelScene):
             (texts.LAW_START_VALUES, self._reset),
             (texts.LAW_PLOT, self.toggle_plot),
             (texts.LAW_STEP, lambda: push("physics_step", self.exhibit, self.grip)),
+            (texts.PHYSICS_MORE[self.more], self._open_more),
         ])  # fmt: skip
         self._told: list[tuple[ButtonRow, str]] = list(
-            zip(buttons, (what["start"], what["plot"], what["inside"]), strict=True)
+            zip(buttons, (what["start"], what["plot"], what["inside"]), strict=False)
         )
         column.gap()
         if self.plot:
             self.plot.describe(column, self._progress)
             column.button(texts.LAW_CANCEL if self.measuring else texts.LAW_MEASURE, self.measure, size=SMALL)
+        if not self.more:
             return
+        if not self.exhibit.weightless:
+            column.choice("", texts.PHYSICS_GRAVITIES, self._gravity, self._choose_gravity, SMALL)
+        self.playback.describe(column)
+        column.explain(what["speed"])
+        column.toggle(texts.PHYSICS_CONTACTS, self.contacts_drawn, lambda _: self.toggle_contacts())
+        column.explain(what["contacts"])
         for words, read, key in (
             (texts.BODIES, lambda: str(len(self.exhibit.bodies)), "bodies"),
             (texts.CONTACT_POINTS, lambda: str(self.exhibit.contact_count) if self.exhibit.steps else "–", "points"),
@@ -245,6 +248,16 @@ class PhysicsScene(PanelScene):
         ):
             column.pair(words, read)
             column.explain(what[key])
+
+    @property
+    def more(self) -> bool:
+        """Whether gravity, speed, contacts and figures stand there, too."""
+        return self.context.settings.is_open(_MORE)
+
+    def _open_more(self) -> None:
+        self.context.settings.open(_MORE)
+        self.context.apply_settings()
+        self.build()
 
     def _said(self) -> str:
         """Return the law in the exhibit's own figures."""
@@ -317,7 +330,7 @@ class PhysicsScene(PanelScene):
         keys = self.form.focused is self.room_row and not controls.mouse_in_use
         held = texts.PHYSICS_HAND.format(key=controls.word(Command.CONFIRM)) if keys else texts.PHYSICS_DRAG
         rows: list[tuple[str, Colour]] = [(texts.PHYSICS_STOPPED, INK) if self.playback.stopped else (held, HUMAN)]
-        if self.exhibit.world.asleep.any():
+        if self.more and self.exhibit.world.asleep.any():
             rows.append((texts.PHYSICS_ASLEEP, MUTE))
         for words, colour in rows:
             cursor.styled(words, SMALL, colour)

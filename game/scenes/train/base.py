@@ -159,13 +159,11 @@ class TrainingScene(FormScene, ABC):
 
     def opened(self, name: str) -> bool:
         """Whether a part is open."""
-        return name in self._settings.opened.split()
+        return self._settings.is_open(name)
 
     def open(self, name: str) -> None:
         """Open a part, or close it; it stays so for this player."""
-        names = self._settings.opened.split()
-        names = [each for each in names if each != name] if name in names else [*names, name]
-        self._settings.opened = " ".join(sorted(names))
+        self._settings.open(name)
         self.context.apply_settings()
         self.knobs.every = self.opened(KNOBS)
 

@@ -5,7 +5,7 @@ import pytest
 
 from game.scenes.digits.quiz import QuizScene
 from game.scenes.digits.scene import DigitsScene
-from game.ui.rows import PictureRow
+from game.ui.virtual_pointer import PictureRow
 from tests.support.player import DEVICES, Player
 from tests.support.screens import reader
 
