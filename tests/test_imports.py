@@ -28,13 +28,13 @@ EXTRA = {
 }
 # The floors inside `ai` and `game`, from the bottom up: a package imports from itself and from those before it.
 AI_FLOORS = (
-    "ai.files", "ai.nn", "ai.environment", "ai.run", "ai.lander", "ai.flights", "ai.agent", "ai.digits", "ai.explain",
-    "ai.training", "ai.copilot", "ai.gym", "ai.sweep", "ai.cli",
+    "ai.files", "ai.nn", "ai.environment", "ai.run", "ai.lander", "ai.pilots", "ai.flights", "ai.agent", "ai.digits",
+    "ai.explain", "ai.training", "ai.copilot", "ai.gym", "ai.sweep", "ai.cli",
 )  # fmt: skip
 GAME_FLOORS = (
     "game.core", "game.input", "game.audio", "game.drawing", "game.ui", "game.flight", "game.training",
-    "game.world", "game.panels", "game.lesson", "game.digits", "game.learn",
-    "game.export", "game.shell", "game.scenes", "game.start", "game.verify", "game.cli",
+    "game.world", "game.panels", "game.digits", "game.export", "game.shell", "game.scenes", "game.start", "game.verify",
+    "game.cli",
 )  # fmt: skip
 # These only describe what is handed to them from above, for the type checker.
 DESCRIBED_FROM_ABOVE = {"game.core.scene"}

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from ai.digits.checkpoints import TRAINING_FILE, read_summary
 from ai.digits.classifier import DIGITS_FILE, NETWORK
+from ai.digits.training import read_summary
 from ai.files import brief
+from ai.run import TRAINING_FILE
 from game.core import texts
 from game.core.collection import Collection, ItemKind
 from game.core.names import LONGEST_NAME
