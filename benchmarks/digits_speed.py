@@ -3,8 +3,8 @@
     python -m benchmarks.digits_speed
 
 The convolutional network is 5x5x16, ReLU, pool, 5x5x32, ReLU, pool, 128, ReLU, 10 with softmax cross-entropy;
-a step is 100 images of 28 x 28 forward, backward, and plain gradient descent. "Padded" keeps 28 x 28 and 14 x 14
-through the convolutions. PyTorch is measured in its default layout and in channels_last. The dense network is
+a step is 100 images of 28 x 28 forward, backward, and plain gradient descent. PyTorch is
+measured in its default layout and in channels_last. The dense network is
 784-100-50-10, tanh, squared error; an epoch is 60,000 images in batches of 500. All sides take turns, so that a
 busy machine slows all.
 """
@@ -42,10 +42,10 @@ BATCH, RATE = 100, 0.01
 Task = Callable[[], object]
 
 
-def convolutional_network(padding: int) -> NeuralNetwork:
+def convolutional_network() -> NeuralNetwork:
     network, shape = NeuralNetwork(*CostFunctions.use_softmax_cross_entropy()), (28, 28, 1)
     for filters in (16, 32):
-        convolution = ConvolutionLayer(shape, filters, kernel=5, padding=padding)
+        convolution = ConvolutionLayer(shape, filters, kernel=5)
         pooling = MaxPoolingLayer(convolution.outputs)
         network.add_layer(convolution).add_layer(ActivationLayer(*ActivationFunctions.use_relu())).add_layer(pooling)
         shape = pooling.outputs
@@ -61,12 +61,12 @@ def dense_network() -> NeuralNetwork:
     return network
 
 
-def torch_convolutional(padding: int, layout: "torch.memory_format") -> "torch.nn.Module":
-    nn, side = torch.nn, 7 if padding else 4
+def torch_convolutional(layout: "torch.memory_format") -> "torch.nn.Module":
+    nn = torch.nn
     return nn.Sequential(
-        *(nn.Conv2d(1, 16, 5, padding=padding), nn.ReLU(), nn.MaxPool2d(2)),
-        *(nn.Conv2d(16, 32, 5, padding=padding), nn.ReLU(), nn.MaxPool2d(2)),
-        *(nn.Flatten(), nn.Linear(32 * side * side, 128), nn.ReLU(), nn.Linear(128, 10)),
+        *(nn.Conv2d(1, 16, 5), nn.ReLU(), nn.MaxPool2d(2)),
+        *(nn.Conv2d(16, 32, 5), nn.ReLU(), nn.MaxPool2d(2)),
+        *(nn.Flatten(), nn.Linear(32 * 4 * 4, 128), nn.ReLU(), nn.Linear(128, 10)),
     ).to(memory_format=layout)
 
 
@@ -83,14 +83,14 @@ def digits(count: int) -> tuple[np.ndarray, np.ndarray]:
     return rng.random((count, 784), np.float32), np.eye(10, dtype=np.float32)[rng.integers(0, 10, count)]
 
 
-def convolution_steps(padding: int) -> list[Task]:
+def convolution_steps() -> list[Task]:
     x, y = digits(BATCH)
-    network, optimizer, images = convolutional_network(padding), SGD(RATE), x.reshape(-1, 28, 28, 1)
+    network, optimizer, images = convolutional_network(), SGD(RATE), x.reshape(-1, 28, 28, 1)
     tasks: list[Task] = [lambda: network.train_batch(images, y, optimizer)]
     if torch is not None:
         labels = torch.from_numpy(y.argmax(axis=1))
         for layout in (torch.contiguous_format, torch.channels_last):
-            model = torch_convolutional(padding, layout)
+            model = torch_convolutional(layout)
             theirs = torch.from_numpy(x).reshape(-1, 1, 28, 28).to(memory_format=layout)
             tasks.append(torch_step(model, theirs, labels, torch.nn.functional.cross_entropy))
     return tasks
@@ -123,11 +123,11 @@ def torch_step(
 
 def guesses() -> list[Task]:
     image = digits(1)[0].reshape(28, 28, 1)
-    network = convolutional_network(2)
+    network = convolutional_network()
     tasks: list[Task] = [lambda: network.predict(image)]
     if torch is not None:
         for layout in (torch.contiguous_format, torch.channels_last):
-            model = torch_convolutional(2, layout)
+            model = torch_convolutional(layout)
             theirs = torch.from_numpy(image).reshape(1, 1, 28, 28).to(memory_format=layout)
             tasks.append(torch.no_grad()(lambda model=model, theirs=theirs: model(theirs)))
     return tasks
@@ -142,9 +142,8 @@ def main() -> None:
     print(f"{versions}, one thread; medians in ms\n")
     print(f"{'':44}{'ours':>8}{'PyTorch':>10}{'ratio':>8}{'ch. last':>10}{'ratio':>8}")
     for name, tasks, calls, rounds in (
-        (f"convolutions, padded, step of {BATCH}", convolution_steps(2), 1, 60),
-        (f"convolutions, not padded, step of {BATCH}", convolution_steps(0), 1, 60),
-        ("convolutions, padded, guess of one image", guesses(), 50, 20),
+        (f"convolutions, step of {BATCH}", convolution_steps(), 1, 60),
+        ("convolutions, guess of one image", guesses(), 50, 20),
         ("784-100-50-10 tanh, epoch of 60,000", dense_epochs(), 1, 12),
     ):
         ours, *theirs = (microseconds / 1000 for microseconds in medians(*tasks, calls=calls, rounds=rounds))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,52 +16,45 @@ if TYPE_CHECKING:
 T = TypeVar("T", bound=np.generic)
 
 
+class _Part:
+    """Part of a table of the world's state that belongs to a body: read as a view, set by assignment in all worlds."""
+
+    def __init__(self, table: str, part: int | slice) -> None:
+        self._table, self._part = table, part
+
+    def __set_name__(self, owner: type[Body], name: str) -> None:
+        self._name = name
+
+    def __get__(self, body: Body, owner: type[Body]) -> Array:
+        return _read_only(getattr(body.world.state, self._table)[:, body.index, self._part])
+
+    def __set__(self, body: Body, value: object) -> None:
+        values: dict[str, Any] = {self._name: value}
+        body.set(**values)
+
+
 class Body:
     """Handle on one body, which exists once in each of `world.batch` worlds.
 
     Arrays read through a handle are views that later steps change. They can't be written to: assign a whole
     property, or use `set` for some of the worlds, so that cached rotations, boxes and contacts are updated.
+
+    Attributes:
+        position: centre of mass in metres, (batch, 2).
+        angle: radians, counter-clockwise, unwrapped, (batch,).
+        velocity: metres a second, (batch, 2).
+        angular_velocity: radians a second, (batch,).
+
     """
+
+    position = _Part("pose", slice(2))
+    angle = _Part("pose", 2)
+    velocity = _Part("velocity", slice(2))
+    angular_velocity = _Part("velocity", 2)
 
     def __init__(self, world: World, index: int) -> None:
         self.world = world
         self.index = index
-
-    @property
-    def position(self) -> Array:
-        """Centre of mass in metres, (batch, 2)."""
-        return _read_only(self.world.state.pose[:, self.index, :2])
-
-    @position.setter
-    def position(self, value: object) -> None:
-        self.set(position=value)
-
-    @property
-    def angle(self) -> Array:
-        """Radians, counter-clockwise, unwrapped, (batch,)."""
-        return _read_only(self.world.state.pose[:, self.index, 2])
-
-    @angle.setter
-    def angle(self, value: object) -> None:
-        self.set(angle=value)
-
-    @property
-    def velocity(self) -> Array:
-        """Metres a second, (batch, 2)."""
-        return _read_only(self.world.state.velocity[:, self.index, :2])
-
-    @velocity.setter
-    def velocity(self, value: object) -> None:
-        self.set(velocity=value)
-
-    @property
-    def angular_velocity(self) -> Array:
-        """Radians a second, (batch,)."""
-        return _read_only(self.world.state.velocity[:, self.index, 2])
-
-    @angular_velocity.setter
-    def angular_velocity(self, value: object) -> None:
-        self.set(angular_velocity=value)
 
     @property
     def active(self) -> Bools:
@@ -71,17 +64,6 @@ class Body:
     @active.setter
     def active(self, value: object) -> None:
         self.world.state.active[:, self.index] = value
-
-    @property
-    def asleep(self) -> Bools:
-        """Whether the body lies still and is left alone until something changes about what it lies with, (batch,)."""
-        return _read_only(self.world.asleep[:, self.index])
-
-    def wake(self, mask: Bools | None = None) -> None:
-        """Wake the body, and all that it lies with, in the worlds of `mask` (batch,), or in all."""
-        chosen = np.zeros(self.world.state.active.shape, dtype=bool)
-        chosen[:, self.index] = True if mask is None else mask
-        self.world.wake(chosen)
 
     @property
     def static(self) -> bool:
@@ -128,14 +110,17 @@ class Body:
         """
         worlds = None if mask is None else np.asarray(mask, dtype=bool)
         rows = slice(None) if worlds is None else worlds
-        state = self.world.state
-        places = (
-            (state.pose, slice(2), "position", position),
-            (state.pose, 2, "angle", angle),
-            (state.velocity, slice(2), "velocity", velocity),
-            (state.velocity, 2, "angular velocity", angular_velocity),
-        )
-        given = [(table, part, finite(name, value)) for table, part, name, value in places if value is not None]
+        pose, motion = self.world.state.pose, self.world.state.velocity
+        given = [
+            (table, part, finite(name, value))
+            for table, part, name, value in (
+                (pose, slice(2), "position", position),
+                (pose, 2, "angle", angle),
+                (motion, slice(2), "velocity", velocity),
+                (motion, 2, "angular velocity", angular_velocity),
+            )
+            if value is not None
+        ]
         for table, part, value in given:
             table[rows, self.index, part] = value
         if self.static or position is not None or angle is not None:

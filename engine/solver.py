@@ -15,6 +15,8 @@ from engine.contacts import Contacts
 from engine.state import BodyParams, BodyState
 from engine.vector import Array, cross, right_of
 
+# Speed from which bodies rebound; m/s.
+REBOUND = 0.25
 # Overlap that is left alone, so that resting contacts persist; metres.
 SLOP = 0.005
 # Share of the overlap beyond SLOP that one step corrects.
@@ -44,15 +46,15 @@ class Solver:
         self._spans = [slice(start, end) for start, end in pairwise([0, *ends])]  # of each colour
         self._colours = [self._constraints.part(span) for span in self._spans]
 
-    def solve_velocities(self, state: BodyState, iterations: int, restitution_threshold: float, dt: float) -> None:
+    def solve_velocities(self, state: BodyState, iterations: int, dt: float) -> None:
         """Apply normal impulses, with restitution, and friction to the velocities; add them to the contacts'.
 
-        A point that closes faster than the threshold (m/s) is to part at e times that speed, with e the restitution;
+        A point that closes faster than REBOUND is to part at e times that speed, with e the restitution;
         any other is to close no faster than its gap allows. `target` (2, m) is that least speed of parting, below 0
         where a gap is left.
         """
         contacts, closing = self._contacts, self._approach[:2]
-        rebound = np.where(closing > restitution_threshold, contacts.restitution * closing, 0.0)
+        rebound = np.where(closing > REBOUND, contacts.restitution * closing, 0.0)
         # Where there still is a gap, this step may use it up.
         target = np.where(rebound > 0, rebound, np.minimum(contacts.depth.T, 0.0) / dt)
         velocity = state.velocity.reshape(-1)

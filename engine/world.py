@@ -26,10 +26,9 @@ class World:
     """`batch` independent worlds under `gravity` (m/s²), advanced together by `step`.
 
     Bodies live in fixed slots, the same in every world; `active` masks, not shorter lists, take one out. `gravity` may
-    be reassigned at any time to (2,) or (batch, 2), and so may `iterations` of the solver. Bodies rebound if they close
-    at `restitution_threshold` m/s or more. After a step, `contacts` holds what touched in it (or would have, but for
-    2 mm), with closing speeds and impulses; contacts of sleeping bodies come last. Raises ValueError for values without
-    physical sense.
+    be reassigned at any time to (2,) or (batch, 2), and so may `iterations` of the solver. After a step, `contacts`
+    holds what touched in it (or would have, but for 2 mm), with closing speeds and impulses; contacts of sleeping
+    bodies come last. Raises ValueError for values without physical sense.
 
     Unless `sleeping` is off, what lies still falls asleep and costs little, until something about it changes. So that
     it comes to lie still, impulses pass over to the points that take the place of others, and overlaps of up to 1.5 cm
@@ -42,18 +41,14 @@ class World:
         batch: int = 1,
         *,
         iterations: int = 10,
-        restitution_threshold: float = 0.25,
         sleeping: bool = True,
     ) -> None:
         if batch < 1:
             raise ValueError(f"a world needs a batch of at least 1, not {batch}")
-        if not restitution_threshold >= 0:
-            raise ValueError(f"the speed from which bodies rebound must be 0 m/s or more, not {restitution_threshold}")
         self.batch = batch
         self._impulses: Contacts | None = None  # those of the last step's contacts whose impulses begin the next one
         self.gravity = gravity
         self.iterations = iterations
-        self.restitution_threshold = restitution_threshold
         self.sleeping = sleeping
         self.state = BodyState.at_rest(np.zeros((batch, 0, 3)))
         self.params = BodyParams.empty()
@@ -171,7 +166,7 @@ class World:
             solver = Solver(state, params, contacts)
         integrate_velocity(state, params, movers, gravity, DT, rest.awake)
         if solver:
-            solver.solve_velocities(state, self.iterations, self.restitution_threshold, DT)
+            solver.solve_velocities(state, self.iterations, DT)
         integrate_position(state, movers, DT, rest.awake)
         if solver:
             solver.correct_positions(state, max(2, self.iterations // 3), DT, lenient=self.sleeping)
@@ -226,11 +221,10 @@ class World:
         self._prepare()
         return self._rest.asleep.copy()
 
-    def wake(self, chosen: Bools | None = None) -> None:
-        """Wake the chosen bodies (batch, bodies) and all that they lie with, or every body in every world."""
+    def wake(self) -> None:
+        """Wake every body in every world."""
         self._prepare()
-        every = np.ones(self.state.active.shape, dtype=bool)
-        self._rest.wake(every if chosen is None else chosen, self.contacts)
+        self._rest.wake(np.ones(self.state.active.shape, dtype=bool), self.contacts)
 
     def moved(self, body: int, worlds: Bools | None = None) -> None:
         """Take note that a body was put elsewhere by hand, in these worlds or in all: its contacts no longer apply."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Final, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from ai.environment import Bools, Floats, Ints
 
 Real = TypeVar("Real", np.float32, np.float64)
-_ROWS: Final = ("observation", "action", "best", "values")  # what has a row for each lander
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,23 +55,20 @@ class Decision:
 
     def updated(self, slots: Ints, newer: Decision) -> Decision:
         """Return the decisions of all n landers, with those of `slots` (m,) replaced by `newer` ones."""
-
-        def put(old: Any, new: Any) -> Any:
-            if old is None or new is None:
-                return None
-            both = old.copy()
-            both[slots] = new
-            return both
-
-        return replace(newer, **{name: put(getattr(self, name), getattr(newer, name)) for name in _ROWS})
+        both = {name: array.copy() for name, array in self._rows.items() if name in newer._rows}
+        for name, array in both.items():
+            array[slots] = newer._rows[name]
+        return replace(newer, values=both.pop("values", None), **both)
 
     def of(self, slot: int) -> Decision:
         """Return a copy of the decision for one of the landers, with n = 1."""
+        return replace(self, **{name: array[[slot]] for name, array in self._rows.items()})
 
-        def row(array: Any) -> Any:
-            return None if array is None else array[[slot]]
-
-        return replace(self, **{name: row(getattr(self, name)) for name in _ROWS})
+    @property
+    def _rows(self) -> dict[str, Any]:
+        """What has a row for each lander."""
+        rows = {"observation": self.observation, "action": self.action, "best": self.best, "values": self.values}
+        return {name: array for name, array in rows.items() if array is not None}
 
 
 def decide(

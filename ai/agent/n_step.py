@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any, Final
 
 import numpy as np
@@ -29,7 +29,13 @@ class NStep:
 
     def __init__(self, n: int, discount: float) -> None:
         self.n, self.discount = n, discount
-        self._states: Floats | None = None
+        self._start(0, 0)
+
+    def _start(self, slots: int, num_features: int) -> None:
+        self._states: Floats = np.zeros((self.n, slots, num_features), dtype=np.float32)
+        self._actions: Ints = np.zeros((self.n, slots), dtype=np.intp)
+        self._returns: Floats = np.zeros((self.n, slots), dtype=np.float32)
+        self._open: Bools = np.zeros((self.n, slots), dtype=bool)
 
     def add(
         self, state: Floats, action: Ints, reward: Floats, next_state: Floats, terminal: Bools, ended: Bools
@@ -37,12 +43,11 @@ class NStep:
         """Take one decision of every slot; return the m transitions that are now complete, and their slots (m,).
 
         `state` and `next_state` are (slots, features), the others (slots,). `terminal` marks a next state without
-        value, `ended` any end of an episode. A transition's `reward` is the discounted sum, its `steps` how many it
-        has. Slots that have ended before and wait for a reset must not be passed on with a new decision.
+        value, `ended` any end of an episode. Slots that have ended and wait for a reset must not be passed on with a
+        new decision.
         """
-        if self._states is None or self._states.shape[1:] != state.shape:
-            self._start(state)
-        assert self._states is not None
+        if self._states.shape[1:] != state.shape:
+            self._start(*state.shape)
         for rows, newest in ((self._states, state), (self._actions, action), (self._returns, 0.0), (self._open, True)):
             rows[:-1], rows[-1] = rows[1:], newest
         age = np.arange(self.n - 1, -1, -1)[:, None]  # decisions ago
@@ -62,9 +67,7 @@ class NStep:
 
     def state(self) -> dict[str, Any]:
         """Return copies of all that the next `add` depends on, besides the settings."""
-        if self._states is None:
-            return {}
-        return {name: getattr(self, name).copy() for name in _KEPT}
+        return {name: getattr(self, name).copy() for name in _KEPT} if self._states.size else {}
 
     def load_state(self, state: Mapping[str, Any], observation: Floats) -> None:
         """Go on from what `state` returned, for observations like this one (slots, features).
@@ -72,70 +75,58 @@ class NStep:
         Raises KeyError, TypeError or ValueError for anything else.
         """
         if state:
-            self._start(observation)
+            self._start(*observation.shape)
             oldest = count_of(state.get("count", 0)) % self.n  # earlier versions wrote rows in a ring
             for name in _KEPT:
                 rows = array_like(getattr(self, name), state[name], name)
                 setattr(self, name, np.roll(rows, -oldest, axis=0))
 
-    def _start(self, state: Floats) -> None:
-        shape = (self.n, len(state))
-        self._states = np.zeros((*shape, state.shape[1]), dtype=np.float32)
-        self._actions = np.zeros(shape, dtype=np.intp)
-        self._returns = np.zeros(shape, dtype=np.float32)
-        self._open = np.zeros(shape, dtype=bool)
-
 
 class Episodes:
-    """Transitions of episodes that go on, until those that end well are passed on whole."""
+    """Transitions of episodes that go on, with the slot of each, until those that end well are passed on whole."""
 
     def __init__(self, num_features: int) -> None:
-        self._transitions, self._slots = _zeros(0, num_features), np.zeros(0, dtype=np.intp)
+        self._forget(num_features)
+
+    def _forget(self, num_features: int, count: int = 0) -> None:
+        """Begin with so many transitions in which all is 0."""
+        states, numbers = np.zeros((count, num_features), dtype=np.float32), np.zeros(count, dtype=np.intp)
+        rewards, terminal = np.zeros(count, dtype=np.float32), np.zeros(count, dtype=bool)
+        self._transitions, self._slots = Transition(states, states, numbers, rewards, terminal, numbers), numbers
 
     def add(self, transitions: Transition, slots: Ints, ended: Bools, success: Bools) -> list[Transition]:
         """Take m new transitions with their slots (m,); return every successful episode that is now whole.
 
         `ended` and `success` are of all slots, (slots,).
         """
-        self._transitions = joined([self._transitions, transitions])
+        columns = zip(self._transitions, transitions, strict=True)
+        self._transitions = Transition(*(np.concatenate(column) for column in columns))
         self._slots = np.concatenate([self._slots, slots])
-        if not ended.any():
-            return []
         whole = [_taken(self._transitions, self._slots == slot) for slot in np.flatnonzero(ended & success)]
-        goes_on = ~ended[self._slots]
-        self._transitions, self._slots = _taken(self._transitions, goes_on), self._slots[goes_on]
+        if ended.any():
+            goes_on = ~ended[self._slots]
+            self._transitions, self._slots = _taken(self._transitions, goes_on), self._slots[goes_on]
         return whole
 
     def state(self) -> dict[str, Any]:
         """Return copies of all that was collected: transitions by field, and their slots."""
-        if not len(self._slots):
-            return {}
-        return {"slots": self._slots.copy()} | {name: part.copy() for name, part in self._transitions._asdict().items()}
+        held = {"slots": self._slots, **self._transitions._asdict()}
+        return {name: part.copy() for name, part in held.items()} if len(self._slots) else {}
 
     def load_state(self, state: Mapping[str, Any], observation: Floats) -> None:
         """Go on from what `state` returned, or from nothing, for observations like this one (slots, features).
 
         Raises KeyError, TypeError or ValueError for anything else.
         """
-        like = _zeros(len(state["slots"]) if state else 0, observation.shape[1])
-        slots = array_like(like.steps, state["slots"], "slots") if state else like.steps
-        if (slots < 0).any() or (slots >= len(observation)).any():
-            raise ValueError("transitions are of no slot of the environment")
-        parts = like._asdict().items() if state else ()
-        self._transitions = like._replace(**{name: array_like(part, state[name], name) for name, part in parts})
-        self._slots = slots
-
-
-def joined(parts: Sequence[Transition]) -> Transition:
-    """Return batches of transitions as one."""
-    return Transition(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+        self._forget(observation.shape[1], len(state["slots"]) if state else 0)
+        if state:
+            held = {"slots": self._slots, **self._transitions._asdict()}
+            held = {name: array_like(part, state[name], name) for name, part in held.items()}
+            self._slots = held.pop("slots")
+            self._transitions = Transition(**held)
+            if (self._slots < 0).any() or (self._slots >= len(observation)).any():
+                raise ValueError("transitions are of no slot of the environment")
 
 
 def _taken(transitions: Transition, rows: Bools) -> Transition:
     return Transition(*(part[rows] for part in transitions))
-
-
-def _zeros(count: int, num_features: int) -> Transition:
-    """Return so many transitions in which all is 0."""
-    states, numbers = np.zeros((count, num_features), dtype=np.float32), np.zeros(count, dtype=np.intp)
-    return Transition(states, states, numbers, np.zeros(count, dtype=np.float32), np.zeros(count, dtype=bool), numbers)

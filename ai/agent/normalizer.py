@@ -23,10 +23,13 @@ class Normalizer:
     """
 
     def __init__(self, num_features: int) -> None:
-        self.count = 0
-        self.mean: Doubles = np.zeros(num_features)
-        self.squares: Doubles = np.zeros(num_features)
-        self._refresh()
+        self._set(0, np.zeros(num_features), np.zeros(num_features))
+
+    def _set(self, count: int, mean: Doubles, squares: Doubles) -> None:
+        self.count, self.mean, self.squares = count, mean, squares
+        spread = np.sqrt(squares / max(1, count))
+        self._shift = mean.astype(np.float32)
+        self._factor = (1.0 / np.where(spread > 1e-6, spread, 1.0)).astype(np.float32)
 
     def update(self, observations: Floats) -> None:
         """Update mean and deviation by n more observations (n, features) (Chan, Golub and LeVeque 1983).
@@ -35,10 +38,8 @@ class Normalizer:
         """
         new, mean = len(observations), observations.mean(axis=0, dtype=float)
         shift, total = mean - self.mean, self.count + new
-        self.squares += ((observations - mean) ** 2).sum(axis=0) + shift**2 * (self.count * new / total)
-        self.mean += shift * (new / total)
-        self.count = total
-        self._refresh()
+        squares = ((observations - mean) ** 2).sum(axis=0) + shift**2 * (self.count * new / total)
+        self._set(total, self.mean + shift * (new / total), self.squares + squares)
 
     def __call__(self, observations: Floats) -> Floats:
         """Return observations (n, features) in standard deviations from the mean, clipped at REACH, float32."""
@@ -55,10 +56,4 @@ class Normalizer:
         finite = np.isfinite(mean).all() and np.isfinite(squares).all() and (squares >= 0).all()
         if mean.shape != self.mean.shape or squares.shape != mean.shape or not finite:
             raise ValueError(f"the scale of observations needs {len(self.mean)} finite means and squares")
-        self.count, self.mean, self.squares = count_of(values["count"]), mean, squares
-        self._refresh()
-
-    def _refresh(self) -> None:
-        spread = np.sqrt(self.squares / max(1, self.count))
-        self._shift = self.mean.astype(np.float32)
-        self._factor = (1.0 / np.where(spread > 1e-6, spread, 1.0)).astype(np.float32)
+        self._set(count_of(values["count"]), mean, squares)

@@ -32,10 +32,12 @@ MemoryCell = Transition  # as the first description of this project calls it
 class ReplayBuffer:
     """Replay buffer of the last `capacity` transitions. When it is full, the oldest `prune` are dropped at once.
 
+    It is a ring: the `size` transitions that are kept lie at rows `start`, `start` + 1 and so on, modulo the capacity.
     Drawing is uniform, with replacement (Lin 1992). Raises ValueError for a `prune` outside 1 to `capacity`.
 
     Attributes:
-        transitions: as views, each (capacity, ...), in no particular order.
+        transitions: all rows as views, each (capacity, ...).
+        added: how many were ever added, dropped ones included.
         importance: exponent of the importance-sampling weights, without effect where drawing is uniform.
 
     """
@@ -55,38 +57,34 @@ class ReplayBuffer:
         ]
         self.records = np.zeros(capacity, np.dtype(fields, align=True))
         self.transitions = _fields(self.records)
-        self.start = 0  # where the oldest lies
-        self.size = 0
-        self.added = 0  # ever, dropped ones included
+        self.start = self.size = self.added = 0
         self.importance = 0.0
 
     def __len__(self) -> int:
         return self.size
 
     def add(self, transitions: Transition) -> Ints:
-        """Keep a batch of n transitions, oldest first, and return where they lie, (n,)."""
+        """Keep a batch of n transitions, oldest first, and return the rows where they lie, (n,)."""
         self.added += len(transitions.action)
         new = np.empty(len(transitions.action), self.records.dtype)
         for name, part in zip(Transition._fields, transitions, strict=True):
             new[name] = part
         new = new[-self.capacity :]
-        count = len(new)
-        if self.size + count > self.capacity:
-            self._drop(min(self.size, max(self.prune, self.size + count - self.capacity)))
-        rows = (self.start + self.size + np.arange(count)) % self.capacity
+        over = self.size + len(new) - self.capacity
+        if over > 0:
+            self._drop(min(self.size, max(self.prune, over)))
+        rows = (self.start + self.size + np.arange(len(new))) % self.capacity
         self.records[rows] = new
-        self.size += count
+        self.size += len(new)
         return rows
 
     def sample(self, count: int, rng: np.random.Generator) -> tuple[Transition, Ints, Floats]:
         """Draw `count` transitions; return them, the rows where they lie, and their weights in the cost, (count,)."""
-        rows = rng.integers(self.size, size=count)
-        rows += self.start
-        rows %= self.capacity
+        rows = (rng.integers(self.size, size=count) + self.start) % self.capacity
         return self.at(rows), rows, np.ones(count, dtype=np.float32)
 
     def at(self, rows: Ints) -> Transition:
-        """Return the transitions that lie at `rows`, stacked."""
+        """Return copies of the transitions that lie at `rows`, stacked."""
         return _fields(self.records.take(rows))
 
     def update_priorities(self, rows: Ints, errors: Floats) -> None:
@@ -97,6 +95,7 @@ class ReplayBuffer:
         self._drop(self.size)
 
     def _drop(self, count: int) -> None:
+        """Forget the oldest."""
         self.start = (self.start + count) % self.capacity
         self.size -= count
 
@@ -107,90 +106,49 @@ def _fields(records: NDArray[np.void]) -> Transition:
 
 
 class PrioritisedReplayBuffer(ReplayBuffer):
-    """Prioritised replay: sampling with probability proportional to |error|^exponent (Schaul et al. 2016).
+    """Prioritised replay (Schaul et al. 2016): transition i is drawn with the chance Pᵢ = pᵢ / Σ p.
 
-    New ones get the `largest` priority seen, so that each is drawn soon. `importance`, which the agent raises
-    towards 1, is the exponent β by which the weights undo the bias that this brings; `exponent` is the paper's α.
+    Its priority is pᵢ = (|error| + 0.001)^α, with α the `exponent`; a new one gets the `largest` seen, so that it is
+    drawn soon. What is drawn more often than others counts less, by the weight (size · Pᵢ)^-β, with β the `importance`,
+    which the agent raises towards 1.
     """
 
     def __init__(
         self, capacity: int, num_features: int, prune: int = 1, exponent: float = 0.6, importance: float = 0.4
     ) -> None:
         super().__init__(capacity, num_features, prune)
-        self.exponent, self.importance = exponent, importance
-        self.tree = SumTree(capacity)
-        self.largest = 1.0
+        self.exponent, self.importance, self.largest = exponent, importance, 1.0
+        self.priorities: Doubles = np.zeros(capacity)  # 0 where nothing lies
 
     def add(self, transitions: Transition) -> Ints:
-        """Keep a batch of n transitions, oldest first, and return where they lie, (n,)."""
+        """Keep a batch of n transitions, oldest first, and return the rows where they lie, (n,)."""
         rows = super().add(transitions)
-        self.tree.set(rows, np.full(len(rows), self.largest))
+        self.priorities[rows] = self.largest
         return rows
 
     def sample(self, count: int, rng: np.random.Generator) -> tuple[Transition, Ints, Floats]:
         """Draw `count` transitions; return them, the rows where they lie, and their weights in the cost, (count,).
 
-        Weights are (size · probability)^-β, with β the `importance`, relative to the largest of those drawn.
+        Rows are found in the running sum of all priorities, by one draw from each of `count` equal parts of the total:
+        less noise than independent draws. Weights are relative to the largest of them.
         """
-        # One draw from each of `count` equal parts of the total: less noise than independent draws.
-        rows = self.tree.find((np.arange(count) + rng.random(count)) / count * self.tree.total)
+        reached = self.priorities.cumsum()
+        draws = (np.arange(1, count + 1) - rng.random(count)) / count * reached[-1]  # above 0: no empty row is found
+        rows = reached.searchsorted(draws)
         rng.shuffle(rows)
-        chance = self.tree.leaves[rows] / self.tree.total
+        chance = self.priorities[rows] / reached[-1]
         weights = (chance * self.size) ** -self.importance
         return self.at(rows), rows, (weights / weights.max()).astype(np.float32)
 
     def update_priorities(self, rows: Ints, errors: Floats) -> None:
-        """Set the priorities of the transitions at `rows` by their errors (n,): (|error| + 0.001)^α."""
+        """Set the priorities of the transitions at `rows` by their errors (n,); of a row twice, the last counts."""
         priorities = (np.abs(errors).astype(float) + 1e-3) ** self.exponent
         self.largest = max(self.largest, float(priorities.max()))
-        self.tree.set(rows, priorities)
+        self.priorities[rows] = priorities
 
     def _drop(self, count: int) -> None:
-        self.tree.set((self.start + np.arange(count)) % self.capacity, np.zeros(count))
+        self.priorities[(self.start + np.arange(count)) % self.capacity] = 0.0
         super()._drop(count)
-
-
-class SumTree:
-    """Binary tree of sums (Schaul et al. 2016, appendix B.2.1).
-
-    Batches of priorities are set, and found by cumulative weight, in O(log capacity) operations of NumPy.
-    """
-
-    def __init__(self, capacity: int) -> None:
-        self.depth = max(1, int(np.ceil(np.log2(capacity))))
-        self.first_leaf = 1 << self.depth
-        self.nodes: Doubles = np.zeros(2 * self.first_leaf)  # node k has children 2k and 2k + 1
-
-    @property
-    def total(self) -> float:
-        """Sum of all priorities."""
-        return float(self.nodes[1])
-
-    @property
-    def leaves(self) -> Doubles:
-        """The priorities, as a view."""
-        return self.nodes[self.first_leaf :]
-
-    def set(self, rows: Ints, priorities: Doubles) -> None:
-        """Set the priorities of some rows; of a row named twice, the last counts."""
-        nodes = rows + self.first_leaf
-        self.nodes[nodes] = priorities
-        for _ in range(self.depth):  # up to the root; where many rows share parents, each is summed once
-            nodes = np.unique(nodes >> 1) if len(nodes) > 64 else nodes >> 1
-            self.nodes[nodes] = self.nodes[2 * nodes] + self.nodes[2 * nodes + 1]
-
-    def find(self, weights: Doubles) -> Ints:
-        """Rows (n,) in which the running sum of priorities passes `weights` (n,), each below the total."""
-        nodes = np.ones(len(weights), dtype=np.intp)
-        left_over = weights.copy()
-        for _ in range(self.depth):
-            nodes *= 2
-            left = self.nodes[nodes]
-            # Rounding may leave a hair too much: never walk into an empty branch.
-            right = (left_over >= left) & (self.nodes[nodes + 1] > 0)
-            left_over -= left * right
-            nodes += right
-        return nodes - self.first_leaf
 
 
 def make_replay(config: AgentConfig, num_features: int) -> ReplayBuffer:

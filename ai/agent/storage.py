@@ -18,15 +18,17 @@ from ai.files import (
     NETWORK,
     FolderKind,
     array_like,
+    atomic_folder,
     check_header,
     count_of,
     inside,
     number_of,
     read_arrays,
     read_json,
+    recover_folder,
 )
-from ai.nn import ModelFormatError, NeuralNetwork, Optimizer, atomic_folder, recover_folder
-from ai.nn.limits import WIDEST
+from ai.nn import ModelFormatError, NeuralNetwork, Optimizer
+from ai.nn.layer import WIDEST
 from ai.nn.storage import noted
 
 if TYPE_CHECKING:
@@ -48,10 +50,7 @@ _SLACK: Final = 1 << 16  # bytes of an archive beside its numbers
 
 
 def save_agent(agent: DeepQAgent, folder: str | Path) -> None:
-    """Write an agent to a folder, whole or not at all.
-
-    Raises OSError if it cannot be written, FileExistsError if the folder holds something else.
-    """
+    """Write an agent to a folder, whole or not at all; raises as `DeepQAgent.save` says."""
     with atomic_folder(folder, KIND) as temporary:
         write_agent(agent, temporary)
 
@@ -77,7 +76,7 @@ def write_agent(agent: DeepQAgent, folder: Path) -> None:
 
 
 def read_agent(folder: str | Path, make: Callable[[int, int, AgentConfig], A]) -> A:
-    """Read what `save_agent` wrote; `make` makes the agent of its numbers of features and actions and its settings.
+    """Read what `write_agent` wrote; `make` makes the agent of its numbers of features and actions and its settings.
 
     Raises ModelFormatError, which names everything that is wrong.
     """
@@ -130,16 +129,13 @@ def _sizes(network: NeuralNetwork) -> list[Any]:
 
 def _read_state(path: Path, optimizer: Optimizer, values: Floats) -> dict[str, Any]:
     """Read the arrays of an optimizer of the parameters `values`; raises OSError, or ValueError for any others."""
-    remembers = optimizer.remembers
+    shapes = {"steps": (), **dict.fromkeys(optimizer.remembers, values.shape)}
 
     def expect(name: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
-        steps = name == "steps" and shape == () and dtype.kind in "iu"
-        if not steps and not (
-            name in remembers and shape == values.shape and dtype.kind == "f" and dtype.itemsize <= 8
-        ):
+        if shape != shapes.get(name) or dtype.kind not in "iuf" or dtype.itemsize > 8:
             raise ValueError(f"{name} is no state of {type(optimizer).__name__} of {len(values):,} parameters")
 
-    return read_arrays(path, len(remembers) * values.size * 8 + _SLACK, expect)
+    return read_arrays(path, len(shapes) * values.size * 8 + _SLACK, expect)
 
 
 def agent_state(agent: DeepQAgent) -> dict[str, Any]:

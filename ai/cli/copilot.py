@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -12,7 +14,7 @@ from ai.cli import command_line as cli
 
 if TYPE_CHECKING:
     from ai.agent.agent import DeepQAgent
-    from ai.copilot.measurement import AssistedFlights
+    from ai.copilot.measurement import AssistedFlights, Help
 
 ROW: Final = 2  # flights: more of them take longer than five minutes
 _MODELS: Final = Path(__file__).parents[2] / "models" / "lander"
@@ -41,6 +43,7 @@ def add_commands(commands: Any) -> None:
         default="network",
         help="whom the imperfect pilots are made of (default: the same network)",
     )
+    table.add_argument("--pilot", type=Path, metavar="FILE", help="only a pilot of your own, over one pad and three")
     table.add_argument("--json", action="store_true", help="print one JSON object")
     table.add_argument("--workers", type=int, default=1, metavar="N", help="processes at once (default: 1)")
     table.set_defaults(run=_table)
@@ -69,6 +72,8 @@ def _table(arguments: argparse.Namespace) -> int:
         raise ValueError("the dial goes from 0 to 1")
     more = [(Mode.GUARDIAN, assist) for assist in arguments.assist]
     agent = _lander(arguments.model, (LANDER,))
+    if arguments.pilot:
+        return _told(arguments, _own(arguments, agent, [*HELPS, *more]))
     agents = {"one_pad": agent, "three_pads": agent, "other_worlds": _lander(arguments.anywhere, (ANYWHERE,))}
     flown, scripted = (arguments.episodes, arguments.seed), arguments.good == "scripted"
     asked = parts_of(agents, scripted, [*HELPS, *more], *flown)
@@ -86,6 +91,25 @@ def _table(arguments: argparse.Namespace) -> int:
     tables: dict[str, list[AssistedFlights]] = {}
     for (name, _), rows in zip(asked, parts, strict=True):
         tables.setdefault(name, []).extend(rows)
+    return _told(arguments, tables)
+
+
+def _own(arguments: argparse.Namespace, agent: DeepQAgent, helps: list[Help]) -> dict[str, list[AssistedFlights]]:
+    """Return the tables of a player's file as the hands that are helped; raises ValueError if it fails."""
+    from ai.copilot.measurement import rows
+    from ai.pilots.own import MeasuredPilot
+
+    with closing(MeasuredPilot(arguments.pilot)) as pilot:
+        return {
+            table: [
+                replace(row, pilot=arguments.pilot.stem[:20])
+                for row in rows(agent, pilot, table, ("good",), helps, arguments.episodes, arguments.seed)
+            ]
+            for table in ("one_pad", "three_pads")
+        }
+
+
+def _told(arguments: argparse.Namespace, tables: dict[str, list[AssistedFlights]]) -> int:
     if arguments.json:
         told = {name: [row.to_json() for row in table] for name, table in tables.items()}
         settings = {"good": arguments.good, "seed": arguments.seed, "episodes": arguments.episodes}

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import argparse
 import json
+from contextlib import closing
 from functools import reduce
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from ai.cli import command_line as cli
@@ -26,8 +28,11 @@ def add_commands(commands: Any) -> None:
     land.add_argument("--seed", type=int, default=0)
     land.add_argument("--spawn", help="random or hard (default: random)")
     land.add_argument("--workers", type=int, metavar="N", help="processes at once (default: 1)")
+    flown = land.add_mutually_exclusive_group(required=True)
+    flown.add_argument("--pilot", type=Path, metavar="FILE", help="a pilot of your own in place of a network")
     for command, run in ((land, _evaluate), (read, _evaluate_digits)):
-        command.add_argument("--model", type=cli.folder, required=True, metavar="DIR")
+        model = flown if command is land else command
+        model.add_argument("--model", type=cli.folder, required=command is read, metavar="DIR")
         command.add_argument("--json", action="store_true", help="print one JSON object")
         command.set_defaults(run=run)
 
@@ -36,11 +41,12 @@ def add_commands(commands: Any) -> None:
 def _evaluate(arguments: argparse.Namespace) -> int:
     from ai.lander.spawns import SPAWNS
     from ai.training.config import LANDER
-    from ai.training.statistics import wilson
 
     cli.check_ranges(arguments, episodes=FLIGHTS, seed=cli.SEEDS, workers=cli.WORKERS)
     if arguments.spawn not in (None, *SPAWNS):
         raise ValueError(f"--spawn is one of {', '.join(SPAWNS)}, not {arguments.spawn}")
+    if arguments.pilot:
+        return _told(arguments, _own(arguments))
     agent, task, env = _agent_and_task(arguments)
     episodes = arguments.episodes or task.test_episodes
     if env == LANDER:
@@ -51,6 +57,12 @@ def _evaluate(arguments: argparse.Namespace) -> int:
         raise ValueError(f"--spawn is for the lander on the moon; this network is for {env}")
     else:
         score = task.evaluate(agent, episodes, arguments.seed)
+    return _told(arguments, score)
+
+
+def _told(arguments: argparse.Namespace, score: Score) -> int:
+    from ai.training.statistics import wilson
+
     told: dict[str, Any] = score.to_json()
     if score.success is not None:
         told["success_interval"] = wilson(score.success, score.episodes)
@@ -80,6 +92,19 @@ def _agent_and_task(arguments: argparse.Namespace) -> tuple[DeepQAgent, Task[Any
     if (agent.num_features, agent.num_actions) != (task.num_features, task.num_actions):
         raise ValueError(f"the network in {arguments.model} is not made for {config.env}")
     return agent, task, config.env
+
+
+def _own(arguments: argparse.Namespace) -> Score:
+    """Fly the flights with a player's file, all at once; raises ValueError for what is wrong with it."""
+    from ai.pilots.own import MeasuredPilot
+    from ai.training.tasks import LanderTask, evaluate
+
+    if arguments.env is not None or arguments.workers is not None:
+        raise ValueError("--env and --workers are for networks")
+    cli.check_ranges(arguments, episodes=cli.EPISODES)
+    with closing(MeasuredPilot(arguments.pilot)) as pilot:
+        episodes = arguments.episodes or LanderTask.test_episodes
+        return evaluate(pilot, episodes, arguments.seed, arguments.spawn or "random")
 
 
 def _flown(arguments: argparse.Namespace, agent: DeepQAgent, episodes: int) -> Score:

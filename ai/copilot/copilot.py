@@ -70,34 +70,6 @@ class SharedDecision:
         """Values (n, pads, 6) in points of reward."""
         return in_points(self.values, self.reward_scale)
 
-    @property
-    def gain(self) -> Floats:
-        """Advantage of the co-pilot's action over the pilot's in points of reward, the least over all pads, (n,)."""
-        rows = np.arange(len(self.action))
-        more: Floats = (self.meant[rows, :, self.best] - self.meant[rows, :, self.pilot]).min(axis=1)
-        return in_points(more, self.reward_scale)
-
-
-def _candidates(pilot: Ints, best: Ints) -> Ints:
-    """Return what may be flown, (4, n), the least change first, in the order of `ActionSource`."""
-    return np.stack([pilot, pilot - pilot % _STEERS + best % _STEERS, best - best % _STEERS + pilot % _STEERS, best])
-
-
-def _checked(observation: Floats, pilot: Any, shares: Doubles | None) -> tuple[Floats, Ints, Doubles]:
-    """Return observations (n, pads, 9), actions (n,) and shares of thrust (n, 2); raises ValueError for others."""
-    observation, pilot = np.atleast_2d(observation), np.atleast_1d(pilot)
-    if observation.ndim == 2:
-        observation = observation[:, None]
-    slots = len(observation)
-    if pilot.shape != (slots,) or pilot.dtype.kind not in "iu":
-        raise ValueError(f"pilot actions must be {slots} whole numbers, not {pilot.dtype} {pilot.shape}")
-    if ((pilot < 0) | (pilot >= NUM_ACTIONS)).any():
-        raise ValueError(f"actions run from 0 to {NUM_ACTIONS - 1}, not {pilot.min()} to {pilot.max()}")
-    pushed = ACTION_SHARES[pilot] if shares is None else np.asarray(shares, dtype=float)
-    if pushed.shape != (slots, 2):
-        raise ValueError(f"shares of thrust must be {slots} rows of two, not {pushed.shape}")
-    return observation, pilot, pushed
-
 
 def guardian_margin(assist: Any) -> Any:
     """Return by how many points of reward the guardian must be better than the pilot, for assist (n,), 0 to 1."""
@@ -123,34 +95,23 @@ class CoPilot:
     co-pilot's own is worth more on the way to every pad by a margin, which falls from infinity at assist 0 to 0 at
     assist 1; hands off are as in tolerance mode.
 
-    Of several pads, only those count that may still be meant, by what the pilot has done so far
-    (`ai.copilot.intent`); with `infers_intent` off, all do. Hands off, the co-pilot flies to the likeliest. So it
-    remembers from one decision to the next, which should be some 1/15 s; `forget` makes it ready for another flight.
+    Of several pads, only those count that may still be meant, by what the pilot has done so far (`ai.copilot.intent`).
+    Hands off, the co-pilot flies to the likeliest. So it remembers from one decision to the next, which should be some
+    1/15 s; `forget` makes it ready for another flight.
 
-    `reward_scale` is what a point of reward is in the agent's values; by default, what it was trained with. `route` is
-    how the network is led around rock on a leg of a descent.
+    `route` is how the network is led around rock on a leg of a descent.
 
     Attributes:
         guardians: what it remembers of each flight, one for each slot: the plans.
+        reward_scale: what a point of reward is in the agent's values; at first, what it was trained with.
 
     """
 
     def __init__(
-        self,
-        agent: QFunction,
-        assist: float = 0.5,
-        mode: Mode | str = Mode.TOLERANCE,
-        *,
-        reward_scale: float | None = None,
-        infers_intent: bool = True,
-        route: Route | None = None,
+        self, agent: QFunction, assist: float = 0.5, mode: Mode | str = Mode.TOLERANCE, *, route: Route | None = None
     ) -> None:
-        self.agent = agent
-        self.assist = assist
-        self.mode = Mode(mode)
-        config = agent.config if isinstance(agent, DeepQAgent) else AgentConfig()
-        self.reward_scale = config.reward_scale if reward_scale is None else reward_scale
-        self.infers_intent = infers_intent
+        self.agent, self.assist, self.mode = agent, assist, Mode(mode)
+        self.reward_scale = (agent.config if isinstance(agent, DeepQAgent) else AgentConfig()).reward_scale
         self._intent = Intent(self.reward_scale)
         self.lookahead = Lookahead(agent, route)  # type: ignore[arg-type]  # futures ask for a pilot; values do not
         self.guardians: list[Guardian] = []
@@ -170,52 +131,15 @@ class CoPilot:
     def forget(self, mask: Bools | None = None) -> None:
         """Begin a new flight in the slots of `mask` (n,), or in all, with no idea which pad is meant."""
         self._intent.forget(mask)
-        self.guardians = [
-            guardian if mask is not None and not mask[slot] else Guardian()
-            for slot, guardian in enumerate(self.guardians)
-        ]
+        for slot, guardian in enumerate(self.guardians):
+            if mask is None or mask[slot]:
+                guardian.plan = None
 
     def hold_plans_of(self, other: CoPilot) -> None:
         """Go on with the plans of another: one that lands does so whichever network it was found with."""
         self.guardians, self._rules = other.guardians, other._rules
 
-    def futures(self, env: LanderEnv) -> Futures:
-        """Fly the network on from the present moment after each action, in every slot; return what comes of it."""
-        return Futures(self.foresee(env, [None] * env.num_envs))
-
-    def foresee(self, env: LanderEnv, asked: Sequence[Push | None], *, whole: bool = False) -> list[Known]:
-        """Fly ahead, in one batch, what may be flown where pilots push `asked` (n), or each action where that is None.
-
-        Returns what comes of each push, for every slot. Of several plans, that to the pad counts which is the likeliest
-        by what the pilot has done so far. `whole` is as in `decide`.
-        """
-        self._void(env)
-        here = Here.all(env)
-        needed = [
-            (slot, push)
-            for slot in np.flatnonzero(env.outcome == Outcome.FLYING).tolist()
-            for push in self._needs(slot, here[slot], asked[slot], whole)
-        ]
-        known: list[dict[Push, Future]] = [{} for _ in asked]
-        if needed:
-            moment = Moment.of(env)
-            moment.target[:] = self._target(env)
-            found = self.lookahead.futures(moment, needed, decisions_of(self.assist))
-            for (slot, push), future in zip(needed, found, strict=True):
-                known[slot][push] = future
-        return list(known)
-
-    def _needs(self, slot: int, here: Here, asked: Push | None, whole: bool) -> Sequence[Push]:
-        return KEYS if asked is None else self.guardians[slot].needs(here, asked, whole=whole)
-
-    def _target(self, env: LanderEnv) -> Ints:
-        """Return the number of the pad that is the likeliest so far, (n,), the nearest among equals."""
-        pads = env.ground.at_once
-        if pads == 1 or not self.infers_intent:
-            return env.target
-        away = np.abs(env.ground.middles[:pads, 0] - env.position[:, :1])
-        target: Ints = (self._intent.likely(env.num_envs, pads) - 1e-6 * away).argmax(axis=1)
-        return target
+    # Decisions
 
     def share(
         self,
@@ -263,8 +187,8 @@ class CoPilot:
         if self.mode is Mode.GUARDIAN and env is not None:
             pushes = [Push(*push) for push in zip(pilot.tolist(), *pushed.T.tolist(), strict=True)]
             return SharedDecision(*told, *self._save(env, pushes, values, known, whole=whole))
-        weigh = self._guard if self.mode is Mode.GUARDIAN else self._tolerate
-        best, feasible = weigh(meant, pilot, np.where(pilot == COAST, 1.0, self.assist))
+        weigh = _guard if self.mode is Mode.GUARDIAN else _tolerate
+        best, feasible = weigh(meant, pilot, np.where(pilot == COAST, 1.0, self.assist), self.reward_scale)
         candidates = _candidates(pilot, best)
         rows = np.arange(slots)
         source = feasible[rows, candidates].argmax(axis=0)
@@ -285,13 +209,52 @@ class CoPilot:
     def _read(self, values: Floats, pilot: Ints, away: Floats) -> tuple[Doubles, Floats]:
         """Return how likely each pad is meant, (n, pads), and the values with the likeliest's where a pad is not."""
         slots, pads, _ = values.shape
-        if pads == 1 or not self.infers_intent:
-            return np.full((slots, pads), 1.0 / pads), values
+        if pads == 1:
+            return np.ones((slots, 1)), values
         likely = self._intent.watch(values, pilot)
         likeliest = (likely - 1e-6 * away).argmax(axis=1)[:, None]  # among equals, the nearest
         open_ = in_question(likely) & (pilot != COAST)[:, None]
         pad = np.where(open_, np.arange(pads), likeliest)
         return likely, values[np.arange(slots)[:, None], pad]
+
+    # The guardian
+
+    def futures(self, env: LanderEnv) -> Futures:
+        """Fly the network on from the present moment after each action, in every slot; return what comes of it."""
+        return Futures(self.foresee(env, [None] * env.num_envs))
+
+    def foresee(self, env: LanderEnv, asked: Sequence[Push | None], *, whole: bool = False) -> list[Known]:
+        """Fly ahead, in one batch, what may be flown where pilots push `asked` (n), or each action where that is None.
+
+        Returns what comes of each push, for every slot. Of several plans, that to the pad counts which is the likeliest
+        by what the pilot has done so far. `whole` is as in `decide`.
+        """
+        self._void(env)
+        here = Here.all(env)
+
+        def needs(slot: int) -> Sequence[Push]:
+            push = asked[slot]
+            return KEYS if push is None else self.guardians[slot].needs(here[slot], push, whole=whole)
+
+        flying = np.flatnonzero(env.outcome == Outcome.FLYING).tolist()
+        needed = [(slot, push) for slot in flying for push in needs(slot)]
+        known: list[dict[Push, Future]] = [{} for _ in asked]
+        if needed:
+            moment = Moment.of(env)
+            moment.target[:] = self._target(env)
+            found = self.lookahead.futures(moment, needed, decisions_of(self.assist))
+            for (slot, push), future in zip(needed, found, strict=True):
+                known[slot][push] = future
+        return list(known)
+
+    def _target(self, env: LanderEnv) -> Ints:
+        """Return the number of the pad that is the likeliest so far, (n,), the nearest among equals."""
+        pads = env.ground.at_once
+        if pads == 1:
+            return env.target
+        away = np.abs(env.ground.middles[:pads, 0] - env.position[:, :1])
+        target: Ints = (self._intent.likely(env.num_envs, pads) - 1e-6 * away).argmax(axis=1)
+        return target
 
     def _save(
         self, env: LanderEnv, asked: Sequence[Push], values: Floats, known: Sequence[Known] | None, *, whole: bool
@@ -308,7 +271,7 @@ class CoPilot:
         pad = self._target(env) if pads == len(env.ground.pads) else np.zeros(slots, dtype=np.intp)
         best = values[np.arange(slots), pad].argmax(axis=1)
         self._void(env)
-        choices = [Choice(push, ActionSource.PILOT, held=False) for push in asked]
+        choices = [Choice(push) for push in asked]
         if self.assist == 0:
             known = known or [{}] * slots
         else:
@@ -333,34 +296,58 @@ class CoPilot:
         self._rules = rules
         self.guardians += [Guardian() for _ in range(env.num_envs - len(self.guardians))]
 
-    def _tolerate(self, values: Floats, pilot: Ints, assist: Floats) -> tuple[Ints, Bools]:
-        """Return the co-pilot's action (n,) and the feasible ones (n, 6): those as good as `assist` (n,) asks for."""
-        above = values - values.min(axis=2, keepdims=True)
-        most = above.max(axis=2, keepdims=True)
-        asked = assist.astype(above.dtype)[:, None, None] * most
-        # The pilot's action need only be good for one of several pads; the co-pilot's must be good for all.
-        feasible = (above >= asked).all(axis=1)
-        rows = np.arange(len(pilot))
-        feasible[rows, pilot] = (above[rows, :, pilot] >= asked[:, :, 0]).any(axis=1)
-        best = (above / np.maximum(most, np.finfo(above.dtype).tiny)).min(axis=1).argmax(axis=1)
-        return self._certain(values, pilot, best, feasible)
 
-    def _guard(self, values: Floats, pilot: Ints, assist: Floats) -> tuple[Ints, Bools]:
-        """Return the co-pilot's action (n,) and the feasible (n, 6): its own, and the pilot's if not much worse."""
-        rows = np.arange(len(pilot))
-        gain = (values - values[rows, :, pilot][:, :, None]).min(axis=1)
-        best = gain.argmax(axis=1)
-        margin = guardian_margin(assist) * self.reward_scale
-        feasible = np.zeros(gain.shape, dtype=bool)
-        feasible[rows, best] = True
-        feasible[rows, pilot] = gain[rows, best] <= margin
-        return self._certain(values, pilot, best, feasible)
+def _checked(observation: Floats, pilot: Any, shares: Doubles | None) -> tuple[Floats, Ints, Doubles]:
+    """Return observations (n, pads, 9), actions (n,) and shares of thrust (n, 2); raises ValueError for others."""
+    observation, pilot = np.atleast_2d(observation), np.atleast_1d(pilot)
+    if observation.ndim == 2:
+        observation = observation[:, None]
+    slots = len(observation)
+    if pilot.shape != (slots,) or pilot.dtype.kind not in "iu":
+        raise ValueError(f"pilot actions must be {slots} whole numbers, not {pilot.dtype} {pilot.shape}")
+    if ((pilot < 0) | (pilot >= NUM_ACTIONS)).any():
+        raise ValueError(f"actions run from 0 to {NUM_ACTIONS - 1}, not {pilot.min()} to {pilot.max()}")
+    pushed = ACTION_SHARES[pilot] if shares is None else np.asarray(shares, dtype=float)
+    if pushed.shape != (slots, 2):
+        raise ValueError(f"shares of thrust must be {slots} rows of two, not {pushed.shape}")
+    return observation, pilot, pushed
 
-    @staticmethod
-    def _certain(values: Floats, pilot: Ints, best: Ints, feasible: Bools) -> tuple[Ints, Bools]:
-        """Keep the pilot's action where none is better: values are not finite, or pads need different actions."""
-        rows = np.arange(len(pilot))
-        worse = ~(values[rows, :, best] >= values[rows, :, pilot]).all(axis=1)
-        feasible[rows[worse], pilot[worse]] = True
-        feasible[rows, best] = True
-        return best, feasible
+
+# By values: each rule returns the co-pilot's action (n,), and which are feasible (n, 6), at `assist` (n,)
+
+
+def _candidates(pilot: Ints, best: Ints) -> Ints:
+    """Return what may be flown, (4, n), the least change first, in the order of `ActionSource`."""
+    return np.stack([pilot, pilot - pilot % _STEERS + best % _STEERS, best - best % _STEERS + pilot % _STEERS, best])
+
+
+def _tolerate(values: Floats, pilot: Ints, assist: Floats, _: float) -> tuple[Ints, Bools]:
+    """Allow what is as good as `assist` asks for."""
+    above = values - values.min(axis=2, keepdims=True)
+    most = above.max(axis=2, keepdims=True)
+    asked = assist.astype(above.dtype)[:, None, None] * most
+    # The pilot's action need only be good for one of several pads; the co-pilot's must be good for all.
+    feasible = (above >= asked).all(axis=1)
+    rows = np.arange(len(pilot))
+    feasible[rows, pilot] = (above[rows, :, pilot] >= asked[:, :, 0]).any(axis=1)
+    best = (above / np.maximum(most, np.finfo(above.dtype).tiny)).min(axis=1).argmax(axis=1)
+    return best, _certain(values, pilot, best, feasible)
+
+
+def _guard(values: Floats, pilot: Ints, assist: Floats, reward_scale: float) -> tuple[Ints, Bools]:
+    """Allow the co-pilot's own, and the pilot's if that is not worse by the margin."""
+    rows = np.arange(len(pilot))
+    gain = (values - values[rows, :, pilot][:, :, None]).min(axis=1)
+    best = gain.argmax(axis=1)
+    feasible = np.zeros(gain.shape, dtype=bool)
+    feasible[rows, pilot] = gain[rows, best] <= guardian_margin(assist) * reward_scale
+    return best, _certain(values, pilot, best, feasible)
+
+
+def _certain(values: Floats, pilot: Ints, best: Ints, feasible: Bools) -> Bools:
+    """Allow the pilot's action where none is better, too: values are not finite, or pads need different actions."""
+    rows = np.arange(len(pilot))
+    worse = ~(values[rows, :, best] >= values[rows, :, pilot]).all(axis=1)
+    feasible[rows[worse], pilot[worse]] = True
+    feasible[rows, best] = True
+    return feasible

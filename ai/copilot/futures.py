@@ -110,14 +110,14 @@ def _states(env: LanderEnv) -> Doubles:
 
 @dataclass(frozen=True)
 class Future:
-    """What comes of pushing something now."""
+    """What comes of pushing something now; a pilot may push what `passes`."""
 
     plan: Plan | None  # after one decision of it; None if the network does not land then
     lasts: bool = True  # whether it lands after as many decisions of it as the dial asks for, too
 
     @property
     def passes(self) -> bool:
-        """Whether a pilot may push it."""
+        """Whether the network lands, however briefly it is pushed."""
         return self.plan is not None and self.lasts
 
 
@@ -154,9 +154,7 @@ class Futures:
 class FlownAhead(Protocol):
     """Protocol of what flies the futures of one lander's next decision, while the present one is flown."""
 
-    @property
-    def problem(self) -> str:
-        """Text that says why there are none; empty while there are."""
+    problem: str  # why there are none; empty while there are
 
     def ask(
         self, moment: Moment, before: Opening, asked: Push, decisions: int, pilot: Pilot, route: Route | None
@@ -173,16 +171,16 @@ class FlownAhead(Protocol):
         """Return what is known by now of the moment asked for; never waits."""
 
 
-Flying = Generator[None, None, list[T]]  # yields after each decision, and returns what comes of it
+Flying = Generator[None, None, T]  # yields after each decision, and returns what comes of it
 
 
-def _finished(flying: Flying[T]) -> list[T]:
+def finished(flying: Flying[T]) -> T:
     """Fly to the end; return what comes of it."""
     while True:
         try:
             next(flying)
         except StopIteration as end:
-            found: list[T] = end.value
+            found: T = end.value
             return found
 
 
@@ -233,9 +231,9 @@ class Lookahead:
 
         A landing on any pad counts; of several plans, that to the target is returned, else that to the nearest pad.
         """
-        return _finished(self._plans(moment, asked))
+        return finished(self._plans(moment, asked))
 
-    def _plans(self, moment: Moment, asked: Sequence[tuple[int, Opening]]) -> Flying[Plan | None]:
+    def _plans(self, moment: Moment, asked: Sequence[tuple[int, Opening]]) -> Flying[list[Plan | None]]:
         pads = [_pads_of(moment, row) for row in range(len(moment))]
         plans: list[Plan | None] = [None] * len(asked)
         for tried in slice(1), slice(1, None):  # most land where they were meant to; the other pads are for the rest
@@ -248,14 +246,14 @@ class Lookahead:
                     plans[index] = plans[index] or (plan if landed else None)
         return plans
 
-    def ways(self, moment: Moment, asked: Sequence[tuple[int, Opening]]) -> Flying[tuple[Plan, bool]]:
+    def ways(self, moment: Moment, asked: Sequence[tuple[int, Opening]]) -> Flying[list[tuple[Plan, bool]]]:
         """Fly each lander and opening in `asked` to its target; yield after each decision, return way and landing.
 
         A way that does not land is written down like a plan, but is none.
         """
         return self._fly(moment, [(row, opening, int(moment.target[row])) for row, opening in asked])
 
-    def _fly(self, moment: Moment, asked: Sequence[tuple[int, Opening, int]]) -> Flying[tuple[Plan, bool]]:
+    def _fly(self, moment: Moment, asked: Sequence[tuple[int, Opening, int]]) -> Flying[list[tuple[Plan, bool]]]:
         """Fly landers with openings to pads; return what was flown, and whether it landed.
 
         Of many, those that are about to touch down wait until most are as far, and go on together: a step takes ten

@@ -24,18 +24,11 @@ class ActionSource(IntEnum):
 
 
 class Choice(NamedTuple):
-    """What a guardian flies.
-
-    Attributes:
-        push: what is pushed, for one decision.
-        source: whose that is.
-        held: whether a plan is held after it, so that the flight lands whatever is asked for from then on.
-
-    """
+    """What a guardian flies: what is pushed for one decision, whose that is, and whether a plan is held after it."""
 
     push: Push
-    source: ActionSource
-    held: bool
+    source: ActionSource = ActionSource.PILOT
+    held: bool = False
 
 
 def decisions_of(assist: float) -> int:
@@ -73,10 +66,9 @@ class Guardian:
         offers, head = self._offers(here, asked, network, whole)
         futures = {push: Future(self.plan) if push == head else known.get(push, Future(None)) for push in offers}
         landing = [push for push, future in futures.items() if future.plan]
-        lasting = [push for push in landing if futures[push].lasts]
         if not landing:
-            return Choice(asked, ActionSource.PILOT, held=False)
-        push = (lasting or landing)[0]
+            return Choice(asked)
+        push = next((push for push in landing if futures[push].lasts), landing[0])
         self.plan = futures[push].plan
         return Choice(push, offers[push], held=True)
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ai.environment import Bools, Doubles, Floats, Ints
+from ai.environment import Doubles, Floats, Ints
 from ai.lander.environment import ACTION_NAMES, NUM_ACTIONS
 from ai.lander.pilots import COAST, GAINS, Gains, LaggyPilot, NoisyPilot, Pilot, ScriptedPilot, SensorPilot
 from ai.lander.rules import ACTION_SHARES
@@ -38,14 +38,9 @@ class ClumsyHands:
     """Pilot that passes on the wishes of another with faults; row k of every call is the same flight."""
 
     def __init__(self, pilot: Pilot, slots: int, rng: np.random.Generator, faults: Faults) -> None:
-        def each(fault: ArrayLike, kind: Any) -> NDArray[Any]:
-            return np.broadcast_to(np.asarray(fault, dtype=kind), slots)
-
         self.pilot, self.rng, self.slots = pilot, rng, slots
-        self.late = each(np.minimum(faults.late, _LATEST), np.intp)
-        self.one_key, self.inverted = each(faults.one_key, bool), each(faults.inverted, bool)
-        self.sticky, self.thrust, self.timid = (each(f, float) for f in (faults.sticky, faults.thrust, faults.timid))
-        self.freeze, self.flip, self.change = (each(f, float) for f in (faults.freeze, faults.flip, faults.change))
+        self.faults = Faults(**{name: np.broadcast_to(fault, slots) for name, fault in asdict(faults).items()})
+        self._late: Ints = np.minimum(self.faults.late, _LATEST).astype(np.intp)
         self._wishes: Ints = np.zeros((_LATEST + 1, slots), dtype=np.intp)
         self._asked = 0
         self._last: Ints = np.zeros(slots, dtype=np.intp)
@@ -53,80 +48,28 @@ class ClumsyHands:
 
     def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:
         """Actions (n,) for observations (n, 9)."""
-        rng, slots = self.rng, self.slots
+        rng, slots, faults = self.rng, self.slots, self.faults
         self._wishes[self._asked % len(self._wishes)] = self.pilot.act(observation, held=held)
-        late = np.minimum(self.late, self._asked)
+        late = np.minimum(self._late, self._asked)
         main, steer = np.divmod(self._wishes[(self._asked - late) % len(self._wishes), np.arange(slots)], _STEERS)
         self._asked += 1
         slips = rng.random((7, slots))
-        main = np.where(slips[0] < self.flip, 1 - main, main)
-        steer = np.where(slips[1] < self.change, (steer + rng.integers(1, _STEERS, slots)) % _STEERS, steer)
-        main = np.where(slips[2] < self.thrust, 1, main)
-        main = np.where(slips[6] < self.timid, 0, main)
-        steer = np.where(self.inverted & (steer > 0), _STEERS - steer, steer)
-        both = self.one_key & (main > 0) & (steer > 0)
+        main = np.where(slips[0] < faults.flip, 1 - main, main)
+        steer = np.where(slips[1] < faults.change, (steer + rng.integers(1, _STEERS, slots)) % _STEERS, steer)
+        main = np.where(slips[2] < faults.thrust, 1, main)
+        main = np.where(slips[6] < faults.timid, 0, main)
+        steer = np.where(np.logical_and(faults.inverted, steer > 0), _STEERS - steer, steer)
+        both = np.logical_and(faults.one_key, (main > 0) & (steer > 0))
         main, steer = np.where(both & (slips[3] < 0.5), 0, main), np.where(both & (slips[3] >= 0.5), 0, steer)
-        begins = (self._frozen == 0) & (slips[4] < self.freeze)
+        begins = (self._frozen == 0) & (slips[4] < faults.freeze)
         self._frozen = np.where(begins, rng.integers(15, 45, slots), np.maximum(self._frozen - 1, 0))
-        held_on = (slips[5] < self.sticky) | (self._frozen > 0)
+        held_on = (slips[5] < faults.sticky) | (self._frozen > 0)
         self._last = np.where(held_on, self._last, _STEERS * main + steer)
         return self._last
 
 
-def drawn_gains(slots: int, rng: np.random.Generator, spread: float) -> Gains:
-    """Return gains of a scripted controller, drawn anew for every slot: each off by up to a factor of e^spread."""
-    return Gains(*(gain * np.exp(rng.uniform(-spread, spread, slots)) for gain in vars(GAINS).values()))
-
-
-class OneOrOther:
-    """Pilot that in some slots, `first` (n,), is one pilot and in the rest another."""
-
-    def __init__(self, first: Bools, pilot: Pilot, other: Pilot) -> None:
-        self.first, self.pilot, self.other = first, pilot, other
-
-    def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:
-        """Actions (n,) for observations (n, 9)."""
-        one, other = self.pilot.act(observation, held=held), self.other.act(observation, held=held)
-        return np.where(self.first, one, other)
-
-
-def any_hands(slots: int, rng: np.random.Generator, good: Pilot) -> Pilot:
-    """Return hands with faults of all kinds, mixed anew in every slot: people as they may be."""
-
-    def sometimes(chance: float, fault: ArrayLike) -> Doubles:
-        return np.where(rng.random(slots) < chance, fault, 0.0)
-
-    faults = Faults(
-        late=sometimes(0.4, rng.integers(0, 9, slots)),
-        sticky=sometimes(0.35, rng.uniform(0.0, 0.9, slots)),
-        one_key=rng.random(slots) < 0.2,
-        thrust=sometimes(0.2, rng.uniform(0.0, 0.5, slots)),
-        timid=sometimes(0.2, rng.choice([0.3, 0.6, 1.0], slots)),
-        freeze=sometimes(0.25, rng.uniform(0.0, 0.06, slots)),
-        inverted=rng.random(slots) < 0.12,
-        flip=sometimes(0.3, rng.uniform(0.0, 0.4, slots)),
-        change=sometimes(0.3, rng.uniform(0.0, 0.5, slots)),
-    )
-    scripted = OneOrOther(rng.random(slots) < 0.15, SensorPilot(), ScriptedPilot(drawn_gains(slots, rng, 0.7)))
-    pilot = OneOrOther(rng.random(slots) < 0.35, good, scripted)
-    return ClumsyHands(pilot, slots, rng, faults)
-
-
-MakePilot = Callable[[int, np.random.Generator, Pilot], Pilot]
-
-
-def _scripted(**faults: Any) -> MakePilot:
-    """Make hands with faults around a scripted controller with gains of its own in every flight."""
-
-    def make(slots: int, rng: np.random.Generator, good: Pilot) -> Pilot:  # noqa: ARG001
-        drawn = {name: fault(slots, rng) if callable(fault) else fault for name, fault in faults.items()}
-        return ClumsyHands(ScriptedPilot(drawn_gains(slots, rng, 0.3)), slots, rng, Faults(**drawn))
-
-    return make
-
-
 class HeldKeys:
-    """Pilot who holds the same keys all the time, or others from each second to the next."""
+    """Pilot who holds the same keys all the time, or, without an action, others from each second to the next."""
 
     def __init__(self, action: int | None, slots: int, rng: np.random.Generator) -> None:
         self.action, self.slots, self.rng = action, slots, rng
@@ -145,11 +88,7 @@ class PartThrust:
     """Pilot whose main engine never gives more than a share of its thrust, 0 to 1."""
 
     def __init__(self, pilot: Pilot, most: float) -> None:
-        self.pilot, self.most = pilot, most
-
-    def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:
-        """Actions (n,) for observations (n, 9)."""
-        return self.pilot.act(observation, held=held)
+        self.act, self.most = pilot.act, most
 
     def shares(self, action: Ints) -> Doubles:
         """Return the shares of thrust of main engine and jets, (n, 2), that are pushed with actions (n,)."""
@@ -170,29 +109,47 @@ class Adversary:
         return action
 
 
+MakePilot = Callable[[int, np.random.Generator, Pilot], Pilot]  # of slots, randomness, and a good pilot
+
+
+def _drawn(slots: int, rng: np.random.Generator, spread: float) -> ScriptedPilot:
+    """Return a scripted controller whose gains are drawn anew for every slot, each off by up to a factor e^spread."""
+    return ScriptedPilot(Gains(*(gain * np.exp(rng.uniform(-spread, spread, slots)) for gain in vars(GAINS).values())))
+
+
+def _scripted(**faults: Any) -> MakePilot:
+    """Make hands with faults around a scripted controller with gains of its own in every flight."""
+
+    def make(slots: int, rng: np.random.Generator, good: Pilot) -> Pilot:  # noqa: ARG001
+        drawn = {name: fault(slots, rng) if callable(fault) else fault for name, fault in faults.items()}
+        return ClumsyHands(_drawn(slots, rng, 0.3), slots, rng, Faults(**drawn))
+
+    return make
+
+
 def _holding(action: int | None) -> MakePilot:
-    return lambda slots, rng, good: HeldKeys(action, slots, rng)  # noqa: ARG005
+    return lambda slots, rng, _: HeldKeys(action, slots, rng)
 
 
 # Hands by name: some good, many with faults; then stuck keys, a weak stick, and somebody who wants to crash.
 HANDS: Final[dict[str, MakePilot]] = {
-    "good": lambda slots, rng, good: good,  # noqa: ARG005
-    "scripted": lambda slots, rng, good: ScriptedPilot(),  # noqa: ARG005
-    "gains drawn anew": lambda slots, rng, good: ScriptedPilot(drawn_gains(slots, rng, 0.6)),  # noqa: ARG005
+    "good": lambda _slots, _rng, good: good,
+    "scripted": lambda *_: ScriptedPilot(),
+    "gains drawn anew": lambda slots, rng, _: _drawn(slots, rng, 0.6),
     "late": _scripted(late=lambda slots, rng: rng.integers(4, 7, slots)),
     "sticky keys": _scripted(sticky=0.75),
     "one key": _scripted(one_key=True),
     "too much thrust": _scripted(thrust=0.25),
     "freezing": _scripted(freeze=0.03),
     "inverted": _scripted(inverted=True),
-    "laggy": lambda slots, rng, good: LaggyPilot(good, rng),  # noqa: ARG005
-    "noisy": lambda slots, rng, good: NoisyPilot(good, rng),  # noqa: ARG005
-    "sensor": lambda slots, rng, good: SensorPilot(),  # noqa: ARG005
+    "laggy": lambda _, rng, good: LaggyPilot(good, rng),
+    "noisy": lambda _, rng, good: NoisyPilot(good, rng),
+    "sensor": lambda *_: SensorPilot(),
     **{f"holds {name}": _holding(action) for action, name in enumerate(ACTION_NAMES)},
     "a key each second": _holding(None),
     "slow": _scripted(late=_LATEST, sticky=0.75),
-    "thrust 0.45": lambda slots, rng, good: PartThrust(ScriptedPilot(), 0.45),  # noqa: ARG005
-    "thrust 0.3": lambda slots, rng, good: PartThrust(ScriptedPilot(), 0.3),  # noqa: ARG005
-    "adversary, random": lambda slots, rng, good: Adversary(good, rng, least=False),  # noqa: ARG005
-    "adversary, least": lambda slots, rng, good: Adversary(good, rng, least=True),  # noqa: ARG005
+    "thrust 0.45": lambda *_: PartThrust(ScriptedPilot(), 0.45),
+    "thrust 0.3": lambda *_: PartThrust(ScriptedPilot(), 0.3),
+    "adversary, random": lambda _, rng, good: Adversary(good, rng, least=False),
+    "adversary, least": lambda _, rng, good: Adversary(good, rng, least=True),
 }

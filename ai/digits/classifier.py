@@ -11,9 +11,9 @@ import numpy.typing as npt
 
 from ai.digits.mnist import MnistError, load_mnist, load_part
 from ai.digits.preprocessing import SIDE, Image, Stages, preprocess, preprocess_strokes, stages
-from ai.files import CONFIG, FolderKind, check_header, inside, problem_in, read_json
+from ai.files import CONFIG, FolderKind, atomic_folder, check_header, inside, problem_in, read_json, recover_folder
 from ai.files import NETWORK as NETWORK_KIND
-from ai.nn import ModelFormatError, NeuralNetwork, atomic_folder, recover_folder
+from ai.nn import ModelFormatError, NeuralNetwork
 from ai.nn.costs import softmax
 
 __all__ = [

@@ -29,7 +29,7 @@ _KINDS: Final[dict[type[Layer], Kind]] = {
 class UnitSum:
     """What one unit computes: of a patch (height, width, channels), the layer's own output."""
 
-    corner: tuple[int, int]  # row and column of the patch in the layer's input; negative within padding
+    corner: tuple[int, int]  # row and column of the patch in the layer's input
     patch: Array  # the inputs that it reads
     weights: Array | None  # a weight for each of them; pooling and activations have none
     bias: float
@@ -61,26 +61,25 @@ class Stage:
         return _KINDS.get(type(self.layer), "other")
 
     @property
-    def window(self) -> tuple[int, int, int, int]:
-        """What a unit reads: height and width of its patch, pixels from one to the next, and padding around all."""
+    def window(self) -> tuple[int, int, int]:
+        """Height and width of the patch that a unit reads, and pixels from one patch to the next."""
         match self.layer:
-            case ConvolutionLayer(kernel=kernel, stride=stride, padding=padding):
-                return kernel, kernel, stride, padding
+            case ConvolutionLayer(kernel=kernel):
+                return kernel, kernel, 1
             case MaxPoolingLayer(size=size):
-                return size, size, size, 0
+                return size, size, size
             case ActivationLayer():
-                return 1, 1, 1, 0
-        return *self.inputs.shape[:2], 1, 0
+                return 1, 1, 1
+        return *self.inputs.shape[:2], 1
 
     def unit(self, place: Place) -> UnitSum:
         """Return the sum of one unit; raises ValueError for a layer of another kind, IndexError for no such unit."""
         if self.kind == "other":
             raise ValueError(f"{type(self.layer).__name__} is no sum that can be written out")
         row, column, channel = place
-        height, width, stride, padding = self.window
+        height, width, stride = self.window
         top, left = row * stride, column * stride
-        padded = np.pad(self.inputs, ((padding, padding), (padding, padding), (0, 0)))
-        patch, weights, bias = padded[top : top + height, left : left + width], None, 0.0
+        patch, weights, bias = self.inputs[top : top + height, left : left + width], None, 0.0
         match self.layer:
             case ConvolutionLayer() as layer:
                 weights, bias = layer.kernels[:, :, :, channel].swapaxes(0, 1), float(layer.bias[channel])
@@ -88,44 +87,38 @@ class Stage:
                 weights, bias = layer.weights[self.order, channel], float(layer.bias[channel])
             case _:
                 patch = patch[..., channel, None]
-        return UnitSum((top - padding, left - padding), patch, weights, bias, float(self.outputs[place]))
+        return UnitSum((top, left), patch, weights, bias, float(self.outputs[place]))
 
     def read_by(self, box: Box) -> Box:
-        """Return which pixels of the input the outputs in a box were made of, within the input."""
-        height, width, stride, padding = self.window
-        top, left, bottom, right = (each * stride - padding for each in box)
-        below, beside = bottom - stride + height, right - stride + width
-        return max(top, 0), max(left, 0), min(below, self.inputs.shape[0]), min(beside, self.inputs.shape[1])
+        """Return which pixels of the input the outputs in a box were made of."""
+        height, width, stride = self.window
+        top, left, bottom, right = box
+        return top * stride, left * stride, (bottom - 1) * stride + height, (right - 1) * stride + width
 
     def strongest_input(self, place: Place) -> Place:
         """Return the input that has the largest product in a unit's sum; of a pooling, the maximum."""
         unit = self.unit(place)
         row, column, channel = map(int, np.unravel_index(int(unit.products.argmax()), unit.products.shape))
-        height, width = self.inputs.shape[:2]
-        row, column = unit.corner[0] + row, unit.corner[1] + column
-        last = channel if unit.weights is not None else place[2]
-        return min(max(row, 0), height - 1), min(max(column, 0), width - 1), last
+        return unit.corner[0] + row, unit.corner[1] + column, place[2] if unit.weights is None else channel
 
     def strongest_reader(self, place: Place) -> Place | None:
         """Return the unit of this stage in whose sum one of its inputs has the largest product.
 
         None if no unit reads that input, or the layer cannot be written out.
         """
-        if self.kind == "other":
-            return None
         row, column, channel = place
-        height, width, stride, padding = self.window
-        tops = _windows(row + padding, height, stride, self.outputs.shape[0])
-        lefts = _windows(column + padding, width, stride, self.outputs.shape[1])
+        height, width, stride = self.window
+        tops = _windows(row, height, stride, self.outputs.shape[0])
+        lefts = _windows(column, width, stride, self.outputs.shape[1])
         best: tuple[float, Place] | None = None
         for top, left in product(tops, lefts):
             match self.layer:
                 case ConvolutionLayer() as layer:
-                    weights = layer.kernels[column + padding - left * stride, row + padding - top * stride, channel]
+                    weights = layer.kernels[column - left, row - top, channel]
                 case FullyConnectedLayer() as layer:
                     weights = layer.weights[self.order[place]]
                 case _:  # every window reads its own channel alone
-                    return top, left, channel
+                    return None if self.kind == "other" else (top, left, channel)
             products = self.inputs[place] * weights
             found = int(products.argmax())
             if best is None or products[found] > best[0]:

@@ -1,10 +1,9 @@
 """A neural network library on NumPy: layers, costs, optimizers and a folder format, every gradient by hand.
 
-To read in this order: parameter, activations, costs, layer, layers, optimizers, network; then limits and
-storage, and images, which agents do without.
+To read in this order: parameter, activations, costs, layer, layers, optimizers, network; then storage, and images,
+which agents do without.
 """
 
-from ai.files import atomic_folder, recover_folder
 from ai.nn.activations import Activation, ActivationFunctions
 from ai.nn.costs import Cost, CostFunctions, softmax
 from ai.nn.images import ConvolutionLayer, FlattenLayer, MaxPoolingLayer
@@ -39,8 +38,6 @@ __all__ = [
     "NeuralNetwork",
     "Optimizer",
     "Parameter",
-    "atomic_folder",
-    "recover_folder",
     "register_layer",
     "softmax",
 ]

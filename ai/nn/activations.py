@@ -9,7 +9,7 @@ from typing import Self
 import numpy as np
 import numpy.typing as npt
 
-from ai.nn.parameter import Array
+from ai.nn.parameter import Array, Initialise, glorot_uniform, he_normal
 
 Function = Callable[[Array], Array]
 
@@ -30,7 +30,7 @@ class Activation:
     slope: Callable[[Array, Array, Array], object]
     name: str | None = None
     options: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}), hash=False)
-    initialisation: str = "glorot"  # suitable initialisation of the weights that feed this activation
+    initialise: Initialise = glorot_uniform  # draws weights that suit this activation
 
     @classmethod
     def of(cls, function: Function, derivative: Function | None = None) -> Self:
@@ -82,7 +82,7 @@ class ActivationFunctions:
     @staticmethod
     def use_relu() -> Activation:
         """Rectified linear unit max(0, x) (Nair & Hinton 2010); its derivative at 0 counts as 0."""
-        return Activation(_relu, lambda _x, y, out: np.greater(y, 0, out=out), "relu", initialisation="he")
+        return Activation(_relu, lambda _x, y, out: np.greater(y, 0, out=out), "relu", initialise=he_normal)
 
     @staticmethod
     def use_leaky_relu(slope: float = 0.01) -> Activation:
@@ -94,7 +94,7 @@ class ActivationFunctions:
             partial(_leaky_slope, slope),
             name="leaky_relu",
             options=MappingProxyType({"slope": slope}),
-            initialisation="he",
+            initialise=he_normal,
         )
 
 

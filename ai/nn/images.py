@@ -6,16 +6,16 @@ and compares whole runs of examples at a time, however small the images are, and
 are gathered almost at the speed of memory (docs/adr/0009-images-batch-last-in-memory.md).
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import product
+from math import prod
 from typing import Any
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from ai.nn.layer import Layer
+from ai.nn.layer import ImageShape, Layer, checked_size
 from ai.nn.layers import FullyConnectedLayer, ones
-from ai.nn.limits import ImageShape, checked_size
 from ai.nn.parameter import Array
 
 BLOCK = 1 << 20  # numbers at work at a time: 4 MB, which stay in the cache between one pass and the next
@@ -24,58 +24,44 @@ BLOCK = 1 << 20  # numbers at work at a time: 4 MB, which stay in the cache betw
 class ConvolutionLayer(FullyConnectedLayer):
     """A fully connected layer on every window of an image: `filters` numbers in place of kernel x kernel pixels.
 
-    `inputs` is (height, width, channels). Windows lie `stride` pixels apart, and `padding` zeros are put around
-    the image on each side; padding of kernel // 2 keeps the size. As in all such libraries the kernel is not
-    flipped: this is a correlation. `options` are those of `FullyConnectedLayer`. Raises ValueError for sizes that make
-    no sense.
+    `inputs` is (height, width, channels). Windows lie one pixel apart and inside the image. As in all such libraries
+    the kernel is not flipped: this is a correlation. Raises ValueError for sizes that make no sense.
 
     Windows are copied into the columns of a matrix, and one product with the weights does the rest (Chellapilla, Puri &
     Simard 2006). With W the weights, X such a matrix, E the errors of its outputs and ' for the transpose, the output
     is W'X + bias, the gradient of W is XE', and WE are errors of the windows, which are added up where they overlap.
     """
 
-    settings = ("inputs", "filters", "kernel", "stride", "padding")
+    settings = ("inputs", "filters", "kernel")
+    formerly: Mapping[str, Any] = {"stride": 1, "padding": 0}
     inputs: ImageShape
     outputs: ImageShape
-    framed: Array  # images of the last forward pass, with zeros around them
 
-    def __init__(
-        self, inputs: ImageShape, filters: int, kernel: int, *, stride: int = 1, padding: int = 0, **options: Any
-    ) -> None:
+    def __init__(self, inputs: ImageShape, filters: int, kernel: int, *, scale: float = 1.0) -> None:
         height, width, channels = shape = _checked_shape(inputs)
-        self.kernel, self.stride = checked_size("kernel", kernel), checked_size("stride", stride)
-        self.padding = padding if padding == 0 else checked_size("padding", padding)
-        if self.padding >= self.kernel:
-            raise ValueError(f"padding is smaller than the kernel of {self.kernel}, not {padding}")
-        if self.kernel > min(height, width) + 2 * self.padding:
-            raise ValueError(f"a kernel of {kernel} does not fit into {height} x {width} with padding {padding}")
-        self.filters = checked_size("filters", filters)
-        super().__init__(self.kernel**2 * channels, self.filters, **options)
-        rows, columns = ((size + 2 * self.padding - self.kernel) // self.stride + 1 for size in (height, width))
-        self.inputs, self.outputs = shape, (rows, columns, self.filters)
-
-    @property
-    def weights(self) -> Array:
-        """Weights, (kernel · kernel · channels, filters), rows by kernel column, kernel row and channel."""
-        return self.parameters[0].value
+        self.filters, self.kernel = checked_size("filters", filters), checked_size("kernel", kernel)
+        if self.kernel > min(height, width):
+            raise ValueError(f"a kernel of {kernel} does not fit into {height} x {width}")
+        super().__init__(self.kernel**2 * channels, self.filters, scale=scale)
+        self.inputs, self.outputs = shape, (height - self.kernel + 1, width - self.kernel + 1, self.filters)
 
     @property
     def kernels(self) -> Array:
-        """The weights as (kernel column, kernel row, channel, filter)."""
+        """The weights (kernel · kernel · channels, filters) as (kernel column, kernel row, channel, filter)."""
         return self.weights.reshape(self.kernel, self.kernel, -1, self.filters)
 
     def forward_propagate(self, input_data: Array) -> Array:
         """Return each window times the weights, plus the bias: (batch, height, width, filters)."""
         _check_images(self, input_data)
-        self.framed = self.kept("framed", self._frame(len(input_data)), self.dtype)
-        output = self.kept("output", (len(input_data), *self.outputs), self.dtype)
-        return self._convolve(input_data, self.framed, output)
+        self.input = self.kept("input", input_data.shape, self.dtype)
+        self.input[...] = input_data
+        return self._convolve(self.input, self.kept("output", (len(input_data), *self.outputs), self.dtype))
 
     def predict(self, input_data: Array) -> Array:
         """Return the same as a new array."""
         _check_images(self, input_data)
-        framed = np.zeros(self._frame(len(input_data)), self.dtype, "F")
-        return self._convolve(input_data, framed, np.empty((len(input_data), *self.outputs), self.dtype, "F"))
+        images = np.asarray(input_data, self.dtype, order="F")
+        return self._convolve(images, np.empty((len(images), *self.outputs), self.dtype, "F"))
 
     def fill_gradients(self, output_error: Array) -> None:
         """Set the gradients of weights, the sum of windowᵀ E over all windows, and of the bias."""
@@ -84,44 +70,43 @@ class ConvolutionLayer(FullyConnectedLayer):
         bias.gradient[...] = error.T.reshape(self.filters, -1).dot(ones(error[..., 0].size, error.dtype))
         weights.gradient.fill(0)
         for x, y in self._blocks(len(error)):
-            weights.gradient += self._windows(self.framed, x, y) @ _columns(error, x, y).T
+            weights.gradient += self._windows(self.input, x, y) @ _columns(error, x, y).T
 
     def input_error(self, output_error: Array) -> Array:
         """Return the sum of what all windows that a pixel lies in send back: (batch, height, width, channels)."""
-        (height, width, channels), stride = self.inputs, self.stride
         error = np.asarray(output_error, self.dtype, order="F")
-        framed = self.kept("framed_error", self._frame(len(error)), self.dtype)
-        framed.fill(0)
+        total = self.kept("error", (len(error), *self.inputs), self.dtype)
+        total.fill(0)
         for x, y in self._blocks(len(error)):
-            part = _columns(error, x, y)
-            sent = (self.weights @ part).reshape(self.kernel, self.kernel, channels, x.stop - x.start, -1, len(error))
+            places = x.stop - x.start, y.stop - y.start, len(error)
+            sent = self._block("sent", (self.kernel, self.kernel, self.inputs[2], *places))
+            np.matmul(self.weights, _columns(error, x, y), out=sent.reshape(len(self.weights), -1))
             for i, j in np.ndindex(self.kernel, self.kernel):
-                columns, rows = _strided(x, i, stride), _strided(y, j, stride)
-                reached = framed.T[:, columns, rows]
-                reached += sent[i, j]
-        inside = slice(self.padding, self.padding + height), slice(self.padding, self.padding + width)
-        return np.asarray(framed[:, *inside], order="F")
+                total.T[:, x.start + i : x.stop + i, y.start + j : y.stop + j] += sent[i, j]
+        return total
 
-    def _convolve(self, images: Array, framed: Array, output: Array) -> Array:
-        inside = (slice(self.padding, self.padding + size) for size in self.inputs[:2])
-        framed[:, *inside] = images
+    def _convolve(self, images: Array, output: Array) -> Array:
         weights, bias = self.weights.T, self.bias[:, None]
         for x, y in self._blocks(len(images)):
-            matrix, part = self._windows(framed, x, y), _columns(output, x, y)
-            np.matmul(weights, matrix, out=part)
+            part = _columns(output, x, y)
+            np.matmul(weights, self._windows(images, x, y), out=part)
             part += bias
         return output
 
-    def _frame(self, batch: int) -> tuple[int, ...]:
-        """Return the shape of images with zeros around them."""
-        height, width, channels = self.inputs
-        return batch, height + 2 * self.padding, width + 2 * self.padding, channels
+    def _windows(self, images: Array, x: slice, y: slice) -> Array:
+        """Return windows of some outputs as the columns of a matrix, (kernel · kernel · channels, windows · batch)."""
+        windows = sliding_window_view(images.T, (self.kernel, self.kernel), (1, 2))[:, x, y].transpose(4, 5, 0, 1, 2, 3)
+        matrix = self._block("matrix", windows.shape)
+        matrix[...] = windows
+        return matrix.reshape(len(self.weights), -1)
 
-    def _windows(self, framed: Array, x: slice, y: slice) -> Array:
-        """Return windows as the columns of a matrix, (kernel · kernel · channels, windows · batch)."""
-        windows = sliding_window_view(framed.T, (self.kernel, self.kernel), (1, 2))
-        windows = windows[:, :: self.stride, :: self.stride][:, x, y].transpose(4, 5, 0, 1, 2, 3)
-        return windows.reshape(len(self.weights), -1)
+    def _block(self, name: str, shape: tuple[int, ...]) -> Array:
+        """Return memory for a block, the same at each call: fresh pages would take longer than what is put there."""
+        size = prod(shape)
+        memory = self.__dict__.get(name)
+        if memory is None or memory.size < size or memory.dtype != self.dtype:
+            memory = self.__dict__[name] = np.empty(size, self.dtype)
+        return memory[:size].reshape(shape)
 
     def _blocks(self, batch: int) -> Iterator[tuple[slice, slice]]:
         """Yield which columns and rows of outputs are worked at together: some whole columns, or a part of one."""
@@ -133,11 +118,6 @@ class ConvolutionLayer(FullyConnectedLayer):
 def _columns(outputs: Array, x: slice, y: slice) -> Array:
     """Return some outputs, or their errors, as the columns of a matrix (filters, windows · batch), a view."""
     return outputs.T[:, x, y].reshape(outputs.shape[-1], -1)
-
-
-def _strided(outputs: slice, shift: int, stride: int) -> slice:
-    """Return where the pixels lie that are `shift` pixels into the windows of some outputs."""
-    return slice(outputs.start * stride + shift, (outputs.stop - 1) * stride + shift + 1, stride)
 
 
 def _parts(size: int, most: int) -> list[slice]:

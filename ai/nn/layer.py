@@ -3,16 +3,25 @@
 An *error* is the derivative of the cost with respect to what it stands for: one number per element.
 """
 
+import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from ai.nn.limits import ImageShape
-from ai.nn.parameter import Array, Parameter
+from ai.nn.parameter import Array, Initialise, Parameter
+
+ImageShape = tuple[int, int, int]  # height, width, channels
+
+# Limits of networks: a small file must not be able to ask for more than a machine has.
+MAX_SIZE = 1 << 20  # of any one size
+MOST_LAYERS = 500
+MOST_PARAMETERS = 12_000_000  # an agent of so many, two networks with gradients and an optimizer, takes 430 MB to load
+WIDEST = 1 << 18  # values that a layer may make of one example
+MOST_WORK = 1_000_000_000  # multiplications for one example
 
 
 class Layer(ABC):
@@ -28,10 +37,11 @@ class Layer(ABC):
     """
 
     settings: tuple[str, ...] = ()  # arguments of the constructor that are stored with the layer
+    formerly: Mapping[str, Any] = {}  # settings of earlier versions, and the only value that can still be read
     inputs: int | ImageShape | None = None  # of an example; None: of any shape, and as many come out
     outputs: int | ImageShape | None = None
     shapes: Mapping[str, tuple[int, ...]] = {}  # of the parameters
-    initialisation: str | None = "constant"  # None: as suits the activation that follows
+    initialise: Initialise | None = None  # how weights are drawn: as suits the activation that follows, if any does
     rng: np.random.Generator | None = None
     dtype: npt.DTypeLike = np.float32
     joined = False  # whether it belongs to a network
@@ -52,7 +62,7 @@ class Layer(ABC):
         raise NotImplementedError(f"{type(self).__name__} does not say how {name} begins")
 
     def join(self, rng: np.random.Generator, dtype: npt.DTypeLike) -> None:
-        """Become a part of one network, which computes in `dtype`; a layer without an `rng` gets one of the network's.
+        """Become a part of one network, which computes in `dtype`; the layer gets a generator of its own.
 
         Raises ValueError if it is part of one already: a network's parameters lie in its own flat vector.
         """
@@ -110,3 +120,35 @@ class Layer(ABC):
         for parameter, gradient in zip(self.parameters, before, strict=True):
             parameter.gradient[...] = gradient
         return error
+
+
+def check_next(before: Sequence[Layer], layer: Layer) -> None:
+    """Raise ValueError if a layer does not take what those before it give, or makes the network too large."""
+    given = next((one.outputs for one in reversed(before) if one.outputs is not None), None)
+    if None not in (given, layer.inputs) and given != layer.inputs:
+        raise ValueError(f"{type(layer).__name__} takes {_said(layer.inputs)}, the layer before gives {_said(given)}")
+    layers = [*before, layer]
+    width = math.prod(layer.outputs) if isinstance(layer.outputs, tuple) else layer.outputs or 0
+    parameters = [sum(map(math.prod, one.shapes.values())) for one in layers]
+    # A convolution uses each of its parameters in every window.
+    windows = [math.prod(one.outputs[:2]) if isinstance(one.outputs, tuple) else 1 for one in layers]
+    work = sum(count * places for count, places in zip(parameters, windows, strict=True))
+    for count, most, words in (
+        (len(layers), MOST_LAYERS, "a network has at most {:,} layers, not {}"),
+        (width, WIDEST, "a layer makes at most {:,} values of an example, not {}"),
+        (sum(parameters), MOST_PARAMETERS, "a network has at most {:,} parameters, not {}"),
+        (work, MOST_WORK, "a network takes at most {:,} multiplications for an example, not {}"),
+    ):
+        if count > most:
+            raise ValueError(words.format(most, count))
+
+
+def _said(shape: int | ImageShape | None) -> str:
+    return "images of {} x {} x {}".format(*shape) if isinstance(shape, tuple) else f"{shape} values"
+
+
+def checked_size(name: str, size: int) -> int:
+    """Return a size as a plain int; raises ValueError if it is none."""
+    if isinstance(size, bool) or not isinstance(size, int | np.integer) or not 1 <= size <= MAX_SIZE:
+        raise ValueError(f"{name} is a whole number from 1 to {MAX_SIZE}, not {size!r}")
+    return int(size)

@@ -8,40 +8,23 @@ import numpy as np
 import numpy.typing as npt
 
 from ai.nn.activations import Activation, Function
-from ai.nn.layer import Layer
-from ai.nn.limits import checked_size
-from ai.nn.parameter import INITIALISATIONS, Array
+from ai.nn.layer import Layer, checked_size
+from ai.nn.parameter import Array, glorot_uniform
 
 
 class FullyConnectedLayer(Layer):
     """Each output is a weighted sum of all inputs, plus a bias: y = x W + b.
 
-    `initialisation` is "glorot" or "he"; by default it suits the activation that follows in the network.
-    `scale` multiplies the first weights: a small one keeps first outputs near zero. The weights come from
-    `rng`, or else from the network's.
+    `scale` multiplies the first weights: a small one keeps first outputs near zero.
     """
 
     settings: tuple[str, ...] = ("inputs", "outputs")
 
-    def __init__(
-        self,
-        inputs: int,
-        outputs: int,
-        *,
-        initialisation: str | None = None,
-        scale: float = 1.0,
-        rng: np.random.Generator | None = None,
-        dtype: npt.DTypeLike = np.float32,
-    ) -> None:
-        if initialisation not in (None, *INITIALISATIONS):
-            raise ValueError(f"initialisation is one of {', '.join(INITIALISATIONS)}, not {initialisation!r}")
+    def __init__(self, inputs: int, outputs: int, *, scale: float = 1.0) -> None:
         self.inputs = checked_size("inputs", inputs)
         self.outputs = checked_size("outputs", outputs)
         self.shapes = {"weights": (self.inputs, self.outputs), "bias": (self.outputs,)}
-        self.initialisation = initialisation
         self.scale = scale
-        self.rng = rng.spawn(1)[0] if rng else None  # its own: the weights are drawn later
-        self.dtype = dtype
 
     @property
     def weights(self) -> Array:
@@ -85,10 +68,10 @@ class FullyConnectedLayer(Layer):
         return error
 
     def initial_value(self, name: str) -> Array:
-        """Return zeros for the bias, and weights drawn as `initialisation` says."""
+        """Return zeros for the bias, and weights drawn as suits the activation that follows."""
         if name == "bias":
             return np.zeros(self.shapes[name])
-        draw = INITIALISATIONS[self.initialisation or "glorot"]
+        draw = self.initialise or glorot_uniform
         return self.scale * draw(self.rng or np.random.default_rng(0), *self.shapes[name])
 
 
@@ -102,8 +85,8 @@ class DuelingLayer(FullyConnectedLayer):
 
     single_step = Layer.single_step  # by `predict`, not as a fully connected layer
 
-    def __init__(self, inputs: int, outputs: int, **options: Any) -> None:
-        super().__init__(inputs, outputs, **options)
+    def __init__(self, inputs: int, outputs: int, *, scale: float = 1.0) -> None:
+        super().__init__(inputs, outputs, scale=scale)
         self.shapes = {"weights": (inputs, outputs + 1), "bias": (outputs + 1,)}
 
     @cached_property
@@ -181,13 +164,12 @@ class LayerNormalisation(Layer):
 
     settings = ("size", "epsilon")
 
-    def __init__(self, size: int, *, epsilon: float = 1e-5, dtype: npt.DTypeLike = np.float32) -> None:
+    def __init__(self, size: int, *, epsilon: float = 1e-5) -> None:
         if not 0 < epsilon < 1:
             raise ValueError(f"epsilon is a small positive number, not {epsilon}")
         self.size = self.inputs = self.outputs = checked_size("size", size)
         self.shapes = {"gain": (size,), "bias": (size,)}
         self.epsilon = epsilon
-        self.dtype = dtype
 
     def forward_propagate(self, input_data: Array) -> Array:
         """Return the normalised batch, (batch, size)."""

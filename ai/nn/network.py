@@ -8,14 +8,12 @@ from typing import Final, Literal, Self
 import numpy as np
 import numpy.typing as npt
 
-from ai.files import atomic_folder
 from ai.nn.costs import Cost, CostFunction
-from ai.nn.layer import Layer
+from ai.nn.layer import Layer, check_next
 from ai.nn.layers import ActivationLayer, DropoutLayer
-from ai.nn.limits import check_next
 from ai.nn.optimizers import SGD, Optimizer
 from ai.nn.parameter import Array, pack
-from ai.nn.storage import read_network, write_network
+from ai.nn.storage import read_network, save_network
 
 IMAGES = 250  # predicted at a time: each takes some 100 KB on its way
 
@@ -87,7 +85,7 @@ class NeuralNetwork:
         layer.join(self.rng, self.dtype)
         if isinstance(layer, ActivationLayer):
             for before in self.layers:
-                before.initialisation = before.initialisation or layer.activation.initialisation
+                before.initialise = before.initialise or layer.activation.initialise
         self.layers.append(layer)
         for name in ("_flat", "_single"):  # made anew when needed
             self.__dict__.pop(name, None)
@@ -233,8 +231,7 @@ class NeuralNetwork:
         Raises ValueError if it has functions without a name or parameters that are not finite,
         FileExistsError if the folder holds something else, OSError if it cannot be written.
         """
-        with atomic_folder(folder) as temporary:
-            write_network(temporary, self.cost, self.layers, self.dtype)
+        save_network(folder, self.cost, self.layers, self.dtype)
 
     @classmethod
     def load(cls, folder: str | Path) -> Self:

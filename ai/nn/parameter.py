@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 Array = npt.NDArray[np.floating[Any]]
+Initialise = Callable[[np.random.Generator, int, int], Array]  # draws weights (inputs, outputs)
 
 
 @dataclass(slots=True)
@@ -48,9 +49,3 @@ def glorot_uniform(rng: np.random.Generator, inputs: int, outputs: int) -> Array
 def he_normal(rng: np.random.Generator, inputs: int, outputs: int) -> Array:
     """Draw (inputs, outputs) weights from N(0, 2/inputs), for rectifiers (He et al. 2015, eq. 10)."""
     return rng.normal(0.0, np.sqrt(2.0 / inputs), (inputs, outputs))
-
-
-INITIALISATIONS: dict[str, Callable[[np.random.Generator, int, int], Array]] = {
-    "glorot": glorot_uniform,
-    "he": he_normal,
-}

@@ -16,6 +16,7 @@ import numpy.typing as npt
 from ai.files import (
     CONFIG,
     NETWORK,
+    atomic_folder,
     brief,
     check_header,
     inside,
@@ -28,9 +29,8 @@ from ai.files import (
 from ai.nn.activations import ACTIVATIONS, Activation
 from ai.nn.costs import COSTS, Cost
 from ai.nn.images import ConvolutionLayer, FlattenLayer, MaxPoolingLayer
-from ai.nn.layer import Layer
+from ai.nn.layer import MOST_LAYERS, Layer, check_next
 from ai.nn.layers import ActivationLayer, DropoutLayer, DuelingLayer, FullyConnectedLayer, LayerNormalisation
-from ai.nn.limits import MOST_LAYERS, check_next
 from ai.nn.parameter import Array, Parameter
 
 T = TypeVar("T")
@@ -73,16 +73,17 @@ class ModelFormatError(ValueError):
         self.folder = Path(folder)
 
 
-def write_network(folder: Path, cost: Cost, layers: list[Layer], dtype: npt.DTypeLike) -> None:
-    """Write a network's files into an existing folder; raises ValueError if it cannot be saved."""
-    config = {
-        "format": FORMAT,
-        "version": VERSION,
-        "dtype": np.dtype(dtype).name,
-        "cost": _described(cost),
-        "layers": [_write_layer(folder, index, layer) for index, layer in enumerate(layers)],
-    }
-    (folder / CONFIG).write_text(json.dumps(config, indent=2) + "\n", encoding="utf-8")
+def save_network(folder: str | Path, cost: Cost, layers: list[Layer], dtype: npt.DTypeLike) -> None:
+    """Write a network to a folder, whole or not at all; raises as `NeuralNetwork.save` says."""
+    with atomic_folder(folder) as temporary:
+        config = {
+            "format": FORMAT,
+            "version": VERSION,
+            "dtype": np.dtype(dtype).name,
+            "cost": _described(cost),
+            "layers": [_write_layer(temporary, index, layer) for index, layer in enumerate(layers)],
+        }
+        (temporary / CONFIG).write_text(json.dumps(config, indent=2) + "\n", encoding="utf-8")
 
 
 def _write_layer(folder: Path, index: int, layer: Layer) -> dict[str, Any]:
@@ -136,8 +137,12 @@ def read_network(folder: str | Path) -> tuple[Cost, list[Layer], str]:
             check_next(list(layers.values()), layer)
             layers[index] = layer
     for index, layer in layers.items() if dtype in DTYPES else ():
-        where = f"{CONFIG}: layer {index}"
-        layer.parameters = tuple(_read_parameters(problems, where, folder, layer, descriptions[index], str(dtype)))
+        parameters = []
+        for name, shape in layer.shapes.items():
+            with noted(problems, f"{CONFIG}: layer {index}"):
+                array = _read_array(folder, descriptions[index], name, shape, str(dtype))
+                parameters.append(Parameter(name, array, np.zeros_like(array)))
+        layer.parameters = tuple(parameters)
     if problems:
         raise ModelFormatError(folder, problems)
     return cost, list(layers.values()), str(dtype)
@@ -169,6 +174,9 @@ def _make_layer(description: Any) -> Layer:
     if name not in LAYERS:
         raise ValueError(f"unknown type {shown(name)}; known are {', '.join(LAYERS)}")
     kind = LAYERS[name]
+    for setting, only in kind.formerly.items():
+        if (found := description.get(setting, only)) != only:
+            raise ValueError(f"{setting} is {shown(found)}, and this version of {name} has {only} alone")
     settings = {setting: _required(description, setting) for setting in kind.settings}
     if "activation" in settings:
         settings["activation"] = _named(ACTIVATIONS, settings["activation"])
@@ -190,18 +198,8 @@ def _required(description: Any, name: str) -> Any:
     return description[name]
 
 
-def _read_parameters(
-    problems: list[str], where: str, folder: Path, layer: Layer, description: Any, dtype: str
-) -> Iterator[Parameter]:
-    """Yield the parameters that can be read; note what is wrong with the others."""
-    for name, shape in layer.shapes.items():
-        with noted(problems, where):
-            array = _read_parameter(folder, description, name, shape, dtype)
-            yield Parameter(name, array, np.zeros_like(array))
-
-
-def _read_parameter(folder: Path, description: Any, name: str, shape: Sequence[int], dtype: str) -> Array:
-    """Return a parameter; raises OSError or ValueError if it is not as the layer wants it and as the folder says."""
+def _read_array(folder: Path, description: Any, name: str, shape: Sequence[int], dtype: str) -> Array:
+    """Return a parameter's array; raises OSError or ValueError if it is not as the layer and the folder say."""
     entry = _required(_required(description, "arrays"), name)
     file = _required(entry, "file")
     if not isinstance(file, str) or Path(file).name != file:

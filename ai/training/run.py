@@ -10,8 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from ai.files import FolderKind
-from ai.nn import atomic_folder
+from ai.files import FolderKind, atomic_folder
 from ai.run import Run
 from ai.training.messages import Saved, problem_of
 from ai.training.state import State, StateWriter

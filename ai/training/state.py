@@ -108,7 +108,7 @@ class StateWriter:
         }  # fmt: skip
         if isinstance(buffer, PrioritisedReplayBuffer):
             rows = (buffer.start + np.arange(len(buffer) - kept, len(buffer))) % buffer.capacity
-            told |= {"largest": buffer.largest, "priorities": buffer.tree.leaves[rows]}
+            told |= {"largest": buffer.largest, "priorities": buffer.priorities[rows]}
         return told
 
     def write(self, prepared: PreparedState) -> None:
@@ -197,7 +197,7 @@ def restore_buffer(folder: str | Path, buffer: ReplayBuffer, told: Any, num_acti
         priorities = array_like(np.empty(kept), told["priorities"], "priorities")
         if (priorities <= 0).any():
             raise ValueError("priorities are above 0")
-        buffer.tree.set(rows, priorities)
+        buffer.priorities[rows] = priorities
         buffer.largest = float(number_of(told["largest"], 0))
     return kept == size
 

@@ -21,55 +21,29 @@ def kind_of(entry: Entry) -> str:
 
 
 def tells(entry: Entry) -> bool:
-    """Whether a flight tells how often the player would land alone.
-
-    It does if it was flown alone and counts, or if nothing but a guardian helped, from beginning to end; in missions
-    guardians have not been measured.
-    """
-    if entry.practice:
-        return False
-    return entry.alone or (entry.barred == "helped" and entry.guarded > 0 and not entry.course)
+    """Whether a flight tells how often the player would land alone: they flew all of it, under the usual rules."""
+    return entry.alone and not entry.practice
 
 
-class Becoming:
-    """Estimates from the player's flights, oldest first.
+def curves(entries: Iterable[Entry]) -> dict[str, list[Estimate]]:
+    """Return for each kind of start the estimate before any flight, and after each that tells something."""
+    told = [entry for entry in entries if tells(entry)]
+    return {kind: _curve([entry for entry in told if kind_of(entry) == kind][-_MOST:]) for kind in KINDS}
 
-    Attributes:
-        flights: for each kind of start, the flights that tell something.
-        curves: the estimate after each of them.
 
-    """
-
-    def __init__(self, entries: Iterable[Entry] = ()) -> None:
-        self._beliefs = {kind: LandingAlone() for kind in KINDS}
-        self.flights: dict[str, list[Entry]] = {kind: [] for kind in KINDS}
-        self.curves: dict[str, list[Estimate]] = {kind: [] for kind in KINDS}
-        told = [entry for entry in entries if tells(entry)]
-        for kind in KINDS:
-            for entry in [entry for entry in told if kind_of(entry) == kind][-_MOST:]:
-                self._add(entry)
-
-    def estimate(self, kind: str) -> Estimate:
-        """Return the latest estimate for a kind of start."""
-        return self._beliefs[kind].estimate
-
-    def _add(self, entry: Entry) -> None:
-        """Learn from a flight that tells something."""
-        kind = kind_of(entry)
-        belief = self._beliefs[kind]
-        if entry.alone:
-            belief.add_alone(landed=entry.landed)
-        else:
-            changed = (1.0 - entry.human) * entry.seconds
-            belief.add_helped(landed=entry.landed, changed=changed, assist=entry.guarded)
-        self.flights[kind].append(entry)
-        self.curves[kind].append(belief.estimate)
+def _curve(flights: Iterable[Entry]) -> list[Estimate]:
+    belief = LandingAlone()
+    found = [belief.estimate]
+    for entry in flights:
+        belief.add(landed=entry.landed)
+        found.append(belief.estimate)
+    return found
 
 
 def said(estimate: Estimate) -> str:
     """Return an estimate in words, with its uncertainty."""
     if not estimate.known:
-        return texts.BECOMING_TOO_FEW.format(count=estimate.alone)
+        return texts.BECOMING_TOO_FEW.format(count=estimate.flights)
     low, mean, high = (round(10 * share) for share in (estimate.low, estimate.mean, estimate.high))
     if low == high:
         return texts.BECOMING_SURE.format(share=mean)

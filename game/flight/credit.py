@@ -1,70 +1,66 @@
-"""Credit for a flight: who has the stick, who flew, what the flight counts for, and why not.
+"""Credit for a flight: who has the stick, who flew, what made it easier, what it counts for, and why not.
 
 Header, corner, card, medal and logbook ask this one object, so that no two of them can say different things.
 """
 
 from __future__ import annotations
 
-from enum import Enum, auto
 from typing import Final, Protocol
 
+from ai.flights.recording import Easing
 from ai.flights.verification import landing_score
 from ai.lander.environment import Outcome
 from game.core import texts
-from game.flight.difficulty import Difficulty
+from game.core.settings import Settings
 from game.flight.flight import Flight, StickHolder
 from game.flight.handicap import OWN
 
 TOGETHER: Final = ("helped", "handed_over")  # reasons not to count that a landing together has
+_ASSISTS: Final = ("toggle_thrust", "one_switch", "wider_pads", "untimed", "pace")  # in the order they are told
+# Assists that change how the pilot's own hands are read, and nothing about the flight: it counts like any other.
+_OWN_HANDS: Final = frozenset({"toggle_thrust"})
 
 
-class CreditRules(Protocol):
-    """Challenge of a flight, as far as it decides what counts; implemented in `game.scenes.play.challenge`."""
+class Rules(Protocol):
+    """What a flight is flown as, as far as that decides what counts; see `game.scenes.play.challenge.Challenge`."""
 
-    @property
-    def kept(self) -> bool:
-        """Whether its flights are recorded."""
-
-    @property
-    def bar(self) -> str:
-        """Reason why its flights do not count as the person's own, a key of `texts.NOT_COUNTED`; empty if they may."""
-
-    @property
-    def alone(self) -> bool:
-        """Whether the person must fly alone: no help and no handing over."""
+    free: bool
+    kept: bool
+    bar: str
+    alone: bool
+    hands: str
 
     def medal(self, flight: Flight) -> int:
         """Return the medal of a flight that is over: 3 for gold, 2, 1, and 0 for none."""
 
 
-class FlownBy(Enum):
-    """Holder of the stick."""
-
-    PERSON = auto()
-    BOTH = auto()  # the person, with a co-pilot that may intervene
-    NETWORK = auto()
+def eased(settings: Settings) -> Easing:
+    """Return the easing that the player has chosen for the next flight."""
+    return Easing(settings.wider_pads, settings.untimed)
 
 
 class Credit:
-    """Credit for one flight; call `follow` once after every step.
+    """Credit for one flight; call `prepare` before every step, and `follow` after it.
 
-    Args:
-        flight: the flight.
-        difficulty: its changes of gravity, and its assists.
-        challenge: the challenge it belongs to; None for a free flight.
-        hands: handicap of its keys, a name of `game.flight.handicap.HANDS`.
+    Attributes:
+        alone: whether the person must fly alone, as in some challenges.
+        pace: slowest pace of time so far.
 
     """
 
-    def __init__(
-        self,
-        flight: Flight,
-        difficulty: Difficulty,
-        challenge: CreditRules | None = None,
-        hands: str = OWN,
-    ) -> None:
-        self._flight, self._difficulty, self._challenge, self._hands = flight, difficulty, challenge, hands
+    def __init__(self, flight: Flight, settings: Settings, rules: Rules) -> None:
+        self._flight, self._settings, self._rules = flight, settings, rules
+        self._used: set[str] = set()  # assists of the steps so far
         self._shared = False
+        self.alone, self.pace = rules.alone, 1.0
+
+    def prepare(self) -> None:
+        """Apply the player's settings to the next step, and remember what they are; gravity in free flights alone."""
+        if self._rules.free:
+            self._flight.set_gravity(self._settings.gravity)
+        self._flight.steered = self._settings.one_switch
+        self._used |= self._chosen
+        self.pace = min(self.pace, self._settings.pace)
 
     def follow(self) -> None:
         """Record whether the step just flown was shared."""
@@ -73,35 +69,74 @@ class Credit:
     # Who flies
 
     @property
-    def stick(self) -> FlownBy:
-        """Present holder of the stick, or the last one after the flight."""
-        flight = self._flight
-        if flight.hand is StickHolder.NETWORK:
-            return FlownBy.NETWORK
-        return FlownBy.BOTH if flight.shared else FlownBy.PERSON
-
-    @property
     def helped(self) -> bool:
         """Whether a co-pilot has shared the stick at any time, or will in the next step."""
         return self._shared or (self._flight.shared and not self._flight.over)
 
     @property
-    def alone(self) -> bool:
-        """Whether the person must fly alone, as in some challenges."""
-        return self._challenge is not None and self._challenge.alone
-
-    @property
     def header(self) -> str:
         """Text that says who flies or, after the flight, who flew."""
-        flight, stick = self._flight, self.stick
+        flight = self._flight
         if flight.over:
-            return who_flew(flight.share)
-        words = texts.NETWORK_FLIES if stick is FlownBy.NETWORK else texts.YOU_FLY
-        if stick is FlownBy.BOTH and flight.copilot:
+            return texts.YOU_FLEW if flight.share == 1 else texts.BOTH_FLEW if flight.share else texts.NETWORK_FLEW
+        if flight.hand is StickHolder.NETWORK:
+            return texts.NETWORK_FLIES
+        if flight.shared and flight.copilot:
             return texts.YOU_SHARE[flight.copilot.mode]
-        if not self.alone:
-            return words
-        return texts.JOINED.format(words=words, more=texts.WITHOUT_HELP)
+        return texts.JOINED.format(words=texts.YOU_FLY, more=texts.WITHOUT_HELP) if self.alone else texts.YOU_FLY
+
+    # What made it easier, or another flight
+
+    @property
+    def practice(self) -> bool:
+        """Whether the flight is not to be ranked, or will not be after its next step, for its gravity is another."""
+        return bool(self._flight.recording.gravity) or self._gravity != 1
+
+    @property
+    def differs(self) -> str:
+        """Sentence on what differs from normal, now or before; empty if nothing does."""
+        words = [texts.PRACTICE] if self.practice else []
+        if self._gravity != 1:
+            words.append(texts.PRACTICE_GRAVITY.format(percent=round(100 * self._gravity)))
+        return texts.DIAL_JOIN.join(filter(None, [*words, self.assists]))
+
+    @property
+    def assists(self) -> str:
+        """The assists in words, of the steps flown and, while the flight lasts, of the next one; empty without any."""
+        words = [self._slow if name == "pace" else texts.ASSIST_WORDS[name] for name in self._named]
+        return texts.ASSISTS_USED.format(assists=", ".join(words)) if words else ""
+
+    @property
+    def _named(self) -> list[str]:
+        used = self._used if self._flight.over else self._used | self._chosen
+        return [name for name in _ASSISTS if name in used]
+
+    @property
+    def _chosen(self) -> set[str]:
+        settings, easing = self._settings, self._flight.recording.easing
+        chosen = {
+            "toggle_thrust": settings.toggle_thrust and not settings.one_switch,
+            "one_switch": settings.one_switch,
+            "wider_pads": easing.wider_pads,
+            "untimed": easing.untimed,
+            "pace": settings.pace != 1,
+        }
+        return {name for name, on in chosen.items() if on}
+
+    @property
+    def _slow(self) -> str:
+        """The slowest pace in words."""
+        slowest = self.pace if self._flight.over else min(self.pace, self._settings.pace)
+        percent = round(100 * slowest)
+        return texts.ASSIST_HALF_SPEED if percent == 50 else texts.ASSIST_WORDS["pace"].format(percent=percent)
+
+    @property
+    def _gravity(self) -> float:
+        """Share of normal gravity in the next step; after the flight, in the last."""
+        recording = self._flight.recording
+        if self._rules.free and not self._flight.over:
+            return self._settings.gravity
+        return recording.gravity_at(len(recording.actions))
 
     # What it counts for
 
@@ -109,17 +144,17 @@ class Credit:
     def bar(self) -> str:
         """Reason why it does not count as the person's own, a key of `texts.NOT_COUNTED`; empty while it does."""
         flight = self._flight
-        if self._challenge and self._challenge.bar:
-            return self._challenge.bar
-        if self._hands != OWN:
+        if self._rules.bar:
+            return self._rules.bar
+        if self._rules.hands != OWN:
             return "hands"
         if self.helped and flight.share < 1.0:
             return "helped"
         if flight.share < 1.0 or flight.hand is StickHolder.NETWORK:
             return "handed_over"
-        if self._difficulty.practice:
+        if self.practice:
             return "practice"
-        return "assists" if self._difficulty.apart else ""
+        return "" if _OWN_HANDS.issuperset(self._named) else "assists"
 
     @property
     def counts(self) -> bool:
@@ -137,9 +172,9 @@ class Credit:
     @property
     def notice(self) -> str:
         """Text that says why it does not count, and what is changed; empty if it counts, or never could."""
-        if self._difficulty.words:
-            return self._difficulty.words
-        if self._challenge is not None and not self._challenge.kept:
+        if self.differs:
+            return self.differs
+        if not self._rules.kept:
             return ""
         if self.bar:
             return texts.NOT_COUNTED[self.bar]
@@ -148,11 +183,11 @@ class Credit:
     @property
     def medal(self) -> int:
         """Medal of a flight that is over: 3 for gold, 2, 1, 0 for none."""
-        return self._challenge.medal(self._flight) if self._challenge and self.counts else 0
+        return self._rules.medal(self._flight) if self.counts else 0
 
     def score(self, best: int) -> str:
         """Return the text for the score of a flight that is over; `best` is the score to beat, 0 for none."""
-        if self._difficulty.practice:
+        if self.practice:
             return texts.PRACTICE
         points = landing_score(self._flight.env)
         beaten = self.counts and points > best > 0
@@ -162,18 +197,3 @@ class Credit:
         """Return the text below a card's title: `reason`, or why a landing does not count."""
         landed = self._flight.outcome is Outcome.LANDED
         return texts.NOT_COUNTED[self.bar] if landed and self.bar else reason
-
-    @property
-    def pace(self) -> float:
-        """Slowest pace of time during the flight."""
-        return self._difficulty.slowest
-
-    @property
-    def assists(self) -> str:
-        """The assists of the flight in words; empty without any."""
-        return self._difficulty.assists
-
-
-def who_flew(share: float) -> str:
-    """Return the text that says who flew, given the person's share of the steps, 0 to 1."""
-    return texts.YOU_FLEW if share == 1 else texts.NETWORK_FLEW if share == 0 else texts.BOTH_FLEW

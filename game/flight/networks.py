@@ -64,7 +64,7 @@ def decision_steps(policy: Policy | None) -> int:
 def work_of(policy: Policy) -> int:
     """Return about how many multiplications a policy takes for one decision: its network's parameters."""
     network = getattr(policy, "network", None)
-    return 0 if network is None else int(network.values.size)
+    return getattr(policy, "work", 0) if network is None else int(network.values.size)
 
 
 @dataclass(frozen=True)
@@ -189,6 +189,11 @@ class Policies:
         if name not in self.read:
             self.read[name] = self._load(name)
         return self.read[name]
+
+    def add(self, network: Network) -> None:
+        """Offer one more, that has been read already."""
+        self.names.append(network.name)
+        self.read[network.name] = network
 
     def first_fit(self) -> Network:
         """Return the first network that can fly; the scripted pilot always can."""

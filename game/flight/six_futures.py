@@ -32,7 +32,7 @@ class SixFutures:
 
     def __init__(self, policy: Policy, route: Route | None = None) -> None:
         self._lookahead = Lookahead(policy, route)
-        self._flying: Flying[tuple[Plan, bool]] | None = None
+        self._flying: Flying[list[tuple[Plan, bool]]] | None = None
         self.paths: list[Doubles] = []
         self.lands: list[bool | None] = [None] * len(KEYS)
 

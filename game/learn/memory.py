@@ -10,7 +10,7 @@ import numpy as np
 import pygame
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.replay import PrioritisedReplayBuffer, ReplayBuffer, SumTree
+from ai.agent.replay import PrioritisedReplayBuffer, ReplayBuffer
 from ai.environment import Doubles
 from ai.lander.environment import OBSERVATION_SCALE
 from ai.training.config import Config
@@ -150,7 +150,7 @@ class MemoryChapter(RunsChapter):
         )
         return [
             Code(ReplayBuffer.sample, np.random.Generator.integers, {np.random.Generator.integers: held}),
-            Code(PrioritisedReplayBuffer.sample, SumTree.find),
+            Code(PrioritisedReplayBuffer.sample, np.ndarray.searchsorted),
             Code(DeepQAgent._learn_from, ReplayBuffer.sample),
         ]
 

@@ -21,6 +21,7 @@ from game.input.controls import Controls
 
 if TYPE_CHECKING:
     from ai.copilot.futures import FlownAhead
+    from ai.pilots.own import OwnPilot
 
 
 def _ignore(text: str) -> None:
@@ -47,6 +48,7 @@ class Context:
         apply_settings: applies the settings to the window and the sound, and saves them.
         in_window: converts a rectangle from points to the window's pixels.
         view: all that the window shows, in points; the same rectangle as the canvas's, which changes with the window.
+        pilot: the player's own file that flies, once it was chosen by name in this game.
         reading: returns the window's canvas for text that flows, whose size and scale layouts go by.
 
     """
@@ -61,6 +63,7 @@ class Context:
     note: Callable[[str], None] = _ignore
     ahead: Callable[[], FlownAhead | None] = lambda: None
     apply_settings: Callable[[], None] = lambda: None
+    pilot: OwnPilot | None = None
     in_window: Callable[[pygame.typing.RectLike], pygame.Rect] = pygame.Rect
     view: pygame.FRect = field(default_factory=lambda: pygame.FRect((0, 0), VIEW_SIZE))
     reading: Callable[[], Canvas] = _page

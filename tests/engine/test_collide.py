@@ -63,64 +63,37 @@ def convex(seed):
     return Polygon(np.stack([np.cos(angle), np.sin(angle)], axis=1) * random.uniform(0.5, 1.5, 2))
 
 
-def test_box_on_box():
+def test_boxes_have_two_points_or_one_on_a_corner():
     manifold = collide(BOX, pose(0, 0), BOX, pose(0.5, 1.9))
     assert manifold.normal[0] == pytest.approx(np.array([0.0, 1.0]))
     assert manifold.depth[0] == pytest.approx(np.array([0.1, 0.1]))
     assert manifold.valid[0].all()
     assert sorted(manifold.points[0].tolist()) == [pytest.approx([-0.5, 0.95]), pytest.approx([1.0, 0.95])]
+    tilted = collide(BOX, pose(0, 0), BOX, pose(0, 1.9, 0.02))
+    assert tilted.valid[0].all()
+    assert np.ptp(tilted.depth[0]) == pytest.approx(2 * np.sin(0.02), rel=0.02)
+    corner = collide(BOX, pose(0, 0), BOX, pose(0.2, 0.9 + np.sqrt(2), np.pi / 4))
+    assert corner.valid[0].sum() == 1
+    assert corner.points[0][corner.valid[0]][0] == pytest.approx(np.array([0.2, 0.95]))
+    assert corner.depth[0][corner.valid[0]] == pytest.approx([0.1])
 
 
-def test_box_on_its_corner_has_one_point():
-    manifold = collide(BOX, pose(0, 0), BOX, pose(0.2, 0.9 + np.sqrt(2), np.pi / 4))
-    assert manifold.valid[0].sum() == 1
-    assert manifold.normal[0] == pytest.approx(np.array([0.0, 1.0]))
-    point = manifold.points[0][manifold.valid[0]][0]
-    assert point == pytest.approx(np.array([0.2, 0.95]))
-    assert manifold.depth[0][manifold.valid[0]] == pytest.approx([0.1])
-
-
-def test_a_slightly_tilted_box_has_two_points_of_unlike_depth():
-    manifold = collide(BOX, pose(0, 0), BOX, pose(0, 1.9, 0.02))
-    assert manifold.valid[0].all()
-    assert np.ptp(manifold.depth[0]) == pytest.approx(2 * np.sin(0.02), rel=0.02)
-
-
-def test_box_and_disc_face_corner_and_inside():
-    above = collide(BOX, pose(0, 0), DISC, pose(0.3, 1.9))
-    assert above.normal[0] == pytest.approx(np.array([0.0, 1.0]))
-    assert above.depth[0, 0] == pytest.approx(0.1)
-    assert above.points[0, 0] == pytest.approx(np.array([0.3, 0.95]))
-    assert above.valid[0].tolist() == [True, False]
-
-    corner = collide(BOX, pose(0, 0), DISC, pose(1.6, 1.6))
-    assert corner.normal[0] == pytest.approx(np.array([1.0, 1.0]) / np.sqrt(2))
-    assert corner.depth[0, 0] == pytest.approx(1 - 0.6 * np.sqrt(2))
-
-    past_corner = collide(BOX, pose(0, 0), DISC, pose(1.8, 1.8))
-    assert not past_corner.valid.any()
-
-    inside = collide(BOX, pose(0, 0), DISC, pose(0.7, 0.1))
-    assert inside.normal[0] == pytest.approx(np.array([1.0, 0.0]))
-    assert inside.depth[0, 0] == pytest.approx(1.3)
-
-    on_face = collide(BOX, pose(0, 0), DISC, pose(0.1, 1.0))
-    assert on_face.normal[0] == pytest.approx(np.array([0.0, 1.0]))
-    assert on_face.depth[0, 0] == pytest.approx(1.0)
-
-
-def test_disc_and_disc():
-    manifold = collide(DISC, pose(0, 0), Circle(0.5), pose(0.0, 1.3))
-    assert manifold.normal[0] == pytest.approx(np.array([0.0, 1.0]))
-    assert manifold.depth[0, 0] == pytest.approx(0.2)
-    assert manifold.points[0, 0] == pytest.approx(np.array([0.0, 0.9]))
-    assert not collide(DISC, pose(0, 0), DISC, pose(1.5, 1.5)).valid.any()
-
-
-def test_discs_in_one_place_still_have_a_normal():
-    manifold = collide(DISC, pose(1, 1), DISC, pose(1, 1))
-    assert np.hypot(*manifold.normal[0]) == pytest.approx(1.0)
-    assert manifold.depth[0, 0] == pytest.approx(2.0)
+def test_discs_have_one_point_and_always_a_normal():
+    for a, b, at, normal, depth, point in [
+        (BOX, DISC, (0.3, 1.9), (0, 1), 0.1, (0.3, 0.95)),
+        (BOX, DISC, (0.7, 0.1), (1, 0), 1.3, (0.35, 0.1)),  # its centre inside
+        (BOX, DISC, (0.1, 1.0), (0, 1), 1.0, (0.1, 0.5)),  # its centre on the face
+        (BOX, DISC, (1.6, 1.6), (0.5**0.5, 0.5**0.5), 1 - 0.6 * 2**0.5, None),  # past a corner
+        (DISC, Circle(0.5), (0.0, 1.3), (0, 1), 0.2, (0.0, 0.9)),
+        (DISC, DISC, (0.0, 0.0), (0, 1), 2.0, None),
+    ]:
+        manifold = collide(a, pose(0, 0), b, pose(*at))
+        assert manifold.valid[0].tolist() == [True, False], at
+        assert manifold.normal[0] == pytest.approx(np.array(normal, float)), at
+        assert manifold.depth[0, 0] == pytest.approx(depth), at
+        assert point is None or manifold.points[0, 0] == pytest.approx(np.array(point)), at
+    for a in (BOX, DISC):
+        assert not collide(a, pose(0, 0), DISC, pose(1.8, 1.8)).valid.any()
 
 
 def test_the_margin_lets_a_gap_count():

@@ -171,7 +171,7 @@ def test_released_from_a_deep_overlap_bodies_part_slowly_and_keep_no_speed(kind)
 
 
 def test_a_slow_touch_does_not_bounce():
-    world = World(gravity=(0.0, 0.0), restitution_threshold=0.25)
+    world = World(gravity=(0.0, 0.0))
     world.add(Polygon.box(10.0, 2.0), (0.0, -1.0), static=True)
     body = world.add(Circle(0.5), (0.0, 0.502), restitution=1.0)
     body.velocity = (0.0, -0.2)

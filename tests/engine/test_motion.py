@@ -34,28 +34,20 @@ def test_gravity_may_differ_between_worlds_and_change():
 
 
 @pytest.mark.parametrize(("linear", "quadratic"), [(0.8, 0.0), (0.0, 0.3), (0.8, 0.3), (500.0, 0.0)])
-def test_terminal_speed_of_a_fall(linear, quadratic):
-    mass, g = 2.0, 9.81
-    world = World(gravity=(0.0, -g))
-    body = world.add(Circle(0.5), (0, 0), mass=mass, linear_drag=linear, quadratic_drag=quadratic)
-    body.angular_velocity = 1.0
-    advance(world, 3000)
-    assert body.angular_velocity[0] == 1.0
-    speed = -body.velocity[0, 1]
-    assert linear * speed + quadratic * speed**2 == pytest.approx(mass * g, rel=1e-7)
-
-
-@pytest.mark.parametrize(("linear", "quadratic"), [(0.8, 0.0), (0.0, 0.3), (0.8, 0.3)])
-def test_terminal_spin_under_a_torque(linear, quadratic):
-    world = World(gravity=(0.0, 0.0))
-    body = world.add(
-        Circle(0.5), (0, 0), mass=2.0, angular_drag=linear, angular_quadratic_drag=quadratic, linear_drag=9.0
-    )
+def test_terminal_speeds_of_a_fall_and_of_a_spin(linear, quadratic):
+    world = World(gravity=(0.0, -9.81))
+    drag = {"linear_drag": linear, "quadratic_drag": quadratic}
+    falling = world.add(Circle(0.5), (0, 0), mass=2.0, **drag)
+    drag = {"angular_drag": linear, "angular_quadratic_drag": quadratic, "linear_drag": 9.0}
+    spinning = world.add(Circle(0.5), (9, 0), mass=2.0, **drag)
+    falling.angular_velocity = 1.0
     for _ in range(3000):
-        body.apply_torque(1.5)
+        spinning.apply_torque(1.5)
         world.step()
-    spin = body.angular_velocity[0]
-    assert linear * spin + quadratic * spin**2 == pytest.approx(1.5, rel=1e-9)
+    assert falling.angular_velocity[0] == 1.0
+    speed, spin = -falling.velocity[0, 1], spinning.angular_velocity[0]
+    assert linear * speed + quadratic * speed**2 == pytest.approx(2.0 * 9.81, rel=1e-7)
+    assert linear * spin + quadratic * spin**2 == pytest.approx(1.5, rel=1e-7)
 
 
 @pytest.mark.parametrize(
@@ -95,7 +87,7 @@ def test_torque_free_spin_keeps_its_speed():
     assert body.position[0, 0] == 0.0
 
 
-def test_a_force_off_the_centre_pushes_and_turns():
+def test_forces_add_up_last_for_one_step_and_turn_off_the_centre():
     world = World(gravity=(0.0, 0.0), batch=2)
     body = world.add(Polygon.box(2.0, 1.0), (5.0, 1.0), mass=3.0)
     for _ in range(30):
@@ -103,16 +95,12 @@ def test_a_force_off_the_centre_pushes_and_turns():
         world.step()
     assert body.velocity == pytest.approx(np.array([[0.0, 1.0]] * 2))
     assert body.angular_velocity == pytest.approx(0.5 * 6.0 * 0.5 / (3.0 * (4 + 1) / 12))
-
-
-def test_forces_add_up_and_last_for_one_step():
-    world = World(gravity=(0.0, 0.0), batch=2)
-    body = world.add(Circle(1.0), (0, 0), mass=2.0)
+    body.set(velocity=(0.0, 0.0), angular_velocity=0.0)
     body.apply_force((1.0, 0.0))
     body.apply_force([[1.0, 0.0], [5.0, 0.0]])
     body.apply_torque([1.0, -1.0])
     advance(world, 2)
-    assert body.velocity[:, 0] == pytest.approx(np.array([2.0, 6.0]) / 2.0 * DT)
+    assert body.velocity[:, 0] == pytest.approx(np.array([2.0, 6.0]) / 3.0 * DT)
     assert body.angular_velocity == pytest.approx(np.array([1.0, -1.0]) / body.inertia * DT)
 
 

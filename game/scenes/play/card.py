@@ -11,11 +11,10 @@ import pygame
 
 from game.core import texts
 from game.drawing.cursor import BASELINE, LEADING, Cursor
-from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MEDALS, MUTE, NET, SMALL, TEXT, TITLE
+from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MEDALS, MUTE, NET, SMALL, TEXT, TITLE, Colour
 from game.flight.outcomes import OutcomeCard, RivalOutcome
 from game.panels.readouts import draw_share
-from game.scenes.play.ladder import WIDTH as LADDER_WIDTH
-from game.scenes.play.ladder import draw_ladder
+from game.scenes.play.head import LADDER, draw_ladder
 from game.ui.hints import Hint, HintRow, hint_lines
 
 if TYPE_CHECKING:
@@ -29,6 +28,7 @@ _AROUND: Final = 16.0  # least points from the sides of the window
 _NARROW, _KEYS = 860.0, 54.0  # in a narrower one, keys stand above the card
 _TOP: Final = 136.0  # of the card, in a window with room
 _NEXT_LAMP, _FLASH = 0.3, 0.22  # seconds from one lamp of a medal to the next, and in which its flash fades
+_LAMP: Final = 13.0  # points from one lamp to the next
 _RING_PARTS: Final = 14
 _FIGURES: Final = LEADING * LABEL + 4 + LEADING * TITLE  # points of a row of figures
 _SIGN: Final = 34.0  # points for the sign before the title
@@ -57,17 +57,13 @@ class ShownCard:
         width = min(_WIDEST, view.width - 2 * _AROUND)
         rows = Cursor(0.0, 0.0, width - 2 * _MARGIN, canvas.scale)
         self._write(rows)
-        height = rows.y + self._foot(canvas, width) + _MARGIN
+        height = rows.y + 29.0 * len(hint_lines(self.hints, canvas, (0.0, 0.0), width - 2 * _MARGIN)) + _MARGIN
         left = view.left + _AROUND + self.card.place * (view.width - 2 * _AROUND - width)
         if width < 0.6 * view.width and self.card.place != PLACES[0]:  # beside the path, but not at the very edge
             left += 48 * (1 if self.card.place < 0.5 else -1)
         above = _KEYS if view.width < _NARROW else _AROUND  # below the keys of the flight
         top = max(view.top + above, min(_TOP, (view.height - height) / 3))
         return pygame.FRect(left, top - 10 * (1 - self.shown), width, height)
-
-    def _foot(self, canvas: Canvas, width: float) -> float:
-        rows = hint_lines(self.hints, canvas, (0.0, 0.0), width - 2 * _MARGIN)
-        return 29.0 * len(rows)
 
     def hint_rows(self, canvas: Canvas) -> list[HintRow]:
         """Return the keys at its foot."""
@@ -96,7 +92,7 @@ class ShownCard:
         for words, colour in ((card.quality, HUMAN), (advice, MUTE), (card.bare, NET), (card.assists, HUMAN)):
             if words:
                 rows.gap(3)
-                _small(rows, words, colour)
+                _aside(rows, words, colour)
         rows.gap(12)
         self._write_figures(rows)
         self._write_rival(rows)
@@ -106,12 +102,10 @@ class ShownCard:
             rows.y = small.y
         self._write_share(rows)
         if card.rung is not None and card.climb:
-            beside = replace(rows, left=rows.left + LADDER_WIDTH + 8, width=rows.width - LADDER_WIDTH - 8)
-            beside = beside.in_style(SMALL)
             if rows.canvas:
-                draw_ladder(rows.canvas, rows.left + 1, beside.baseline, card.rung)
-            beside.text(card.climb)
-            rows.y = beside.y + 4
+                draw_ladder(rows.canvas, rows.left + 1, rows.in_style(SMALL).baseline, card.rung)
+            _aside(rows, card.climb, INK, LADDER + 8)
+            rows.gap(4)
 
     def _write_title(self, rows: Cursor) -> None:
         """Write how it ended after a sign, and its points or its medal at the right, or below."""
@@ -119,8 +113,7 @@ class ShownCard:
         palette = canvas.palette if canvas else None
         colour = INK if card.intact or palette is None else palette.good if card.good else palette.warn
         title = replace(rows, left=rows.left + _SIGN, width=rows.width - _SIGN).in_style(TITLE, colour)
-        score = rows.in_style(TEXT, HUMAN)
-        wide = score.measured(card.score) + (18 + 13 * card.medal if card.medal or card.ring else 0)
+        wide = rows.in_style(TEXT).measured(card.score) + (18 + _LAMP * card.medal if card.medal or card.ring else 0)
         beside = title.measured(card.title) + wide + 24 <= title.width
         baseline = title.baseline
         if canvas:
@@ -129,13 +122,16 @@ class ShownCard:
             canvas.marker(mark, (rows.left + 10, baseline - 8), 18, colour)
         title.text(card.title)
         if card.score and not beside:
-            title.y += BASELINE * TEXT - TEXT
+            title.gap(BASELINE * TEXT - TEXT)
             baseline = title.y + TEXT
-            title.y += LEADING * TEXT
+            title.gap(LEADING * TEXT)
         if canvas and card.score:
             right = rows.right if beside else rows.left + _SIGN + wide
             box = canvas.text(card.score, (right, baseline), size=TEXT, colour=HUMAN, align="right")
-            _draw_medal(canvas, card, (box.left - 14, baseline - 5), self.lit)
+            last = box.left - 14, baseline - 5
+            if card.ring:
+                _draw_ring(canvas, last)
+            draw_lamps(canvas, last, card.medal, self.lit)
         rows.y = title.y
 
     def _write_figures(self, rows: Cursor) -> None:
@@ -150,8 +146,7 @@ class ShownCard:
             if canvas := rows.canvas:
                 x, line = rows.left + number % across * column, rows.y + LEADING * LABEL + 4 + BASELINE * TITLE
                 canvas.text(label, (x, rows.y + LABEL), size=LABEL, colour=MUTE, weight="medium")
-                figure = canvas.text(value, (x, line), size=TITLE, weight="light", tabular=True)
-                canvas.text(unit, (figure.right + 4, line), size=LABEL, colour=MUTE)
+                _figure(canvas, value, unit, (x, line), TITLE)
         rows.gap(_FIGURES + 4)
 
     def _write_rival(self, rows: Cursor) -> None:
@@ -166,12 +161,10 @@ class ShownCard:
         name.pair(rival.name, rival.result, INK)
         rows.y = name.y
         column = rows.width / len(self.card.figures)
-        for number, (label, _, _) in enumerate(self.card.figures if canvas else ()):
-            value, unit = rival.figures.get(label, ("–", ""))
-            x, line = rows.left + number * column, rows.baseline
-            assert canvas is not None
-            figure = canvas.text(value, (x, line), size=TEXT, weight="light", tabular=True)
-            canvas.text(unit, (figure.right + 4, line), size=LABEL, colour=MUTE)
+        for number, (label, _, _) in enumerate(self.card.figures):
+            if canvas:
+                value, unit = rival.figures.get(label, ("–", ""))
+                _figure(canvas, value, unit, (rows.left + number * column, rows.baseline), TEXT)
         rows.gap(LEADING * TEXT + 4)
 
     def _write_share(self, rows: Cursor) -> None:
@@ -179,45 +172,46 @@ class ShownCard:
         card, canvas = self.card, rows.canvas
         if told := card.told:
             rows.gap(4)
-            words = replace(rows, left=rows.left + 18, width=rows.width - 18).in_style(SMALL, MUTE)
-            top = words.y
+            top = rows.y
             if canvas:
-                canvas.marker("diamond", (rows.left + 6, words.baseline - 4), 8, NET)
-            words.text(told)
-            rows.y = words.y
+                canvas.marker("diamond", (rows.left + 6, rows.in_style(SMALL).baseline - 4), 8, NET)
+            _aside(rows, told, MUTE, 18)
             if canvas and card.watched:
-                canvas.explain((rows.left, top, rows.width, words.y - top), texts.EXPLAIN_CARD_SAVED)
+                canvas.explain((rows.left, top, rows.width, rows.y - top), texts.EXPLAIN_CARD_SAVED)
         rows.gap(18)
         if canvas:
             draw_share(canvas, rows.left, rows.y, rows.width, card.human)
         rows.gap(22)
 
 
-def _small(rows: Cursor, words: str, colour: tuple[int, int, int]) -> None:
-    small = rows.in_style(SMALL, colour)
+def _aside(rows: Cursor, words: str, colour: Colour, left: float = 0.0) -> None:
+    """Write small words, `left` points from the left."""
+    small = replace(rows, left=rows.left + left, width=rows.width - left).in_style(SMALL, colour)
     small.text(words)
     rows.y = small.y
 
 
-def _draw_medal(canvas: Canvas, card: OutcomeCard, last: Point, lit: float) -> None:
-    """Draw the lamps of a medal from right to left, each with a flash as it lights, or the ring of a shared landing."""
-    x, y = last
-    if card.ring:
-        draw_ring(canvas, last)
-    for lamp in range(card.medal):
-        age, place = lit - _NEXT_LAMP * (lamp + 1), (x - 13 * lamp, y)
+def _figure(canvas: Canvas, value: str, unit: str, place: Point, size: float) -> None:
+    box = canvas.text(value, place, size=size, weight="light", tabular=True)
+    canvas.text(unit, (box.right + 4, place[1]), size=LABEL, colour=MUTE)
+
+
+def draw_lamps(canvas: Canvas, last: Point, medal: int, lit: float = math.inf) -> None:
+    """Draw the lamps of a medal from right to left, three for gold, each with a flash as it lights, after `lit` s."""
+    for lamp in range(medal):
+        age, place = lit - _NEXT_LAMP * (lamp + 1), (last[0] - _LAMP * lamp, last[1])
         if age < 0:
             canvas.dot(place, 4, FAINT)
             continue
         flash = math.exp(-age / _FLASH)
-        canvas.glow(place, 14 + 30 * flash, MEDALS[card.medal], 0.35 + 1.6 * flash)
-        canvas.dot(place, 4 + 3 * flash, MEDALS[card.medal])
+        if lit < math.inf:
+            canvas.glow(place, 14 + 30 * flash, MEDALS[medal], 0.35 + 1.6 * flash)
+        canvas.dot(place, 4 + 3 * flash, MEDALS[medal])
 
 
-def draw_ring(canvas: Canvas, place: Point) -> None:
+def _draw_ring(canvas: Canvas, place: Point) -> None:
     """Draw the ring of a landing together: half the person's, half the network's."""
-    x, y = place
     for part in range(_RING_PARTS):
         angle = 2 * math.pi * (part + 0.5) / _RING_PARTS
         colour = HUMAN if math.cos(angle) < 0 else NET
-        canvas.dot((x + 5 * math.cos(angle), y + 5 * math.sin(angle)), 1.3, colour)
+        canvas.dot((place[0] + 5 * math.cos(angle), place[1] + 5 * math.sin(angle)), 1.3, colour)

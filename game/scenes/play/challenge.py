@@ -1,171 +1,127 @@
-"""Courses other than free flights: missions, races against ghosts, and flying on from a replay."""
+"""Challenges: what a flight is flown as. Each is a start, rules, and words, which one scene reads.
+
+Here are the base, and the short ones: races against ghosts, flying on from a replay, and missions.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
-from typing import Final
+import time
+from collections.abc import Callable, Hashable, Iterable, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final
 
 from ai.flights.recording import AS_IT_IS
 from ai.lander.environment import Cause, LanderEnv, Outcome
 from ai.lander.ground import Ground
-from ai.lander.missions import Mission
+from ai.lander.missions import MISSIONS, Mission
 from game.core import texts
 from game.core.settings import Settings
-from game.drawing.canvas import Canvas
 from game.flight import sharing
 from game.flight.credit import Credit
 from game.flight.flight import Flight, Recording
 from game.flight.flight_file import Entry, Record
-from game.flight.networks import Policy
+from game.flight.networks import Network, Policy, titled
 from game.flight.outcomes import OutcomeCard
 from game.flight.replay import FlightReplay, ReplayedFlight, flown_elsewhere
 from game.input.controls import Controls
 from game.scenes.play.ghost import Ghost
-from game.world.camera import View
+
+if TYPE_CHECKING:
+    from game.drawing.canvas import Canvas
+    from game.scenes.play.flown_flight import FlownFlight
+    from game.world.camera import View
 
 _AFTER_OUTAGE: Final = 2.0  # seconds after an engine failure in which the speed that it left can't be braked
 
 
-@dataclass(frozen=True)
-class DrawnFlight:
-    """Context in which a challenge draws over the world.
-
-    Attributes:
-        alpha: fraction of the current step that has passed, 0 to 1.
-        waiting: whether the craft hangs until a control is touched.
-        calm: whether motion is reduced.
-        age: steps of 1/60 s since the flight was shown, whether or not it flies.
-
-    """
-
-    alpha: float
-    waiting: bool = False
-    calm: bool = False
-    age: int = 0
-
-
 class Challenge:
-    """Challenge: a start and a goal, independent of the player's choices for free flights.
+    """What a flight is flown as.
 
     Attributes:
         name: name of a mission in the logbook; empty for other courses.
+        title, line: its name, for the corner.
+        goal: its goal, for the corner as well.
+        opening: text while the craft hangs and waits; empty to leave the middle free.
+        free: whether it is a free flight, for which gravity, pads and hands can be chosen.
         fixed: whether there is only one start.
         kept: whether its flights are recorded in the logbook.
         bar: key in `texts.NOT_COUNTED` of why its flights do not count as the player's own; empty if they may.
+        hands: handicap of the player's hands, a name of `game.flight.handicap.HANDS`.
         alone: whether the network may neither help nor take over.
-        next_hint: hint of the key for what comes next; empty where it does nothing.
-        copy_hint: hint of the key that copies what a friend is told.
-        title, line: name of the challenge, for the corner.
-        goal: goal of the flight, for the corner as well.
-        opening: text while the craft hangs and waits; empty to leave the middle free.
-        through: whether the challenge is finished and free flights follow.
         eases: whether the player's easing applies to its flights.
         easing: the easing of its next flight.
+        guides: whether the network's path is previewed.
         elsewhere: whether it is flown where it is not as on the moon.
-        total: points of the chain of flights that it is, for the logbook.
         compares: whether the card compares the flight with the ghost's.
+        shadows: whether the network flies the same start unseen, so that the card tells its score.
+        through: whether it is finished and free flights follow.
+        total: points of the chain of flights that it is, for the logbook.
         ahead: the ground of the flight that comes next, to be painted while this one is flown; None if unknown.
+        stake: question before another start, and what would be lost, while that is more than the present flight.
+        copy_hint: hint of the key that copies what a friend is told.
+        next_hint: hint of the key for what comes next; empty where it does nothing.
         again_hint, new_hint: what the card calls another try, and another start; empty for the usual words.
 
     """
 
-    name = ""
-    fixed = True
-    kept = True
-    bar = ""
-    alone = False
-    through = False
-    eases = False
+    name = title = line = goal = opening = bar = next_hint = again_hint = new_hint = ""
+    free = alone = eases = guides = elsewhere = shadows = through = False
+    fixed = kept = compares = True
+    hands = "own"
     easing = AS_IT_IS
-    elsewhere = False
-    copy_hint = texts.CODE_HINT_COPY
-    next_hint = again_hint = new_hint = ""
-    title = line = goal = opening = ""
     total = 0
-    compares = True
     ahead: Ground | None = None
+    stake: tuple[str, str] | None = None
+    copy_hint = texts.CODE_HINT_COPY
     _help: Settings | None = None
 
-    @property
-    def under_way(self) -> bool:
-        """Whether leaving now would end a chain of flights."""
-        return False
-
-    @property
-    def stake(self) -> tuple[str, str] | None:
-        """Question before another start, and what would be lost, while that is more than the present flight."""
-        return None
-
-    @property
-    def following(self) -> Challenge | None:
-        """The challenge that comes next after a landing; None for the way back."""
-        return None
+    # Before a flight
 
     def recall(self, entries: Iterable[Entry]) -> None:
         """Take what is known of earlier flights, before the first begins."""
 
-    def flight(self, seed: int, network: Policy | None) -> Flight:
-        """Begin a flight; `network` is the one to hand over to."""
+    def chosen(self) -> Hashable:
+        """Return what the player has chosen for its next flight."""
+        return None
+
+    def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight:
+        """Begin a flight, of the kind of start `spawn` if there are several; `network` is the one to hand over to."""
         return Flight(seed, network)
 
     def ghost(self, seed: int, network: Policy | None) -> Ghost | None:
         """Begin the ghost that flies beside it; None without one."""
         return None
 
-    def card(self, card: OutcomeCard, flight: Flight, credit: Credit) -> OutcomeCard:
-        """Return the outcome card of a finished flight, with what this challenge adds to it."""
-        return card
-
-    def settle(self, flight: Flight, credit: Credit) -> None:
-        """Take note of a flight that has just ended, before its card or the next flight."""
-
-    def follow(self, flight: Flight) -> str:
-        """Follow a step of the flight; return the name of a sound to play, empty for none."""
-        return ""
-
-    def again(self) -> bool:
-        """Whether a finished flight restarts by itself, without a card."""
-        return False
-
     def dial(self, settings: Settings) -> Settings:
         """Return the settings of help for this challenge alone: it begins without, whatever free flights have."""
         self._help = self._help or replace(settings, assist=0.0)
         return self._help
 
-    @property
-    def holds(self) -> bool:
-        """Whether the craft goes on to hang, although it is touched."""
-        return False
-
-    @property
-    def guides(self) -> bool:
-        """Whether the network's path is previewed: not beside a ghost, where one blue path is enough."""
-        return False
+    # In flight
 
     @property
     def waits(self) -> bool:
         """Whether the craft hangs until the pilot touches a control; otherwise, only until all are released."""
         return True
 
-    def skip(self) -> None:
-        """Skip to the next part of the challenge, if there is one."""
+    @property
+    def holds(self) -> bool:
+        """Whether the craft goes on to hang, although it is touched."""
+        return False
 
-    def leave(self) -> None:
-        """Leave the challenge for free flights."""
-
-    def written(self, entry: Entry) -> str:
-        """Take note of the logbook's line of a finished flight; return what went wrong, empty if nothing did."""
+    def follow(self, flight: Flight) -> str:
+        """Follow a step of the flight; return the name of a sound to play, empty for none."""
         return ""
-
-    def message(self, record: Record) -> tuple[str, str]:
-        """Return what a friend is told of a flight that is over, and what the player is told of that."""
-        code = sharing.code(record)
-        return code, texts.CODE_COPIED.format(count=len(code))
 
     def remember(self, settings: Settings) -> bool:
         """Store the pilot's progress in the settings; return whether there was any to store."""
         return False
+
+    def titles(self, flight: Flight, network: Network, *, whole: bool) -> tuple[str, str]:
+        """Return the kind of a flight, and its name; `whole` is for all that can be said of it."""
+        named = whole and flight.network and self.elsewhere
+        flown = texts.WITH_NETWORK.format(network=titled(network.name)) if named else ""
+        return texts.DIAL_JOIN.join(filter(None, (self.title, flown))), self.line
 
     def sentence(self, flight: Flight, controls: Controls, *, waiting: bool, stuck: bool) -> str | None:
         """Return the one sentence of the flight, in the player's keys; None for the usual one.
@@ -178,12 +134,44 @@ class Challenge:
         """Return what else is to be read while the craft waits."""
         return ()
 
-    def draw(self, canvas: Canvas, view: View, flight: Flight, scene: DrawnFlight) -> None:
+    def draw(self, canvas: Canvas, view: View, flown: FlownFlight, alpha: float) -> None:
         """Draw the challenge's own text and marks over the world."""
+
+    # After a flight
+
+    def settle(self, flight: Flight, credit: Credit) -> None:
+        """Take note of a flight that has just ended, before its card or the next flight."""
+
+    def again(self) -> bool:
+        """Whether a finished flight restarts by itself, without a card."""
+        return False
 
     def medal(self, flight: Flight) -> int:
         """Return the medal of a finished flight if it counts: 3 for gold, 2 silver, 1 bronze, 0 none."""
         return 0
+
+    def card(self, card: OutcomeCard, flight: Flight, credit: Credit) -> OutcomeCard:
+        """Return the outcome card of a finished flight, with what this challenge adds to it."""
+        return card
+
+    def written(self, entry: Entry) -> str:
+        """Take note of the logbook's line of a finished flight; return what went wrong, empty if nothing did."""
+        return ""
+
+    def message(self, record: Record) -> tuple[str, str]:
+        """Return what a friend is told of a flight that is over, and what the player is told of that."""
+        code = sharing.code(record)
+        return code, texts.CODE_COPIED
+
+    def following(self) -> Challenge | None:
+        """Return the challenge that comes next after a landing; None for the way back."""
+        return None
+
+    def skip(self) -> None:
+        """Skip to the next part of the challenge, if there is one."""
+
+    def leave(self) -> None:
+        """Leave the challenge for free flights."""
 
 
 class Duel(Challenge):
@@ -194,11 +182,9 @@ class Duel(Challenge):
 
     def __init__(self, rival: Policy, name: str) -> None:
         self._rival, self._name = rival, name
-        self.line = texts.DUEL_RIVAL.format(name=name)
-        self.opening = texts.DUEL_BEGIN.format(name=name)
+        self.line, self.opening = texts.DUEL_RIVAL.format(name=name), texts.DUEL_BEGIN.format(name=name)
 
     def ghost(self, seed: int, network: Policy | None) -> Ghost:
-        """Begin the rival at the same start."""
         return Ghost(Flight(seed, self._rival), self._name)
 
 
@@ -208,48 +194,41 @@ class Race(Challenge):
     title = texts.RACE
 
     def __init__(self, record: Record, name: str) -> None:
-        self._record, self._name = record, name
+        self._recording, self._name = record.recording, name
         self.elsewhere = flown_elsewhere(record.recording)
-        self.line = texts.DUEL_RIVAL.format(name=name)
-        self.opening = texts.DUEL_BEGIN.format(name=name)
+        self.line, self.opening = texts.DUEL_RIVAL.format(name=name), texts.DUEL_BEGIN.format(name=name)
 
-    def flight(self, seed: int, network: Policy | None) -> Flight:
-        """Begin at the recorded start, under the recorded gravity."""
-        recording = self._record.recording
-        flight = _as_begun(recording, seed, network)
-        flight.set_gravity(recording.gravity_at(0))
+    def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight:
+        flight = _as_begun(self._recording, seed, network)
+        flight.set_gravity(self._recording.gravity_at(0))
         return flight
 
     def ghost(self, seed: int, network: Policy | None) -> Ghost:
-        """Begin the recorded flight as the ghost."""
-        return Ghost(ReplayedFlight(self._record.recording), self._name)
+        return Ghost(ReplayedFlight(self._recording), self._name)
 
 
 class ContinuedFlight(Challenge):
     """Fly on from a moment of a recorded flight, whose own continuation flies beside as a ghost."""
 
     bar = "flown_on"
-    title = texts.FLY_ON
-    opening = texts.FLY_ON_BEGIN
+    title, opening = texts.FLY_ON, texts.FLY_ON_BEGIN
 
     def __init__(self, flight_replay: FlightReplay, name: str) -> None:
         self._recording, self._step, self._name = flight_replay.record.recording, flight_replay.at, name
         self._moment = flight_replay.flight.env.snapshot()
         self.elsewhere = flown_elsewhere(self._recording)
-        self.name = flight_replay.record.recording.mission or flight_replay.record.entry.course
+        self.name = self._recording.mission or flight_replay.record.entry.course
         self.line = texts.FLY_ON_LINE.format(seconds=flight_replay.at / 60)
 
-    def flight(self, seed: int, network: Policy | None) -> Flight:
-        """Begin at the chosen moment of the recorded flight."""
-        flight = _as_begun(self._recording, seed, network)
-        flight.put(self._moment, self._recording, self._step)
-        return flight
+    def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight:
+        return self._put(_as_begun(self._recording, seed, network))
 
     def ghost(self, seed: int, network: Policy | None) -> Ghost:
-        """Begin the ghost of the recorded flight, from the same moment on."""
-        rerun = ReplayedFlight(self._recording)
-        rerun.put(self._moment, self._recording, self._step)
-        return Ghost(rerun, self._name)
+        return Ghost(self._put(ReplayedFlight(self._recording)), self._name)
+
+    def _put(self, flight: Flight) -> Flight:
+        flight.put(self._moment, self._recording, self._step)
+        return flight
 
 
 def _as_begun(recording: Recording, seed: int, network: Policy | None) -> Flight:
@@ -261,7 +240,10 @@ def _as_begun(recording: Recording, seed: int, network: Policy | None) -> Flight
 
 
 class FlownMission(Challenge):
-    """A mission of the campaign, beside a ghost: a recorded flight or, without one, the network."""
+    """A mission of the campaign, beside a ghost: a recorded flight or, without one, the network.
+
+    `following` makes the mission that comes next, where there is one and the way to it is known.
+    """
 
     title = texts.MISSION
     eases = True
@@ -275,45 +257,29 @@ class FlownMission(Challenge):
     ) -> None:
         self.mission, self.name, self.elsewhere = mission, mission.name, mission.elsewhere
         self._following = following
-        self._own: Recording | None = None  # the player's own landing just before, to be raced next
-        self._rival, self._rival_name = rival, rival_name
+        self._rival, self._rival_name = rival.recording if rival else None, rival_name
         self.line, self.opening = texts.MISSIONS[mission.name]
         self.goal = texts.MISSION_GOAL.format(fuel=mission.gold[0], seconds=mission.gold[1])
+        self.new_hint = texts.MISSION_NEXT if following else ""
 
-    def flight(self, seed: int, network: Policy | None) -> Flight:
-        """Begin a flight of the mission."""
+    def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight:
         return Flight(seed, network, mission=self.name, easing=self.easing)
 
     def ghost(self, seed: int, network: Policy | None) -> Ghost | None:
-        """Begin the rival on the same mission."""
-        if self._own:
-            return Ghost(ReplayedFlight(self._own), texts.GHOST_BEFORE)
         if self._rival:
-            return Ghost(ReplayedFlight(self._rival.recording), self._rival_name)
+            return Ghost(ReplayedFlight(self._rival), self._rival_name)
         return Ghost(Flight(seed, network, mission=self.name), self._rival_name) if network else None
 
-    @property
     def following(self) -> Challenge | None:
-        """The next mission, if there is one and the way to it is known."""
         return self._following() if self._following else None
-
-    @property
-    def again_hint(self) -> str:  # type: ignore[override]
-        """After a landing, another try flies against it."""
-        return texts.MISSION_AGAIN if self._own else ""
-
-    @property
-    def new_hint(self) -> str:  # type: ignore[override]
-        """What the card calls the next mission."""
-        return texts.MISSION_NEXT if self._following else ""
 
     def settle(self, flight: Flight, credit: Credit) -> None:
         """Keep a landing as the ghost of the next try."""
         if flight.outcome is Outcome.LANDED and flight.share > 0:
-            self._own = flight.recording
+            self._rival, self._rival_name = flight.recording, texts.GHOST_BEFORE
+            self.again_hint = texts.MISSION_AGAIN
 
     def medal(self, flight: Flight) -> int:
-        """Return the medal of the flight if it counts, 0 to 3."""
         if flight.outcome is not Outcome.LANDED:
             return 0
         return self.mission.medal(float(flight.env.fuel[0]), float(flight.env.time[0]))
@@ -322,33 +288,41 @@ class FlownMission(Challenge):
         """Return the card with the medal beside the points, and what the next medal asks, or why there is none."""
         if not card.good:
             return replace(card, advice=_advice(flight.env) or card.advice)
-        if not credit.counts:
-            if credit.together:
-                return replace(card, score=texts.MISSION_TOGETHER, ring=True)
-            return replace(card, score=card.score if credit.bar in ("practice", "assists") else texts.MEDALS[0])
-        medal = credit.medal
-        score = texts.DIAL_JOIN.join(filter(None, (card.score, texts.MEDALS[medal])))
-        return replace(card, score=score, medal=medal, reason=self._missing(medal, flight))
+        if not credit.counts and credit.bar in ("practice", "assists"):
+            return card
+        earned = texts.MISSION_TOGETHER if credit.together else texts.MEDALS[credit.medal]
+        card = replace(card, score=texts.DIAL_JOIN.join(filter(None, (card.score, earned))), ring=credit.together)
+        return replace(card, medal=credit.medal, reason=self._missing(flight)) if credit.counts else card
 
-    def _missing(self, medal: int, flight: Flight) -> str:
+    def _missing(self, flight: Flight) -> str:
+        """Return what the next medal asks."""
+        medal = self.medal(flight)
         if medal == 3:
             return texts.MEDAL_GOLD
-        fuel, seconds = self.mission.too_much(medal + 1, float(flight.env.fuel[0]), float(flight.env.time[0]))
-        words = [
-            text.format(much)
-            for much, text in ((fuel, texts.MEDAL_LESS_FUEL), (seconds, texts.MEDAL_LESS_TIME))
-            if much > 0
-        ]
-        return texts.MEDAL_NEXT.format(medal=texts.MEDALS[medal + 1].capitalize(), less=texts.AND.join(words))
+        much = self.mission.too_much(medal + 1, float(flight.env.fuel[0]), float(flight.env.time[0]))
+        named = zip(much, (texts.MEDAL_LESS_FUEL, texts.MEDAL_LESS_TIME), strict=True)
+        less = texts.AND.join(text.format(each) for each, text in named if each > 0)
+        return texts.MEDAL_NEXT.format(medal=texts.MEDALS[medal + 1].capitalize(), less=less)
 
 
 def _advice(env: LanderEnv) -> str:
     """Return advice on the mission's special condition; empty if that was not the cause of the crash."""
-    conditions, time = env.conditions, float(env.time[0])
+    conditions, seconds = env.conditions, float(env.time[0])
     if env.fuel[0] >= conditions.tank:
         return texts.ADVICE_TANK
-    if conditions.outage[0] <= time < conditions.outage[1] + _AFTER_OUTAGE:
+    if conditions.outage[0] <= seconds < conditions.outage[1] + _AFTER_OUTAGE:
         return texts.ADVICE_OUTAGE
     if conditions.moves and env.cause[0] in (Cause.SLIDING, Cause.TERRAIN):
         return texts.ADVICE_MOVING
     return texts.ADVICE_WIND if conditions.pushes and env.cause[0] == Cause.TERRAIN else ""
+
+
+def against(record: Record, rival: str = "") -> FlownMission | Race:
+    """Return a race against a recorded flight, named by its date or as `rival`; a mission's is raced with medals."""
+    mission, name = MISSIONS.get(record.recording.mission), rival or dated(record)
+    return FlownMission(mission, record, name) if mission else Race(record, name)
+
+
+def dated(record: Record) -> str:
+    """Return a flight as a ghost is called, by its date."""
+    return texts.RACE_RIVAL.format(when=time.strftime("%Y-%m-%d %H:%M", time.localtime(record.entry.when)))

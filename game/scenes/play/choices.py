@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 from game.core import texts
@@ -10,8 +11,7 @@ from game.core.settings import GRAVITY_SHARES, PACES, TOP_RUNG, Settings
 from game.drawing.tokens import INK
 from game.flight.handicap import HANDS
 from game.input.controls import Command
-from game.scenes.play.cockpit import MODES
-from game.scenes.play.help_words import GUARDIAN, HELP, OTHER, choose, means, word_of
+from game.scenes.play.help import GUARDIAN, HELP, MODES, OTHER, choose, means, word_of
 from game.ui.actions import Action, Table
 from game.ui.panel_scene import PanelScene
 from game.ui.still_picture import StillPicture
@@ -31,31 +31,23 @@ class ChoicesScene(PanelScene):
     """
 
     def __init__(
-        self,
-        context: Context,
-        below: Scene,
-        *,
-        begun: bool,
-        challenge: bool = False,
-        helped: Settings | None = None,
+        self, context: Context, below: Scene, *, begun: bool, free: bool = True, helped: Settings | None = None
     ) -> None:
         super().__init__(context)
-        self._begun, self._challenge = begun, challenge
-        self._helped = helped or context.settings
+        self._begun, self._free, self._helped = begun, free, helped or context.settings
         self._behind = StillPicture(getattr(below, "bare", below), dimmed=0.7)
         self.build()
 
     def describe(self, panel: Panel) -> None:
         """Add the four choices, and what stands under More."""
-        settings = self.context.settings
         panel.title(texts.CHOICES_TITLE)
-        if self._begun and not self._challenge:
+        if self._begun and self._free:
             panel.aside(texts.CHOICES_LATER)
         panel.gap(8)
-        more = settings.more_flights
+        more = self.context.settings.more_flights
         left, *beside = panel.beside((1, 1) if more else (1,), _LEAST)
         self._describe_help(left)
-        if not self._challenge:
+        if self._free:
             self._describe_starts(left)
         left.button(texts.CHOICES_LESS if more else texts.CHOICES_MORE, self._switch_more, colour=INK)
         if more:
@@ -63,11 +55,11 @@ class ChoicesScene(PanelScene):
 
     def _describe_help(self, column: Column) -> None:
         """Add the three words of help, and a fourth where the dial is elsewhere."""
-        helped, now = self._helped, word_of(self._helped)
+        now = word_of(self._helped)
         words = [*HELP, *([OTHER] if now == OTHER else [])]
         labels = [texts.HELP.get(word, texts.CHOICES_MORE) for word in words]
         column.choice(texts.CHOICES_HELP, labels, words.index(now), lambda index: self._choose_help(words[index]))
-        column.aside(lambda: means(helped))
+        column.aside(lambda: means(self._helped))
 
     def _choose_help(self, word: str) -> None:
         if word != OTHER:
@@ -96,12 +88,14 @@ class ChoicesScene(PanelScene):
         """Add all else: the fine dial and its rule, gravity, time, and what follows from flights."""
         helped, settings = self._helped, self.context.settings
         words = HELP if helped.copilot == GUARDIAN else ["off"]
-        ticks = {HELP[word]: texts.HELP[word] for word in words}
-        left.slider(texts.CHOICES_ASSIST, helped.assist, (0.0, 1.0), self._turn, step=0.1, figure=_percent, ticks=ticks)
+        left.slider(
+            texts.CHOICES_ASSIST, helped.assist, (0.0, 1.0), partial(self._help, "assist"), step=0.1, figure=_percent,
+            ticks={HELP[word]: texts.HELP[word] for word in words},
+        )  # fmt: skip
         index = MODES.index(helped.copilot) if helped.copilot in MODES else 0
         left.choice(texts.CHOICES_MODE, texts.CHOICES_MODES, index, self._choose_mode)
         left.aside(lambda: texts.CHOICES_MODES_HELP[MODES.index(helped.copilot)])
-        if not self._challenge:
+        if self._free:
             left.slider(
                 texts.CHOICES_GRAVITY, settings.gravity, GRAVITY_SHARES,
                 lambda share: self._set("gravity", round(share, 2)), step=0.1, figure=_percent,
@@ -113,16 +107,15 @@ class ChoicesScene(PanelScene):
         )  # fmt: skip
         key = self.context.controls.word(Command.MODE)
         self._toggle(right, "show_thinking", texts.SHOW_THINKING, texts.SHOW_THINKING_HELP.format(key=key))
-        if not self._challenge:
+        if self._free:
             self._toggle(right, "teach", *texts.CHOICES_TEACH)
 
-    def _turn(self, assist: float) -> None:
-        self._helped.assist = round(assist, 2)
+    def _help(self, name: str, value: float | str) -> None:
+        setattr(self._helped, name, round(value, 2) if isinstance(value, float) else value)
         self.context.apply_settings()
 
     def _choose_mode(self, index: int) -> None:
-        self._helped.copilot = MODES[index]
-        self.context.apply_settings()
+        self._help("copilot", MODES[index])
         self.build()
 
     def _switch_more(self) -> None:
@@ -130,7 +123,7 @@ class ChoicesScene(PanelScene):
         self.build()
 
     def _toggle(self, column: Column, name: str, label: str, aside: str) -> None:
-        column.toggle(label, getattr(self.context.settings, name), lambda on: self._set(name, on), aside)
+        column.toggle(label, getattr(self.context.settings, name), partial(self._set, name), aside)
 
     def _set(self, name: str, value: object) -> None:
         setattr(self.context.settings, name, value)
@@ -141,7 +134,6 @@ class ChoicesScene(PanelScene):
         return [self.form.changes, self.form.goes_back(texts.HINT_BACK), Action(Command.CHOICES, Pop)]
 
     def draw_behind(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the blurred flight below."""
         self._behind.draw(canvas)
 
 

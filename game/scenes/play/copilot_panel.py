@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import pygame
 
-from ai.lander.environment import ACTION_NAMES, NUM_ACTIONS
+from ai.lander.environment import NUM_ACTIONS
 from ai.lander.ground import Ground
 from ai.lander.pilots import COAST
 from game.core import texts
@@ -21,7 +20,7 @@ from game.flight.six_futures import HELD, SixFutures
 from game.panels.landings import Landing, Landings, RecentLandings, draw_landings
 from game.panels.q_values import HEIGHT, QValues, decision_words, draw_q_values
 from game.panels.readouts import draw_share
-from game.scenes.play.guardian_words import Why, why_saved
+from game.scenes.play.words import Why, why_by_futures, why_by_values
 from game.ui.listing import shortened
 
 if TYPE_CHECKING:
@@ -55,7 +54,7 @@ class CopilotPanel:
         self.values: QValues | Landings | None = None
         self.why: Why = ("", "", "")
         self._names = [texts.PAD_NAMES.get(pad.factor, "") for pad in ground.pads]
-        self._likely: list[float] = []
+        self._likely: list[float] = []  # of each of several pads that it is meant
         self._recent = RecentLandings()
         self._override: Why | None = None  # explanation of the latest override, while it is still shown
         self._stays = 0
@@ -87,32 +86,29 @@ class CopilotPanel:
             self._explain(flight.decision, int(flight.env.target[0]))
 
     def _explain(self, decision: SharedDecision, pad: int) -> None:
-        """Show a shared decision by its Q-values for one of the pads as the goal."""
-        from ai.copilot.guardian import ActionSource
-
-        self._likely = decision.likely[0].tolist()
+        """Show a shared decision, by its values for one of the pads where there are no futures."""
+        likely: list[float] = decision.likely[0].tolist()
+        self._likely = likely if len(likely) > 1 else []
         if decision.held is not None:
             landings = Landings.of(decision)
-            self.values, self.why = self._recent.fill(landings), why_saved(decision, landings)
+            self.values, self.why = self._recent.fill(landings), why_by_futures(decision, landings)
         else:
-            self.values = values = shared_values(decision, pad)
-            self.why = why(decision, values)
+            self.values, self.why = shared_values(decision, pad), why_by_values(decision, pad)
         if self.values.asked is None:
             self._override = None
-        elif int(decision.source[0]) != ActionSource.PILOT:
+        elif decision.overridden[0]:
             self._override, self._stays = self.why, _STAYS
 
     def box(self, canvas: Canvas) -> pygame.FRect:
         """Return where it stands, in points of a canvas for text that flows."""
         view, (width, height) = canvas.view, _SIZE
         side = min(_SIDE, 0.03 * view.width)
-        high = height + (_PADS_HIGH if len(self._likely) > 1 else 0)
+        high = height + (_PADS_HIGH if self._likely else 0)
         top = max(0.0, min(_TOP, view.bottom - high - 90))
         return pygame.FRect(view.right - side - width, top, width, high)
 
-    def draw(self, canvas: Canvas, share: float, network: str = "") -> None:
-        """Draw the panel; `share` is the person's share of the flight so far, and `network` the name of the network."""
-        pads = self._likely if len(self._likely) > 1 else []
+    def draw(self, canvas: Canvas, share: float | None, network: str = "") -> None:
+        """Draw the panel; `share` is the person's of the flight so far, None before its first step."""
         box = self.box(canvas)
         left, top = box.left + _LEFT, box.top
         canvas.panel(box)
@@ -127,11 +123,12 @@ class CopilotPanel:
             draw_q_values(canvas, self.values, left, top + _VALUES, _WIDTH)
         canvas.line((left, top + _WHY), (left + _WIDTH, top + _WHY), LINE)
         self._draw_why(canvas, left, top + _WHY + 26)
-        if pads:
-            self._draw_pads(canvas, pads, left, top + _PADS)
-        y = top + _WHY + 104 + box.height - _SIZE[1]
-        draw_share(canvas, left, y, _WIDTH, share)
-        canvas.explain((left, y - 14, _WIDTH, 30), texts.EXPLAIN_SHARE)
+        if self._likely:
+            self._draw_pads(canvas, left, top + _PADS)
+        if share is not None:
+            y = top + _WHY + 104 + box.height - _SIZE[1]
+            draw_share(canvas, left, y, _WIDTH, share)
+            canvas.explain((left, y - 14, _WIDTH, 30), texts.EXPLAIN_SHARE)
 
     def _draw_why(self, canvas: Canvas, left: float, top: float) -> None:
         """Draw whose action is flown; the latest override stays for a moment, marked as past."""
@@ -143,11 +140,11 @@ class CopilotPanel:
         for number, line in enumerate(lines):
             canvas.text(line, (left, top + 22 + 18 * number), size=SMALL, colour=MUTE, room=_WIDTH)
 
-    def _draw_pads(self, canvas: Canvas, pads: Sequence[float], left: float, top: float) -> None:
-        surest = max(pads)
+    def _draw_pads(self, canvas: Canvas, left: float, top: float) -> None:
+        surest = max(self._likely)
         canvas.text(texts.COPILOT_PANEL_MEANT, (left, top - 20), size=LABEL, colour=MUTE, weight="medium", room=_WIDTH)
         canvas.explain((left, top - 34, _WIDTH, 92), texts.EXPLAIN_COPILOT_MEANT)
-        for number, (name, chance) in enumerate(zip(self._names, pads, strict=True)):
+        for number, (name, chance) in enumerate(zip(self._names, self._likely, strict=True)):
             y, likeliest = top + 22 * number, chance == surest
             canvas.text(name, (left, y + 4), size=SMALL, colour=INK if likeliest else MUTE)
             bar = (left + _NAME, y - 1.5, _WIDTH - _NAME, 3)
@@ -179,54 +176,3 @@ def shared_values(decision: SharedDecision, pad: int) -> QValues:
         tuple(feasible.tolist()),
         allowed,
     )
-
-
-def why(decision: SharedDecision, values: QValues) -> Why:
-    """Explain whose action is flown, and why, by the figures that decided it."""
-    from ai.copilot.copilot import Mode
-    from ai.copilot.guardian import ActionSource
-
-    source, asked = ActionSource(int(decision.source[0])), values.asked
-    if asked is None:
-        return texts.COPILOT_PANEL_WHY[ActionSource.HANDS_OFF.name]
-    title, *lines = texts.COPILOT_PANEL_WHY[source.name]
-    if not values.readable:
-        return title, *texts.VALUES_DAMAGED
-    name = texts.said(ACTION_NAMES[asked]).capitalize()
-    if decision.mode is Mode.GUARDIAN:
-        return title, *_guarded(decision, name)
-    loss, allowed = values.loss(asked), values.allowed or 0.0
-    if source is ActionSource.PILOT and loss == 0.0:
-        return title, texts.COPILOT_PANEL_SAME.format(asked=name), ""
-    if source is ActionSource.PILOT and loss > allowed * (1 + 1e-5):  # it is feasible for another pad
-        return title, texts.COPILOT_PANEL_BELOW.format(asked=name, loss=f"{loss:.1f}"), texts.COPILOT_PANEL_ANOTHER
-    less, most = _told_apart(loss, allowed)
-    if source is ActionSource.COPILOT and values.loss(values.flown) > 0.0:  # not the best for the pad that is shown
-        lines[1] = texts.COPILOT_PANEL_EVERY_PAD
-    flown = texts.said(ACTION_NAMES[values.flown])
-    first, second = (line.format(asked=name, loss=less, allowed=most, flown=flown) for line in lines)
-    return title, first, second
-
-
-def _guarded(decision: SharedDecision, name: str) -> tuple[str, str]:
-    """Explain by how much a guardian's own action is better for every pad, and whether that exceeds its margin."""
-    from ai.copilot.copilot import guardian_margin
-
-    asked, best = int(decision.pilot[0]), int(decision.best[0])
-    if asked == best:
-        return texts.COPILOT_PANEL_SAME.format(asked=name), ""
-    gain, margin = float(decision.gain[0]), guardian_margin(decision.assist)
-    if gain <= 0.0:
-        return texts.COPILOT_PANEL_SAME_GOOD.format(asked=name), ""
-    less, most = _told_apart(gain, margin)
-    first = texts.COPILOT_PANEL_WORSE.format(asked=name, loss=less, best=texts.said(ACTION_NAMES[best]))
-    return first, texts.COPILOT_PANEL_MARGIN[bool(gain > margin)].format(allowed=most)
-
-
-def _told_apart(one: float, other: float) -> tuple[str, str]:
-    """Format two figures with enough digits that the larger one also reads as larger."""
-    for digits in range(1, 5):
-        words = f"{one:.{digits}f}", f"{other:.{digits}f}"
-        if words[0] != words[1] or one == other:
-            break
-    return words

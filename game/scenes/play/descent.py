@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import pygame
@@ -17,7 +17,6 @@ import pygame
 from ai.flights.verification import DESCENT, landing_score
 from ai.lander.descent import TANK, LegStart, leg_of
 from ai.lander.environment import LanderEnv, Outcome
-from ai.lander.ground import Ground
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import LEADING, Cursor
@@ -29,9 +28,12 @@ from game.flight.logbook import best_descent
 from game.flight.networks import Policy
 from game.flight.outcomes import OutcomeCard
 from game.flight.replay import ReplayedFlight
-from game.scenes.play.challenge import Challenge, DrawnFlight
+from game.scenes.play.challenge import Challenge
 from game.scenes.play.ghost import Ghost
 from game.world.camera import ClearArea, View
+
+if TYPE_CHECKING:
+    from game.scenes.play.flown_flight import FlownFlight
 
 _MOST: Final = 5  # the highest factor of a row of landings
 _FILLS: Final = 40  # steps in which the tank is seen to fill
@@ -40,7 +42,7 @@ _GAUGE, _TOLD = 120.0, 220.0  # points of the gauge's width, and of the words ov
 _OVER_PAD: Final = (0.75, 42.0)  # metres and points above the goal at which its mark points down, over its factor
 _EDGE: Final = (90.0, 140.0)  # points that marks keep from the sides, and from the lower edge
 _ANTENNA: Final = 2.0  # metres from the middle of a craft to the word of its contact light
-_CLEAR: Final = 44.0  # points from there up to what the landing has brought
+_CLEAR: Final = 84.0  # points from there up to what the landing has brought
 
 
 class Descent(Challenge):
@@ -49,7 +51,6 @@ class Descent(Challenge):
     Attributes:
         start: where the present leg begins.
         legs: how many legs the run has landed.
-        total: points of the run.
         streak: landings in a row by the player's own hands.
         best: legs and points of the player's best run before this one.
 
@@ -58,8 +59,7 @@ class Descent(Challenge):
     name = DESCENT
     title = texts.DESCENT_TITLE
     fixed = compares = False
-    again_hint = texts.DESCENT_AGAIN
-    new_hint = texts.DESCENT_NEW
+    again_hint, new_hint = texts.DESCENT_AGAIN, texts.DESCENT_NEW
 
     def __init__(self) -> None:
         self.best, self._seed = (0, 0), -1
@@ -70,9 +70,23 @@ class Descent(Challenge):
     def _clear(self) -> None:
         self.start = self._next = LegStart()
         self.legs = self.total = self.streak = 0
-        self._landed = self._relieved = False
-        self._counts = True
-        self._points, self._gained, self._since, self._bare = 0, 0.0, 0, False
+        self.bar, self._landed, self._counts = "", False, True
+        self._points, self._gained, self._since = 0, 0.0, 0
+
+    def recall(self, entries: Iterable[Entry]) -> None:
+        self.best = max(self.best, best_descent(entries))
+
+    def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight:
+        """Begin the next leg after a landing; otherwise begin a run."""
+        if seed != self._seed or not self._landed:
+            self._start_run(seed)
+        self.start, self._landed, self._since = self._next, False, 0
+        lost = texts.DESCENT_STAKE, texts.DESCENT_STAKE_MORE.format(count=self.legs)
+        self.stake = lost if self.legs else None
+        # The ground of the next leg, as it will be unless this one ends on a flat spot.
+        self.ahead = leg_of(seed, LegStart(self.start.number + 1)).ground
+        self._name()
+        return Flight(seed, network, leg=self.start)
 
     def _start_run(self, seed: int) -> None:
         """Begin a run; over the same ground as the last one, beside the longest so far."""
@@ -83,18 +97,23 @@ class Descent(Challenge):
         self._seed = seed
         self._clear()
 
-    def recall(self, entries: Iterable[Entry]) -> None:
-        """Take the player's best from the logbook."""
-        self.best = max(self.best, best_descent(entries))
-
-    # The run
-
-    def flight(self, seed: int, network: Policy | None) -> Flight:
-        """Begin the next leg after a landing; otherwise begin a run."""
-        if seed != self._seed or not self._landed:
-            self._start_run(seed)
-        self.start, self._landed, self._since = self._next, False, 0
-        return Flight(seed, network, leg=self.start)
+    def _name(self) -> None:
+        """Say which leg it is and what stands in its way, the points, and what to do."""
+        leg = leg_of(self._seed, self.start)
+        kinds = texts.AND.join(texts.DESCENT_KINDS[kind] for kind in leg.kinds)
+        self.line = texts.DESCENT_LEG.format(number=self.start.number, kinds=kinds)
+        words = [texts.DESCENT_POINTS.format(count=self.total)]
+        if self.streak > 1:
+            words.append(texts.DESCENT_STREAK.format(factor=min(self.streak, _MOST)))
+        if self.best[0]:
+            words.append(texts.DESCENT_BEST.format(count=self.best[0]))
+        self.goal = texts.DIAL_JOIN.join(words)
+        if self.start.number == 1:
+            self.opening = texts.DESCENT_BEGIN
+        elif any(pad.bare and pad.factor for pad in leg.ground.pads):
+            self.opening = texts.DESCENT_SPOT
+        else:
+            self.opening = texts.DESCENT_HINTS[leg.kinds[-1]]
 
     def ghost(self, seed: int, network: Policy | None) -> Ghost | None:
         """Begin the ghost: the player's earlier flight of this leg or, without one, the network."""
@@ -110,129 +129,79 @@ class Descent(Challenge):
         self._landed = flight.outcome is Outcome.LANDED
         own = flight.share == 1.0
         self._counts &= credit.counts
-        self._relieved |= not own
+        self.bar = self.bar if own else "relieved"
         if not self._landed:
+            self.stake = None
             return
         spot, score = env.ground.pads[int(env.landed_on[0])], landing_score(env)
         self.streak = self.streak + 1 if own else 0
-        self._points, self._bare = score * min(self.streak, _MOST), spot.bare
+        self._points = score * min(self.streak, _MOST)
         self.total += self._points
         self.legs = self.start.number
         self._next = self.start.after(float(env.fuel[0]), score, bare=spot.bare)
         self._gained = max(0.0, self._next.tank - max(0.0, self.start.tank - float(env.fuel[0])))
-
-    @property
-    def bar(self) -> str:  # type: ignore[override]
-        """Why the run does not count as the player's own, a key of `texts.NOT_COUNTED`; empty while it does."""
-        return "relieved" if self._relieved else ""
-
-    @property
-    def under_way(self) -> bool:
-        """Whether leaving would end a run that has landed."""
-        return self.legs > 0 and (self._landed or self.start.number > 1)
-
-    @property
-    def stake(self) -> tuple[str, str] | None:
-        """A run that has landed is lost with another start."""
-        return (texts.DESCENT_STAKE, texts.DESCENT_STAKE_MORE.format(count=self.legs)) if self.under_way else None
+        self.ahead = leg_of(self._seed, self._next).ground
+        self._name()
 
     def again(self) -> bool:
-        """Whether the next leg follows: after every landing."""
+        """The next leg follows after every landing."""
         return self._landed
-
-    @property
-    def ahead(self) -> Ground:  # type: ignore[override]
-        """The ground of the next leg, as it will be unless this one ends on a flat spot."""
-        return leg_of(self._seed, self._next if self._landed else LegStart(self.start.number + 1)).ground
 
     def follow(self, flight: Flight) -> str:
         """Let the tank fill once the craft has landed."""
         self._since += flight.over
         return ""
 
-    # In words
-
-    @property
-    def line(self) -> str:  # type: ignore[override]
-        """Number of the leg, and what stands in its way."""
-        kinds = texts.AND.join(texts.DESCENT_KINDS[kind] for kind in leg_of(self._seed, self.start).kinds)
-        return texts.DESCENT_LEG.format(number=self.start.number, kinds=kinds)
-
-    @property
-    def goal(self) -> str:  # type: ignore[override]
-        """Points, the row of landings, and the best run."""
-        words = [texts.DESCENT_POINTS.format(count=self.total)]
-        if self.streak > 1:
-            words.append(texts.DESCENT_STREAK.format(factor=min(self.streak, _MOST)))
-        if self.best[0]:
-            words.append(texts.DESCENT_BEST.format(count=self.best[0]))
-        return texts.DIAL_JOIN.join(words)
-
-    @property
-    def opening(self) -> str:  # type: ignore[override]
-        """What to do on this leg."""
-        leg = leg_of(self._seed, self.start)
-        if self.start.number == 1:
-            return texts.DESCENT_BEGIN
-        if any(pad.bare and pad.factor for pad in leg.ground.pads):
-            return texts.DESCENT_SPOT
-        return texts.DESCENT_HINTS[leg.kinds[-1]]
-
     def card(self, card: OutcomeCard, flight: Flight, credit: Credit) -> OutcomeCard:
         """Return the card of a run's end: how far, how many points, and whether it was the best."""
         best = self._counts and (self.legs, self.total) > self.best and self.legs > 0
-        figures = (
-            (texts.DESCENT_FIGURES[0], f"{self.legs}", ""),
-            (texts.DESCENT_FIGURES[1], f"{self.total}", ""),
-            (texts.DESCENT_FIGURES[2], f"{max(self.best[0], self.legs if best else 0)}", ""),
-        )
-        empty = float(flight.env.fuel[0]) >= flight.env.conditions.tank
-        told = texts.DESCENT_NEW_BEST if best else texts.NOT_COUNTED[self.bar] if self._relieved else card.advice
-        return replace(card, figures=figures, score=texts.DESCENT_LEGS.format(count=self.legs),
-                       advice=texts.DESCENT_EMPTY if empty else told)  # fmt: skip
+        values = self.legs, self.total, max(self.best[0], self.legs if best else 0)
+        figures = tuple((label, f"{value}", "") for label, value in zip(texts.DESCENT_FIGURES, values, strict=True))
+        told = texts.DESCENT_NEW_BEST if best else texts.NOT_COUNTED[self.bar] if self.bar else card.advice
+        if float(flight.env.fuel[0]) >= flight.env.conditions.tank:
+            told = texts.DESCENT_EMPTY
+        return replace(card, figures=figures, score=texts.DESCENT_LEGS.format(count=self.legs), advice=told)
 
     # The picture
 
-    def draw(self, canvas: Canvas, view: View, flight: Flight, scene: DrawnFlight) -> None:
+    def draw(self, canvas: Canvas, view: View, flown: FlownFlight, alpha: float) -> None:
         """Draw the mark of the goal and, on the ground, what the landing has brought."""
+        flight, calm = flown.flight, flown.scenery.calm
         if not flight.over:
-            self._draw_goal(canvas, view, flight.env)
+            _draw_goal(canvas, view, flight.env)
         elif self._landed:
-            craft = view.points(flight.poses.at(scene.alpha)[0, :2] + (0.0, _ANTENNA)).tolist()
-            self._draw_landing(canvas, craft, 1.0 if scene.calm else min(1.0, self._since / _FILLS))
-        if scene.waiting and self.start.number > 1 and not scene.calm and scene.age < _FADES:
-            _draw_veil(canvas, 1 - scene.age / _FADES)
-
-    def _draw_goal(self, canvas: Canvas, view: View, env: LanderEnv) -> None:
-        """Point to the goal and write how far it is, at the edge of the view where it lies beyond."""
-        pad = env.ground.pads[0]
-        x, y = view.point(pad.x, pad.top + _OVER_PAD[0])
-        (side, low), seen = _EDGE, canvas.view
-        row = min(max(y - _OVER_PAD[1], seen.top + ClearArea.head), seen.bottom - low)
-        spot = min(max(x, seen.left + side), seen.right - side), row
-        away = float(np.hypot(*(env.position[0] - (pad.x, pad.top + env.params.stand))))
-        canvas.text(texts.DESCENT_AWAY.format(metres=away), (spot[0], spot[1] - 12), size=SMALL, colour=INK,
-                    align="centre", tabular=True, alpha=0.8)  # fmt: skip
-        for lean in (-5, 5):
-            canvas.line((spot[0] + lean, spot[1] - 6), (spot[0], spot[1]), INK, 1.5, 0.8)
+            craft = view.points(flight.poses.at(alpha)[0, :2] + (0.0, _ANTENNA)).tolist()
+            self._draw_landing(canvas, craft, 1.0 if calm else min(1.0, self._since / _FILLS))
+        if flown.waiting and self.start.number > 1 and not calm and flown.age < _FADES:
+            # Two fills in place take half as long as a translucent picture of the whole window.
+            dark = 1 - flown.age / _FADES
+            canvas.surface.fill([round(255 * (1 - dark))] * 3, special_flags=pygame.BLEND_RGB_MULT)
+            canvas.surface.fill([round(dark * part) for part in NIGHT0], special_flags=pygame.BLEND_RGB_ADD)
 
     def _draw_landing(self, canvas: Canvas, craft: tuple[float, float], filled: float) -> None:
         """Write above the craft what the landing has earned, over the tank that fills."""
         (x, y), half = craft, _TOLD / 2
         x = min(max(x, canvas.view.left + half), canvas.view.right - half)
-        rows = Cursor(x - half, y - _CLEAR - 40, _TOLD, canvas.scale, canvas)
+        rows = Cursor(x - half, y - _CLEAR, _TOLD, canvas.scale, canvas)
         words = texts.DESCENT_LANDED.format(count=self._points) if self._points else texts.DESCENT_RELIEVED
         rows.in_style(TEXT, HUMAN if self._points else NET).text(words, "centre")
         rows.gap(LEADING * TEXT)
-        fuel = texts.DESCENT_NO_FUEL if self._bare else texts.DESCENT_FUEL.format(seconds=self._gained)
+        fuel = texts.DESCENT_NO_FUEL if self._next.bare else texts.DESCENT_FUEL.format(seconds=self._gained)
         rows.in_style(SMALL, MUTE).text(fuel, "centre")
         rows.gap(LEADING * SMALL + 2)
         now = self._next.tank - (1 - filled) * self._gained
         replace(rows, left=x - _GAUGE / 2, width=_GAUGE).bar(now / TANK, canvas.palette.good)
 
 
-def _draw_veil(canvas: Canvas, strength: float) -> None:
-    """Darken the view, `strength` 0 to 1: a new leg appears out of the dark."""
-    # Two fills in place take half as long as a translucent picture of the whole window.
-    canvas.surface.fill([round(255 * (1 - strength))] * 3, special_flags=pygame.BLEND_RGB_MULT)
-    canvas.surface.fill([round(strength * part) for part in NIGHT0], special_flags=pygame.BLEND_RGB_ADD)
+def _draw_goal(canvas: Canvas, view: View, env: LanderEnv) -> None:
+    """Point to the goal and write how far it is, at the edge of the view where it lies beyond."""
+    pad = env.ground.pads[0]
+    x, y = view.point(pad.x, pad.top + _OVER_PAD[0])
+    (side, low), seen = _EDGE, canvas.view
+    y = min(max(y - _OVER_PAD[1], seen.top + ClearArea.head), seen.bottom - low)
+    x = min(max(x, seen.left + side), seen.right - side)
+    away = float(np.hypot(*(env.position[0] - (pad.x, pad.top + env.params.stand))))
+    words = texts.DESCENT_AWAY.format(metres=away)
+    canvas.text(words, (x, y - 12), size=SMALL, colour=INK, align="centre", tabular=True, alpha=0.8)
+    for lean in (-5, 5):
+        canvas.line((x + lean, y - 6), (x, y), INK, 1.5, 0.8)

@@ -1,22 +1,34 @@
-"""Ending of a flight: it is recorded, the camera pulls back to the whole path, and the outcome card appears."""
+"""Ending of a flight: the camera pulls back to the whole path in the colours of who flew, and the card appears."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from itertools import groupby, pairwise
 from typing import Final
 
+import numpy as np
+
+from ai.environment import Doubles
 from game.core.clock import STEP
 from game.core.pace import SlowMotion
-from game.flight.flight import Flight
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import HUMAN, NET, VIEW_SIZE
+from game.flight.flight import Flight, StickHolder
 from game.flight.outcomes import OutcomeCard
-from game.scenes.play.card import ShownCard
+from game.scenes.play.card import PLACES, ShownCard
 from game.scenes.play.ghost import Ghost
 from game.ui.hints import Hint
-from game.world.camera import CameraTarget
+from game.world.camera import CameraTarget, ClearArea, View
+from game.world.paths import draw_faint
 
 _CARD_AFTER: Final = 45  # steps from the end of a flight to its card
 _CARD_RISE: Final = 16
 _CRASH_SEEN: Final = 6  # steps of slow motion before a key can cut it short: thrust may still be held
+_STRIDE: Final = 4  # steps between points of a path
+_MOST_MARKS: Final = 24
+_CARD: Final = (480.0, 136.0, 280.0)  # points: width, top and height of the outcome card
+_DIM: Final = 0.62  # as the past must not outshine the present
 
 
 class FlightEnding:
@@ -49,11 +61,6 @@ class FlightEnding:
         return 1.0 if self.calm else 1 - (1 - min(1.0, since / _CARD_RISE)) ** 3
 
     @property
-    def _lit(self) -> float:
-        """Seconds that a medal has been lit; with reduced motion, always."""
-        return math.inf if self.calm else (self._since - _CARD_AFTER - _CARD_RISE) * STEP
-
-    @property
     def shot(self) -> CameraTarget | None:
         """Shot for the camera instead of the craft; None to keep following the craft."""
         return self.whole if self.due else None
@@ -75,4 +82,50 @@ class FlightEnding:
         if self.card is None or self.shown == 0:
             return None
         rival = ghost.row(self._flight.env) if ghost else None
-        return ShownCard(self.card, hints, self.shown, advise, rival, self._lit)
+        # Seconds that a medal has been lit; with reduced motion, always.
+        lit = math.inf if self.calm else (self._since - _CARD_AFTER - _CARD_RISE) * STEP
+        return ShownCard(self.card, hints, self.shown, advise, rival, lit)
+
+
+class FlownPath:
+    """Path of one flight, recorded step by step and drawn once the flight is over."""
+
+    def __init__(self, flight: Flight) -> None:
+        self._flight = flight
+        self._points: list[Doubles] = [flight.env.position[0].copy()]
+        self._hands: list[StickHolder] = []
+
+    def follow(self) -> None:
+        """Record a step."""
+        if len(self._flight.recording.actions) % _STRIDE == 0 or self._flight.over:
+            self._points.append(self._flight.env.position[0].copy())
+            self._hands.append(self._flight.flown_by)
+
+    @property
+    def places(self) -> Doubles:
+        """The path so far: positions (k, 2) in metres."""
+        return np.array(self._points)
+
+    def clear_place(self, view: View) -> float:
+        """Return the place of a card across the view, 0 to 1, at which it hides least of the path."""
+        points = view.points(self.places)
+
+        def hidden(place: float) -> int:
+            left = place * (VIEW_SIZE[0] - _CARD[0])
+            inside = (points >= (left, _CARD[1])) & (points <= (left + _CARD[0], _CARD[1] + _CARD[2]))
+            return int(inside.all(axis=1).sum())
+
+        return min(PLACES, key=hidden)
+
+    def draw(self, canvas: Canvas, view: View, moments: Sequence[Doubles]) -> None:
+        """Draw the path, and a diamond where the co-pilot stepped in, below the head; some of many."""
+        pixels, ends = view.pixels(self.places), [0]
+        for _, run in groupby(self._hands):
+            ends.append(ends[-1] + len(list(run)))
+        for start, end in pairwise(ends):
+            colour = HUMAN if self._hands[start] is StickHolder.HUMAN else NET
+            draw_faint(canvas.surface, pixels[start : end + 1], colour, _DIM, canvas.scale * ClearArea.head)
+        for place in moments[:: max(1, -(-len(moments) // _MOST_MARKS))]:
+            spot = view.points(place).tolist()
+            if spot[1] > canvas.view.top + ClearArea.head:
+                canvas.marker("diamond", spot, 8, NET)

@@ -49,55 +49,42 @@ class FlightControls:
             self._tapped |= {Held.MAIN} if self._mouse.fires else set()
             self._switched |= self.switch
         if event.type == pygame.WINDOWFOCUSLOST:
-            self._forget()
+            self.begin()
 
     def begin(self) -> None:
-        """Switch a latched engine off, for another flight."""
-        self._forget()
-
-    def release(self) -> None:
-        """Let go of the mouse, and of a latched engine."""
-        self._mouse.release()
-        self._forget()
-
-    def _forget(self) -> None:
-        """Switch a latched engine off, and forget what was pressed."""
+        """Switch a latched engine off, and forget what was pressed, for another flight."""
         self._latched = self._switched = False
         self._tapped.clear()
 
+    def release(self) -> None:
+        """Let go of the mouse too."""
+        self._mouse.release()
+        self.begin()
+
     def read(self, craft: float) -> Stick:
         """Return the stick in this step, for a craft drawn at the x coordinate `craft`, in points."""
-        try:
-            return self._read(craft)
-        finally:
-            self._tapped.clear()
-            self._switched = False
-
-    def _read(self, craft: float) -> Stick:
         if self._settings.one_switch:
-            return Stick(3 * self.switch)
-        main, side = self._thrust(craft)
-        if self._controls.holds(Held.FINE) or self._mouse.fine:
-            side *= FINE
-        stick = pushed(main, side, self._shares)
-        self._shares = stick.shares or full(stick.action)
+            stick = Stick(3 * self.switch)
+        else:
+            main, side = self._thrust(craft)
+            if self._controls.holds(Held.FINE) or self._mouse.fine:
+                side *= FINE
+            stick = pushed(main, side, self._shares)
+            self._shares = stick.shares or full(stick.action)
+        self._tapped.clear()
+        self._switched = False
         return stick
 
     def _thrust(self, craft: float) -> tuple[float, float]:
         """Return the shares of thrust asked for, of the main engine and, -1 to 1, of the jets."""
-        controls, settings = self._controls, self._settings
-        throttle, stick = controls.shares if settings.analogue else (0.0, 0.0)
-        axes = not settings.analogue
-        held = {each for each in _FLOWN if controls.holds(each, axes=axes)} | self._tapped
+        controls, analogue = self._controls, self._settings.analogue
+        throttle, stick = controls.shares if analogue else (0.0, 0.0)
+        held = {each for each in _FLOWN if controls.holds(each, axes=not analogue)} | self._tapped
         main = float(Held.MAIN in held or self._mouse.fires) or throttle
-        left, right = Held.LEFT in held, Held.RIGHT in held
-        side = (right - left) or stick or self._mouse.side(craft)
-        if settings.toggle_thrust:
-            main = self._latch(controls.main or Held.MAIN in held or self._mouse.fires)
+        side = ((Held.RIGHT in held) - (Held.LEFT in held)) or stick or self._mouse.side(craft)
+        if self._settings.toggle_thrust:  # each new press switches the main engine on or off
+            pressed = controls.main or Held.MAIN in held or self._mouse.fires
+            self._latched ^= pressed and not self._held_before
+            self._held_before = pressed
+            main = float(self._latched)
         return main, side
-
-    def _latch(self, held: bool) -> float:
-        """Switch the main engine on or off at each new press; return its share of thrust."""
-        self._latched ^= held and not self._held_before
-        self._held_before = held
-        return float(self._latched)

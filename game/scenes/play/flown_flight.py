@@ -1,4 +1,4 @@
-"""A flight of the player's with all that belongs to it alone: scenery, cockpit, paths, ghost, sounds and ending."""
+"""A flight of the player's with all that belongs to it alone: scenery, help, paths, ghost, sounds and ending."""
 
 from __future__ import annotations
 
@@ -15,27 +15,29 @@ from game.audio.flight_sounds import FlightSound
 from game.core import texts
 from game.core.pace import SlowMotion
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import VIEW_SIZE
+from game.drawing.tokens import HUMAN, NET, VIEW_SIZE
 from game.flight import networks
-from game.flight.credit import Credit
-from game.flight.difficulty import Difficulty, eased
+from game.flight.credit import Credit, eased
+from game.flight.demonstrations import add_demonstration
 from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Entry, Record
 from game.flight.handicap import OWN
 from game.flight.last_chance import LastChance
 from game.flight.logbook import Records
 from game.flight.networks import Network, Policy
+from game.flight.outcomes import OutcomeCard, outcome_card
 from game.flight.six_futures import SixFutures
+from game.panels.landings import Landings
 from game.panels.readouts import GAUGES, PILOT, READOUTS, at_touch, draw_flight, flight_readouts
-from game.scenes.play import captions
-from game.scenes.play.card import PLACES
-from game.scenes.play.challenge import Challenge, DrawnFlight
-from game.scenes.play.cockpit import Cockpit
-from game.scenes.play.ending import FlightEnding
-from game.scenes.play.ghost import Ghost
-from game.scenes.play.head import Head, path_words
-from game.scenes.play.ladder import rung_of
-from game.scenes.play.sentence import sentence, surroundings
+from game.scenes.play.challenge import Challenge
+from game.scenes.play.copilot_panel import CopilotPanel
+from game.scenes.play.ending import FlightEnding, FlownPath
+from game.scenes.play.free import rung_of
+from game.scenes.play.head import Head
+from game.scenes.play.help import MODES, HelpWords
+from game.scenes.play.interventions import Interventions
+from game.scenes.play.wind import draw_wind
+from game.scenes.play.words import dial_words, sentence, surroundings, why_not_saved
 from game.ui.hints import Hint, flight_hints
 from game.world.camera import ClearArea, View
 from game.world.landscape.backdrop import EARTH, EARTH_RADIUS
@@ -44,14 +46,15 @@ from game.world.path_preview import PathPreview, draw_futures
 from game.world.scenery import Scenery
 
 if TYPE_CHECKING:
+    from game.scenes.play.ghost import Ghost
     from game.ui.context import Context
-
 
 _CRAFT: Final = 1.5  # metres from the middle of a craft to its ends
 _WAITING: Final = 196.0  # points at the head for the words over a craft that waits, before they are laid out
 _BELOW_HEAD: Final = 44.0  # and between the words and the craft
 _LARGE: Final = 1.15  # size of words beside that on a page from which they reach far across
 _SEARCH: Final = 6  # decisions in a frame, in the search for what would have saved a lost flight
+_THINKS: Final = 2  # decisions of six futures that are flown in a frame
 
 
 class FlownFlight:
@@ -61,15 +64,12 @@ class FlownFlight:
         context: the shared services.
         seed: seed of the start.
         network: the one to hand over to, if it can be read; unused where the player must fly alone.
-        challenge: its start and rules; None for a free flight.
-        pads: number of landing pads of a free flight.
-        spawn: kind of start of a free flight.
-        hands: handicap of a free flight, a name of `game.flight.handicap.HANDS`.
+        challenge: its start and rules.
+        spawn: kind of start; empty for the player's own.
 
     Attributes:
         flight: the flight itself.
         credit: who flies it, and whether it counts as the player's own.
-        difficulty: its changes of gravity, and its assists.
         pace: the clock that slows down after a crash.
         ending: the ending, with slow motion and outcome card.
         record: the record of the flight once it is over; None before, and where none is kept.
@@ -78,83 +78,63 @@ class FlownFlight:
         futures: the six futures, once somebody has asked; None before.
         waiting: whether the craft hangs until the pilot touches a control.
         begun: whether it has flown a step.
+        age: steps of 1/60 s since it was first shown, whether or not it flies.
 
     """
 
-    def __init__(
-        self,
-        context: Context,
-        seed: int,
-        network: Network,
-        challenge: Challenge | None = None,
-        *,
-        pads: int = 1,
-        spawn: str = "random",
-        hands: str = OWN,
-    ) -> None:
+    def __init__(self, context: Context, seed: int, network: Network, challenge: Challenge, spawn: str = "") -> None:
         self._context, self._settings = context, context.settings
-        self.challenge, self.hands = challenge, hands
+        self.challenge, self._network = challenge, network
         self.waiting = self._held_before = True
-        self._age = 0
+        self.begun = self._was_over = False  # was: before its latest step
+        self.age, self._looked = 0, -1  # step of the moment whose six futures are known, or are being flown
         self.record: Record | None = None
-        self.begun = False
-        self._was_over = False  # whether the flight was over before its latest step
-        alone = challenge is not None and challenge.alone
-        self._network, self._policy = network, None if alone else network.policy
-        self.flight = self._begin(seed, spawn, pads)
-        self.difficulty = Difficulty(self._settings, self.flight, free=not challenge)
-        self.credit = Credit(self.flight, self.difficulty, challenge, hands)
-        self.helped = challenge.dial(self._settings) if challenge else self._settings
-        self.cockpit = Cockpit(self.flight, self.helped, self.credit)
+        self._policy = None if challenge.alone else network.policy
+        if challenge.eases:
+            challenge.easing = eased(self._settings)
+        self.flight = challenge.flight(seed, self._policy, spawn)
+        self.credit = Credit(self.flight, self._settings, challenge)
+        self.helped = challenge.dial(self._settings)
+        if self.helped.copilot not in MODES:
+            self.helped.copilot = MODES[0]
+        self.help_words, self.interventions = HelpWords(self.helped), Interventions()
+        self.copilot_panel = CopilotPanel(self.flight.env.ground)
+        self._help()
         self._last_chance: LastChance | None = None
         self.futures: SixFutures | None = None
-        self._looked = -1  # step of the moment whose six futures are known, or are being flown
-        self.ghost = challenge.ghost(seed, self._policy) if challenge else None
+        self.ghost = challenge.ghost(seed, self._policy)
         calm = self._settings.reduced_motion
         self.clear, self._earth = ClearArea(), EARTH
         self.scenery = Scenery(self.flight, calm, ClearArea(head=_WAITING))
         self.pace = SlowMotion()
         self._heard = FlightSound(context.sound, self.flight.env, self.pace)
+        self.path = FlownPath(self.flight)
         self.ending = FlightEnding(self.flight, self.pace, calm)
         self._readouts = flight_readouts(self.flight.env)
-        self._network_here = self._shadow()
+        self._network_here = self._shadow() if challenge.shadows and self._policy else None
         self.path_preview = PathPreview(self.flight, self._guide)
 
-    def _begin(self, seed: int, spawn: str, pads: int) -> Flight:
-        """Return the flight at its start, eased as the player has chosen, where that may be."""
-        easing, challenge = eased(self._settings), self.challenge
-        if challenge is None:
-            return Flight(seed, self._policy, spawn, pads=pads, hands=self.hands, easing=easing)
-        if challenge.eases:
-            challenge.easing = easing
-        return challenge.flight(seed, self._policy)
-
-    def _shadow(self) -> Flight | None:
+    def _shadow(self) -> Flight:
         """Return the network's own flight from the same start, flown unseen: the card tells its score."""
-        if self._policy is None or self.challenge:
-            return None
-        recording = self.flight.recording
-        shadow = Flight(recording.seed, self._policy, recording.spawn, pads=recording.pads, easing=recording.easing)
+        start = self.flight.recording
+        shadow = Flight(start.seed, self._policy, start.spawn, pads=start.pads, easing=start.easing)
         shadow.hand_over()
         return shadow
 
-    def _guard(self) -> None:
-        """Let futures be flown ahead, once the flight is shared with a guardian."""
-        flight = self.flight
-        if flight.guard is None and flight.shared and (ahead := self._context.ahead()):
-            from game.flight.guard import Guard
-
-            flight.guard = Guard(flight, ahead)
+    @property
+    def helps(self) -> bool:
+        """Whether a network may help in this flight."""
+        return self.flight.shares and not self.credit.alone
 
     @property
     def _guide(self) -> Policy | None:
         """The network whose path is previewed; None where none is."""
-        return None if self.challenge and not self.challenge.guides else self._policy
+        return self._policy if self.challenge.guides else None
 
     @property
     def rival(self) -> Ghost | None:
         """The ghost that the card compares the flight with."""
-        return self.ghost if self.challenge and self.challenge.compares else None
+        return self.ghost if self.challenge.compares else None
 
     @property
     def stuck(self) -> bool:
@@ -179,34 +159,28 @@ class FlownFlight:
 
     def breathe(self) -> None:
         """Advance by 1/60 s what moves whether or not anything flies."""
-        self._age += 1
+        self.age += 1
         self.scenery.breathe()
-        self.cockpit.breathe()
+        self.help_words.shown = max(0, self.help_words.shown - 1)
 
     def due(self, action: int) -> bool:
         """Count 1/60 s; return whether a step is due: the craft may wait, or slowed time make none due."""
         self.pace.rate = self._settings.pace
         if self._waits(action):
-            self.cockpit.help()
-            self._guard()
+            self._help()
             if self.flight.guard:
                 self.flight.guard.hang(action)
             self.path_preview.follow(waiting=True)
             return False
         return bool(self.pace.steps())
 
-    def sound(self) -> None:
-        """Let the flight be heard; call it in every 1/60 s, between steps too, or fire would fall silent."""
-        self._heard.follow(self.scenery.stage.thrust[0])
-
     def _waits(self, action: int) -> bool:
         """Whether the craft still hangs; a key that began the flight itself must first be let go."""
         self._held_before = self._held_before and bool(action)
-        touched = bool(action) or (self.challenge is not None and not self.challenge.waits)
-        holds = self.challenge is not None and self.challenge.holds
-        guard = self.flight.guard
+        touched, guard = bool(action) or not self.challenge.waits, self.flight.guard
         ready = guard is None or guard.ready  # or nobody would keep it from harm at first
-        if self.flight.hand is StickHolder.NETWORK or (touched and not self._held_before and not holds and ready):
+        goes = touched and ready and not (self._held_before or self.challenge.holds)
+        if goes or self.flight.hand is StickHolder.NETWORK:
             self.waiting = False
         return self.waiting
 
@@ -215,14 +189,22 @@ class FlownFlight:
         if not self.flight.over:
             self.waiting = self._held_before = True
 
+    def _help(self) -> None:
+        """Set the help of the next step from the settings, and have futures flown ahead once a guardian needs them."""
+        flight = self.flight
+        flight.help(0.0 if self.credit.alone else self.helped.assist, self.helped.copilot)
+        if flight.guard is None and flight.shared and (ahead := self._context.ahead()):
+            from game.flight.guard import Guard
+
+            flight.guard = Guard(flight, ahead)
+
     def prepare(self) -> None:
         """Make ready for the flight's next step; after the end, only what still moves goes on."""
         self._was_over, self.begun = self.flight.over, True
         if not self._was_over:  # at the end, the figures stay those of the last moment before
             self._readouts = flight_readouts(self.flight.env)
-            self.difficulty.heed()
-        self.cockpit.help()
-        self._guard()
+            self.credit.prepare()
+        self._help()
 
     def follow(self) -> None:
         """Follow the flight's step."""
@@ -233,22 +215,66 @@ class FlownFlight:
             self._network_here.step(0)
         self.path_preview.follow(waiting=False)
         if not self._was_over:
-            if self._settings.show_thinking:
-                self.think(2)
-            self.cockpit.follow(self.futures if self._settings.show_thinking else None)
-            self._note_chance()
-            if flight.over:
-                self._readouts = at_touch(self._readouts, flight.env)
-            if flight.over and self.challenge:
-                self.challenge.settle(flight, self.credit)
+            self._follow_flight()
         self.scenery.clear = self.clear
-        if flight.over and self._last_chance and flight.wrecked:
+        if flight.wrecked and self._last_chance:
             self._last_chance.look(_SEARCH)
         self.scenery.follow(flight.over and not self._was_over, self.ending.shot)
-        if self.challenge and (told := self.challenge.follow(flight)):
+        if told := self.challenge.follow(flight):
             self._context.sound.play(told)
 
+    def _follow_flight(self) -> None:
+        flight, asks = self.flight, self._settings.show_thinking
+        if asks:
+            self.think(_THINKS)
+        self.interventions.follow(flight)
+        self.path.follow()
+        self.copilot_panel.follow(flight, self.futures if asks else None)
+        self.credit.follow()
+        if self.credit.helped and self._policy:  # to tell what would have saved it if it is lost
+            self._last_chance = self._last_chance or LastChance(self._policy, flight.route)
+            self._last_chance.note(flight.env)
+        if flight.over:
+            self._readouts = at_touch(self._readouts, flight.env)
+            self.challenge.settle(flight, self.credit)
+
+    def sound(self) -> None:
+        """Let the flight be heard; call it in every 1/60 s, between steps too, or fire would fall silent."""
+        self._heard.follow(self.scenery.stage.thrust[0])
+
+    def think(self, decisions: int) -> None:
+        """Fly the six futures of the present moment some decisions further, for whoever asks."""
+        step = len(self.flight.recording.actions)
+        if self._policy is None or self.flight.over:
+            return
+        self.futures = self.futures or SixFutures(self._policy, self.flight.route)
+        if not self.futures.under_way and self._looked != step:
+            self.futures.begin(self.flight.env)
+            self._looked = step
+        self.futures.follow(decisions)
+        self.copilot_panel.follow(self.flight, self.futures)
+
     # The end
+
+    def make_card(self, best: int) -> OutcomeCard:
+        """Return the outcome card of the finished flight; `best` is the score to beat in free flights."""
+        flight, credit, ending = self.flight, self.credit, self.ending
+        ending.whole = self.scenery.shot_of(self.path.places)
+        unranked = rung_of(flight) is not None or self.challenge.name
+        card = outcome_card(flight.env, flight.share)
+        card = replace(
+            card, score=credit.score(0 if unranked else best), reason=credit.reason(card.reason),
+            assists=credit.assists, place=self.path.clear_place(ending.whole.view(1.0)),
+        )  # fmt: skip
+        if credit.helped:
+            chance = None if card.good else self._last_chance
+            while chance and not chance.known:
+                chance.look(_SEARCH)
+            bare = "" if card.good else why_not_saved(flight, chance)
+            watched, times = self.interventions.watched(flight), len(self.interventions.moments)
+            advice = "" if bare else card.advice  # why it was not saved says more
+            card = replace(card, stepped_in=times, watched=watched, bare=bare, advice=advice)
+        return self.challenge.card(card, flight, credit)
 
     def compared(self, best: int) -> tuple[tuple[str, str], ...]:
         """Return other scores from the same start: the player's `best` before, 0 for none, and the network's."""
@@ -260,110 +286,91 @@ class FlownFlight:
             rows.append((texts.CARD_NETWORK, texts.SCORE.format(count=score) if score else texts.CARD_NO_LANDING))
         return tuple(rows)
 
-    def make_card(self, best: int) -> None:
-        """Make the outcome card of the finished flight; `best` is the score to beat in free flights."""
-        chance = self._last_chance if self.credit.helped else None
-        while chance and not (chance.known or self.flight.outcome is Outcome.LANDED):
-            chance.look(_SEARCH)
-        ending, cockpit, challenge = self.ending, self.cockpit, self.challenge
-        ending.whole = self.scenery.shot_of(cockpit.track.path)
-        unranked = rung_of(self.flight) is not None or (challenge and challenge.name)
-        card = cockpit.card(0 if unranked else best, chance)
-        card = replace(card, place=cockpit.track.beside(PLACES, ending.whole.view(1.0)))
-        ending.card = challenge.card(card, self.flight, self.credit) if challenge else card
-
     def write_down(self, records: Records) -> Entry | None:
-        """Record the finished flight, and return its line; None if that was done before.
+        """Record the finished flight, and return its line; None if that was done before; report what failed.
 
-        It is saved as a demonstration if wished, and failures are reported.
+        It is saved as a demonstration too, if wished.
         """
         if self.record:
             return None
-        context, credit, challenge = self._context, self.credit, self.challenge
-        told = (
-            ""
-            if challenge or credit.bar == "practice"
-            else self.cockpit.add_demonstration(context.user_dir, self.hands)
-        )
+        credit, challenge = self.credit, self.challenge
+        told = self._teach() if challenge.free and credit.bar != "practice" else ""
         entry = records.keep(
             self.flight,
             time.time(),
             alone=credit.counts,
             barred=credit.bar,
             network=self._network.name if self._network.policy else "",
-            course=challenge.name if challenge else "",
+            course=challenge.name,
             medal=credit.medal,
             pace=credit.pace,
-            guarded=max(0.0, self.cockpit.rescues.throughout),
-            total=challenge.total if challenge else 0,
+            guarded=max(0.0, self.interventions.throughout),
+            total=challenge.total,
         )
         x, y, angle = self.flight.poses.now[0].tolist()
         self.record = Record(self.flight.recording, entry, (x, y, angle))
-        told = told or (challenge.written(entry) if challenge else "")
-        if told or records.problem:
-            context.note(told or records.problem)
+        if told := told or challenge.written(entry) or records.problem:
+            self._context.note(told)
         return entry
 
-    def _note_chance(self) -> None:
-        """Keep moments of a helped flight, to tell what would have saved it if it is lost."""
-        if self.credit.helped and self._policy is not None:
-            self._last_chance = self._last_chance or LastChance(self._policy, self.flight.route)
-            self._last_chance.note(self.flight.env)
+    def _teach(self) -> str:
+        """Save a landing as a demonstration, if wished and good enough; return a message for the player."""
+        if self.flight.outcome is not Outcome.LANDED or not self._settings.teach or self.challenge.hands != OWN:
+            return ""
+        try:
+            return texts.TAUGHT if add_demonstration(self.flight, self._context.user_dir) else ""
+        except (OSError, ValueError) as error:
+            return texts.NOT_TAUGHT.format(reason=error)
 
-    def think(self, decisions: int) -> None:
-        """Fly the six futures of the present moment some decisions further, for whoever asks."""
-        step = len(self.flight.recording.actions)
-        if self._policy is None or self.flight.over:
-            return
-        if self.futures is None:
-            self.futures = SixFutures(self._policy, self.flight.route)
-        if not self.futures.under_way and self._looked != step:
-            self.futures.begin(self.flight.env)
-            self._looked = step
-        self.futures.follow(decisions)
-        self.cockpit.copilot_panel.follow(self.flight, self.futures)
-
-    # The picture
+    # The words
 
     def head(self, hints: Sequence[Hint], *, whole: bool) -> Head:
         """Return the words at the head: all while there is time to read, which `whole` says, or the sentence."""
-        flight, challenge, controls, cockpit = self.flight, self.challenge, self._context.controls, self.cockpit
-        waits, stuck = self.waiting and not flight.over, self.stuck
-        told = challenge.sentence(flight, controls, waiting=waits, stuck=stuck) if challenge else None
-        helps = cockpit.help_words if cockpit.helps and not flight.over else None
+        flight, challenge, controls = self.flight, self.challenge, self._context.controls
+        waits, stuck, lamp = self.waiting and not flight.over, self.stuck, self.interventions.lamp(flight)
+        told = challenge.sentence(flight, controls, waiting=waits, stuck=stuck)
+        helps = self.help_words if self.helps and not flight.over else None
         if not (waits or whole or flight.over):
-            words, warns = told or sentence(flight, self.credit, cockpit.overrides, controls), False
-            if isinstance(words, tuple):
-                words, warns = words
-            shown = helps if cockpit.help_words.shown else None
-            return Head(words, warns, cockpit.lamp(), hints=hints, help=shown, means=cockpit.means)
-        caption, name = captions.title(flight, challenge, self._network, self.hands, whole=whole)
-        goal = challenge.goal if challenge else ""
-        without = challenge is not None and challenge.kept and helps is not None and self.helped.assist == 0
-        apart = texts.HELP_NOT_HERE if without and self._settings.assist > 0 and not self.begun else ""
-        aside = [
-            apart,
-            self.credit.header if self.credit.alone and not flight.over else "",
-            self.credit.notice or goal,
-            *surroundings(flight.env),
-            *(challenge.asides(flight) if challenge else ()),
-        ]
-        head = Head(caption=caption, name=name, rung=rung_of(flight), aside=list(filter(None, aside)), hints=hints)
+            usual = sentence(flight, self.credit, self.interventions.word, controls)
+            words, warns = (told, False) if told else usual
+            shown = helps if self.help_words.shown else None
+            return Head(words, warns, lamp, hints=hints, help=shown, means=self._means)
+        if self.ending.shown:
+            return Head(hints=hints)
+        caption, name = challenge.titles(flight, self._network, whole=whole)
+        head = Head(caption=caption, name=name, rung=rung_of(flight), aside=self._asides(), hints=hints)
         if flight.over:
-            return Head(hints=hints) if self.ending.shown else replace(head, sentence=told or "")
+            return replace(head, sentence=told or "")
         if not waits:
-            return replace(head, sentence=self.credit.header, lamp=cockpit.lamp())
-        opening = captions.opening(flight, challenge, begun=self.begun, stuck=stuck)
-        keys = flight_hints(controls) if opening and told is None else ()
-        paths = (
-            path_words(texts.PATH_YOURS, texts.PATH_NETWORK if self.path_preview.asks else "")
-            if keys and not challenge
-            else ()
-        )
+            return replace(head, sentence=self.credit.header, lamp=lamp)
+        opening = challenge.opening
+        if self.begun:
+            opening = texts.TUTORIAL_LET_GO if stuck else texts.WAITS_AGAIN
+        keys = flight_hints(controls) if opening and told is None else []
+        guided = [(texts.PATH_NETWORK, NET)] if self.path_preview.asks else []
+        paths = [(texts.PATH_YOURS, HUMAN), *guided] if keys and challenge.free else []
         return replace(
-            head, sentence=told or opening, lamp=cockpit.lamp(), controls=keys, paths=paths, help=helps,
-            means=cockpit.means,
-        )  # fmt: skip
+            head, sentence=told or opening, lamp=lamp, controls=keys, paths=paths, help=helps, means=self._means
+        )
+
+    def _asides(self) -> list[str]:
+        """Say what else is to be known of the flight."""
+        flight, challenge, credit = self.flight, self.challenge, self.credit
+        off = challenge.kept and self.helps and self.helped.assist == 0 < self._settings.assist and not flight.over
+        told = [
+            texts.HELP_NOT_HERE if off and not self.begun else "",
+            credit.header if credit.alone and not flight.over else "",
+            credit.notice or challenge.goal,
+            *surroundings(flight.env),
+            *challenge.asides(flight),
+        ]
+        return [words for words in told if words]
+
+    def _means(self) -> str:
+        """Say what the help that is set means now."""
+        guard = self.flight.guard
+        problem = guard.ahead.problem if guard else texts.FUTURES_NOT_YET
+        return dial_words(self.helped.assist, self.flight.copilot, problem)
 
     def lay_out(self, head: Head) -> None:
         """Keep the flight clear of its words, and of what the network thinks."""
@@ -381,18 +388,16 @@ class FlownFlight:
         low = head.write(reading, drawn=False) * reading.scale / scale + _BELOW_HEAD + min(view.top, 0.0)
         right = float(VIEW_SIZE[0])
         if self.thinks:
-            right = min(right, (self.cockpit.panel_box(reading).left - 16) * reading.scale / scale + view.left)
+            right = min(right, (self.copilot_panel.box(reading).left - 16) * reading.scale / scale + view.left)
         return ClearArea(right=max(right, 0.4 * VIEW_SIZE[0]), head=max(low, ClearArea.head))
+
+    # The picture
 
     @property
     def thinks(self) -> bool:
         """Whether what the network thinks is shown in flight."""
         flies = not (self.waiting or self.flight.over)
-        return self._settings.show_thinking and self.cockpit.copilot_panel.shown and flies
-
-    def moment(self, alpha: float) -> DrawnFlight:
-        """Return the moment that a challenge draws over, once the fraction `alpha` of a step has passed."""
-        return DrawnFlight(alpha, self.waiting, self._settings.reduced_motion, self._age)
+        return self._settings.show_thinking and self.copilot_panel.shown and flies
 
     def draw(self, canvas: Canvas, alpha: float, head: Head, *, whole: bool, low: float = 0.0) -> None:
         """Draw the world, the craft, the read-outs and the words; `whole` is for all that can be known of it.
@@ -403,29 +408,37 @@ class FlownFlight:
         alpha = self.pace.between(alpha)
         view = self.scenery.view(world.scale, alpha).filling(world)
         self.scenery.draw_land(world, alpha, self._earth)
-        if self.challenge and self.challenge.ahead:
+        if self.challenge.ahead:
             begin_hills(self.challenge.ahead, view)
         if self.ghost:
             self.ghost.draw_way(world, view)
         if flight.over:
-            self.cockpit.track.draw(world, view)
-        thinks = self.thinks or (whole and self.cockpit.copilot_panel.shown)
+            self.path.draw(world, view, self.interventions.moments)
+        thinks = self.thinks or (whole and self.copilot_panel.shown)
         if thinks and self.futures:
             draw_futures(world, view, self.futures, self.clear.head)
         else:
-            self.path_preview.draw(world, view, self.scenery.clear.head, self.cockpit.coasting)
+            self.path_preview.draw(world, view, self.scenery.clear.head, self._coasting)
         if self.ghost:
             self.ghost.draw(world, view, alpha)
         self.scenery.draw_craft(world, alpha, words=self.ending.shown == 0)
         pose = flight.poses.at(alpha)[0]
-        self.cockpit.draw_beside(world, view, pose, self._clear_of(head))
-        if self.challenge:
-            self.challenge.draw(world, view, flight, self.moment(alpha))
+        if not flight.over:
+            draw_wind(world, view, pose, flight.env, self._clear_of(head))
+        self.challenge.draw(world, view, self, alpha)
         if low * canvas.scale < world.surface.get_height() - READOUTS * world.scale:
             draw_flight(world, self._readouts, self._shown(whole=whole))
         head.write(canvas)
         if thinks and not self._behind_panel(canvas, view, pose):
-            self.cockpit.copilot_panel.draw(canvas, flight.share, networks.word(self._network.name))
+            share = flight.share if self.begun else None
+            self.copilot_panel.draw(canvas, share, networks.word(self._network.name))
+
+    @property
+    def _coasting(self) -> tuple[float, bool] | None:
+        """A guardian's future of coasting, for the mark on the path; None without one, or if nobody asks."""
+        values = self.copilot_panel.values
+        shown = self._settings.show_thinking and self.copilot_panel.shown
+        return values.coasting if shown and isinstance(values, Landings) else None
 
     def _shown(self, *, whole: bool) -> list[str]:
         """Name the read-outs: the four that a pilot needs, and what is left of a tank that is small; or all."""
@@ -437,4 +450,4 @@ class FlownFlight:
         """Whether the craft is behind the panel, which happens only where the camera can't keep it clear."""
         place = canvas.points(canvas.whole.pixels(view.points(pose[:2]).tolist()))
         around = 2 * _CRAFT * view.pixels_per_metre / canvas.scale
-        return bool(self.cockpit.panel_box(canvas).inflate(around, around).collidepoint(place))
+        return bool(self.copilot_panel.box(canvas).inflate(around, around).collidepoint(place))

@@ -24,15 +24,13 @@ from game.world.landscape.sheet import fitted
 from game.world.paths import Trails
 
 _FIRE: Final = 0.5  # share of full thrust drawn, so that a ghost's flame is not mistaken for the player's
-_BODY: Final = 0.30  # opacity of a ghost's body, and of its rim
-_RIM: Final = 0.9
+_BODY, _RIM = 0.30, 0.9  # opacity of a ghost's body, and of its rim
+_FADED: Final = 0.55  # factor on both, once it has crashed
 _SHADE: Final = (102, 102, 102)  # two fifths of 255: a ghost keeps that share of the lander's colours
 _TINT: Final = tuple(round(0.6 * level) for level in NET)  # the other three fifths are the network's blue
 _FINEST: Final = 64.0  # pixels per metre of its picture, which is translucent and costs a new one at every angle
-_FADED: Final = 0.55  # factor on both, once it has crashed
 _EDGE: Final = 18.0  # points from the edge of the view to the mark of a ghost that is beyond it
 _HIDDEN: Final = 24.0  # points beyond the edge from which a ghost counts as beyond it
-_NO_SLOT: Final = np.zeros(1, bool)
 
 
 class Ghost:
@@ -49,7 +47,7 @@ class Ghost:
         was_over = flight.over
         flight.step(0)
         ended = np.array([flight.over and not was_over])
-        self._trail.follow(flight.env.position, flight.env.outcome, _NO_SLOT, ended)
+        self._trail.follow(flight.env.position, flight.env.outcome, np.zeros(1, bool), ended)
 
     def row(self, yours: LanderEnv) -> RivalOutcome:
         """Return the rival's row on the outcome card of the player's finished flight."""
@@ -62,26 +60,21 @@ class Ghost:
         self._trail.draw(canvas, view, 0, ClearArea.head)
 
     def draw(self, canvas: Canvas, view: View, alpha: float) -> None:
-        """Draw the ghost as a translucent shape with a blue rim."""
+        """Draw the ghost as a translucent shape with a blue rim, or a mark at the edge towards one outside the view."""
         flight = self.flight
         pose = flight.poses.at(alpha)[0]
         if not flight.over and flight.env.fired[0] >= 3:
             _draw_fire(canvas, view, pose, int(flight.env.steps[0]))
-        x, y = view.pixels(pose[:2]).tolist()
         fine, degrees = min(view.painted_per_metre, _FINEST), round(math.degrees(pose[2])) % 360
         crashed = flight.wrecked
-        ratio = view.pixels_per_metre / fine
-        canvas.surface.blit(*fitted(lambda halves: _phantom(fine, degrees, halves, crashed), ratio, (x, y)))
-        _point_to(canvas, *view.points(pose[:2]).tolist())
-
-
-def _point_to(canvas: Canvas, x: float, y: float) -> None:
-    """Draw a mark at the edge of the view, towards a ghost outside it."""
-    edge, near = canvas.view.inflate(-2 * _EDGE, -2 * _EDGE), canvas.view.inflate(2 * _HIDDEN, 2 * _HIDDEN)
-    if not near.left <= x <= near.right or not near.top <= y <= near.bottom:
-        spot = (min(max(x, edge.left), edge.right), min(max(y, edge.top), edge.bottom))
-        canvas.glow(spot, 14, NET, 0.5)
-        canvas.marker("diamond", spot, 9, NET, 0.9)
+        ratio, place = view.pixels_per_metre / fine, tuple(view.pixels(pose[:2]).tolist())
+        canvas.surface.blit(*fitted(lambda halves: _phantom(fine, degrees, halves, crashed), ratio, place))
+        x, y = view.points(pose[:2]).tolist()
+        edge, near = canvas.view.inflate(-2 * _EDGE, -2 * _EDGE), canvas.view.inflate(2 * _HIDDEN, 2 * _HIDDEN)
+        if not near.left <= x <= near.right or not near.top <= y <= near.bottom:
+            spot = (min(max(x, edge.left), edge.right), min(max(y, edge.top), edge.bottom))
+            canvas.glow(spot, 14, NET, 0.5)
+            canvas.marker("diamond", spot, 9, NET, 0.9)
 
 
 def _result(yours: LanderEnv, theirs: LanderEnv) -> str:
@@ -99,8 +92,7 @@ def _result(yours: LanderEnv, theirs: LanderEnv) -> str:
 
 def _draw_fire(canvas: Canvas, view: View, pose: Doubles, step: int) -> None:
     x, y, angle = pose.tolist()
-    fire = plume(NET_PLUME, view.pixels_per_metre, angle, _FIRE, step // 2)
-    if fire:
+    if fire := plume(NET_PLUME, view.pixels_per_metre, angle, _FIRE, step // 2):
         sheet, (left, top) = fire
         reach = art.NOZZLE[1]
         nozzle = view.pixel(x - reach * math.sin(angle), y + reach * math.cos(angle))
@@ -114,14 +106,15 @@ def _phantom(pixels_per_metre: float, degrees: int, halves: tuple[int, int], wre
     phantom = art.painted(pixels_per_metre, degrees, halves).copy()
     cover = pygame.surfarray.array_alpha(phantom)
     grown = cover.copy()
+    sides = (
+        (np.s_[1:], np.s_[:-1]),
+        (np.s_[:-1], np.s_[1:]),
+        (np.s_[:, 1:], np.s_[:, :-1]),
+        (np.s_[:, :-1], np.s_[:, 1:]),
+    )
     for _ in range(max(1, round(pixels_per_metre / 24))):
         inner = grown.copy()
-        for to, of in (
-            (np.s_[1:], np.s_[:-1]),
-            (np.s_[:-1], np.s_[1:]),
-            (np.s_[:, 1:], np.s_[:, :-1]),
-            (np.s_[:, :-1], np.s_[:, 1:]),
-        ):
+        for to, of in sides:
             np.maximum(grown[to], inner[of], out=grown[to])
     rim = grown - cover  # never negative, as the dilated mask contains the mask
     phantom.fill(_SHADE, special_flags=pygame.BLEND_RGB_MULT)

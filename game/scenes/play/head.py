@@ -14,21 +14,24 @@ import pygame
 
 from game.drawing.canvas import Now
 from game.drawing.cursor import LEADING, Cursor
-from game.drawing.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, TEXT, Colour
+from game.drawing.tokens import FAINT, HUMAN, INK, MARGIN, MUTE, SMALL, TEXT, Colour
 from game.panels.readouts import Lamp
-from game.scenes.play.ladder import WIDTH, draw_ladder
+from game.scenes.play.free import COUNT
 from game.ui.hints import Hint, HintRow
 
 if TYPE_CHECKING:
     from game.drawing.canvas import Canvas
-    from game.scenes.play.help_words import HelpWords
+    from game.scenes.play.help import HelpWords
 
 _SIDES, _TOP = 0.05, 20.0  # free at either side, of the width; and points above
 _NARROW: Final = 860.0  # points of a window in which keys stand above names
 _SENTENCE: Final = 18.0
 _WIDEST: Final = 620.0  # points of a line of it
 _LINE: Final = 29.0  # from one row of keys to the next
-_DOTS: Final = 30.0
+_DOTS, _APART = 30.0, 28.0  # in the legend of the paths: before words, and after them
+_PITCH: Final = 7.0  # points from rung to rung
+_LOWEST, _HIGHER = 5.0, 0.7  # points of the lowest rung, and more for each above it
+LADDER: Final = _PITCH * COUNT  # points of the ladder's picture
 
 
 @dataclass
@@ -82,21 +85,20 @@ class _Layout:
         view = canvas.view
         self.side = max(min(MARGIN, _SIDES * view.width), 12.0)
         self.narrow = view.width < _NARROW
+        self.beside = view.width - 2 * self.side if self.narrow else 0.36 * view.width  # room of names, and of keys
         self.help_line = 0.0
 
-    def cursor(self, left: float, y: float, width: float, size: float = TEXT, colour: Colour = INK) -> Cursor:
+    def cursor(self, left: float, y: float, width: float, size: float, colour: Colour = INK) -> Cursor:
         return Cursor(left, y, width, self.canvas.scale, self.canvas if self.drawn else None, size=size, colour=colour)
 
     def key_rows(self) -> list[HintRow]:
-        view = self.canvas.view
-        room = view.width - 2 * self.side if self.narrow else 0.36 * view.width
         rows: list[list[Hint]] = []
         for hint in self.head.hints:
-            if rows and HintRow([*rows[-1], hint], (0, 0)).width(self.canvas) <= room:
+            if rows and HintRow([*rows[-1], hint], (0, 0)).width(self.canvas) <= self.beside:
                 rows[-1].append(hint)
             else:
                 rows.append([hint])
-        right = view.right - self.side
+        right = self.canvas.view.right - self.side
         return [HintRow(row, (right, _TOP + 16 + _LINE * number), from_right=True) for number, row in enumerate(rows)]
 
     def write(self) -> float:
@@ -107,24 +109,19 @@ class _Layout:
         names = self._names(keys if self.narrow else 0.0)
         # In flight there is nothing beside the sentence, or so little that both have room.
         alone = not names and (not rows or not self.narrow)
-        y = self._middle(_TOP if alone else max(keys, names) + 8, beside=self._reach(rows) if alone else 0.0)
-        return max(y, keys, names)
-
-    def _reach(self, rows: Sequence[HintRow]) -> float:
-        return max((row.width(self.canvas) + self.side for row in rows), default=0.0)
+        reach = max((row.width(self.canvas) + self.side for row in rows), default=0.0) if alone else 0.0
+        return max(self._middle(_TOP if alone else max(keys, names) + 8, reach), keys, names)
 
     def _names(self, top: float) -> float:
         """Write what is flown, at the left; return the lower end, 0 if there is nothing."""
-        head, view = self.head, self.canvas.view
+        head = self.head
         if not (head.caption or head.name or head.aside):
             return 0.0
-        width = view.width - 2 * self.side if self.narrow else 0.36 * view.width
-        cursor = self.cursor(view.left + self.side, max(top, _TOP), width, SMALL, MUTE)
+        cursor = self.cursor(self.canvas.view.left + self.side, max(top, _TOP), self.beside, SMALL, MUTE)
         if head.caption:
-            if head.rung is not None and self.drawn:
-                end = cursor.left + cursor.measured(head.caption)
-                if end + WIDTH + 12 < cursor.right:
-                    draw_ladder(self.canvas, end + 12, cursor.baseline, head.rung)
+            end = cursor.left + cursor.measured(head.caption) + 12
+            if head.rung is not None and self.drawn and end + LADDER < cursor.right:
+                draw_ladder(self.canvas, end, cursor.baseline, head.rung)
             cursor.text(head.caption)
         if head.name:
             name = cursor.in_style(TEXT, INK)
@@ -143,10 +140,10 @@ class _Layout:
             self._write_sentence(cursor)
         if head.controls:
             row = HintRow(head.controls, (0, 0), size=TEXT)
-            width = row.width(canvas)
+            left = view.centerx - row.width(canvas) / 2
             cursor.gap(6)
             if self.drawn:
-                replace(row, position=(view.centerx - width / 2, cursor.y + TEXT)).draw(canvas)
+                replace(row, position=(left, cursor.y + TEXT)).draw(canvas)
             cursor.gap(LEADING * TEXT)
         if head.paths:
             cursor.gap(4)
@@ -177,21 +174,21 @@ class _Layout:
         """Write the legend of the paths, side by side where there is room."""
         small = cursor.in_style(SMALL, MUTE)
         widths = [small.measured(words) + _DOTS for words, _ in self.head.paths]
-        across = sum(widths) + 28 * (len(widths) - 1) <= cursor.width
-        x = cursor.left + (cursor.width - (sum(widths) + 28 * (len(widths) - 1) if across else max(widths))) / 2
+        whole = sum(widths) + _APART * (len(widths) - 1)
+        across = whole <= cursor.width
+        x = cursor.left + (cursor.width - (whole if across else max(widths))) / 2
         for (words, colour), width in zip(self.head.paths, widths, strict=True):
             if self.drawn:
                 for number in range(3):
                     self.canvas.dot((x + 4 + 8 * number, cursor.y + 0.62 * SMALL), 1.5, colour)
                 self.canvas.text(words, (x + _DOTS, cursor.y + SMALL), size=SMALL, colour=MUTE)
-            if across:
-                x += width + 28
-            else:
-                cursor.gap(LEADING * SMALL)
-        if across:
-            cursor.gap(LEADING * SMALL)
+            x += width + _APART if across else 0.0
+            cursor.gap(0.0 if across else LEADING * SMALL)
+        cursor.gap(LEADING * SMALL if across else 0.0)
 
 
-def path_words(yours: str, network: str) -> list[tuple[str, Colour]]:
-    """Return the legend of the paths ahead, of the network's only if it has words."""
-    return [(yours, HUMAN), *([(network, NET)] if network else [])]
+def draw_ladder(canvas: Canvas, left: float, baseline: float, rung: int) -> None:
+    """Draw the ladder from `left`; of a player at its top, all rungs are lit."""
+    for number in range(COUNT):
+        x, top = left + number * _PITCH, baseline - _LOWEST - _HIGHER * number
+        canvas.line((x, baseline), (x, top), HUMAN if number <= rung else FAINT, 2.0)

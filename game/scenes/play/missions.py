@@ -12,12 +12,12 @@ from game.core import texts
 from game.core.scene import Transition, push
 from game.drawing.cursor import BASELINE, LEADING, Cursor
 from game.drawing.glyphs import icon
-from game.drawing.tokens import HUMAN, INK, MEDALS, MUTE, SMALL, TITLE
+from game.drawing.tokens import HUMAN, INK, MUTE, SMALL, TITLE
 from game.flight import flight_file
 from game.flight.credit import TOGETHER
 from game.flight.flight_file import Entry, Record
 from game.flight.logbook import Records, rank
-from game.scenes.play.card import draw_ring
+from game.scenes.play.card import draw_lamps
 from game.scenes.play.challenge import FlownMission
 from game.ui.actions import Table
 from game.ui.listing import Row
@@ -31,9 +31,7 @@ if TYPE_CHECKING:
 
 _LEAST: Final = 320.0  # points of a column
 _PITCH, _AROUND = 30.0, 100.0  # points of a row of the list, and above and below the list
-_COLUMNS: Final = (88.0, 0.0)  # from the right end of the list: where medals and fuel end
-_RING: Final = 14.0  # from a ring to its words
-_LAMP, _LAMPS = 13.0, 62.0  # from one lamp of a medal to the next, and from the last to the end of its column
+_LAMPS: Final = 62.0  # from the last lamp to the end of its column
 _FLIGHTS: Final = "flights"  # in the game's own data
 _NAMES: Final = tuple(MISSIONS)
 
@@ -46,27 +44,19 @@ class MissionsScene(PanelScene):
         self._index = 0
         self._rival = ""  # the player's choice of ghost; empty for the default of each mission
         self._list: ListRow | None = None
-        self._read()
-        self.build()
+        self.enter()
 
-    def _read(self) -> None:
-        """Read the results from disk."""
+    def enter(self) -> None:
+        """Read what has been flown."""
         self._records = Records(self.context.user_dir)
         entries = self._records.entries()
         self._best = _best_by_course(entries)
         if self._records.problem:
             self.context.note(self._records.problem)
-        self._kept, self._together = self._records.kept(), landed_together(entries)
-        gold = sum(entry.medal == 3 for name, entry in self._best.items() if name in MISSIONS)
-        self._line = texts.MISSIONS_LINE.format(gold=gold, count=len(MISSIONS))
-
-    def enter(self) -> None:
-        """Read again what has been flown."""
-        self._read()
+        self._kept, self._together = self._records.kept(), _landed_together(entries)
         self.build()
 
     def actions(self) -> Table:
-        """Move, choose, go back."""
         return [self.form.moves, *super().actions()]
 
     @property
@@ -77,14 +67,12 @@ class MissionsScene(PanelScene):
     # Rows
 
     def describe(self, panel: Panel) -> None:
-        """Add the list, and what there is to say of the chosen mission."""
         panel.title(texts.MISSIONS_TITLE)
-        panel.aside(self._line)
         panel.gap(8)
         left, right = panel.beside((5, 4), _LEAST)
         self._list = left.listing(
             [self._row(name) for name in _NAMES], lambda _: self._fly(), around=_AROUND, index=self._index,
-            first=self._list.first if self._list else 0, on_choose=self._choose, columns=_COLUMNS, pitch=_PITCH,
+            first=self._list.first if self._list else 0, on_choose=self._choose, columns=(0.0,), pitch=_PITCH,
         )  # fmt: skip
         right.title(lambda: texts.MISSIONS[self.chosen][0], 28.0)
         right.text(lambda: texts.MISSIONS[self.chosen][1])
@@ -95,15 +83,13 @@ class MissionsScene(PanelScene):
         right.gap(10)
         self._rivals = right.choice(texts.MISSION_RIVAL_LABEL, [""], 0, self._choose_rival)
         self._offer()
-        right.aside(lambda: _network_words(self.chosen))
         right.gap(6)
         right.button(texts.MISSION_FLY, self._fly, size=TITLE, colour=INK)
 
     def _offer(self) -> None:
         """Offer the ghosts of the chosen mission."""
-        offered = self._offered
-        self._rivals.options = [texts.MISSION_RIVALS[rival] for rival in offered]
-        self._rivals.index = offered.index(self._chosen_rival)
+        self._rivals.options = [texts.MISSION_RIVALS[rival] for rival in self._offered]
+        self._rivals.index = self._offered.index(self._chosen_rival)
 
     def _write_best(self, cursor: Cursor) -> None:
         """Write the player's best result, if there is one."""
@@ -119,10 +105,8 @@ class MissionsScene(PanelScene):
 
     def _row(self, name: str) -> Row:
         best = self._best.get(name)
-        title = f"{icon(name)}   {texts.MISSIONS[name][0]}"
-        if best is None:
-            return title, texts.MISSION_TOGETHER if name in self._together else "–", ""
-        return title, texts.MEDALS[best.medal], f"{tenths(best.fuel):.1f} s"
+        won = texts.MEDALS[best.medal] if best else texts.MISSION_TOGETHER if name in self._together else "–"
+        return f"{icon(name)}   {texts.MISSIONS[name][0]}", won
 
     def _write_medal(self, medal: int, cursor: Cursor) -> None:
         """Write what a medal asks, behind its lamps, and a tick if it is won."""
@@ -130,7 +114,7 @@ class MissionsScene(PanelScene):
         limit = {3: mission.gold, 2: mission.silver}.get(medal)
         words = texts.MISSION_LIMIT.format(fuel=limit[0], seconds=limit[1]) if limit else texts.MISSION_ANY
         if canvas := cursor.canvas:
-            _draw_lamps(canvas, (cursor.left + 5, cursor.baseline - 5), medal)
+            draw_lamps(canvas, (cursor.left + 31, cursor.baseline - 5), medal)
             canvas.text(texts.MEDALS[medal], (cursor.left + 52, cursor.baseline), size=SMALL + 1, colour=INK)
             if best and best.medal >= medal:
                 canvas.marker("check", (cursor.right - 8, cursor.baseline - 4), 11, canvas.palette.good)
@@ -142,29 +126,21 @@ class MissionsScene(PanelScene):
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the rows, and the lamps of the medals in the list."""
         super().draw(canvas, alpha)
-        listed = self._list
-        assert listed is not None
+        assert self._list is not None
         for row, name in enumerate(_NAMES):
-            y = listed.baseline(row) - 4
-            if not self.panel.box.collidepoint(listed.box.left, y):
-                continue
-            if name in self._best:
-                end, medal = listed.right - _COLUMNS[0] - _LAMPS, self._best[name].medal
-                _draw_lamps(canvas, (end - _LAMP * medal, y), medal)
-            elif name in self._together:
-                end = listed.right - _COLUMNS[0] - canvas.text_width(texts.MISSION_TOGETHER)
-                draw_ring(canvas, (end - _RING, y))
+            y = self._list.baseline(row) - 4
+            if name in self._best and self.panel.box.collidepoint(self._list.box.left, y):
+                draw_lamps(canvas, (self._list.right - _LAMPS, y), self._best[name].medal)
 
     # Flights
 
     def _mission(self, name: str, rival: str) -> FlownMission:
         """Return a mission beside a ghost, with the way to the next one."""
-        mission, record = MISSIONS[name], self._rival_record(name, rival)
+        record = self._record(name, rival)
         later = _NAMES[_NAMES.index(name) + 1 :]
         following = partial(self._go_to, later[0]) if later else None
-        if record is None:
-            return FlownMission(mission, following=following)
-        return FlownMission(mission, record, texts.MISSION_GHOSTS[rival], following)
+        ghost = texts.MISSION_GHOSTS[rival] if record else texts.MISSION_RIVAL
+        return FlownMission(MISSIONS[name], record, ghost, following)
 
     def _go_to(self, name: str) -> FlownMission:
         """Choose a mission, so that the way back leads to it, and return it beside its usual ghost."""
@@ -182,14 +158,14 @@ class MissionsScene(PanelScene):
 
     @property
     def _chosen_rival(self) -> str:
-        """The player's choice of ghost if available; else the network where it lands, or a recorded landing."""
+        """The player's choice of ghost if available; else the usual one."""
         return self._rival if self._rival in self._offered else _usual_rival(self.chosen)
 
     def _choose_rival(self, index: int) -> None:
         self._rival = self._offered[index]
 
-    def _rival_record(self, name: str, rival: str) -> Record | None:
-        """Return the recorded flight to race, None for the network; tell the player of one that can't be read."""
+    def _record(self, name: str, rival: str) -> Record | None:
+        """Read the recorded flight to race, None for the network; tell the player of one that can't be read."""
         try:
             if rival == "own":
                 return self._records.read(self._best[name].file)
@@ -200,19 +176,9 @@ class MissionsScene(PanelScene):
         return None
 
 
-def _draw_lamps(canvas: Canvas, first: tuple[float, float], medal: int) -> None:
-    """Draw a medal: three lamps for gold, two for silver, one for bronze."""
-    for lamp in range(medal):
-        canvas.dot((first[0] + _LAMP * lamp, first[1]), 4, MEDALS[medal])
-
-
-def landed_together(entries: list[Entry]) -> set[str]:
+def _landed_together(entries: list[Entry]) -> set[str]:
     """Return the missions that player and network have landed together, under the current rules."""
-    return {
-        entry.course
-        for entry in entries
-        if entry.course in MISSIONS and entry.landed and entry.human > 0 and entry.bar in TOGETHER
-    }
+    return {entry.course for entry in entries if entry.landed and entry.human > 0 and entry.bar in TOGETHER}
 
 
 def _usual_rival(name: str) -> str:
@@ -220,13 +186,7 @@ def _usual_rival(name: str) -> str:
     return "network" if MISSIONS[name].network_lands else "recorded"
 
 
-def _network_words(name: str) -> str:
-    """Return the shipped network's result in a mission, in words."""
-    return texts.MISSION_NETWORK.format(landed=MISSIONS[name].landed)
-
-
 def _best_by_course(entries: list[Entry]) -> dict[str, Entry]:
     """Return the player's best unaided landing in each named challenge, under the current rules."""
-    own = (entry for entry in entries if entry.course and entry.alone)
-    landings = [entry for entry in own if entry.landed and not entry.outdated]
+    landings = [entry for entry in entries if entry.course and entry.alone and entry.landed and not entry.outdated]
     return {entry.course: entry for entry in sorted(landings, key=rank, reverse=True)}

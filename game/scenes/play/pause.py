@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import pygame
@@ -61,14 +62,14 @@ class PauseScene(PanelScene):
         self.build()
 
     def describe(self, panel: Panel) -> None:
-        """Add the entries."""
         panel.title(texts.PAUSE_TITLE, 44.0, "extralight")
         self.describe_below(panel)
         panel.gap(8)
-        rows: list[tuple[str, OnPress]] = [(texts.PAUSE_RESUME, Pop)]
-        if self._retry:
-            rows.append((self._retry_word, self._begin_anew))
-        rows += [*self._more(), (texts.PAUSE_SETTINGS, _open_settings), (texts.PAUSE_LEAVE, lambda: Pop(2))]
+        retry = [(self._retry_word, self._begin_anew)] if self._retry else []
+        rows: list[tuple[str, OnPress]] = [
+            (texts.PAUSE_RESUME, Pop), *retry, *self._more(),
+            (texts.PAUSE_SETTINGS, partial(push, "settings")), (texts.PAUSE_LEAVE, partial(Pop, 2)),
+        ]  # fmt: skip
         for label, press in rows:
             panel.button(label, press, size=_WORD, weight="light", colour=INK)
 
@@ -76,11 +77,9 @@ class PauseScene(PanelScene):
         """Add what is to be said of the scene below."""
 
     def actions(self) -> Table:
-        """Choose, or resume."""
         return [self.form.moves, self.form.confirms(texts.HINT_CHOOSE), Action(Command.PAUSE, Pop, texts.HINT_RESUME)]
 
     def draw_behind(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the blurred scene below."""
         self._behind.draw(canvas)
 
     def _begin_anew(self) -> Transition:
@@ -103,7 +102,7 @@ class FlightPauseScene(PauseScene):
         """Add which flight it is, and what is to be known of it."""
         head = self._flight.titles()
         panel.aside(head.caption)
-        if self._flight.challenge:
+        if not self._flight.challenge.free:
             panel.text(head.name)
         for words in head.aside:
             panel.aside(words)
@@ -113,7 +112,6 @@ class FlightPauseScene(PauseScene):
         return [*super().actions(), self.explained.action()]
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Explain, or pass the event to the actions and the entries."""
         return None if self.explained.handle_event(event) else super().handle_event(event)
 
     def update(self) -> Transition | None:
@@ -140,10 +138,5 @@ class FlightPauseScene(PauseScene):
         canvas.panel((self.panel.box.left - 24, 12, self.panel.box.width + 48, low - 12), _COVER)
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the entries over the flight, and what is explained."""
         super().draw(canvas, alpha)
         self.explained.draw(canvas)
-
-
-def _open_settings() -> Transition:
-    return push("settings")

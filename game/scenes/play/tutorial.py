@@ -7,8 +7,8 @@ line beside it names the key that it waits for.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -24,31 +24,82 @@ from game.flight.outcomes import TIPPED, OutcomeCard, outcome_card
 from game.input.bindings import Command, Held
 from game.input.controls import Controls
 from game.scenes.play.challenge import Challenge
-from game.scenes.play.help_words import GUARDIAN, choose
-from game.scenes.play.tutorial_lessons import (
-    LESSONS,
-    NEED_COPILOT,
-    NEED_NETWORK,
-    RISING,
-    UPRIGHT,
-    Lesson,
-    falls_too_fast,
-    leaves_at_the_top,
-    turned,
-)
+from game.scenes.play.help import GUARDIAN, choose
+from game.scenes.play.words import falls_too_fast, leaves_at_the_top, turned
 
 _PRAISE: Final = 40  # steps that a finished lesson stays on the screen, with a tick
 _LONG: Final = 840  # steps in flight after which the network lands a rescue that does not come down
 _NEAR: Final = 4.0  # metres above the pad, below which the craft should be upright
 _TOLD_WHY: Final = 240  # steps in flight that the reason for a restart stays on the screen
 _SIDEWAYS: Final = 12.0  # metres from the pad that count as far
+_LEAN: Final = 0.15  # rad
+_UPRIGHT: Final = (0.08, 0.15)  # rad, rad/s
+_SLOW, _RISING = 1.0, 0.3  # m/s down that are slow, and up from which on the craft rises instead of braking
+_MANY: Final = 2  # times that a lesson is begun before its other words are tried
+NETWORK, COPILOT = "network", "copilot"
+
+
+@dataclass(frozen=True)
+class Lesson:
+    """One lesson: something to do, and how to tell that it is done.
+
+    Attributes:
+        name: key of its line in `texts.TUTORIAL`.
+        done: predicate: whether the lesson's action is being done in this step of a flight.
+        steps: number of steps for which it must be done, 60 per second; consecutive if `held`.
+        start: height, sinking speed and tilt at which the lesson restarts after a crash, and metres beside the pad.
+        by: who must have the stick; None for anybody.
+        needs: whether it needs a network to hand over to, or one that can share the stick; empty for neither.
+        hands_off: whether it begins with all controls released, and needs no touch.
+        back: number of lessons to go back when it restarts.
+        guarded: whether the co-pilot shares the stick, as far as the dial says; else it would do what is to be learnt.
+
+    """
+
+    name: str
+    done: Callable[[Flight], bool]
+    steps: int
+    start: tuple[float, float, float, float] = (17.0, 0.0, 0.0, 0.0)
+    held: bool = True
+    by: StickHolder | None = StickHolder.HUMAN
+    needs: str = ""
+    back: int = 0
+    hands_off: bool = False
+    guarded: bool = False
+
+
+def _stands_upright(flight: Flight) -> bool:
+    env = flight.env
+    return bool(env.tilt[0] < _UPRIGHT[0] and abs(env.angular_velocity[0]) < _UPRIGHT[1])
+
+
+def _falls(flight: Flight) -> bool:
+    return bool(flight.env.actions[0] == 0 and flight.env.velocity[0, 1] < -0.3)
+
+
+def _lands(flight: Flight) -> bool:
+    return flight.outcome is Outcome.LANDED
+
+
+_ASIDE: Final = (12.0, 0.0, 0.0, 4.0)
+LESSONS: Final = (
+    Lesson("fire", lambda flight: bool(flight.env.actions[0] >= 3), 24, (14.0, 0.0, 0.0, 0.0), held=False),
+    Lesson("fall", _falls, 50, hands_off=True),
+    Lesson("brake", lambda flight: bool(-_SLOW <= flight.env.velocity[0, 1] <= _RISING), 50, (16.0, -2.0, 0.0, 0.0)),
+    Lesson("lean", lambda flight: bool(flight.env.tilt[0] > _LEAN), 1),
+    Lesson("upright", _stands_upright, 20, (17.0, 0.0, 0.3, 0.0)),
+    Lesson("hand_over", lambda _: True, 1, by=StickHolder.NETWORK, needs=NETWORK),
+    Lesson("take_back", lambda _: True, 1, needs=NETWORK, back=1),
+    Lesson("land", _lands, 1, (8.0, 0.0, 0.0, 0.0)),
+    Lesson("dial", lambda _: True, 1, _ASIDE, needs=COPILOT, guarded=True),
+    Lesson("rescue", _lands, 1, _ASIDE, by=None, needs=COPILOT, back=1, guarded=True),
+)
 
 
 class Tutorial(Challenge):
     """Tutorial: the first flight.
 
     Attributes:
-        lesson: the current lesson.
         through: whether all lessons are done or skipped.
         flown: whether the last lesson was completed by a landing.
         praise: number of steps for which the last lesson is still praised.
@@ -60,38 +111,67 @@ class Tutorial(Challenge):
 
     def __init__(self) -> None:
         self._lessons = list(LESSONS)
-        self._number = self._done_for = self.praise = 0
-        self._begun = 0  # number of times that the lesson was begun
-        self._why = ""  # reason why the lesson restarts
-        self.through = self.flown = False
+        self.flown = False
+        self._begin_lesson(0)
 
     @property
     def lesson(self) -> Lesson:
         """The current lesson."""
         return self._lessons[self._number]
 
-    @property
-    def fixed(self) -> bool:  # type: ignore[override]
-        """Whether there is only one start: until free flights follow."""
-        return not self.through
+    def _begin_lesson(self, number: int) -> None:
+        self._number, self._why, self._over = number, "", False
+        self._flown_for = self._done_for = self.praise = self._begun = 0
+        self._name()
 
-    @property
-    def line(self) -> str:  # type: ignore[override]
-        """Progress through the lessons, in words."""
-        return texts.TUTORIAL_STEP.format(number=self._number + 1, count=len(self._lessons))
+    def _name(self) -> None:
+        self.line = texts.TUTORIAL_STEP.format(number=self._number + 1, count=len(self._lessons))
+        self.guides = self.lesson.guarded
 
-    def flight(self, seed: int, network: Policy | None) -> Flight:
-        """Begin a flight at the current lesson, or one before it; without a network, skip lessons that need one."""
+    def _end(self) -> None:
+        """Let free flights follow."""
+        self.through, self.fixed = True, False
+
+    def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight:
+        """Begin a flight at the current lesson, or one before it; without a network, leave out what needs one."""
         self._leave_out(network)
         self._number -= self.lesson.back
+        self._name()
         self._begun += 1
         self._done_for = self.praise = self._flown_for = 0
         self._over = False
         flight = Flight(seed, network, mission=FIRST.name, shares=self.lesson.guarded)
-        flight.env.place(np.ones(1, bool), np.array([self.lesson.start]))
+        height, sinks, angle, aside = self.lesson.start
+        flight.env.place(np.ones(1, bool), np.array([[aside, height, 0.0, sinks, angle, 0.0]]))
         flight.observation = flight.env.observe()
         flight.rest()
         return flight
+
+    def _leave_out(self, network: Policy | None) -> None:
+        """Leave out, at any point of the tutorial, the lessons that the network there is cannot take part in."""
+        unable = {NETWORK} if network is None else set()
+        unable |= set() if isinstance(network, QPolicy) else {COPILOT}
+        able = [lesson for lesson in self._lessons if lesson.needs not in unable]
+        ahead = [lesson for lesson in self._lessons[self._number :] if lesson in able]
+        self._lessons, self._number = able, able.index(ahead[0]) if ahead else len(able) - 1
+        if not ahead:
+            self._end()
+
+    @property
+    def waits(self) -> bool:
+        return not self.lesson.hands_off
+
+    @property
+    def holds(self) -> bool:
+        """The craft goes on to hang until help is turned on, where a lesson asks for that."""
+        return self.lesson.guarded and self._help is not None and self._help.assist == 0
+
+    def dial(self, settings: Settings) -> Settings:
+        """Return the help of the lessons, on guard and at nothing: the player's own stays where it is."""
+        self._help = self._help or replace(settings, assist=0.0, copilot=GUARDIAN)
+        return self._help
+
+    # Progress
 
     def follow(self, flight: Flight) -> str:
         """Check whether the lesson is done; return the sound to play if so."""
@@ -117,7 +197,8 @@ class Tutorial(Challenge):
             return ""
         self.praise, self._why = _PRAISE, ""
         self.flown |= self.lesson.name == "land"
-        self.through = self._number == len(self._lessons) - 1
+        if self._number == len(self._lessons) - 1:
+            self._end()
         return "" if flight.over else "choose"  # a landing has a sound of its own
 
     def _watched(self, flight: Flight) -> bool:
@@ -125,16 +206,27 @@ class Tutorial(Challenge):
         by_network = flight.hand is StickHolder.NETWORK and flight.outcome is Outcome.LANDED
         return self.lesson.name == "take_back" and by_network
 
+    def _reason(self, flight: Flight) -> str:
+        """Return the reason why the lesson restarts."""
+        if flight.outcome is not Outcome.LANDED:
+            return outcome_card(flight.env, flight.share).reason
+        by_network = flight.hand is StickHolder.NETWORK
+        return texts.TUTORIAL_NETWORK_LANDED if by_network else texts.TUTORIAL_LANDED_EARLY
+
     def skip(self) -> None:
         """Skip the lesson, and those that start with it."""
         left = self._lessons[self._number + 1 :]
         beyond = next((number for number, lesson in enumerate(left, 1) if not lesson.back), 0)
-        self.through = not beyond
+        if not beyond:
+            self._end()
         self._begin_lesson(self._number + beyond)
 
     def leave(self) -> None:
-        """Skip the whole tutorial."""
-        self.through = True
+        self._end()
+
+    def again(self) -> bool:
+        """A flight restarts unless it was the landing that the last lesson asks for."""
+        return not self.through
 
     def remember(self, settings: Settings) -> bool:
         """Store that the tutorial is over, so that it is not offered again, and whether it was flown."""
@@ -144,30 +236,6 @@ class Tutorial(Challenge):
         settings.tutored |= self.through or self.flown
         settings.first_flown |= self.flown
         return before != (settings.tutored, settings.first_flown)
-
-    def dial(self, settings: Settings) -> Settings:
-        """Return the dial of the lessons, on guard and at nothing: the player's own stays where it is."""
-        self._help = self._help or replace(settings, assist=0.0, copilot=GUARDIAN)
-        return self._help
-
-    @property
-    def holds(self) -> bool:
-        """Whether the craft goes on to hang: until the dial is turned, where a lesson asks for that."""
-        return self.lesson.guarded and self._help is not None and self._help.assist == 0
-
-    @property
-    def guides(self) -> bool:
-        """Whether the network's path is previewed."""
-        return self.lesson.guarded
-
-    @property
-    def waits(self) -> bool:
-        """Whether a touch starts the flight; false for a lesson that asks for no touch."""
-        return not self.lesson.hands_off
-
-    def again(self) -> bool:
-        """Whether a finished flight restarts: true unless it was the landing that the last lesson asks for."""
-        return not self.through
 
     def card(self, card: OutcomeCard, flight: Flight, credit: Credit) -> OutcomeCard:
         """Return the final card: tutorial complete, or the crash of a player who flies it once more."""
@@ -179,37 +247,18 @@ class Tutorial(Challenge):
             reason = texts.TUTORIAL_SAVED if card.stepped_in else texts.TUTORIAL_NOT_NEEDED
         return replace(card, title=title, reason=reason, score="", advice=texts.TUTORIAL_NEXT)
 
-    def _begin_lesson(self, number: int) -> None:
-        self._number, self._why = number, ""
-        self._done_for = self.praise = self._begun = 0
+    # In words
 
-    def _leave_out(self, network: Policy | None) -> None:
-        """Leave out, at any point of the tutorial, the lessons that the network there is cannot take part in."""
-        unable = (NEED_NETWORK if network is None else ()) + (() if isinstance(network, QPolicy) else NEED_COPILOT)
-        able = [lesson for lesson in self._lessons if lesson.name not in unable]
-        ahead = [lesson for lesson in self._lessons[self._number :] if lesson in able]
-        self._lessons, self._number = able, able.index(ahead[0]) if ahead else len(able) - 1
-        self.through |= not ahead
-
-    def _reason(self, flight: Flight) -> str:
-        """Return the reason why the lesson restarts."""
-        if flight.outcome is not Outcome.LANDED:
-            return outcome_card(flight.env, flight.share).reason
-        if flight.hand is StickHolder.NETWORK:
-            return texts.TUTORIAL_NETWORK_LANDED
-        return texts.TUTORIAL_LANDED_EARLY
-
-    def words(self, flight: Flight, controls: Controls, *, waiting: bool = False, stuck: bool = False) -> str:
-        """Return the instruction, in the key names of the device in use; `waiting` and `stuck` as in `DrawnFlight`."""
+    def sentence(self, flight: Flight, controls: Controls, *, waiting: bool = False, stuck: bool = False) -> str:
+        """Return the instruction, in the key names of the device in use."""
+        if flight.over and self.through:
+            return ""
         left, right = controls.word(Held.LEFT), controls.word(Held.RIGHT)
         turn = texts.TUTORIAL_EITHER.format(left=left, right=right)
         if left == right:  # one control for both: the mouse, which turns towards its pointer, or a stick
-            turn, sign = left, left
-            if controls.mouse_in_use:
-                left, right = (text.format(key=sign) for text in texts.TUTORIAL_POINT)
-                turn = texts.TUTORIAL_POINT_EITHER.format(key=sign)
-            else:
-                left, right = (text.format(key=sign) for text in texts.TUTORIAL_PUSH)
+            mouse, turn = controls.mouse_in_use, left
+            left, right = (text.format(key=turn) for text in (texts.TUTORIAL_POINT if mouse else texts.TUTORIAL_PUSH))
+            turn = texts.TUTORIAL_POINT_EITHER.format(key=turn) if mouse else turn
         env = flight.env
         return self._line(flight, waiting, stuck).format(
             main=controls.word(Held.MAIN),
@@ -221,38 +270,33 @@ class Tutorial(Challenge):
         )
 
     def _line(self, flight: Flight, waiting: bool, stuck: bool) -> str:
-        env, lesson = flight.env, self.lesson
-        told = texts.TUTORIAL[lesson.name]
+        env, lesson, network = flight.env, self.lesson, flight.hand is StickHolder.NETWORK
+        usual, other = (*texts.TUTORIAL[lesson.name], "")[:2]
         if flight.over:
-            return self._line_after(flight)
+            if self._watched(flight):
+                return texts.TUTORIAL_WATCHED
+            return texts.TUTORIAL_GOOD[lesson.name] if self.praise else texts.TUTORIAL_AGAIN
         if waiting and lesson.guarded:
-            return told[0] if self.holds else texts.TUTORIAL_PATHS
+            return usual if self.holds else texts.TUTORIAL_PATHS
         if stuck:
-            return told[0] if lesson.hands_off else texts.TUTORIAL_LET_GO
+            return usual if lesson.hands_off else texts.TUTORIAL_LET_GO
         if waiting and lesson.name == "land":  # the lesson's own line names no key that starts the flight
             return texts.TUTORIAL_READY
-        if flight.hand is StickHolder.HUMAN and not lesson.guarded and (urgent := self._urgent(env)):
+        if not (network or lesson.guarded) and (urgent := self._urgent(env)):
             return urgent
         if self.praise:
             return texts.TUTORIAL_GOOD[lesson.name]
-        if lesson.guarded and flight.hand is StickHolder.NETWORK:
-            return texts.TUTORIAL_BROUGHT
+        if network:
+            return texts.TUTORIAL_BROUGHT if lesson.guarded else texts.TUTORIAL["take_back"][0]
         if lesson.guarded:
-            return told[1] if self._begun > 2 or self._flown_for > _LONG else told[0]
-        if flight.hand is StickHolder.NETWORK:
-            return texts.TUTORIAL["take_back"][0]
+            return other if self._begun > _MANY or self._flown_for > _LONG else usual
         if lesson.name not in ("lean", "fall") and abs(float(env.position[0, 0])) > _SIDEWAYS:
             return texts.TUTORIAL_AWAY
-        if lesson.name == "brake" and env.velocity[0, 1] > RISING:
+        if lesson.name == "brake" and env.velocity[0, 1] > _RISING:
             return texts.TUTORIAL_RISES
-        if lesson.name == "upright" and abs(turned(env)) < UPRIGHT[0]:
+        if lesson.name == "upright" and abs(turned(env)) < _UPRIGHT[0]:
             return texts.TUTORIAL_STANDS
-        return told[1] if self._begun > 2 and told[1] else told[0]
-
-    def _line_after(self, flight: Flight) -> str:
-        if self._watched(flight):
-            return texts.TUTORIAL_WATCHED
-        return texts.TUTORIAL_GOOD[self.lesson.name] if self.praise else texts.TUTORIAL_AGAIN
+        return other if self._begun > _MANY and other else usual
 
     def _urgent(self, env: LanderEnv) -> str:
         """Return an urgent warning, which precedes any lesson; empty if nothing is urgent."""
@@ -269,10 +313,5 @@ class Tutorial(Challenge):
         """Return why the lesson restarts, until it has flown for a while; empty if it has not restarted."""
         return self._why if self._over or self._flown_for < _TOLD_WHY else ""
 
-    def sentence(self, flight: Flight, controls: Controls, *, waiting: bool, stuck: bool) -> str | None:
-        """Return the instruction."""
-        return "" if flight.over and self.through else self.words(flight, controls, waiting=waiting, stuck=stuck)
-
     def asides(self, flight: Flight) -> Sequence[str]:
-        """Return why the lesson restarts."""
         return [self.why] if self.why and not flight.wrecked else []

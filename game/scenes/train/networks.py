@@ -116,8 +116,7 @@ class NetworksScene(PanelScene):
         self._read()
         place = next((n for n, run in enumerate(self.items) if run.folder == wanted), min(before, len(self.items) - 1))
         self.chosen = self.items[place] if self.items else None
-        self._naming = False
-        self.build()
+        self._end_naming()
 
     # Rows
 
@@ -139,7 +138,6 @@ class NetworksScene(PanelScene):
         if not self._choose and studies(self.context.user_dir):
             more.append((texts.STUDY_OPEN, lambda: push("study")))
         left.words([*more, (texts.BACK, self._back)])
-        self.form.focus(self._list)
         self._describe_chosen(self._beside)
 
     def _describe_chosen(self, column: Column) -> None:
@@ -249,6 +247,7 @@ class NetworksScene(PanelScene):
     def _end_naming(self) -> None:
         self._naming = False
         self.build()
+        self.form.focus(self._list)
 
     def _export(self) -> None:
         run = self.chosen

@@ -87,16 +87,20 @@ def _draw_link(canvas: Canvas, view: NetworkView, link: Link, width: float) -> N
         canvas.line(start, end, HUMAN, width)
         return
     count = max(1, round(math.dist(start, end) / _DASH / 2))
-    way = np.subtract(end, start) / count
     for number in range(count):
-        here = start + number * way
-        (x, y), (across, down) = here.tolist(), (here + way / 2).tolist()
-        canvas.line((x, y), (across, down), HUMAN, width, 0.7)
+        here, there = (_between(start, end, part / count) for part in (number, number + 0.5))
+        canvas.line(here, there, HUMAN, width, 0.7)
+
+
+def _between(start: Point, end: Point, share: float) -> Point:
+    return start[0] + share * (end[0] - start[0]), start[1] + share * (end[1] - start[1])
 
 
 def _place(view: NetworkView, unit: Unit) -> int | None:
     """Return the place of a unit among the shown ones of its column; None if it is not shown."""
-    shown = np.flatnonzero(view.columns[unit.stage].units == unit.unit) if unit.stage < len(view.columns) else ()
+    if unit.stage >= len(view.columns):
+        return None
+    shown = np.flatnonzero(view.columns[unit.stage].units == unit.unit)
     return int(shown[0]) if len(shown) else None
 
 

@@ -1,4 +1,4 @@
-"""Decision panel of a network that flies alone: the six Q-values and nine inputs of the decision flown."""
+"""Decision panel of a pilot that flies alone: values and inputs of the decision flown, and the legend of the map."""
 
 from __future__ import annotations
 
@@ -13,9 +13,11 @@ from ai.agent.decision import Decision
 from ai.lander.environment import OBSERVATION_SCALE
 from game.core import texts
 from game.drawing.canvas import Canvas
+from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import INK, LABEL, LINE, MUTE, SMALL
-from game.panels.q_values import HEIGHT, QValues, decision_words, draw_actions, draw_q_values
+from game.panels.q_values import FIRST, HEIGHT, ROW, QValues, decision_words, draw_actions, draw_q_values, signed
 from game.panels.readouts import draw_centred_bars
+from game.world.policy_map import ACTION, COLOURS, SCORE, PolicyMap, score_colours
 
 PANEL: Final = pygame.Rect(964, 84, 280, 504)
 _COVER: Final = 0.92  # opacity: the small text must stay readable while landers fly past behind it
@@ -25,10 +27,13 @@ _WORDS: Final = _VALUES + HEIGHT + 28
 _INPUTS: Final = _WORDS + 72  # first baseline of the inputs
 _PITCH: Final = 18
 _FIGURE: Final = 52  # room for an input's figure
+_SWATCH: Final = (5.0, 12.0)  # of an action's colour on the map
+_LEGEND: Final = pygame.Rect(PANEL.left, PANEL.bottom + 4, PANEL.width, 46)  # of the map of scores
+_BARS: Final = PaintCache(1)
 
 
-def draw_decision(canvas: Canvas, decision: Decision) -> None:
-    """Draw the decision of one lander exactly as it was made: nothing is recomputed or eased."""
+def draw_decision(canvas: Canvas, decision: Decision, policy_map: PolicyMap | None = None) -> None:
+    """Draw the decision of one lander exactly as it was made, and what the colours of the sky mean."""
     canvas = canvas.at(1, -1)
     left, top, width = PANEL.left + _LEFT, PANEL.top, PANEL.width - 2 * _LEFT
     canvas.panel(PANEL, _COVER)
@@ -39,12 +44,44 @@ def draw_decision(canvas: Canvas, decision: Decision) -> None:
         canvas.explain((left, top + _VALUES - 14, width, HEIGHT - 20), texts.EXPLAIN_RULES)
     else:
         draw_q_values(canvas, values, left, top + _VALUES, width)
+    if policy_map and policy_map.kind == ACTION:
+        _draw_swatches(canvas, top + _VALUES, by_rules=values is None)
+    elif policy_map and policy_map.kind == SCORE:
+        _draw_scale(canvas, policy_map.scale)
     for number, line in enumerate(decision_words(decision)):
         canvas.text(line, (left, top + _WORDS + 18 * number), size=SMALL, colour=MUTE if number else INK, room=width)
     canvas.explain((left, top + _WORDS - 14, width, 38), texts.EXPLAIN_WHY, partial(_keeps, decision))
     canvas.line((left, top + _WORDS + 32), (left + width, top + _WORDS + 32), LINE)
     canvas.text(texts.DECISION_INPUTS, (left, top + _WORDS + 54), size=LABEL, colour=MUTE, weight="medium")
     _draw_inputs(canvas, decision.observation[0].tolist(), left, top + _INPUTS, width)
+
+
+def _draw_swatches(canvas: Canvas, top: float, by_rules: bool) -> None:
+    """Draw the colour of each action on the map before its name."""
+    for action, colour in enumerate(COLOURS):
+        middle = top + ROW * action + (-4 if by_rules else FIRST)
+        canvas.rounded((PANEL.left + _LEFT - 12, middle - _SWATCH[1] / 2, *_SWATCH), 2, colour)
+    box = (PANEL.left, top - 10, _LEFT - 2, HEIGHT - 20)
+    canvas.explain(box, texts.EXPLAIN_MAP[ACTION - 1], lambda: texts.EXPLAIN_MAP_NOW)
+
+
+def _draw_scale(canvas: Canvas, scale: tuple[float, float] | None) -> None:
+    """Draw the scale of the map of scores below the panel."""
+    left, top, width = _LEGEND.left + _LEFT, _LEGEND.top, _LEGEND.width - 2 * _LEFT
+    canvas.panel(_LEGEND, _COVER)
+    _BARS.draw(canvas, (left, top + 12, width, 6), "scores", _paint_scale)
+    for share, align in ((0.0, "left"), (0.5, "centre"), (1.0, "right")):
+        if scale is not None:
+            points = signed(scale[0] + share * (scale[1] - scale[0])).removesuffix(".0")
+            place = (left + share * width, top + 34)
+            canvas.text(points, place, size=LABEL, colour=MUTE, align=align, tabular=True)  # type: ignore[arg-type]
+    canvas.explain(_LEGEND, texts.EXPLAIN_MAP[SCORE - 1], lambda: texts.EXPLAIN_MAP_NOW)
+
+
+def _paint_scale(sheet: Canvas) -> None:
+    width, height = sheet.size
+    row = np.round(score_colours(np.linspace(0.0, 1.0, width))).astype(np.uint8)
+    sheet.surface.blit(pygame.surfarray.make_surface(np.repeat(row[:, None], height, axis=1)), (0, 0))
 
 
 def _draw_inputs(canvas: Canvas, inputs: list[float], left: float, top: float, width: float) -> None:

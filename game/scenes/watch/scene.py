@@ -1,9 +1,10 @@
-"""Watch scene: a network flies one lander or a swarm; a panel shows the decisions of one lander."""
+"""Watch scene: a pilot flies one lander or a swarm; a panel shows the decisions of one lander."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Final
 
@@ -11,22 +12,23 @@ import pygame
 
 from ai.agent.decision import Decision
 from ai.files import brief
+from ai.lander.environment import ACTION_NAMES
+from ai.pilots.own import OwnPilot
 from game.core import texts
 from game.core.scene import Transition, push
 from game.drawing import typeface
 from game.drawing.canvas import Canvas, moved
-from game.drawing.tokens import HUMAN, MARGIN, MUTE, NET, SMALL, TEXT, VIEW_SIZE
-from game.flight import networks
+from game.drawing.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, TEXT, VIEW_SIZE
+from game.flight import networks, own
 from game.flight.swarm import Swarm
 from game.input.controls import Command
 from game.panels import readouts
 from game.panels.explained import Explained
 from game.panels.run_status import draw_landings
 from game.scenes.watch.decision_panel import PANEL, draw_decision
-from game.scenes.watch.map_legend import draw_legend
 from game.scenes.watch.touch import Hand
 from game.scenes.watch.watched import SIZES, Watched
-from game.ui.actions import Action, Table
+from game.ui.actions import Action, Run, Table
 from game.ui.context import Context
 from game.ui.form_scene import FormScene
 from game.ui.hints import HintRow
@@ -51,12 +53,14 @@ _TOUCHED: Final = pygame.Rect(40, 108, PANEL.left - 80, 600)  # where the hand c
 class WatchScene(FormScene):
     """Watch scene: a swarm in the sky, one lander's decision in a panel, choices on the ground line.
 
-    A `guest`, a name and a folder, is a network that is none of the player's: it flies at first, and is not remembered.
+    A `guest`, a name and a folder, is a network that is none of the player's: it flies at first, and is not remembered,
+    as is the player's own pilot.
 
     Attributes:
-        network: the network that flies, one of `policies`.
+        network: the pilot that flies, one of `policies`.
         world: what flies, and what is drawn of it.
         hand: the player's hand on the lander that is shown.
+        problem: why another network cannot fly; empty if it can.
 
     """
 
@@ -71,26 +75,28 @@ class WatchScene(FormScene):
         self.world = Watched(context)
         self.playback = self.world.playback
         self.explained = Explained()
-        self.problem = self._wanted = ""
+        self.problem = self._wanted = self._told = ""
+        self._awaited: networks.Network | None = None  # a file that is being loaded, to fly then
         self._settings = context.settings
         self._guests = dict([guest]) if guest else {}
-        self.policies = networks.Policies(context.models_dir, context.user_dir, self._guests)
+        self._seed = int(context.rng.integers(2**31)) if seed is None else seed
+        self.policies = self._known()
         names = self.policies.names
         first = guest[0] if guest else context.settings.model
         wanted = names.index(first) if first in names else 0
         self._model_choice = self.form.add(self._network_row(wanted))
-        self._count_choice = self._add_choice(
-            1, texts.WATCH_COUNT, [str(count) for count in COUNTS], self._count, self._choose_count
-        )
+        counts = [str(count) for count in COUNTS]
+        self._count_choice = self.form.add(self._row(1, texts.WATCH_COUNT, counts, self._count, self._choose_count))
         self._speed_choice = self.form.add(self.playback.row(self.form.manager, self._row_box(2, self.playback.words)))
-        self._map_choice = self._map_row()
-        self.form.add(self._map_choice)
-        self.hand = self.form.add(Hand(self.form.manager, self.world, _TOUCHED, lambda: self.world.size, context.view))
-        self._seed = int(context.rng.integers(2**31)) if seed is None else seed
+        self._map_choice = self.form.add(self._map_row())
+        self.hand = self.form.add(Hand(self.form.manager, self.world, _TOUCHED, context.view))
         self._choose_network(wanted)
         if self.problem:
             self.network = self.policies.first_fit()
             self._begin()
+        if context.pilot and not guest:
+            self._wanted = context.pilot.path.name
+            self._look_again()
 
     @property
     def swarm(self) -> Swarm:
@@ -130,23 +136,33 @@ class WatchScene(FormScene):
 
     def actions(self) -> Table:
         """Stop and step; touch, and undo it; colour the sky; explain; show another lander; begin anew; pause."""
+        world, playback, hand = self.world, self.playback, self.hand
         many = COUNTS[self._count] > 1
-        stop, step, *speeds = self.playback.actions(texts.HINT_DECISION)
         by_pad = self.context.controls.gamepad_in_use  # which undoes in the hand, and finds the maps in their row
-        undo = [Action(pygame.K_z, self.world.untouch, "" if by_pad else texts.HINT_UNTOUCH)]
+        stop, step, *speeds = playback.actions(texts.HINT_DECISION)
+        says = self._saying
+
+        def turned(notches: int) -> Run:
+            return says(lambda: hand.turn(notches), texts.TOUCH_PARTS[1], lambda: world.tilt_words)
+
+        def shown(direction: int) -> Run:
+            return says(lambda: self._turn(direction), texts.HINT_NEXT_LANDER, lambda: str(self.shown + 1))
+
+        undo = Action(pygame.K_z, says(world.untouch, texts.HINT_UNTOUCH), "" if by_pad else texts.HINT_UNTOUCH)
         return [
             stop,
-            step,
+            Action(step.key, says(playback.step, texts.HINT_DECISION, self._flown), step.hint),
             Action(Command.MODE, self._touch, texts.HINT_TOUCH),
-            *(undo if self.world.can_untouch else []),
-            Action(pygame.K_m, self._turn_map, "" if by_pad else texts.HINT_MAP),
-            Action(Command.NEXT, lambda: self._turn(1), texts.HINT_NEXT_LANDER if many else ""),
-            Action(Command.RETRY, self._begin_anew, texts.HINT_RESTART),
+            *([undo] if world.can_untouch else []),
+            Action(pygame.K_m, says(self._turn_map, texts.HINT_MAP, self._map), "" if by_pad else texts.HINT_MAP),
+            Action(Command.NEXT, shown(1), texts.HINT_NEXT_LANDER if many else ""),
+            Action(Command.RETRY, says(self._begin_anew, texts.HINT_RESTART), texts.HINT_RESTART),
+            Action(pygame.K_o, self._open_pilots, "" if by_pad else texts.HINT_PILOTS),
             Action(Command.PAUSE, self._pause, texts.HINT_PAUSE),
-            Action(Command.PREVIOUS, lambda: self._turn(-1)),
-            Action(pygame.K_q, lambda: self.hand.turn(1)),
-            Action(pygame.K_e, lambda: self.hand.turn(-1)),
-            *speeds,
+            Action(Command.PREVIOUS, shown(-1)),
+            Action(pygame.K_q, turned(1)),
+            Action(pygame.K_e, turned(-1)),
+            *(Action(each.key, says(each.run, texts.WATCH_SPEED, self._speed)) for each in speeds),
             self.explained.action(),
         ]
 
@@ -166,6 +182,10 @@ class WatchScene(FormScene):
 
     def update(self) -> Transition | None:
         """Fly as many steps as the chosen speed makes due."""
+        if self._awaited and isinstance(pilot := self._awaited.policy, OwnPilot):
+            pilot.look()
+            if pilot.ready:
+                self._fly(self._awaited)
         self.world.update()
         self.explained.update()
         return self.form.update()
@@ -176,11 +196,10 @@ class WatchScene(FormScene):
         above = self.hand.used(canvas.pointer)  # then it is drawn over the panel
         if not above:
             self.hand.draw(canvas)
-        decision = self.decision
-        draw_decision(canvas, decision)
+        draw_decision(canvas, self.decision, self.world.policy_map)
         if above:
             self.hand.draw(canvas)
-        self._draw_words(canvas, int(decision.action[0]))
+        self._draw_words(canvas)
         self.explained.draw(canvas)
 
     # What flies
@@ -206,25 +225,43 @@ class WatchScene(FormScene):
 
     def _touch(self) -> None:
         """Stop with a hand on the lander; the mouse takes it without that."""
-        self.world.take_hold()
+        self.playback.stopped, self._told = True, ""
         if not self.context.controls.mouse_in_use:
             self.form.focus(self.hand)
             self.hand.hold()
 
-    def _pause(self) -> Transition:
-        return push("pause", self, self._begin_anew, texts.PAUSE_NEW_STARTS, self._pause_words)
+    def _saying(self, run: Run, what: str, value: Callable[[], str] = str) -> Run:
+        """Return what runs an action, and then says what it did, for nothing else moves while all stands still."""
 
-    def _pause_words(self) -> list[tuple[str, OnPress]]:
-        name = brief(networks.word(self._wanted or self.network.name), _LONGEST_NAME)
-        return [(texts.PAUSE_NETWORK.format(name=name), self._open_networks)]
+        def runs() -> Transition | None:
+            outcome = run()
+            said = value()
+            self._told = f"{what.capitalize()}: {said}" if said else what.capitalize()
+            return outcome
+
+        return runs
+
+    def _flown(self) -> str:
+        return str(texts.said(ACTION_NAMES[int(self.decision.action[0])]))
+
+    def _map(self) -> str:
+        return self._map_choice.options[self._map_choice.index]
+
+    def _speed(self) -> str:
+        return self._speed_choice.options[self._speed_choice.index]
 
     # Choices
 
-    def _add_choice(
-        self, row: int, label: str, words: Sequence[str], index: int, chosen: Callable[[int], None]
-    ) -> Choice:
-        manager, box = self.form.manager, self._row_box(row, words)
-        return self.form.add(Choice(manager, box, label, words, index, chosen, label_width=LABEL_WIDTH, size=SMALL))
+    def _known(self) -> networks.Policies:
+        """Return all that can fly: the player's own file too, once it was chosen by name."""
+        policies = networks.Policies(self.context.models_dir, self.context.user_dir, self._guests)
+        if pilot := self.context.pilot:
+            policies.add(networks.Network(pilot.path.name, pilot))
+        return policies
+
+    def _row(self, row: int, label: str, words: Sequence[str], index: int, chosen: Callable[[int], None]) -> Choice:
+        box = self._row_box(row, words)
+        return Choice(self.form.manager, box, label, words, index, chosen, label_width=LABEL_WIDTH, size=SMALL)
 
     def _row_box(self, row: int, words: Sequence[str]) -> pygame.Rect:
         x, y, pitch = _ROW
@@ -239,57 +276,74 @@ class WatchScene(FormScene):
             everything, label_width=LABEL_WIDTH,
         )  # fmt: skip
 
-    def _open_networks(self) -> Transition:
-        def choose(name: str) -> None:
-            self._wanted = name
+    def _map_row(self, values: bool = True) -> Choice:
+        """Return the row of maps; a pilot without values has none of scores."""
+        kinds = texts.MAP_KINDS if values else texts.MAP_KINDS[: ACTION + 1]
+        return self._row(3, texts.WATCH_MAP, kinds, self.world.policy_map.kind, self._choose_map)
 
-        return push("runs", choose=choose)
+    def _pause(self) -> Transition:
+        return push("pause", self, self._begin_anew, texts.PAUSE_NEW_STARTS, self._pause_words)
+
+    def _pause_words(self) -> list[tuple[str, OnPress]]:
+        name = brief(networks.word(self._wanted or self.network.name), _LONGEST_NAME)
+        return [
+            (texts.PAUSE_NETWORK.format(name=name), self._open_networks),
+            (texts.PILOTS_OPEN, self._open_pilots),
+        ]
+
+    def _want(self, name: str) -> None:
+        self._wanted = name
+
+    def _open_networks(self) -> Transition:
+        return push("runs", choose=self._want)
+
+    def _open_pilots(self) -> Transition:
+        def choose(path: Path) -> None:
+            own.take(self.context, path)
+            self._want(path.name)
+
+        return push("pilots", choose, now=self.context.pilot.path if self.context.pilot else None)
 
     def _look_again(self) -> None:
-        """Apply the choice made in the list of networks, and reload networks added, removed or renamed meanwhile."""
-        policies = networks.Policies(self.context.models_dir, self.context.user_dir, self._guests)
-        flown = self.network.name if self.network.name in self._guests else self._settings.model
-        wanted, self._wanted = self._wanted or flown, ""
-        if policies.names == self.policies.names and wanted == self.network.name:
+        """Apply the choice made in a list, and reload networks added, removed or renamed meanwhile."""
+        policies = self._known()
+        kept = self.network.name in self._guests or isinstance(self.network.policy, OwnPilot)
+        wanted, self._wanted = self._wanted or (self.network.name if kept else self._settings.model), ""
+        known = policies.names == self.policies.names and wanted == self.network.name
+        if known and policies[wanted].policy is self.network.policy:
             return
         self.policies = policies
         index = next((policies.names.index(name) for name in (wanted, self.network.name) if name in policies.names), 0)
         row = self._network_row(index)
         self.form.replace([self._model_choice], [row])
         self._model_choice = row
-        if policies.names[index] != self.network.name:
-            self._choose_network(index)
+        self._choose_network(index)
 
     def _choose_network(self, index: int) -> None:
         """Fly the same starts with another network; report a damaged one, and keep the last good one flying."""
         network = self.policies[self.policies.names[index]]
+        self._awaited = None
         self.problem = texts.WATCH_PROBLEM.format(name=network.name, problem=network.problem) if network.problem else ""
-        if network.policy is None:
-            return
-        self.network = network
-        if network.name not in self._guests:
+        if isinstance(network.policy, OwnPilot) and not network.policy.ready:
+            self._awaited = network
+        elif network.policy:
+            self._fly(network)
+
+    def _fly(self, network: networks.Network) -> None:
+        self.network, self._awaited = network, None
+        values = isinstance(network.policy, networks.QPolicy)
+        if network.name not in self._guests and not isinstance(network.policy, OwnPilot):
             self._settings.model = network.name
-        self._offer_maps()
-        self._begin()
-
-    def _choose_count(self, index: int) -> None:
-        self._count = index
-        self._begin()
-
-    def _map_row(self, values: bool = True) -> Choice:
-        """Return the row of maps; a pilot without values has none of scores."""
-        kinds = texts.MAP_KINDS if values else texts.MAP_KINDS[: ACTION + 1]
-        manager, box, now = self.form.manager, self._row_box(3, kinds), self.world.policy_map.kind
-        return Choice(manager, box, texts.WATCH_MAP, kinds, now, self._choose_map, label_width=LABEL_WIDTH, size=SMALL)
-
-    def _offer_maps(self) -> None:
-        """Offer the maps that the network can have."""
-        values = isinstance(self.network.policy, networks.QPolicy)
         if not values:
             self.world.policy_map.kind = min(self.world.policy_map.kind, ACTION)
         row = self._map_row(values)
         self.form.replace([self._map_choice], [row])
         self._map_choice = row
+        self._begin()
+
+    def _choose_count(self, index: int) -> None:
+        self._count = index
+        self._begin()
 
     def _choose_map(self, index: int) -> None:
         self.world.policy_map.kind = index
@@ -300,9 +354,8 @@ class WatchScene(FormScene):
 
     # The words
 
-    def _draw_words(self, canvas: Canvas, flown: int) -> None:
-        count, world = COUNTS[self._count], self.world
-        readouts.draw_corner(canvas, texts.WATCH_TITLE, texts.WATCH_LANDERS.format(count=count))
+    def _draw_words(self, canvas: Canvas) -> None:
+        readouts.draw_corner(canvas, texts.WATCH_TITLE, texts.WATCH_LANDERS.format(count=COUNTS[self._count]))
         left, middle = canvas.at(-1, -1), canvas.at(0, -1)
         left.explain((MARGIN - 4, 24, 120, 42), texts.EXPLAIN_WATCH)
         readouts.draw_hand(canvas, self._said, NET)
@@ -310,7 +363,6 @@ class WatchScene(FormScene):
         draw_landings(left, (MARGIN, 118), self.swarm.landed, self.swarm.lost)
         shown = readouts.flight_readouts(self.swarm.env, self.shown)
         readouts.draw_readouts(canvas, [shown[name] for name in readouts.PILOT], _READOUTS)
-        draw_legend(canvas, world, flown)
         self._draw_notice(middle)
         rows = (self._model_choice, self._count_choice, self._speed_choice, self._map_choice)
         for row, what in zip(rows, texts.EXPLAIN_CHOICES, strict=True):
@@ -320,22 +372,31 @@ class WatchScene(FormScene):
             self.draw_hints(canvas)
 
     def _draw_notice(self, canvas: Canvas) -> None:
-        """Say below who flies why a network cannot fly, or what the hand can do or has done."""
-        middle = VIEW_SIZE[0] / 2
-        if self.problem:
-            problem = brief(self.problem, _LONGEST_PROBLEM)
-            box = canvas.text(problem, (middle, 84), size=SMALL, colour=canvas.palette.warn, align="centre")
+        """Say below who flies what is wrong with a pilot, what the hand can do or has done, and what a key did."""
+        words = partial(canvas.text, size=SMALL, align="centre")
+        middle, problem = VIEW_SIZE[0] / 2, self._problem()
+        if problem:
+            box = words(brief(problem, _LONGEST_PROBLEM), (middle, 84), colour=canvas.palette.warn)
             canvas.marker("cross", (box.left - 12, 80), 9, canvas.palette.warn)
         elif self.world.touched:
-            canvas.text(texts.TOUCH_COUNTS, (middle, 84), size=SMALL, colour=HUMAN, align="centre")
+            words(texts.TOUCH_COUNTS, (middle, 84), colour=HUMAN)
         elif self.playback.stopped:
-            canvas.text(texts.TOUCH_INVITES, (middle, 84), size=SMALL, colour=MUTE, align="centre")
+            words(texts.TOUCH_INVITES, (middle, 84), colour=MUTE)
+        if self.playback.stopped:
+            words(self._told, (middle, 102), colour=INK)
+
+    def _problem(self) -> str:
+        """Return what is wrong with a network that was chosen, or with the player's own file."""
+        network = self._awaited or self.network
+        if isinstance(network.policy, OwnPilot) and network.policy.problem:
+            return f"{network.name}: {network.policy.problem}"
+        return self.problem
 
     def _who(self) -> str:
         """Say who decides."""
-        if self.network.name == networks.SCRIPTED:
-            return texts.EXPLAIN_FLIES_SCRIPTED
-        return texts.EXPLAIN_FLIES_NETWORK.format(name=brief(self.network.name, _LONGEST_NAME))
+        if isinstance(self.network.policy, networks.QPolicy):
+            return texts.EXPLAIN_FLIES_NETWORK.format(name=brief(self.network.name, _LONGEST_NAME))
+        return texts.EXPLAIN_FLIES_SCRIPTED
 
     @property
     def _said(self) -> str:
@@ -344,4 +405,5 @@ class WatchScene(FormScene):
             return texts.WATCH_STOPPED
         if self.network.name == networks.SCRIPTED:
             return texts.WATCH_SCRIPTED
-        return texts.WATCH_FLIES.format(name=brief(self.network.name, _LONGEST_NAME))
+        said = texts.WATCH_OWN if isinstance(self.network.policy, OwnPilot) else texts.WATCH_FLIES
+        return said.format(name=brief(self.network.name, _LONGEST_NAME))

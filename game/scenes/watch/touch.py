@@ -7,14 +7,11 @@ a widget: Enter or A takes hold of the place, then of the tilt, then of the spee
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import Final, Protocol
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import pygame
 
-from ai.environment import Doubles
-from ai.lander.environment import LanderEnv
 from game.core import texts
 from game.drawing.canvas import PAGE, Align, Canvas, Point
 from game.drawing.tokens import HUMAN, INK, NIGHT0, SMALL
@@ -22,7 +19,10 @@ from game.input.controls import Command, Controls, translate
 from game.ui.held_directions import HeldDirections
 from game.ui.hints import Hint
 from game.ui.widget import PointsManager, Widget
-from game.world.camera import View
+
+if TYPE_CHECKING:
+    from ai.environment import Doubles
+    from game.scenes.watch.watched import Watched
 
 PLACE, TILT, SPEED = range(3)
 FASTEST: Final = 8.0  # m/s
@@ -33,43 +33,13 @@ _ARROW: Final = 12.0  # points between the ring and the arrow
 _PER_SPEED: Final = 22.0  # points of the arrow for each m/s
 _REACH: Final = 16.0  # points from a knob within which it is taken
 _PACE: Final = (0.05, math.radians(1.0), 0.05)  # metres, radians and m/s in an update, while an arrow is held
-_TURNS: Final = {pygame.K_q: 1, pygame.K_e: -1}
 _SHOULDERS: Final = {Command.PREVIOUS: 1, Command.NEXT: -1}
+_LEAVE: Final = (Command.BACK, Command.PAUSE, Command.UNPLUGGED)
 _ASIDE, _HEAD, _FOOT = 40, 100, 110  # points from the edges of the view, within which the focus on it is seen
 
 
-class Touched(Protocol):
-    """What the hand is on: one lander of a scene that can be stopped."""
-
-    @property
-    def at_hand(self) -> bool:
-        """Whether it can be touched now."""
-
-    @property
-    def env(self) -> LanderEnv:
-        """Its environment."""
-
-    shown: int
-
-    def hand_view(self) -> View:
-        """Return the view, in points."""
-
-    @property
-    def can_untouch(self) -> bool:
-        """Whether there is a touch to undo."""
-
-    def take_hold(self) -> None:
-        """Stop, so that it can be touched."""
-
-    def touch(self, start: Doubles) -> None:
-        """Let it fly on from another state: x, y, vx, vy, angle, spin."""
-
-    def untouch(self) -> None:
-        """Undo the touch."""
-
-
 class Hand(Widget):
-    """The player's hand on a lander, by mouse, keys or gamepad.
+    """The player's hand on the shown lander, by mouse, keys or gamepad.
 
     Attributes:
         part: what it holds: PLACE, TILT or SPEED.
@@ -77,16 +47,9 @@ class Hand(Widget):
 
     """
 
-    def __init__(
-        self,
-        manager: PointsManager,
-        lander: Touched,
-        clear: pygame.Rect,
-        size: Callable[[], float],
-        view: pygame.FRect = PAGE,
-    ) -> None:
+    def __init__(self, manager: PointsManager, lander: Watched, clear: pygame.Rect, view: pygame.FRect = PAGE) -> None:
         super().__init__(manager, clear, texts.TOUCH_LANDER)
-        self._lander, self._clear, self._size, self._view = lander, clear, size, view
+        self._lander, self._clear, self._view = lander, clear, view
         self.part, self.dragging = PLACE, False
         self._grip: Point = (0.0, 0.0)  # from the mouse to what it holds, in points
         self._held = HeldDirections()
@@ -95,51 +58,41 @@ class Hand(Widget):
 
     @property
     def box(self) -> pygame.Rect:
-        """The box of the ring, kept where it is seen, for the focus to find."""
-        (x, y), size = self.middle, self.radius
-        return pygame.Rect(x - size, y - size, 2 * size, 2 * size).clamp(self._sky)
-
-    @property
-    def _sky(self) -> pygame.Rect:
-        """The sky that is seen between words and read-outs."""
+        """The box of the ring, kept where it is seen between words and read-outs, for the focus to find."""
         left, top, width, height = self._view
-        return pygame.Rect(left + _ASIDE, top + _HEAD, width - 2 * _ASIDE, height - _HEAD - _FOOT)
+        sky = pygame.Rect(left + _ASIDE, top + _HEAD, width - 2 * _ASIDE, height - _HEAD - _FOOT)
+        return pygame.Rect(_around(self.middle, self.radius)).clamp(sky)
 
     @property
     def middle(self) -> Point:
         """Middle of the ring."""
-        x, y = self._lander.hand_view().points(self._lander.env.position[self._lander.shown]).tolist()
+        x, y = self._lander.hand_view().points(self._lander.state[:2]).tolist()
         return x, y
 
     @property
     def radius(self) -> float:
         """Radius of the ring."""
-        return max(_LEAST, _RING * self._lander.hand_view().pixels_per_metre * self._size())
+        return max(_LEAST, _RING * self._lander.hand_view().pixels_per_metre * self._lander.size)
 
     @property
     def tilt_knob(self) -> Point:
         """The dot that tilts: on the ring, above the lander's cabin."""
-        (x, y), angle = self.middle, float(self._lander.env.angle[self._lander.shown])
+        (x, y), angle = self.middle, float(self._lander.state[4])
         return x - self.radius * math.sin(angle), y - self.radius * math.cos(angle)
 
     @property
     def arrow(self) -> tuple[Point, Point]:
         """Tail and tip of the arrow that throws; at rest it points down and has no length."""
-        (x, y), (across, up) = self.middle, self._lander.env.velocity[self._lander.shown].tolist()
+        (x, y), (across, up) = self.middle, self._lander.state[2:4].tolist()
         speed = math.hypot(across, up)
         way = (across / speed, -up / speed) if speed > 1e-6 else (0.0, 1.0)
         tail = self.radius + _ARROW
         tip = tail + _PER_SPEED * min(speed, FASTEST)
         return (x + tail * way[0], y + tail * way[1]), (x + tip * way[0], y + tip * way[1])
 
-    @property
-    def busy(self) -> bool:
-        """Whether it holds the lander, by mouse, keys or gamepad."""
-        return self.dragging or self.typing
-
     def used(self, pointer: Point | None) -> bool:
         """Whether it holds the lander, or the mouse points at a part to take."""
-        return self.busy or (pointer is not None and self.part_at(pointer) is not None)
+        return self.dragging or self.typing or (pointer is not None and self.part_at(pointer) is not None)
 
     def part_at(self, point: Point) -> int | None:
         """Return the part that the mouse would take at a point, if any."""
@@ -156,26 +109,26 @@ class Hand(Widget):
     def turn(self, notches: float) -> None:
         """Tilt by so many notches counter-clockwise."""
         if self._lander.at_hand:
-            self._put(angle=float(self._lander.env.angle[self._lander.shown]) + NOTCH * notches)
+            self._put(angle=float(self._lander.state[4]) + NOTCH * notches)
 
     def mouse(self, event: pygame.event.Event) -> bool:
         """Take a mouse event, its position in points; false leaves it to others."""
-        if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
-            part = self.part_at(event.pos)
-            if part is None:
-                return False
-            self.part, self.dragging = part, True
-            held = {PLACE: self.middle, TILT: self.tilt_knob, SPEED: self.arrow[1]}[part]
-            self._grip = held[0] - event.pos[0], held[1] - event.pos[1]
-            return True
-        if event.type == pygame.MOUSEBUTTONUP and event.button == 1 and self.dragging:
-            self.dragging = False
-            return True
         if event.type == pygame.MOUSEMOTION and self.dragging:
             if self._lander.at_hand:
                 self._drag_to(event.pos)
             return True
-        return False
+        if event.type not in (pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP) or event.button != 1:
+            return False
+        if event.type == pygame.MOUSEBUTTONUP:
+            taken, self.dragging = self.dragging, False
+            return taken
+        part = self.part_at(event.pos)
+        if part is None:
+            return False
+        self.part, self.dragging = part, True
+        held = (self.middle, self.tilt_knob, self.arrow[1])[part]
+        self._grip = held[0] - event.pos[0], held[1] - event.pos[1]
+        return True
 
     def _drag_to(self, point: Point) -> None:
         (x, y), held = self.middle, (point[0] + self._grip[0], point[1] + self._grip[1])
@@ -194,16 +147,14 @@ class Hand(Widget):
 
         One that is tilted by hand does not turn afterwards.
         """
-        env, slot = self._lander.env, self._lander.shown
-        spin = float(env.angular_velocity[slot]) if angle is None else 0.0
-        x, y = (env.position[slot] if place is None else place).tolist()
-        across, up = (env.velocity[slot] if velocity is None else velocity).tolist()
-        lean = float(env.angle[slot]) if angle is None else angle
-        clear, view = self._clear, self._lander.hand_view()
-        (left, top), (right, _) = view.metres([clear.topleft, clear.bottomright]).tolist()
-        limits = env.limits
-        x = min(max(x, left, -limits.half_width), right, limits.half_width)
-        y = max(min(y, top, limits.ceiling), env.lowest(x, lean))
+        x, y, across, up, lean, spin = self._lander.state.tolist()
+        x, y = (x, y) if place is None else place
+        across, up = (across, up) if velocity is None else velocity
+        lean, spin = (lean, spin) if angle is None else (angle, 0.0)
+        clear, env = self._clear, self._lander.env
+        (left, top), (right, _) = self._lander.hand_view().metres([clear.topleft, clear.bottomright]).tolist()
+        x = min(max(x, left, -env.limits.half_width), right, env.limits.half_width)
+        y = max(min(y, top, env.limits.ceiling), env.lowest(x, lean))
         self._lander.touch(np.array([x, y, across, up, lean, spin]))
 
     # By keys and gamepad
@@ -215,15 +166,14 @@ class Hand(Widget):
 
     def hold(self) -> None:
         """Stop, and let the arrows move the lander."""
-        self._lander.take_hold()
+        self._lander.playback.stopped = True
         self.typing, self.part = True, PLACE
 
     def hints(self, controls: Controls) -> list[Hint]:
         """Return the hints while the hand holds the lander."""
+        back, turns = "Z", "Q E"
         if controls.gamepad_in_use:
             back, turns = controls.word(Command.RETRY), " ".join(map(controls.word, _SHOULDERS))
-        else:
-            back, turns = "Z", "Q E"
         undo = [Hint(back, texts.HINT_UNTOUCH, self._lander.untouch)] if self._lander.can_untouch else []
         return [
             Hint(controls.arrows, texts.TOUCH_PARTS[self.part]),
@@ -237,27 +187,22 @@ class Hand(Widget):
         """Change the lander while it is held; what is no business of the hand is left to the scene."""
         if not self.typing:
             return False
-        code = getattr(event, "key", getattr(event, "button", None))
+        code, command = getattr(event, "key", getattr(event, "button", None)), translate(event)
+        by_pad = event.type == pygame.CONTROLLERBUTTONDOWN
         if event.type in (pygame.KEYUP, pygame.CONTROLLERBUTTONUP):
             return self._held.release(code)
-        if self._held.tilt(event):
-            return True
         if event.type == pygame.WINDOWFOCUSLOST:  # releases will not be reported now
             self._let_go()
             return False
-        return self._obey(event, code)
-
-    def _obey(self, event: pygame.event.Event, code: int | None) -> bool:
-        command, by_pad = translate(event), event.type == pygame.CONTROLLERBUTTONDOWN
-        if self._held.press(code, command):
-            pass
-        elif command is Command.CONFIRM:
+        if self._held.tilt(event) or self._held.press(code, command):
+            return True
+        if command is Command.CONFIRM:
             self._next_part()
         elif by_pad and command in _SHOULDERS:
             self.turn(_SHOULDERS[command])
         elif by_pad and command is Command.RETRY:
             self._lander.untouch()
-        elif command in (Command.BACK, Command.PAUSE, Command.UNPLUGGED):
+        elif command in _LEAVE:
             self._let_go()
         else:
             return False
@@ -275,19 +220,16 @@ class Hand(Widget):
         super().ease(at_once)
         if (self.typing and not self.focused) or not self._lander.at_hand:
             self._let_go()
-        if not self.typing:
-            return
         held = self._held.stick + (self._held.arrows or (0, 0))
-        way = np.array([held.x, -held.y])  # up is up in the world
-        if not way.any():
+        way, pace, state = np.array([held.x, -held.y]), _PACE[self.part], self._lander.state  # up is up in the world
+        if not self.typing or not way.any():
             return
-        env, slot, pace = self._lander.env, self._lander.shown, _PACE[self.part]
         if self.part == PLACE:
-            self._put(place=env.position[slot] + pace * way)
+            self._put(place=state[:2] + pace * way)
         elif self.part == TILT:
-            self._put(angle=float(env.angle[slot]) - pace * float(way[0] or way[1]))
+            self._put(angle=float(state[4]) - pace * float(way[0] or way[1]))
         else:
-            velocity = env.velocity[slot] + pace * way
+            velocity = state[2:4] + pace * way
             self._put(velocity=velocity * min(1.0, FASTEST / max(math.hypot(*velocity), 1e-6)))
 
     def hover_point(self, hover_x: float, hover_y: float) -> bool:
@@ -309,49 +251,41 @@ class Hand(Widget):
             canvas.outline(self.box.inflate(10, 10), 8, INK, 1, 0.4 * self.warmth)
         if not self._lander.at_hand:
             return
-        self._draw_ring(canvas, 0.9 if self._takes(canvas, PLACE) else 0.45)
-        self._draw_tilt(canvas, self._takes(canvas, TILT))
-        self._draw_arrow(canvas, self._takes(canvas, SPEED))
-        canvas.explain(self._box_around(self.tilt_knob), texts.EXPLAIN_TOUCH[TILT])
-        canvas.explain(self._box_around(self.arrow[1]), texts.EXPLAIN_TOUCH[SPEED])
-        (x, y), size = self.middle, self.radius
-        canvas.explain((x - size, y - size, 2 * size, 2 * size), texts.EXPLAIN_TOUCH[PLACE])
-
-    def _takes(self, canvas: Canvas, part: int) -> bool:
-        """Whether a part is held, or would be taken by the mouse."""
-        if self.busy:
-            return self.part == part
-        return canvas.pointer is not None and self.part_at(canvas.pointer) == part
-
-    def _box_around(self, place: Point) -> tuple[float, float, float, float]:
-        return place[0] - _REACH, place[1] - _REACH, 2 * _REACH, 2 * _REACH
-
-    def _draw_ring(self, canvas: Canvas, alpha: float) -> None:
-        (x, y), size = self.middle, self.radius
-        canvas.outline((x - size, y - size, 2 * size, 2 * size), size, HUMAN, 1, alpha)
+        held = self.part if self.dragging or self.typing else None
+        lit = self.part_at(canvas.pointer) if held is None and canvas.pointer is not None else held
+        ring = _around(self.middle, self.radius)
+        canvas.outline(ring, self.radius, HUMAN, 1, 0.9 if lit == PLACE else 0.45)
+        self._draw_tilt(canvas, lit == TILT)
+        self._draw_arrow(canvas, lit == SPEED)
+        canvas.explain(_around(self.tilt_knob, _REACH), texts.EXPLAIN_TOUCH[TILT])
+        canvas.explain(_around(self.arrow[1], _REACH), texts.EXPLAIN_TOUCH[SPEED])
+        canvas.explain(ring, texts.EXPLAIN_TOUCH[PLACE])
 
     def _draw_tilt(self, canvas: Canvas, lit: bool) -> None:
         x, y = self.tilt_knob
         canvas.dot((x, y), 7, NIGHT0, 0.8)
         canvas.dot((x, y), 5.5 if lit else 4.5, HUMAN)
         if lit:
-            degrees = math.degrees(float(self._lander.env.tilt[self._lander.shown]))
-            canvas.text(texts.TOUCH_TILT.format(tilt=degrees), (x + 12, y - 6), size=SMALL, colour=HUMAN, tabular=True)
+            canvas.text(self._lander.tilt_words, (x + 12, y - 6), size=SMALL, colour=HUMAN, tabular=True)
 
     def _draw_arrow(self, canvas: Canvas, lit: bool) -> None:
         tail, tip = self.arrow
-        x, y = self.middle
-        way = np.array([tip[0] - x, tip[1] - y]) / max(math.dist(tip, (x, y)), 1e-6)
-        aside = np.array([-way[1], way[0]])
+        width = 2.0 if lit else 1.5
+        way = np.subtract(tip, self.middle) / max(math.dist(tip, self.middle), 1e-6)
         if math.dist(tail, tip) > 1:
-            canvas.line(tail, tip, HUMAN, 2.0 if lit else 1.5)
+            canvas.line(tail, tip, HUMAN, width)
         for side in (-1, 1):
-            end = np.array(tip) - 9 * way + side * 5 * aside
-            canvas.line(tip, (float(end[0]), float(end[1])), HUMAN, 2.0 if lit else 1.5)
-        speed = float(np.hypot(*self._lander.env.velocity[self._lander.shown]))
-        place = (tip[0] + 10 * float(way[0]), tip[1] + 16 * float(way[1]) + 4)
+            across, down = (np.array(tip) - 9 * way + side * 5 * np.array([-way[1], way[0]])).tolist()
+            canvas.line(tip, (across, down), HUMAN, width)
+        speed = math.hypot(*self._lander.state[2:4])
+        lowest = self._view.bottom - _FOOT  # read-outs are below
+        place = (tip[0] + 10 * float(way[0]), min(tip[1] + 16 * float(way[1]) + 4, lowest))
         align: Align = "centre" if abs(way[0]) < 0.4 else "left" if way[0] > 0 else "right"
         canvas.text(texts.TOUCH_SPEED.format(speed=speed), place, size=SMALL, colour=HUMAN, align=align, tabular=True)
+
+
+def _around(place: Point, reach: float) -> tuple[float, float, float, float]:
+    return place[0] - reach, place[1] - reach, 2 * reach, 2 * reach
 
 
 def _distance(point: Point, start: Point, end: Point) -> float:

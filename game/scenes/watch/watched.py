@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, Final
 
 import numpy as np
@@ -10,6 +11,7 @@ from ai.agent.decision import Decision
 from ai.environment import Bools, Doubles
 from ai.lander.environment import LanderEnv, Outcome
 from game.audio.flight_sounds import FlightSound
+from game.core import texts
 from game.core.clock import STEP, TimeScale
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK
@@ -149,13 +151,20 @@ class Watched:
         """Whether there is a touch to undo."""
         return self._before is not None
 
+    @property
+    def state(self) -> Doubles:
+        """State of the shown lander, (6,): x, y, vx, vy, angle, spin."""
+        env, slot = self.env, self.shown
+        return np.array([*env.position[slot], *env.velocity[slot], env.angle[slot], env.angular_velocity[slot]])
+
+    @property
+    def tilt_words(self) -> str:
+        """The tilt of the shown lander."""
+        return texts.TOUCH_TILT.format(tilt=math.degrees(float(self.env.tilt[self.shown])))
+
     def hand_view(self) -> View:
         """Return the view, in points."""
         return self.camera.view(1.0).lowered(self._context.view)
-
-    def take_hold(self) -> None:
-        """Stop, so that the lander can be touched."""
-        self.playback.stopped = True
 
     def touch(self, start: Doubles) -> None:
         """Let the shown lander fly on from another state: x, y, vx, vy, angle, spin."""

@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ai.agent.n_step import Episodes, NStep
-from ai.agent.replay import PrioritisedReplayBuffer, ReplayBuffer, SumTree, Transition
+from ai.agent.replay import PrioritisedReplayBuffer, ReplayBuffer, Transition
 
 
 def cells(first, count):
@@ -39,76 +39,35 @@ def test_the_newest_are_kept_and_the_oldest_pruned_in_one_go(kind, batches, prun
         assert weights.shape == (20,)
 
 
-def test_what_is_drawn_is_a_copy():
-    buffer = ReplayBuffer(4, 2)
-    buffer.add(cells(0, 4))
-    drawn = buffer.at(np.array([1, 3]))
-    for part in drawn:
-        part[...] = 0
-    assert kept(buffer) == [0, 1, 2, 3]
-    assert buffer.at(np.array([3])).state.tolist() == [[3, 3]]
-
-
-def test_the_described_buffer_falls_from_1500_to_500():
+def test_the_described_buffer_falls_from_1500_to_500_and_what_is_drawn_is_a_copy():
     buffer = ReplayBuffer(1500, 2, prune=1000)
     buffer.add(cells(0, 1500))
     assert len(buffer) == 1500
     buffer.add(cells(1500, 1))
     assert len(buffer) == 501
     assert kept(buffer)[0] == 1000
-
-
-def test_a_sum_tree_finds_rows_in_proportion():
-    tree = SumTree(5)
-    tree.set(np.arange(5), np.array([1.0, 0.0, 2.0, 3.0, 4.0]))
-    assert tree.total == 10
-    assert tree.find(np.array([0.0, 0.99, 1.0, 2.99, 3.0, 5.99, 6.0, 9.99])).tolist() == [0, 0, 2, 2, 3, 3, 4, 4]
-    tree.set(np.array([4, 3]), np.array([0.0, 0.0]))
-    assert tree.total == 3
-    assert set(tree.find(np.linspace(0, 3, 50, endpoint=False)).tolist()) == {0, 2}
-    assert tree.find(np.array([3.0])).tolist() == [2]
+    for part in buffer.at(np.array([1001])):
+        part[...] = 0
+    assert buffer.at(np.array([1001])).state.tolist() == [[1001, 1001]]
 
 
 def test_surprising_memories_are_drawn_more_often_and_weigh_less():
-    buffer = PrioritisedReplayBuffer(64, 2, exponent=1.0, importance=1.0)
+    buffer = PrioritisedReplayBuffer(80, 2, exponent=1.0, importance=1.0)
     rows = buffer.add(cells(0, 64))
-    buffer.update_priorities(rows, np.where(rows == 7, -10.0, 0.1).astype(np.float32))
-    drawn, _, weights = buffer.sample(4000, np.random.default_rng(0))
+    assert buffer.priorities.tolist() == [1.0] * 64 + [0.0] * 16
+    errors = np.where(rows == 7, -10.0, 0.1).astype(np.float32)
+    buffer.update_priorities(np.array([7, *rows]), np.array([99.0, *errors], np.float32))  # of two, the last counts
+    drawn, drawn_rows, weights = buffer.sample(4000, np.random.default_rng(0))
+    assert drawn_rows.max() < 64
     often = drawn.reward == 7
     assert often.mean() == pytest.approx(10 / (10 + 63 * 0.101), abs=0.02)
     # Importance weights make the weighted draw uniform again.
     assert weights[often].sum() / weights.sum() == pytest.approx(1 / 64, abs=0.003)
-
-
-def test_what_is_new_gets_the_largest_priority_seen():
-    buffer = PrioritisedReplayBuffer(8, 2, exponent=1.0)
-    rows = buffer.add(cells(0, 3))
-    assert buffer.tree.leaves[:8].tolist() == [1, 1, 1, 0, 0, 0, 0, 0]
-    buffer.update_priorities(rows, np.array([0.0, -5.0, 2.0], np.float32))
-    buffer.add(cells(3, 1))
-    assert buffer.tree.leaves[3] == buffer.tree.leaves[1] == pytest.approx(5.001)
-
-
-def test_n_step_returns_by_hand():
-    n_step, discount = NStep(3, 0.5), 0.5
-    rewards = [1.0, 2.0, 4.0, 8.0, 16.0]
-    out = []
-    for step, reward in enumerate(rewards):
-        state, after = np.array([[step, 0.0]]), np.array([[step + 1, 0.0]])
-        ended = np.array([step == 4])
-        made, slots = n_step.add(state, np.array([step]), np.array([reward]), after, ended, ended)
-        assert (slots == 0).all()
-        out += [
-            (int(made.action[k]), float(made.reward[k]), float(made.next_state[k, 0]), int(made.steps[k]),
-             bool(made.terminal[k])) for k in range(len(slots))
-        ]  # fmt: skip
-    assert out == [
-        (0, 1 + discount * 2 + discount**2 * 4, 3, 3, False),
-        (1, 2 + 0.5 * 4 + 0.25 * 8, 4, 3, False),
-        (2, 4 + 0.5 * 8 + 0.25 * 16, 5, 3, True),
-        (3, 8 + 0.5 * 16, 5, 2, True),
-        (4, 16, 5, 1, True),
-    ]
+    assert weights.max() == 1.0
+    buffer.importance = 0.5
+    half = buffer.sample(4000, np.random.default_rng(0))[2]
+    np.testing.assert_allclose(half, np.sqrt(weights), rtol=1e-5)
+    assert buffer.priorities[buffer.add(cells(64, 1))] == pytest.approx(99.001)  # what is new: the largest ever seen
 
 
 @settings(deadline=None, max_examples=25)

@@ -26,10 +26,10 @@ EPSILON = float(np.finfo(np.float32).eps)
 
 
 def strange_network():
-    """Padding, strides, a pooling that leaves a row out, and an activation between flattening and the sum."""
+    """A pooling that leaves a column out, and an activation between flattening and the sum."""
     network = NeuralNetwork(*CostFunctions.use_mse(), rng=np.random.default_rng(3))
-    first = ConvolutionLayer((11, 9, 2), 5, 4, stride=2, padding=3)
-    second = ConvolutionLayer(first.outputs, 4, 3, padding=1)
+    first = ConvolutionLayer((11, 9, 2), 5, 4)
+    second = ConvolutionLayer(first.outputs, 4, 3)
     pooling = MaxPoolingLayer(second.outputs, 3)
     flatten = FlattenLayer(pooling.outputs)
     tanh, relu = ActivationLayer(*ActivationFunctions.use_tanh()), ActivationLayer(*ActivationFunctions.use_relu())
@@ -105,7 +105,7 @@ def test_a_patch_is_what_the_unit_depends_on(case):
             unit = stage.unit(place)
             changed = stage.inputs + 10 * rng.random(stage.inputs.shape, dtype=np.float32)
             (top, left), (height, width, _) = unit.corner, unit.patch.shape
-            rows, columns = slice(max(top, 0), top + height), slice(max(left, 0), left + width)
+            rows, columns = slice(top, top + height), slice(left, left + width)
             channels = slice(None) if stage.kind == "convolution" else [place[2]]
             changed[rows, columns, channels] = stage.inputs[rows, columns, channels]
             assert stage.layer.predict(changed[None])[0][place] == pytest.approx(unit.output, abs=1e-5)
@@ -122,7 +122,7 @@ def test_a_receptive_field_holds_all_pixels_that_matter_and_no_row_that_does_not
             outside[top:bottom, left:right] = example[top:bottom, left:right]
             again = stages(network, outside)[number].outputs[place]
             assert again == pytest.approx(stage.outputs[place], abs=1e-5)
-    assert receptive_field(found, (0, 0, 1)) == (0, 0, 11, 9)
+    assert receptive_field(found, (0, 0, 1)) == (0, 0, 11, 8)  # the pooling leaves out a column
     first = stages(*shipped("modern"))
     assert receptive_field(first[:1], (3, 4, 0)) == (3, 4, 8, 9)
     assert receptive_field(first[:4], (0, 0, 0)) == (0, 0, 14, 14)
@@ -156,4 +156,4 @@ def test_the_strongest_reader_and_the_strongest_input_have_the_largest_products(
                 assert strongest == place
             else:
                 inside = strongest[0] - unit.corner[0], strongest[1] - unit.corner[1], strongest[2]
-                assert unit.products[inside] == unit.products.max() or min(inside) < 0 or unit.products.max() == 0
+                assert unit.products[inside] == unit.products.max()

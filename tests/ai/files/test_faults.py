@@ -24,6 +24,7 @@ from ai.files import (
     MOST,
     append_line,
     array_like,
+    atomic_folder,
     claimed_folder,
     count_of,
     inside,
@@ -46,9 +47,8 @@ from ai.nn import (
     CostFunctions,
     ModelFormatError,
     NeuralNetwork,
-    atomic_folder,
 )
-from ai.nn.limits import MOST_LAYERS
+from ai.nn.layer import MOST_LAYERS
 from ai.training.checkpoints import AGENTS, resume_run
 from ai.training.config import PRESETS, gym_config
 from ai.training.demonstrations import Demonstration

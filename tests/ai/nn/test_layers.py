@@ -50,14 +50,13 @@ LAYER_ROWS = {
     "ActivationLayer": lambda: ActivationLayer(*ActivationFunctions.use_sigmoid()),
     "DropoutLayer without loss": lambda: DropoutLayer(0),
     "ConvolutionLayer": lambda: ConvolutionLayer((5, 4, 2), filters=3, kernel=3),
-    "ConvolutionLayer padded": lambda: ConvolutionLayer((5, 4, 2), filters=3, kernel=3, padding=1),
-    "ConvolutionLayer strided": lambda: ConvolutionLayer((6, 5, 2), filters=3, kernel=3, stride=2, padding=2),
-    "ConvolutionLayer even": lambda: ConvolutionLayer((3, 6, 1), filters=2, kernel=2, stride=3),
+    "ConvolutionLayer even": lambda: ConvolutionLayer((3, 6, 1), filters=2, kernel=2),
     "ConvolutionLayer of one pixel": lambda: ConvolutionLayer((3, 2, 4), filters=2, kernel=1),
     "MaxPoolingLayer": lambda: MaxPoolingLayer((6, 4, 2)),
     "MaxPoolingLayer of odd size": lambda: MaxPoolingLayer((7, 8, 2), size=3),
     "FlattenLayer": lambda: FlattenLayer((3, 2, 2)),
 }
+each_layer = pytest.mark.parametrize("name", LAYER_ROWS)
 
 
 def network_with(layer, activation=None, cost=None, dtype=np.float64):
@@ -78,13 +77,8 @@ def network_with(layer, activation=None, cost=None, dtype=np.float64):
     return network
 
 
-def examples(network, count, seed):
-    inputs = network.layers[0].inputs
-    return np.random.default_rng(seed).normal(size=(count, *(inputs if isinstance(inputs, tuple) else (inputs,))))
-
-
-def examples_of(layer, count, seed):
-    shape = layer.inputs if isinstance(layer.inputs, tuple) else (INPUTS,)
+def examples_of(layer, count=BATCH, seed=5):
+    shape = layer.inputs if isinstance(layer.inputs, tuple) else (layer.inputs or INPUTS,)
     return np.random.default_rng(seed).normal(size=(count, *shape))
 
 
@@ -115,30 +109,33 @@ def test_the_tables_are_complete():
 )
 def test_gradients_are_exact(layer, activation, cost):
     network = network_with(LAYER_ROWS[layer](), ACTIVATION_ROWS[activation], COST_ROWS[cost])
-    x, y = examples(network, BATCH, 5), np.random.default_rng(6).normal(size=(BATCH, 2))
+    x, y = examples_of(network.layers[0]), np.random.default_rng(6).normal(size=(BATCH, 2))
     prediction = network.forward_propagate(x)
     network.backward_propagate(network.cost.derivative(prediction, y))
     expected = numerical_gradient(lambda: network.cost(network.predict(x), y), network.values)
     np.testing.assert_allclose(network.gradients, expected, rtol=1e-6, atol=1e-8)
 
 
-@pytest.mark.parametrize("name", LAYER_ROWS)
-def test_a_layer_alone_returns_its_input_error(name):
+@each_layer
+def test_a_layer_alone_returns_its_input_error_whatever_the_order_in_memory(name):
     layer = LAYER_ROWS[name]()
     layer.dtype = np.float64
-    x = examples_of(layer, BATCH, 7)
+    x = examples_of(layer)
     error = np.random.default_rng(8).normal(size=layer.predict(x).shape)
-    layer.forward_propagate(x)
-    input_error = layer.backward_propagate(error).copy()
-    expected = numerical_gradient(lambda: np.sum(layer.predict(x) * error), x.reshape(-1))
-    assert input_error.shape == x.shape
-    np.testing.assert_allclose(input_error.ravel(), expected, rtol=1e-6, atol=1e-8)
+    expected = numerical_gradient(lambda: np.sum(layer.predict(x) * error), x.reshape(-1)).reshape(x.shape)
+    for turn in (np.array, np.asfortranarray):
+        given = turn(x), turn(np.array(error))
+        np.testing.assert_allclose(layer.forward_propagate(given[0]), layer.predict(x))
+        np.testing.assert_allclose(layer.predict(given[0]), layer.predict(x))
+        np.testing.assert_allclose(layer.backward_propagate(given[1]), expected, rtol=1e-6, atol=1e-8)
+        np.testing.assert_array_equal(given[0], x)  # what is given stays as it is
+        np.testing.assert_array_equal(given[1], error)
 
 
-@pytest.mark.parametrize("name", LAYER_ROWS)
+@each_layer
 def test_a_layer_that_was_used_in_one_precision_serves_a_network_of_another(name):
     used, fresh = LAYER_ROWS[name](), LAYER_ROWS[name]()
-    x = examples_of(used, BATCH, 7).astype(np.float32)
+    x = examples_of(used).astype(np.float32)
     used.forward_propagate(x)
     used.backward_propagate(used.predict(x))
     values = [parameter.value.copy() for parameter in used.parameters]
@@ -151,31 +148,27 @@ def test_a_layer_that_was_used_in_one_precision_serves_a_network_of_another(name
         network.values = np.concatenate([np.zeros(0), *(value.ravel() for value in values)])
         output = network.forward_propagate(x).copy()
         network.backward_propagate(output)
-        error = network.input_gradient(x, output)
-        results.append((output, network.gradients, error))
+        results.append((output, network.gradients, network.input_gradient(x, output)))
     for one, other in zip(*results, strict=True):
         assert one.dtype == np.float64
         np.testing.assert_array_equal(one, other)
 
 
-@pytest.mark.parametrize("name", LAYER_ROWS)
+@each_layer
 def test_the_way_back_to_the_input(name):
     network = network_with(LAYER_ROWS[name]())
-    x, error = examples(network, BATCH, 9), np.random.default_rng(10).normal(size=(BATCH, 2))
+    x, error = examples_of(network.layers[0]), np.random.default_rng(10).normal(size=(BATCH, 2))
     network.gradients[:] = 7
     gradient = network.input_gradient(x, error)
     expected = numerical_gradient(lambda: np.sum(network.predict(x) * error), x.reshape(-1))
     np.testing.assert_allclose(gradient, expected.reshape(x.shape), rtol=1e-6, atol=1e-8)
     np.testing.assert_array_equal(network.gradients, 7)
-    network.forward_propagate(2 * x)
-    network.backward_propagate(error)
-    np.testing.assert_array_equal(gradient, network.input_gradient(x, error))
 
 
-@pytest.mark.parametrize("name", LAYER_ROWS)
+@each_layer
 def test_a_batch_equals_its_examples(name):
     network = network_with(LAYER_ROWS[name](), dtype=np.float32)
-    x = examples(network, BATCH, 1).astype(np.float32)
+    x = examples_of(network.layers[0]).astype(np.float32)
     batch = network.predict(x)
     assert batch.dtype == np.float32
     given = network.activations(x)
@@ -187,75 +180,35 @@ def test_a_batch_equals_its_examples(name):
     np.testing.assert_allclose(network.forward_propagate(x), batch, rtol=1e-5, atol=1e-6)
 
 
-@pytest.mark.parametrize("name", LAYER_ROWS)
-def test_the_order_in_memory_does_not_matter_and_nothing_that_is_given_changes(name):
-    layer = LAYER_ROWS[name]()
-    x = examples_of(layer, BATCH, 1).astype(np.float32)
-    error = layer.predict(x).copy()
-    turned_x, turned_error = np.array(x, order="F"), np.array(error, order="F")
-    given = x.copy(), error.copy()
-    np.testing.assert_allclose(layer.predict(turned_x), layer.predict(x), rtol=1e-5, atol=1e-6)
-    layer.forward_propagate(x)
-    expected = layer.backward_propagate(error).copy()
-    layer.forward_propagate(turned_x)
-    np.testing.assert_allclose(layer.backward_propagate(turned_error), expected, rtol=1e-5, atol=1e-6)
-    for one, before in zip((x, error, turned_x, turned_error), given + given, strict=True):
-        np.testing.assert_array_equal(one, before)
-
-
-@pytest.mark.parametrize("name", LAYER_ROWS)
-def test_predict_leaves_no_trace(name):
-    network, undisturbed = network_with(LAYER_ROWS[name]()), network_with(LAYER_ROWS[name]())
-    x, error = examples(network, BATCH, 2), np.random.default_rng(3).normal(size=(BATCH, 2))
-    for one in (network, undisturbed):
-        one.forward_propagate(x)
-    before = network.values.copy()
-    network.predict(examples(network, BATCH, 4))
-    network.predict(examples(network, 2, 5))
-    for one in (network, undisturbed):
-        one.backward_propagate(error)
-    np.testing.assert_array_equal(network.gradients, undisturbed.gradients)
-    np.testing.assert_array_equal(network.values, before)
-
-
-@pytest.mark.parametrize("name", LAYER_ROWS)
-def test_batch_sizes_may_alternate(name):
+@each_layer
+def test_batch_sizes_may_alternate_and_predict_leaves_no_trace(name):
     network = network_with(LAYER_ROWS[name]())
-    kept = network.predict(examples(network, BATCH, 4))
+    kept = network.predict(examples_of(network.layers[0], seed=4))
     copied = kept.copy()
     for size in (BATCH, 1, 9, BATCH):
-        x, error = examples(network, size, 5), np.random.default_rng(6).normal(size=(size, 2))
+        x, error = examples_of(network.layers[0], size), np.random.default_rng(6).normal(size=(size, 2))
         fresh = network_with(LAYER_ROWS[name]())
+        network.forward_propagate(x)
+        network.predict(2 * x)
+        network.predict(examples_of(network.layers[0], 2, seed=4))
+        fresh.forward_propagate(x)
         for one in (network, fresh):
-            one.forward_propagate(x)
             one.backward_propagate(error)
         np.testing.assert_array_equal(network.gradients, fresh.gradients)
+        np.testing.assert_array_equal(network.values, fresh.values)
     np.testing.assert_array_equal(kept, copied)
 
 
 @pytest.mark.parametrize("name", ACTIVATIONS)
-def test_an_activation_unpacks_as_function_and_derivative(name):
+def test_an_activation_unpacks_as_a_pair_and_takes_plain_numbers(name):
     function, derivative = ACTIVATION_ROWS[name]
     x = np.linspace(-3, 3, 12)
-    expected = [(function(x + 1e-6) - function(x - 1e-6)) / 2e-6]
-    np.testing.assert_allclose([derivative(x)], expected, rtol=1e-5)
-
-
-@pytest.mark.parametrize("name", ACTIVATIONS)
-def test_an_activation_takes_plain_numbers(name):
-    activation = ACTIVATION_ROWS[name]
-    for x in (1, -0.5, [1, -2], np.array([[3]])):
-        expected = np.asarray(x, float)
-        np.testing.assert_array_equal(activation(x), activation(expected))
-        np.testing.assert_array_equal(activation.derivative(x), activation.derivative(expected))
-        assert activation(x).shape == activation.derivative(x).shape == expected.shape
-
-
-@pytest.mark.parametrize("name", COSTS)
-def test_costs_take_plain_numbers(name):
-    cost = COST_ROWS[name]
-    assert cost([[1, 2]], [[0, 0]]) == cost(np.array([[1.0, 2.0]]), np.zeros((1, 2)))
-    assert cost.derivative([[1, 2]], [[0, 0]]).shape == (1, 2)
+    np.testing.assert_allclose(derivative(x), (function(x + 1e-6) - function(x - 1e-6)) / 2e-6, rtol=1e-5)
+    for plain in (1, -0.5, [1, -2], np.array([[3]])):
+        expected = np.asarray(plain, float)
+        np.testing.assert_array_equal(function(plain), function(expected))
+        np.testing.assert_array_equal(derivative(plain), derivative(expected))
+        assert function(plain).shape == derivative(plain).shape == expected.shape
 
 
 @pytest.mark.parametrize("name", COSTS)
@@ -268,6 +221,9 @@ def test_costs_are_summed_over_outputs_and_averaged_over_the_batch(name):
         assert examples[0] == pytest.approx(function(p[[0], :1], t[[0], :1]) + function(p[[0], 1:], t[[0], 1:]))
     np.testing.assert_allclose(derivative(p, t)[0], derivative(p[[0]], t[[0]])[0] / 2)
     np.testing.assert_allclose(derivative(p[0], t[0]), derivative(p[[0]], t[[0]])[0])
+    assert function([[1, 2]], [[0, 0]]) == function(np.array([[1.0, 2.0]]), np.zeros((1, 2)))
+    assert derivative([[1, 2]], [[0, 0]]).shape == (1, 2)
+    assert COST_ROWS[name].logits == (name == "softmax_cross_entropy")
 
 
 def test_costs_have_the_textbook_values():
@@ -279,25 +235,16 @@ def test_costs_have_the_textbook_values():
     assert cost(logits, [[0.5, 0.5, 0]]) == pytest.approx(-(np.log(0.7) + np.log(0.2)) / 2)
     np.testing.assert_allclose(softmax(logits), [[0.7, 0.2, 0.1]])
     np.testing.assert_allclose(cost.derivative(logits, [[0, 1, 0]]), [[0.7, -0.8, 0.1]])
-
-
-@pytest.mark.parametrize("dtype", [np.float32, np.float64])
-def test_cross_entropy_survives_large_logits(dtype):
-    cost = CostFunctions.use_softmax_cross_entropy()
-    logits, target = np.array([[1e4, 0, -1e4], [0, 1e4, 0]], dtype), np.array([[0, 1, 0], [0, 1, 0]], dtype)
-    assert cost(logits, target) == pytest.approx(1e4 / 2)
-    np.testing.assert_array_equal(cost.derivative(logits, target), [[0.5, -0.5, 0], [0, 0, 0]])
-    assert cost.derivative(logits, target).dtype == softmax(logits).dtype == dtype
-    np.testing.assert_array_equal(softmax(logits[0]), [1, 0, 0])
-
-
-def test_only_cross_entropy_takes_logits():
-    assert {name for name, make in COSTS.items() if make().logits} == {"softmax_cross_entropy"}
+    for dtype in (np.float32, np.float64):
+        large, target = np.array([[1e4, 0, -1e4], [0, 1e4, 0]], dtype), np.array([[0, 1, 0], [0, 1, 0]], dtype)
+        assert cost(large, target) == pytest.approx(1e4 / 2)
+        np.testing.assert_array_equal(cost.derivative(large, target), [[0.5, -0.5, 0], [0, 0, 0]])
+        assert cost.derivative(large, target).dtype == softmax(large).dtype == dtype
 
 
 def test_dueling_streams_are_told_apart():
     layer = DuelingLayer(INPUTS, OUTPUTS)
-    x = np.random.default_rng(8).normal(size=(BATCH, INPUTS)).astype(np.float32)
+    x = examples_of(layer).astype(np.float32)
     streams = x @ layer.weights + layer.bias
     value, advantage = streams[:, :1], streams[:, 1:]
     expected = value + advantage - advantage.mean(axis=1, keepdims=True)
@@ -307,7 +254,8 @@ def test_dueling_streams_are_told_apart():
 @settings(max_examples=50, deadline=None)
 @given(arrays(np.float64, (3, 8), elements=st.floats(-1e3, 1e3)), st.floats(-1e3, 1e3))
 def test_layer_normalisation_is_blind_to_shift(x, shift):
-    layer = LayerNormalisation(8, dtype=np.float64)
+    layer = LayerNormalisation(8)
+    layer.dtype = np.float64
     normalised = layer.predict(x)
     np.testing.assert_allclose(normalised, layer.predict(x + shift), atol=1e-5)
     np.testing.assert_allclose(normalised.mean(axis=1), 0, atol=1e-6)
@@ -323,12 +271,12 @@ def test_activations_stay_finite(x):
         assert np.isfinite(activation.derivative(x)).all()
 
 
-def test_glorot_bound():
-    weights = FullyConnectedLayer(784, 100).weights
+def test_first_weights_are_glorots():
+    weights, small = FullyConnectedLayer(784, 100).weights, FullyConnectedLayer(784, 100, scale=0.01).weights
     bound = 1 / np.sqrt(884)
-    assert np.abs(weights).max() <= bound
-    assert np.abs(weights).max() > 0.99 * bound
+    assert 0.99 * bound < np.abs(weights).max() <= bound
     assert weights.std() == pytest.approx(bound / np.sqrt(3), rel=0.02)
+    np.testing.assert_allclose(small, 0.01 * weights, rtol=1e-6)
 
 
 @pytest.mark.parametrize("normalised", [False, True])
@@ -345,22 +293,6 @@ def test_rectifiers_get_he_weights(activation, normalised):
     assert np.abs(dense[1].weights).max() <= 1 / np.sqrt(300)
 
 
-def test_initialisation_and_scale_can_be_chosen():
-    rng = np.random.default_rng
-    he = FullyConnectedLayer(300, 200, initialisation="he", rng=rng(1))
-    small = FullyConnectedLayer(300, 200, initialisation="he", scale=0.01, rng=rng(1))
-    np.testing.assert_allclose(small.weights, 0.01 * he.weights, rtol=1e-6)
-    with pytest.raises(ValueError, match="glorot, he"):
-        FullyConnectedLayer(3, 2, initialisation="zeros")
-
-
-def test_weights_do_not_depend_on_what_else_is_drawn():
-    rng, other = np.random.default_rng(1), np.random.default_rng(1)
-    layer, same = FullyConnectedLayer(3, 2, rng=rng), FullyConnectedLayer(3, 2, rng=other)
-    rng.random()
-    np.testing.assert_array_equal(layer.weights, same.weights)
-
-
 def test_weights_somebody_looked_at_are_not_drawn_again():
     layer = FullyConnectedLayer(3, 2)
     layer.weights[...] = 7
@@ -369,22 +301,22 @@ def test_weights_somebody_looked_at_are_not_drawn_again():
     np.testing.assert_array_equal(network.predict(np.ones(3)), [21, 21])
 
 
-@pytest.mark.parametrize("size", [0, -1, 2.5, "9", None, True, 1 << 40])
-def test_sizes_are_checked(size):
-    for make, sizes in (
-        (FullyConnectedLayer, (size, 2)),
-        (DuelingLayer, (2, size)),
-        (LayerNormalisation, (size,)),
-        (FlattenLayer, ((3, size, 3),)),
-        (ConvolutionLayer, ((3, 3, 3), size, 3)),
-        (ConvolutionLayer, ((3, 3, 3), 2, size)),
-        (MaxPoolingLayer, ((3, 3, 3), size)),
-    ):
-        with pytest.raises(ValueError, match="whole number"):
-            make(*sizes)
-
-
-def test_options_are_checked():
+def test_sizes_and_options_are_checked():
+    for size in [0, -1, 2.5, "9", None, True, 1 << 40]:
+        for make in (
+            lambda size: FullyConnectedLayer(size, 2),
+            lambda size: DuelingLayer(2, size),
+            LayerNormalisation,
+            lambda size: FlattenLayer((3, size, 3)),
+            lambda size: ConvolutionLayer((3, 3, 3), size, 3),
+            lambda size: ConvolutionLayer((3, 3, 3), 2, size),
+            lambda size: MaxPoolingLayer((3, 3, 3), size),
+        ):
+            with pytest.raises(ValueError, match="whole number"):
+                make(size)
+    for rate in [-0.1, 1, 1.5, float("nan"), "0.5", None, True]:
+        with pytest.raises(ValueError, match="rate of dropout"):
+            DropoutLayer(rate)
     with pytest.raises(ValueError, match="slope"):
         ActivationFunctions.use_leaky_relu(1.5)
     with pytest.raises(ValueError, match="delta"):

@@ -56,30 +56,12 @@ def test_a_state_carries_on(name):
     for step, gradient in enumerate(gradients()):
         first.step(whole, gradient.copy())
         if step % 5 == 0:
-            state = second.state()
+            state, left = second.state(), second
             second = OPTIMIZERS[name](0.1)
             second.load_state(state, broken_off)
+            left.step(np.ones(5), np.ones(5))  # changes nothing of the state, which is a copy
         second.step(broken_off, gradient.copy())
     np.testing.assert_array_equal(whole, broken_off)
-
-
-def test_a_state_is_a_copy():
-    optimizer, values = Adam(), np.ones(3)
-    optimizer.step(values, np.ones(3))
-    state = optimizer.state()
-    kept = {name: array.copy() for name, array in state.items()}
-    optimizer.step(values, np.ones(3))
-    for name, array in state.items():
-        np.testing.assert_array_equal(array, kept[name])
-
-
-def test_a_wrong_state_is_refused():
-    momentum = Momentum()
-    momentum.step(np.ones(3), np.ones(3))
-    with pytest.raises(ValueError, match="not a state of Adam"):
-        Adam().load_state(momentum.state(), np.ones(3))
-    with pytest.raises(ValueError, match="not a state of SGD"):
-        SGD().load_state({}, np.ones(3))
 
 
 def test_a_damaged_state_is_refused_and_changes_nothing(subtests):
@@ -106,11 +88,15 @@ def test_a_damaged_state_is_refused_and_changes_nothing(subtests):
                 np.testing.assert_array_equal(array, before[name])
 
 
-def test_another_number_of_parameters_is_refused():
-    optimizer = Adam()
-    optimizer.step(np.ones(3), np.ones(3))
+def test_a_state_of_another_kind_or_number_of_parameters_is_refused():
+    momentum = Momentum()
+    momentum.step(np.ones(3), np.ones(3))
+    with pytest.raises(ValueError, match="not a state of Adam"):
+        Adam().load_state(momentum.state(), np.ones(3))
+    with pytest.raises(ValueError, match="not a state of SGD"):
+        SGD().load_state({}, np.ones(3))
     with pytest.raises(ValueError, match="3 parameters"):
-        optimizer.step(np.ones(4), np.ones(4))
+        momentum.step(np.ones(4), np.ones(4))
 
 
 def test_a_long_gradient_is_shortened():
@@ -121,29 +107,25 @@ def test_a_long_gradient_is_shortened():
     np.testing.assert_allclose(values, [-9.0, -12.0])
 
 
-@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
 @pytest.mark.parametrize("name", OPTIMIZERS)
-def test_a_gradient_that_is_not_finite_moves_nothing(name, bad):
+def test_what_is_not_finite_moves_nothing(name):
     optimizer, values = OPTIMIZERS[name](clip=10.0), np.ones(3)
     optimizer.step(values, np.ones(3))
     before, state = values.copy(), optimizer.state()
-    with pytest.raises(
-        DivergenceError, match=f"gradient was not finite at learning step 2; .* {optimizer.learning_rate}"
-    ):
-        optimizer.step(values, np.array([1.0, bad, 1.0]))
-    with pytest.raises(DivergenceError, match="the cost was not finite at learning step 2"):
-        optimizer.step(values, np.ones(3), cost=bad)
+    for bad in math.nan, math.inf, -math.inf:
+        with pytest.raises(
+            DivergenceError, match=f"gradient was not finite at learning step 2; .* {optimizer.learning_rate}"
+        ):
+            optimizer.step(values, np.array([1.0, bad, 1.0]))
+        with pytest.raises(DivergenceError, match="the cost was not finite at learning step 2"):
+            optimizer.step(values, np.ones(3), cost=bad)
     np.testing.assert_array_equal(values, before)
     for key, array in optimizer.state().items():
         np.testing.assert_array_equal(array, state[key])
-
-
-@pytest.mark.parametrize("name", OPTIMIZERS)
-def test_a_step_that_would_overflow_is_not_taken(name):
-    optimizer, values = OPTIMIZERS[name](1e300), np.ones(3, np.float32)
+    optimizer, small = OPTIMIZERS[name](1e300), np.ones(3, np.float32)
     with pytest.raises(DivergenceError, match=r"step was not finite at learning step 1; .*1e\+300"):
-        optimizer.step(values, np.full(3, 1e10, np.float32))
-    assert (values == 1).all()
+        optimizer.step(small, np.full(3, 1e10, np.float32))
+    assert (small == 1).all()
 
 
 def test_the_learning_rate_may_change():

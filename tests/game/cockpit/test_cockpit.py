@@ -9,8 +9,8 @@ from game.core import texts
 from game.core.settings import SettingsFile
 from game.flight import networks
 from game.flight.logbook import Records
-from game.scenes.play.help_words import HELP, word_of
-from game.scenes.play.overrides import difference
+from game.scenes.play.help import HELP, word_of
+from game.scenes.play.interventions import difference
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from tests.game.cockpit.test_sharing import Wants
@@ -79,26 +79,27 @@ def test_an_override_is_lit_said_and_marked_and_hands_off_is_none(open_game: Ope
     driver = fly(open_game, context, assist=0.5)
     start_at(driver, 0, 16, 0, 0, 0, 0)
     driver.frames(6)
-    flight, cockpit = play(driver).flight, play(driver).flown.cockpit
+    flight, shown = play(driver).flight, play(driver).flown.interventions
     assert flight.env.actions[0] == MAIN
-    assert cockpit.overrides.lamp(flight)[0] == "ring"
+    assert shown.lamp(flight)[0] == "ring"
     down(driver, pygame.K_LEFT)
     driver.frames(6)
     assert flight.env.actions[0] == LEFT
-    assert cockpit.overrides.lamp(flight)[0] == "circle"
-    assert cockpit.overrides.times == 0
+    assert shown.lamp(flight)[0] == "circle"
+    assert not shown.moments
     up(driver, pygame.K_LEFT)
     words = words_written(monkeypatch)
     down(driver, pygame.K_RIGHT)
     driver.frames(6)
     assert flight.env.actions[0] == MAIN
-    assert cockpit.overrides.lamp(flight)[0] == "diamond"
-    assert cockpit.overrides.times == len(cockpit.track.moments) == 1
+    assert shown.lamp(flight)[0] == "diamond"
+    assert len(shown.moments) == 1
+    assert difference(RIGHT, MAIN) == "The network flies main, not right"
     assert difference(RIGHT, MAIN) in words
-    assert texts.COPILOT_PANEL_WHY["COPILOT"][0] not in words  # the panel is for those who ask
+    assert texts.COPILOT_PANEL_WHY["COPILOT"] not in words  # the panel is for those who ask
     driver.key(pygame.K_F1)
     driver.frames(4)
-    assert texts.COPILOT_PANEL_WHY["COPILOT"][0] in words
+    assert texts.COPILOT_PANEL_WHY["COPILOT"] in words
 
 
 def test_without_assist_nothing_of_the_co_pilot_is_seen_or_felt(open_game: Open, context: Context, monkeypatch):
@@ -158,7 +159,7 @@ def test_choices_are_made_with_any_device_and_the_waiting_flight_follows(
     assert settings.hands == "laggy"
     assert play(driver).waiting
     assert len(play(driver).flight.env.ground.pads) == 3
-    assert play(driver).flown.hands == "laggy"
+    assert play(driver).challenge.hands == "laggy"
 
 
 def test_pads_and_hands_do_not_change_under_a_flight_that_has_begun(open_game: Open, context: Context):
@@ -176,19 +177,5 @@ def test_nonsense_in_the_settings_flies_as_usual(open_game: Open, context: Conte
     driver = fly(open_game, context, hands="three", copilot="captain", assist=0.5)
     driver.key(pygame.K_UP)
     driver.frames(10)
-    assert play(driver).flown.hands == "own"
+    assert play(driver).challenge.hands == "own"
     assert driver.app.context.settings.copilot == "tolerance"
-
-
-@pytest.mark.parametrize(
-    ("asked", "flown", "words"),
-    [
-        (3, 0, "The network stops main"),
-        (0, 4, "The network adds main and adds left"),
-        (1, 2, "The network turns right instead of left"),
-        (5, 3, "The network stops right"),
-        (2, 4, "The network adds main and turns left instead of right"),
-    ],
-)
-def test_an_override_is_told_in_engines(asked: int, flown: int, words: str):
-    assert difference(asked, flown) == words

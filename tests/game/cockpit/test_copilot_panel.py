@@ -1,5 +1,3 @@
-from types import SimpleNamespace
-
 import numpy as np
 import pygame
 import pytest
@@ -9,7 +7,6 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.flight.flight import Flight
 from game.panels.landings import Landing, Landings, RecentLandings
-from game.scenes.play import overrides
 from game.scenes.play.copilot_panel import CopilotPanel
 from tests.support.drawn import Drawn, read_panel
 from tests.support.reading import Weighs
@@ -81,24 +78,13 @@ def test_an_override_that_is_over_is_said_to_be_past(monkeypatch: pytest.MonkeyP
         copilot_panel.follow(flight)
         drawn.clear()
         copilot_panel.draw(canvas, 0.5)
-        return next(word for word in drawn.words for why in texts.COPILOT_PANEL_WHY.values() if word.startswith(why[0]))
+        return next(word for word in drawn.words for why in texts.COPILOT_PANEL_WHY.values() if word.startswith(why))
 
-    copilot, yours = texts.COPILOT_PANEL_WHY["COPILOT"][0], texts.COPILOT_PANEL_WHY["PILOT"][0]
+    copilot, yours = texts.COPILOT_PANEL_WHY["COPILOT"], texts.COPILOT_PANEL_WHY["PILOT"]
     assert title(2) == copilot
     assert title(1) == texts.COPILOT_PANEL_BEFORE.format(title=copilot)
     assert flight.recording.actions[-1] == 1
     assert [title(1) for _ in range(60)][-1] == yours
-
-
-def test_that_a_guardian_is_late_is_said_only_if_it_stays_late(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(overrides, "is_late", lambda _: True)
-    monkeypatch.setattr(overrides, "sentence", lambda _: "late")
-    flight, shown, words = SimpleNamespace(overridden=True, shared=True, guarded=True), overrides.Overrides(), []
-    for _ in range(4):
-        flight.decision = object()
-        shown.follow(flight)
-        words.append(shown.word)
-    assert words == ["", "", "late", "late"]
 
 
 class Prefers(Wavers):

@@ -15,7 +15,7 @@ from game.drawing.canvas import PAGE, Canvas
 from game.drawing.tokens import MARGIN
 from game.panels import readouts
 from game.scenes.menus.menu import MenuScene
-from game.scenes.play.help_words import HELP
+from game.scenes.play.help import HELP
 from game.scenes.play.scene import PlayScene
 from game.scenes.watch.scene import WatchScene
 from game.ui.context import Context
@@ -177,7 +177,7 @@ def test_the_panel_that_explains_stands_at_the_right_edge(open_game, context, wr
     page = written.turn(driver.app.canvas)
     driver.app.draw()
     reading, canvas = driver.app.canvas.reading, driver.app.canvas
-    box = play(driver).flown.cockpit.panel_box(reading)
+    box = play(driver).flown.copilot_panel.box(reading)
     assert box.right == pytest.approx(reading.view.right, abs=40)
     right = canvas.view.left + box.right * reading.scale / canvas.scale
     assert any(panel.right == pytest.approx(right, abs=1) for panel in page.panels)

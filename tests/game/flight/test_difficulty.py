@@ -153,7 +153,7 @@ def test_gravity_is_changed_in_flight_at_once_and_told(open_game: Open, context:
     [(step, share)] = play.flight.recording.gravity
     assert (step > 10, share) == (True, pytest.approx(0.8))
     assert play.flight.env.gravity == pytest.approx(0.8 * PARAMS.gravity)
-    assert "80" in play.flown.difficulty.words
+    assert "80" in play.credit.differs
     while not play.flight.over:
         game.frames(20)
     game.frames(5)
@@ -173,7 +173,7 @@ def test_a_mission_keeps_its_own_gravity(open_game: Open, context: Context):
     game.frames(10)
     assert len(game.top.flight.recording.actions) > 5
     assert game.top.flight.recording.gravity == ()
-    assert not game.top.flown.difficulty.practice
+    assert not game.top.credit.practice
 
 
 def test_nothing_but_help_and_the_pace_can_be_chosen_in_a_course(open_game: Open, context: Context):

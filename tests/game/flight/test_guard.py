@@ -16,12 +16,12 @@ from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.core.settings import Settings
 from game.flight.credit import Credit
-from game.flight.difficulty import Difficulty
 from game.flight.flight import Flight, StickHolder
 from game.flight.futures import FuturesProcess
 from game.flight.guard import Guard, Taps, nearest, push_of, shares_of
-from game.flight.rescues import Rescues
-from game.scenes.play.guardian_words import why_not_saved
+from game.scenes.play.free import FreeFlight
+from game.scenes.play.interventions import Interventions
+from game.scenes.play.words import why_not_saved
 from tests.support.futures import AtOnce
 
 GUARD = 0.04  # of the dial: one decision ahead
@@ -88,12 +88,12 @@ def test_what_was_not_flown_ahead_in_time_waits_once_and_then_the_plan_flies_on(
     assert flight.guard.safe
     assert flight.overridden
     assert flight.recording.hands[-1] is StickHolder.NETWORK
-    rescues = Rescues()
-    rescues.follow(flight)
+    interventions = Interventions()
+    interventions.follow(flight)
     assert land(flight).outcome is Outcome.LANDED
-    assert rescues.saved(flight) is None  # nobody knows whether the key that was late would have crashed it
+    assert not interventions.watched(flight)  # nobody knows whether the key that was late would have crashed it
     flight.guard.late = 0
-    assert rescues.saved(flight) == 0
+    assert interventions.watched(flight)
 
 
 def test_a_hand_over_and_another_network_leave_the_plan(agent):
@@ -202,7 +202,7 @@ def test_the_process_flies_what_is_asked_for_first_and_then_every_key(agent):
 def test_help_that_changed_nothing_takes_no_record_away_and_help_that_did_is_named(agent):
     for held, changed in ((0, False), (2, True)):
         flight = guarded(agent)
-        credit = Credit(flight, Difficulty(Settings(), flight, free=True))
+        credit = Credit(flight, Settings(), FreeFlight(Settings()))
         assert credit.notice == texts.HELP_IS_ON
         for _ in range(40):
             flight.step(held)

@@ -56,12 +56,12 @@ def note(draw: Callable[..., None], places: list[tuple[float, float]], at: int) 
 
 def test_the_panel_gives_way_to_a_craft_that_the_camera_can_not_keep_clear(shared: Driver, monkeypatch):
     panels: list[bool] = []
-    copilot_panel = play(shared).flown.cockpit.copilot_panel
+    copilot_panel = play(shared).flown.copilot_panel
     monkeypatch.setattr(copilot_panel, "draw", lambda *_: panels.append(True))
     place(shared, 0, 12, 0, 0, 0, 0)
     shared.frames(4)
     assert panels
-    box = play(shared).flown.cockpit.panel_box(shared.app.canvas.reading)
+    box = play(shared).flown.copilot_panel.box(shared.app.canvas.reading)
     x, y = play(shared).flown.scenery.view(1.0).metres(box.center).tolist()
     place(shared, x, y, 0, 0, 0, 0)
     shared.frames(2)  # it leaps there between two steps
@@ -129,7 +129,7 @@ def test_the_flight_keeps_off_the_panel(shared: Driver):
     place(shared, 0, 12, 0, 0, 0, 0)
     shared.frames(6)
     flown = play(shared).flown
-    assert flown.clear.right < flown.cockpit.panel_box(shared.app.canvas.reading).left
+    assert flown.clear.right < flown.copilot_panel.box(shared.app.canvas.reading).left
     shared.key(pygame.K_F1)
     shared.frames(2)
     assert not flown.thinks

@@ -18,8 +18,7 @@ from game.flight.flight import Flight
 from game.flight.logbook import Records
 from game.scenes.logbook.replay import ReplayScene
 from game.scenes.menus.flights import FlightsScene
-from game.scenes.play.calendar import DaysScene
-from game.scenes.play.daily import DailyStart
+from game.scenes.play.daily import DailyStart, DaysScene
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from game.ui.rows import ListRow

@@ -14,19 +14,19 @@ from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.core.settings import TOP_RUNG, Settings
 from game.flight import networks
+from game.flight.credit import Credit
 from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Entry
 from game.flight.logbook import Records, best, best_alone
 from game.flight.outcomes import outcome_card
 from game.flight.replay import FlightReplay
-from game.scenes.play.help_words import HELP
-from game.scenes.play.ladder import Ladder
-from game.scenes.play.rescue_offer import CRASHES
-from game.scenes.play.scene import PlayScene
+from game.scenes.play.free import FreeFlight
+from game.scenes.play.help import HELP
+from game.scenes.play.scene import CRASHES, PlayScene
 from game.scenes.play.tutorial import Tutorial
 from game.ui.context import Context
 from tests.support.driver import Driver
-from tests.support.flights import fly_out, kept, play
+from tests.support.flights import challenge_of, fly_out, kept, play
 from tests.support.player import DEVICES, Player
 from tests.support.reading import Weighs
 
@@ -153,10 +153,10 @@ def test_who_has_landed_often_before_begins_at_the_top(context: Context):
 
     for landings, rung in ((0, 0), (4, 4), (60, TOP_RUNG)):
         settings = Settings()
-        Ladder(settings, [entry("LANDED")] * landings + [entry("CRASHED")] * 3)
+        FreeFlight(settings).recall([entry("LANDED")] * landings + [entry("CRASHED")] * 3)
         assert settings.rung == rung
     settings = Settings(rung=2)
-    Ladder(settings, [entry("LANDED")] * 60)
+    FreeFlight(settings).recall([entry("LANDED")] * 60)
     assert settings.rung == 2
 
 
@@ -175,7 +175,9 @@ def test_the_choices_move_on_the_ladder_and_off_it(open_game: Open):
 def test_a_landing_that_the_network_flew_leads_no_rung_up_and_the_card_says_which_do():
     settings, flight = Settings(rung=0), Flight(7, ScriptedPilot(), LADDER.spawn(0))
     flight.hand_over()
-    card = Ladder(settings, []).climb(fly_out(flight), outcome_card(flight.env, flight.share))
+    fly_out(flight)
+    free = FreeFlight(settings)
+    card = free.card(outcome_card(flight.env, flight.share), flight, Credit(flight, settings, free))
     assert flight.outcome is Outcome.LANDED
     assert (settings.rung, card.climb) == (0, texts.LADDER_NOT_FLOWN)
 
@@ -276,26 +278,26 @@ def test_a_key_held_meanwhile_must_be_let_go_first(open_game: Open, written: lis
 
 def test_a_rescue_that_does_not_come_down_is_landed_by_the_network(open_game: Open):
     driver = open_game(PlayScene, 0, challenge=Tutorial())
-    challenge, controls = play(driver).challenge, driver.app.context.controls
+    challenge, controls = challenge_of(driver), driver.app.context.controls
     while challenge.lesson.name != "rescue":
         challenge.skip() if challenge.lesson.name != "dial" else challenge.follow(play(driver).flight)
     flight = play(driver).flight
     first, later = (words.split("{")[0] for words in texts.TUTORIAL["rescue"])
-    assert challenge.words(flight, controls).startswith(first)
+    assert challenge.sentence(flight, controls).startswith(first)
     for _ in range(1000):  # whatever it does up there
         challenge.follow(flight)
     assert flight.hand.name == "NETWORK"
-    assert challenge.words(flight, controls) == texts.TUTORIAL_BROUGHT
+    assert challenge.sentence(flight, controls) == texts.TUTORIAL_BROUGHT
     flight.hand_over()  # the player may still take it back
     challenge.follow(flight)
     assert flight.hand is StickHolder.HUMAN
-    assert challenge.words(flight, controls).startswith(later)
+    assert challenge.sentence(flight, controls).startswith(later)
 
 
 @pytest.mark.parametrize("device", DEVICES)
 def test_the_dial_is_turned_by_the_player_and_theirs_stays_as_it_was(open_game: Open, written: list[str], device: str):
     driver = player = Player(open_game(PlayScene, 0, challenge=Tutorial()), device)
-    while (challenge := play(driver).challenge).lesson.name != "dial":
+    while (challenge := challenge_of(driver)).lesson.name != "dial":
         challenge.skip()
     play(driver).retry()
     driver.frames(2)
@@ -322,7 +324,7 @@ def test_the_dial_is_turned_by_the_player_and_theirs_stays_as_it_was(open_game: 
 
 def test_who_skips_the_dial_skips_the_rescue(open_game: Open):
     driver = open_game(PlayScene, 0, challenge=Tutorial())
-    while play(driver).challenge and play(driver).challenge.lesson.name != "dial":
+    while play(driver).challenge and challenge_of(driver).lesson.name != "dial":
         driver.key(pygame.K_n)
     driver.key(pygame.K_n)
-    assert play(driver).challenge is None
+    assert play(driver).challenge.free

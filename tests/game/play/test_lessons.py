@@ -59,7 +59,7 @@ class Reader:
         """Return which sentence is written, and the keys that it names."""
         scene = play(self.driver)
         controls, flown = self.driver.app.context.controls, scene.flown
-        words = self.challenge.words(scene.flight, controls, waiting=flown.waiting, stuck=flown.stuck)
+        words = self.challenge.sentence(scene.flight, controls, waiting=flown.waiting, stuck=flown.stuck)
         for name, pattern in SENTENCES:
             if found := pattern.fullmatch(words):
                 return name, found.groupdict()

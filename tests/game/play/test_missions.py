@@ -12,7 +12,6 @@ from game.core.assets import ASSETS_DIR, MODELS_DIR
 from game.core.settings import Settings
 from game.flight import flight_file
 from game.flight.credit import Credit
-from game.flight.difficulty import Difficulty
 from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Record
 from game.flight.logbook import Records
@@ -23,7 +22,8 @@ from game.scenes.logbook.replay import ReplayScene
 from game.scenes.logbook.scene import LogbookScene
 from game.scenes.play.challenge import FlownMission
 from game.scenes.play.missions import MissionsScene
-from game.scenes.play.sentence import surroundings, wind
+from game.scenes.play.wind import wind
+from game.scenes.play.words import surroundings
 from game.ui.context import Context
 from game.ui.rows import ListRow
 from tests.support.driver import Driver
@@ -129,7 +129,6 @@ def test_the_campaign_is_walked_through_by_keys_and_a_landing_is_remembered(open
     driver.key(pygame.K_RETURN)
     driver.press_on(texts.FLIGHTS["missions"][0])
     assert driver.top_name == "MissionsScene"
-    assert driver.top._line.endswith(f"0 of {len(rows(driver))}.")  # as many as there are rows
     driver.keys(pygame.K_DOWN, pygame.K_RETURN)
     assert play(driver).challenge.name == "brake"
     assert play(driver).flown.ghost is not None
@@ -158,7 +157,11 @@ def test_a_landing_with_help_earns_a_ring_on_the_card_and_in_the_list(open_game:
     driver.frames(3)
     land(driver)
     card = play(driver).ending.card
-    assert (card.score, card.ring, card.medal) == (texts.MISSION_TOGETHER, True, 0)
+    assert (card.score.endswith(texts.MISSION_TOGETHER), card.ring, card.medal) == (
+        True,
+        True,
+        0,
+    )
     driver.key(pygame.K_ESCAPE)
     assert rows(driver)["fall"][1] == texts.MISSION_TOGETHER
 
@@ -173,7 +176,7 @@ def test_the_card_says_what_the_next_medal_asks():
     def said(fuel: float, seconds: float) -> str:
         env.main_steps[:], env.steps[:] = round(60 * fuel), round(60 * seconds)
         challenge = FlownMission(mission)
-        credit = Credit(flight, Difficulty(Settings(), flight, free=False), challenge)
+        credit = Credit(flight, Settings(), challenge)
         return challenge.card(card, flight, credit).reason
 
     assert said(3.0, 7.0) == texts.MEDAL_GOLD
@@ -189,7 +192,7 @@ def test_a_mission_that_is_lost_says_what_its_own_trouble_asks():
         env.outcome[:], env.cause[:] = Outcome.CRASHED, cause
         env.main_steps[:], env.steps[:] = round(60 * fuel), round(60 * seconds)
         challenge = FlownMission(MISSIONS[name])
-        credit = Credit(flight, Difficulty(Settings(), flight, free=False), challenge)
+        credit = Credit(flight, Settings(), challenge)
         return challenge.card(OutcomeCard(False, "", "", (), 1.0, advice="else"), flight, credit).advice
 
     assert said("tank", Cause.HARD, fuel=3.0) == texts.ADVICE_TANK

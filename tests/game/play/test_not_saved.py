@@ -17,10 +17,10 @@ from game.flight.last_chance import LastChance
 from game.flight.outcomes import outcome_card, qualities
 from game.flight.six_futures import HELD, SixFutures
 from game.scenes.play.challenge import FlownMission
-from game.scenes.play.guardian_words import why_not_saved
 from game.scenes.play.scene import PlayScene
 from game.scenes.play.tutorial import Tutorial
-from tests.support.flights import play
+from game.scenes.play.words import why_not_saved
+from tests.support.flights import challenge_of, play
 
 
 @pytest.fixture(scope="module")
@@ -115,10 +115,10 @@ def test_help_of_free_flights_does_not_follow_into_a_mission_which_says_so_and_c
 
 def test_the_key_that_skips_a_lesson_skips_them_all_when_held(open_game):
     driver = open_game(PlayScene, 0, challenge=Tutorial(), tutored=False)
-    first = play(driver).challenge.lesson
+    first = challenge_of(driver).lesson
     driver.key(pygame.K_n)
-    assert play(driver).challenge.lesson is not first
+    assert challenge_of(driver).lesson is not first
     driver.post(pygame.KEYDOWN, key=pygame.K_n, mod=0, unicode="", scancode=0)
     driver.frames(70)
-    assert play(driver).challenge is None
+    assert play(driver).challenge.free
     assert driver.app.context.settings.tutored

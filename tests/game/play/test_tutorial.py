@@ -16,8 +16,7 @@ from game.input.bindings import Held
 from game.scenes.menus.menu import MenuScene
 from game.scenes.menus.settings import SettingsScene
 from game.scenes.play.scene import PlayScene
-from game.scenes.play.tutorial import Tutorial
-from game.scenes.play.tutorial_lessons import LESSONS, NEED_COPILOT
+from game.scenes.play.tutorial import COPILOT, LESSONS, Tutorial
 from game.ui.context import Context
 from tests.support.drawn import Drawn
 from tests.support.driver import Driver
@@ -28,7 +27,7 @@ from tests.support.player import DEVICES, Player
 Open = Callable[..., Driver]
 PILOT = ScriptedPilot()
 KEYS = ("main", "left", "right")
-NAMES = [lesson.name for lesson in LESSONS if lesson.name not in NEED_COPILOT]  # the stand-in can share no stick
+NAMES = [lesson.name for lesson in LESSONS if lesson.needs != COPILOT]  # the stand-in can share no stick
 pytestmark = pytest.mark.usefixtures("scripted_network")
 
 
@@ -96,7 +95,7 @@ def test_the_very_first_flight_teaches_all_of_it_and_free_flights_follow(
     assert scene.ending.card.title == texts.TUTORIAL_DONE
     assert not Records(context.user_dir).entries()
     pupil.press("confirm")
-    assert play(driver).challenge is None
+    assert play(driver).challenge.free
     assert play(driver).waiting
     driver.app.close()
     assert saved(driver) == (True, True)
@@ -107,7 +106,7 @@ def test_the_very_first_flight_teaches_all_of_it_and_free_flights_follow(
 def test_only_the_very_first_flight_teaches(open_game: Open):
     driver = open_game()
     driver.keys(pygame.K_RETURN, pygame.K_RETURN)
-    assert play(driver).challenge is None
+    assert play(driver).challenge.free
 
 
 def test_a_crash_begins_the_lesson_again_hanging_in_the_sky(open_game: Open, context: Context):
@@ -155,9 +154,9 @@ def test_who_rises_while_braking_is_told_to_let_go(open_game: Open):
     scene = play(driver)
     controls = driver.app.context.controls
     keys = {"main": controls.word(Held.MAIN)}
-    assert challenge.words(scene.flight, controls) == texts.TUTORIAL["brake"][0].format(**keys)
+    assert challenge.sentence(scene.flight, controls) == texts.TUTORIAL["brake"][0].format(**keys)
     scene.flight.env.place(np.ones(1, bool), np.array([[0.0, 12.0, 0.0, 0.5, 0.0, 0.0]]))
-    assert challenge.words(scene.flight, controls) == texts.TUTORIAL_RISES.format(**keys)
+    assert challenge.sentence(scene.flight, controls) == texts.TUTORIAL_RISES.format(**keys)
 
 
 def test_a_lesson_that_is_done_is_heard(open_game: Open, context: Context):
@@ -203,7 +202,7 @@ def test_who_has_tipped_over_is_told_to_turn_before_anything_else(open_game: Ope
     flight, controls = play(driver).flight, driver.app.context.controls
     for tilt, left in ((61, False), (-138, True), (20, None)):
         flight.env.place(np.ones(1, bool), np.array([[0.0, 6.0, 0.0, -4.0, np.radians(tilt), 0.0]]))
-        words = tutorial(driver).words(flight, controls)
+        words = tutorial(driver).sentence(flight, controls)
         turn = {True: Held.LEFT, False: Held.RIGHT}.get(left)
         wanted = texts.TUTORIAL_TURN_FIRST.format(other=controls.word(turn)) if turn else None
         assert words == (wanted or texts.TUTORIAL_TOO_FAST.format(main=controls.word(Held.MAIN))), tilt
@@ -217,7 +216,7 @@ def test_each_lesson_can_be_skipped(open_game: Open, context: Context):
             continue  # who does not hand over has nothing to take back
         assert tutorial(driver).lesson.name == name
         driver.key(pygame.K_n)
-    assert play(driver).challenge is None
+    assert play(driver).challenge.free
     assert saved(driver) == (True, False)  # left out, and not flown
 
 
@@ -239,7 +238,7 @@ def test_it_is_offered_until_it_is_flown_or_left_out(open_game: Open, context: C
     word = next(word for word in driver.form.widgets if word.label == texts.TUTORIAL_LEAVE)
     driver.form.focus(word)
     driver.key(pygame.K_RETURN)
-    assert play(driver).challenge is None
+    assert play(driver).challenge.free
     assert saved(driver) == (True, False)
 
 
@@ -254,7 +253,7 @@ def test_the_words_are_those_of_the_device_and_warn_of_what_is_urgent(open_game:
     controls, challenge = driver.app.context.controls, tutorial(driver)
 
     def words() -> str:
-        return challenge.words(play(driver).flight, controls)
+        return challenge.sentence(play(driver).flight, controls)
 
     assert words().startswith(controls.word(Held.MAIN))
     by_key = words()
@@ -276,6 +275,8 @@ def test_a_device_with_one_sign_for_both_turns_names_it_once(open_game: Open):
     challenge, controls = tutorial(driver), driver.app.context.controls
     flight = play(driver).flight
     assert challenge.lesson.name == "lean"
-    assert challenge.words(flight, controls).startswith(f"{controls.word(Held.LEFT)} or {controls.word(Held.RIGHT)} ")
+    assert challenge.sentence(flight, controls).startswith(
+        f"{controls.word(Held.LEFT)} or {controls.word(Held.RIGHT)} "
+    )
     driver.move((640, 360))
-    assert " or " not in challenge.words(flight, controls).split(".")[0]
+    assert " or " not in challenge.sentence(flight, controls).split(".")[0]

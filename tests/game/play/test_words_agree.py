@@ -19,16 +19,15 @@ from game.flight.logbook import Records
 from game.flight.replay import FlightReplay
 from game.scenes.logbook.replay import ReplayScene
 from game.scenes.logbook.scene import LogbookScene, entry_row
-from game.scenes.play.challenge import FlownMission
+from game.scenes.play.challenge import FlownMission, against
 from game.scenes.play.choices import ChoicesScene
 from game.scenes.play.daily import DailyStart
 from game.scenes.play.missions import MissionsScene
-from game.scenes.play.scene import PlayScene
-from game.scenes.play.starts import against, fly_on
+from game.scenes.play.scene import PlayScene, fly_on
 from game.scenes.play.tutorial import Tutorial
 from game.ui.context import Context
 from tests.support.driver import Driver
-from tests.support.flights import fly_out, kept, play
+from tests.support.flights import challenge_of, fly_out, kept, play
 from tests.support.reading import OnlyFlies, Reading, Weighs, flew, pattern
 
 Open = Callable[..., Driver]
@@ -280,7 +279,7 @@ def test_a_flight_that_is_no_landing_is_told_of_alike_everywhere(
     set_off(reading, way)
     end(reading.driver, outcome)
     if scene == "tutorial":  # which begins again, and says why
-        page, challenge = reading.page(), play(reading.driver).challenge
+        page, challenge = reading.page(), challenge_of(reading.driver)
         assert not page.who
         assert challenge.why in page.words
         return

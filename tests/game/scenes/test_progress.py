@@ -16,7 +16,7 @@ from game.flight.logbook import Records
 from game.flight.progress import Progress
 from game.scenes.menus.menu import MenuScene
 from game.scenes.menus.settings import SettingsScene
-from game.scenes.play.ladder import Ladder
+from game.scenes.play.free import FreeFlight
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
@@ -85,12 +85,12 @@ def test_what_is_flown_since_stays_after_what_comes_back(context: Context):
 
 def test_the_ladder_and_the_days_are_put_away_and_come_back(context: Context):
     context.settings.rung = 4
-    ladder = Ladder(context.settings, [])  # of a flight that is paused meanwhile
+    free = FreeFlight(context.settings)  # a flight that is paused meanwhile
     Days(context.user_dir).note(Attempt("2026-11-20", score=70))
     progress = Progress(context.user_dir, context.settings)
     progress.reset()
     assert (context.settings.rung, dict(Days(context.user_dir).attempts)) == (-1, {})
-    assert ladder.spawn == LADDER.spawn(0)
+    assert free.chosen()[2] == LADDER.spawn(0)
     Days(context.user_dir).note(Attempt("2026-11-22", score=90))
     progress.restore()
     assert context.settings.rung == 4

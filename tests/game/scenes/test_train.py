@@ -124,7 +124,7 @@ def test_start_keeps_what_was_left_if_it_lands_and_puts_anything_else_where_it_c
     start(train)
     train.app.close()
     claim = Library.claim
-    monkeypatch.setattr(Library, "claim", lambda library: replace(claim(library), success=share))
+    monkeypatch.setattr(Library, "claim", lambda library: (left := claim(library)) and replace(left, success=share))
     driver = open_game(TrainScene)
     driver.frames(2)
     library = driver.top.library

@@ -15,7 +15,7 @@ from game.audio.flight_sounds import FlightSound
 from game.drawing.canvas import Canvas
 from game.flight.flight import Flight, Recording
 from game.flight.replay import ReplayedFlight
-from game.scenes.play.sentence import dangers
+from game.scenes.play.words import dangers
 from game.world.camera import View
 from game.world.edges import draw_edges
 from game.world.stage import Stage

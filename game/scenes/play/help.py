@@ -14,12 +14,14 @@ from game.input.controls import Command, translate
 if TYPE_CHECKING:
     from game.drawing.canvas import Canvas, Now
 
-GUARDIAN: Final = "guardian"  # the mode in which help goes by futures
+MODES: Final = ("tolerance", "guardian")
+GUARDIAN: Final = MODES[1]  # in which help goes by futures
 # Assist of each word: a guardian looks so far ahead that it steps in at the last moment, or eight decisions before it.
 HELP: Final = {"off": 0.0, "guard": 0.04, "guide": 0.64}
 OTHER: Final = "other"  # any other place of the dial, or another mode
 _APART: Final = 20.0
 _SHOWN: Final = 120  # steps that the words are seen after a change
+_STEPS: Final = {Command.SLOWER: -1, Command.FASTER: 1}
 
 
 def word_of(settings: Settings) -> str:
@@ -62,20 +64,12 @@ class HelpWords:
             if word != OTHER:
                 self._choose(word)
             return word != OTHER
-        if event.type == pygame.MOUSEWHEEL:
-            self._step(1 if event.y > 0 else -1)
-            return True
         command = translate(event)
-        if command not in (Command.SLOWER, Command.FASTER):
-            return False
-        self._step(1 if command is Command.FASTER else -1)
-        return True
-
-    def _step(self, by: int) -> None:
-        """Choose the nearest word that helps more, or less."""
+        by = (1 if event.y > 0 else -1) if event.type == pygame.MOUSEWHEEL else _STEPS.get(command, 0) if command else 0
         beyond = [word for word, assist in HELP.items() if by * (assist - self._settings.assist) > 0]
-        if beyond:
+        if beyond:  # the nearest word that helps more, or less
             self._choose(beyond[0] if by > 0 else beyond[-1])
+        return bool(by)
 
     def _choose(self, word: str) -> None:
         choose(self._settings, word)
@@ -92,9 +86,9 @@ class HelpWords:
         return found
 
     def _label(self, word: str) -> str:
-        return (
-            texts.SOUND_SHARE.format(percent=round(100 * self._settings.assist)) if word == OTHER else texts.HELP[word]
-        )
+        if word != OTHER:
+            return texts.HELP[word]
+        return texts.SOUND_SHARE.format(percent=round(100 * self._settings.assist))
 
     def draw(self, canvas: Canvas, middle: float, y: float, means: Now) -> None:
         """Draw the words, with a line under the one that is chosen; `means` says what that does now."""

@@ -1,0 +1,211 @@
+"""A pilot, or a pay, in a file of the player's: flown as it is saved.
+
+A file that was saved is tried beside the one that flies, and takes over with its first answer. Where it fails, now or
+later, the last good one flies on.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from ai.environment import Floats, Ints, StepResult
+from ai.files import read_text
+from ai.lander.environment import LanderEnv
+from ai.lander.pilots import COAST
+from ai.lander.rewards import Situation
+from ai.lander.rules import NUM_FEATURES
+from ai.pilots.child import ACT, PAY
+from ai.pilots.process import PilotError, PilotProcess
+
+PATIENCE: Final = 0.05  # seconds for a decision in a flight that somebody watches
+LATE: Final = 3  # decisions in a row that may not take longer
+LOADING: Final = 60.0  # seconds for a file to be loaded: PyTorch takes its time
+FIRST: Final = 2.0  # seconds for the first decision of a file that was saved
+ALONE: Final = 10.0  # seconds for an answer where nobody watches
+LARGEST: Final = 1_000_000  # bytes of a file
+_LOOK: Final = 0.2  # seconds between two looks at the file
+
+
+def begin(path: Path, kind: str = ACT) -> PilotProcess:
+    """Return a process for the file as it is now; raises PilotError for a file that cannot be read."""
+    try:
+        return PilotProcess(path.absolute(), read_text(path, LARGEST), kind)
+    except OSError as error:
+        raise PilotError(f"the file cannot be read: {error.strerror or error}") from error
+    except ValueError as error:
+        raise PilotError("the file is no text in UTF-8") from error
+
+
+def loaded(path: Path, kind: str = ACT) -> PilotProcess:
+    """Return a process that has loaded the file, for work that nobody watches; raises PilotError."""
+    process = begin(path, kind)
+    try:
+        if process.ready(LOADING):
+            return process
+        raise PilotError(f"the file was not loaded after {LOADING:.0f} seconds")
+    except PilotError:
+        process.close()
+        raise
+
+
+class MeasuredPilot:
+    """The pilot in a file as it is now, for measuring: `act` raises PilotError, and waits for its answers."""
+
+    def __init__(self, path: Path) -> None:
+        self._process = loaded(path)
+        self.close = self._process.close
+
+    def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:  # noqa: ARG002
+        """Actions (n,) for observations (n, 9)."""
+        seconds = max(ALONE, PATIENCE * len(observation))
+        actions = self._process.act(observation[:, :NUM_FEATURES], seconds)
+        if actions is None:
+            raise PilotError(f"{len(observation)} decisions took longer than {seconds:.0f} seconds")
+        return actions
+
+
+class OwnPilot:
+    """The pilot in a file, for flights that somebody watches: never raises, and never waits for long.
+
+    Attributes:
+        path: the file.
+        problem: what is wrong with the file as it was saved last; empty while there is nothing.
+        ready: whether a process has answered yet; until then it coasts.
+
+    """
+
+    work = 100_000  # multiplications that a decision may well take the time of, for those who ask for many
+
+    def __init__(self, path: Path, patience: float = PATIENCE, clock: Callable[[], float] = time.monotonic) -> None:
+        self.path, self.problem, self.ready = path, "", False
+        self._patience, self._clock = patience, clock
+        self._flying: PilotProcess | None = None
+        self._before: PilotProcess | None = None  # flew well, and waits in case that the one that flies does not
+        self._next: PilotProcess | None = None  # loads the file that was saved last
+        self._late, self._until, self._looked = 0, 0.0, -_LOOK
+        self._stamp: tuple[int, int] | None = None
+        self._observation: Floats | None = None
+        self.look()
+
+    def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:
+        """Actions (n,) for observations (n, 9): those held, or coasting, where the file gives none."""
+        observation = observation[:, :NUM_FEATURES]
+        self.look()
+        self._take_over(observation)
+        while self._flying:
+            try:
+                actions = self._flying.act(observation, self._patience)
+                self._late = 0 if actions is not None else self._late + 1
+                if self._late == LATE:
+                    longest = f"{1000 * self._patience:.0f} ms"
+                    raise PilotError(f"{LATE} decisions in a row took longer than {longest}: its process was ended")
+            except PilotError as error:
+                self.problem = str(error)
+                if not self._fall_back():
+                    break
+            else:
+                if actions is not None:
+                    return actions
+                break
+        return np.full(len(observation), COAST, np.intp) if held is None or not self._flying else held
+
+    def look(self) -> None:
+        """Look whether the file was saved anew, and load it then; see whether a file that is loading fails."""
+        now = self._clock()
+        if now - self._looked >= _LOOK:
+            self._looked = now
+            if (stamp := _stamp(self.path)) != self._stamp:
+                self._stamp = stamp
+                self._load(now)
+        if self._next:
+            try:
+                if self._next.ready():
+                    self.ready = True
+                elif now > self._until:
+                    raise PilotError("it takes too long to begin: its process was ended")
+            except PilotError as error:
+                self._refuse(error)
+
+    def close(self) -> None:
+        """End its processes."""
+        for process in (self._flying, self._before, self._next):
+            if process:
+                process.close()
+        self._flying = self._before = self._next = None
+
+    def _load(self, now: float) -> None:
+        if self._next:
+            self._next.close()
+            self._next = None
+        try:
+            self._next, self._until = begin(self.path), now + LOADING
+        except PilotError as error:
+            self.problem = str(error)
+
+    def _take_over(self, observation: Floats) -> None:
+        """Let the file that was saved last fly from its first answer on."""
+        try:
+            if self._next is None or not self._next.ready():
+                return
+            if self._next.act(observation, self._patience) is None:
+                self._until = min(self._until, self._clock() + FIRST)
+                return
+        except PilotError as error:
+            self._refuse(error)
+            return
+        if self._before:
+            self._before.close()
+        self._before, self._flying, self._next = self._flying, self._next, None
+        self.problem, self._late = "", 0
+
+    def _refuse(self, error: PilotError) -> None:
+        assert self._next
+        self.problem = str(error)
+        self._next.close()
+        self._next = None
+
+    def _fall_back(self) -> bool:
+        """Return whether another flies now in place of the one that failed; one that only raised stays otherwise."""
+        assert self._flying
+        if self._before or self._late == LATE or self._flying.gone:
+            self._flying.close()
+            self._flying, self._before, self._late = self._before, None, 0
+        else:
+            return False
+        return self._flying is not None
+
+
+def _stamp(path: Path) -> tuple[int, int]:
+    """Return what changes when a file is saved."""
+    try:
+        told = path.stat()
+    except OSError:
+        return 0, 0
+    return told.st_mtime_ns, told.st_size
+
+
+class OwnPay(LanderEnv):
+    """Landers that are paid by a file's `pay`, read as it is at the start; `step` raises PilotError where it fails.
+
+    The parts of the usual pay go on being told beside it.
+    """
+
+    def __init__(self, path: Path, *args: Any, **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        self._process = loaded(path, PAY)
+        self.close = self._process.close
+
+    def step(self, actions: Any) -> StepResult:
+        """Fly one decision."""
+        before = Situation.of(self)
+        result = super().step(actions)
+        pay = self._process.pay(before, Situation.of(self), ALONE)
+        if pay is None:
+            raise PilotError(f"pay took longer than {ALONE:.0f} seconds")
+        return replace(result, reward=pay.astype(np.float32))

@@ -1,0 +1,79 @@
+"""The files of a player: pilots and pays, each kind in a folder of its own, and how pilots were measured over time."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from threading import Thread
+from typing import Annotated, Final
+
+from ai.files import Share, Sized, Within, append_line, free_path, read_lines, read_text, write_text
+from ai.pilots.child import ACT, PAY
+
+TEMPLATES: Final = Path(__file__).parents[2] / "assets" / "pilots"
+_FOLDERS: Final = {ACT: "pilots", PAY: "pays"}
+_NAMES: Final = {ACT: "pilot", PAY: "pay"}
+_SUFFIX: Final = ".py"
+_LARGEST: Final = 1_000_000  # last bytes of the measurements that are read
+_LONGEST: Final = 255
+
+_Figure = Annotated[float, Within(0, 1e9)]
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What came of a pilot's flights from the same starts; seconds and fuel are those of the landings."""
+
+    name: Annotated[str, Sized(_LONGEST)]
+    landed: Share
+    seconds: _Figure = 0.0
+    fuel: _Figure = 0.0
+    when: Annotated[float, Within(0, 32_503_680_000 - 1)] = 0.0  # seconds since 1970
+
+
+class Shelf:
+    """The player's files of one kind, `ACT` or `PAY`. Nothing in them runs before it is asked for by name."""
+
+    def __init__(self, user_dir: Path, kind: str = ACT) -> None:
+        self.kind, self.folder = kind, user_dir / _FOLDERS[kind]
+        self._measured = self.folder / "measured.jsonl"
+
+    def files(self) -> dict[str, Path]:
+        """Return the files by name; raises OSError for a folder that cannot be read."""
+        try:
+            found = sorted(self.folder.iterdir(), key=lambda path: path.stem)
+        except FileNotFoundError:
+            return {}
+        return {path.stem: path for path in found if path.suffix == _SUFFIX and path.is_file()}
+
+    def new(self) -> Path:
+        """Write the template under a name that is free; return its path. Raises OSError."""
+        name = _NAMES[self.kind]
+        path = free_path(self.folder, name, _SUFFIX)
+        write_text(path, read_text(TEMPLATES / f"{name}{_SUFFIX}"))
+        return path
+
+    def keep(self, measured: Measured) -> None:
+        """Write down how a pilot was measured; raises OSError."""
+        append_line(self._measured, asdict(measured))
+
+    def measured(self) -> list[Measured]:
+        """Return all measurements, the latest last; raises OSError. Lines that make no sense are passed over."""
+        try:
+            return read_lines(Measured, self._measured, _LARGEST)[0]
+        except FileNotFoundError:
+            return []
+
+
+def edit(path: Path) -> None:
+    """Open a file in the system's editor; raises OSError if there is none. It never runs the file."""
+    if sys.platform == "win32":
+        os.startfile(path, "edit")  # "open" would run it
+        return
+    command = ["open", "-t"] if sys.platform == "darwin" else ["xdg-open"]
+    void = subprocess.DEVNULL
+    editor = subprocess.Popen([*command, str(path)], stdin=void, stdout=void, stderr=void, start_new_session=True)
+    Thread(target=editor.wait, daemon=True).start()

@@ -1,0 +1,86 @@
+"""Pilots of the player's own in the game: measured beside those that come with it, in a worker."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Generator
+from contextlib import closing
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from ai.lander.environment import LanderEnv, Outcome
+from ai.lander.pilots import Pilot
+from ai.pilots.own import MeasuredPilot, OwnPilot
+from ai.pilots.shelf import Measured, Shelf
+from ai.training.tasks import FlightSums, flown
+from game.flight import networks
+from game.flight.flight_file import Entry
+
+if TYPE_CHECKING:
+    from game.ui.context import Context
+
+STARTS: Final = 1000
+_SEED: Final = 2_000_003  # of the starts that all are measured from
+RIVALS: Final = ("modern", "classic", networks.SCRIPTED)
+_MARK: Final = "/"  # before a rival's name: no file's name has it
+
+
+def take(context: Context, path: Path) -> None:
+    """Let a file be the player's pilot from now on, as they have chosen it by name."""
+    if context.pilot:
+        context.pilot.close()
+    context.pilot = OwnPilot(path)
+
+
+def measure(user_dir: Path, models_dir: Path, path: Path) -> Generator[list[Any], None, None]:
+    """Measure a file's pilot, then those rivals that never were, and write it down; a generator for a worker.
+
+    Yields lists of messages: how much of a pilot's flights is over, 0 to 1, and each `Measured`. Raises PilotError for
+    what is wrong with the file, OSError for what cannot be written.
+    """
+    shelf = Shelf(user_dir)
+    known = {each.name for each in shelf.measured() if each.name.startswith(_MARK)}
+    with closing(MeasuredPilot(path)) as own:
+        yield from _measured(shelf, path.stem, own)
+    policies = networks.Policies(models_dir, user_dir)
+    for name in RIVALS:
+        if _MARK + name not in known and name in policies.names and (policy := policies[name].policy):
+            yield from _measured(shelf, _MARK + name, policy)
+
+
+def rivals(measured: list[Measured]) -> dict[str, Measured]:
+    """Return the latest measurements of the rivals, by their names."""
+    return {each.name.removeprefix(_MARK): each for each in measured if each.name.startswith(_MARK)}
+
+
+def own(measured: list[Measured]) -> list[Measured]:
+    """Return the measurements of the player's own pilots, the latest first."""
+    return [each for each in reversed(measured) if not each.name.startswith(_MARK)]
+
+
+def by_hand(entries: list[Entry]) -> tuple[Measured, int] | None:
+    """Return how the player's own free flights came out, and of how many; None before the first."""
+    flown = [entry for entry in entries if entry.alone and not entry.course][-STARTS:]
+    landings = [entry for entry in flown if entry.outcome == Outcome.LANDED.name]
+    if not flown:
+        return None
+    many = max(1, len(landings))
+    seconds, fuel = (sum(getattr(entry, name) for entry in landings) / many for name in ("seconds", "fuel"))
+    return Measured("", len(landings) / len(flown), seconds, fuel), len(flown)
+
+
+def _measured(shelf: Shelf, name: str, pilot: Pilot) -> Generator[list[Any], None, None]:
+    env = LanderEnv(STARTS, _SEED)
+    env.reset()
+    trial = flown(pilot, env)
+    sums: FlightSums | None = None
+    while sums is None:
+        try:
+            next(trial)
+            yield [float((env.outcome != Outcome.FLYING).mean())]
+        except StopIteration as done:
+            sums = done.value
+    score = sums.evaluation()
+    told = Measured(name, score.success, score.mean_time or 0.0, score.mean_fuel or 0.0, round(time.time(), 3))
+    shelf.keep(told)
+    yield [told]

@@ -1,0 +1,92 @@
+"""What a co-pilot has changed in one flight: the sentence, the lamp, and where it stepped in."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from ai.environment import Doubles
+from ai.lander.environment import ACTION_NAMES, Outcome
+from ai.lander.pilots import COAST
+from game.core import texts
+from game.drawing.tokens import HUMAN, NET
+from game.flight.flight import Flight, StickHolder
+from game.panels.readouts import Lamp
+from game.scenes.play.words import changed_by, is_late
+
+if TYPE_CHECKING:
+    from ai.copilot.copilot import SharedDecision
+
+_LASTS: Final = 75  # steps that a message stays after the last override: long enough to be read
+_FADES: Final = 14  # steps that the lamp shows it
+_CALM: Final = 60  # steps without a change after which another one counts anew
+_LATE: Final = 3  # decisions in a row that come too late, from which on that is said
+
+
+class Interventions:
+    """Interventions in one flight; call `follow` once after every step.
+
+    Attributes:
+        moments: where the co-pilot stepped in, positions (2,); changes within a second of each other are the same one.
+        throughout: assist of the guardian by futures that watched over every step alike, 0 to 1; 0 if there was none.
+
+    """
+
+    def __init__(self) -> None:
+        self.moments: list[Doubles] = []
+        self.throughout = -1.0  # before the first step
+        self._guarded = False  # whether a guardian by futures watched over a part of the flight
+        self._since, self._calm = _LASTS + _FADES, _CALM
+        self._word = self._said = ""
+        self._decision: SharedDecision | None = None  # the latest
+        self._late = 0  # decisions in a row, up to it, for which a guardian had not looked ahead in time
+
+    def follow(self, flight: Flight) -> None:
+        """Update after a step."""
+        guards, seen = flight.shared and flight.guarded, self.word
+        guarded = flight.decision if guards else None
+        assist = guarded.assist if guarded else 0.0
+        self.throughout = assist if self.throughout in (-1.0, assist) else 0.0
+        self._guarded |= guards
+        changed = flight.overridden and (not guards or flight.guard is None or flight.guard.saves)
+        if changed and self._calm >= _CALM:
+            self.moments.append(flight.env.position[0].copy())
+        self._calm = 0 if changed else self._calm + 1
+        self._since = 0 if flight.overridden else self._since + 1
+        if flight.decision is not self._decision:
+            self._decision = flight.decision
+            self._said = changed_by(guarded) if guarded else ""
+            self._late = self._late + 1 if guarded and is_late(guarded) else 0
+        if flight.overridden and 0 < self._late < _LATE:
+            self._word = seen
+        elif flight.overridden:
+            self._word = self._said or difference(flight.asked, flight.recording.actions[-1])
+        elif self._said:
+            self._word, self._since = self._said, min(self._since, _FADES + 1)
+
+    @property
+    def word(self) -> str:
+        """What the co-pilot has just changed, in one sentence; empty once that is long enough ago to have been read."""
+        return self._word if self._since < _LASTS else ""
+
+    def watched(self, flight: Flight) -> bool:
+        """Whether a guardian watched over a flight to its landing, and can tell how often it saved it.
+
+        It cannot if something else was flown only because answers came late: nobody knows whether that was needed.
+        """
+        late = flight.guard.late if flight.guard else 0
+        return self._guarded and flight.outcome is Outcome.LANDED and not (late and not self.moments)
+
+    def lamp(self, flight: Flight) -> Lamp:
+        """Return shape, colour and glow: disc for who has the stick, ring for hands off, diamond for an override."""
+        if flight.hand is StickHolder.NETWORK:
+            return "circle", NET, 0.8
+        if self._since < _FADES:
+            return "diamond", NET, 1.6
+        if flight.shared and flight.flown_by is StickHolder.NETWORK and flight.asked == COAST and not flight.guarded:
+            return "ring", NET, 0.5
+        return "circle", HUMAN, 0.8
+
+
+def difference(asked: int, flown: int) -> str:
+    """Say what is flown in place of what was asked for."""
+    return texts.OVERRIDE.format(flown=texts.said(ACTION_NAMES[flown]), asked=texts.said(ACTION_NAMES[asked]))

@@ -1,0 +1,213 @@
+"""Words of a flight: its one sentence, the dangers around it, and what a co-pilot has changed, and why."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from ai.lander.environment import ACTION_NAMES, PARAMS, LanderEnv, Outcome
+from ai.lander.pilots import COAST
+from ai.lander.sensing import near_edges
+from game.core import texts
+from game.flight.credit import Credit
+from game.flight.flight import Flight, StickHolder
+from game.flight.outcomes import TIPPED
+from game.input.bindings import Command, Held
+from game.input.controls import Controls
+from game.panels.landings import Landing, Landings
+from game.panels.readouts import LITTLE_FUEL, LITTLE_TIME
+
+if TYPE_CHECKING:
+    from ai.copilot.copilot import CoPilot, SharedDecision
+    from game.flight.last_chance import LastChance
+
+Why = tuple[str, str, str]  # a title, and two lines
+_SOON: Final = 3.0  # seconds ahead that a failure is announced
+_MARGIN: Final = 2.0, 1.4  # metres, and shares of the braking distance, within which braking is urgent
+_AHEAD: Final = 0.9  # seconds of look-ahead for stopping a turn
+_TOP: Final = 3.5  # metres below the top of the area, within which to release the engine
+_LEAST_LOSS: Final = 0.05  # points below the best that are called so
+
+
+# What the pilot must know
+
+
+def sentence(flight: Flight, credit: Credit, changed: str, controls: Controls) -> tuple[str, bool]:
+    """Return the one sentence of a flight, and whether it is a warning; `changed` is what help has just changed."""
+    if flight.over:
+        return "", False
+    by_hand = flight.hand is StickHolder.HUMAN
+    if by_hand and not flight.safe and (words := urgent(flight.env)):
+        other = Held.RIGHT if turned(flight.env) > 0 else Held.LEFT
+        return words.format(main=controls.word(Held.MAIN), other=controls.word(other)), True
+    if changed:
+        return changed, False
+    if words := next(dangers(flight.env), ""):
+        return words, True
+    if not by_hand:
+        return texts.NETWORK_FLIES_BACK.format(key=controls.word(Command.HANDOVER)), False
+    return credit.header, False
+
+
+def turned(env: LanderEnv) -> float:
+    """Return the predicted angle of the craft, counter-clockwise in rad, far enough ahead to stop a turn in time."""
+    return float(env.angle[0] + _AHEAD * env.angular_velocity[0])
+
+
+def falls_too_fast(env: LanderEnv) -> bool:
+    """Return whether the craft must brake now to land softly."""
+    descent, allowed = -float(env.velocity[0, 1]), env.limits.touch_speed
+    if descent < allowed or env.outcome[0] != Outcome.FLYING:
+        return False
+    braking = env.params.main_thrust / env.params.mass - env.params.gravity
+    way = (descent**2 - allowed**2) / (2 * braking)
+    return bool(env.altitude[0] < _MARGIN[0] + _MARGIN[1] * way)
+
+
+def leaves_at_the_top(env: LanderEnv) -> bool:
+    """Return whether the craft must stop firing now, or it leaves the area at its invisible top."""
+    rise, gravity = float(env.velocity[0, 1]), env.params.gravity
+    room = env.limits.ceiling - _TOP - float(env.position[0, 1])
+    return rise > 0 and rise**2 / (2 * gravity) > room and env.outcome[0] == Outcome.FLYING
+
+
+def urgent(env: LanderEnv) -> str:
+    """Return what a pilot must do at once, with braces for the keys; empty if nothing, or if it is being done."""
+    fires = bool(env.actions[0] >= 3)
+    if falls_too_fast(env):
+        if env.tilt[0] > TIPPED:
+            return texts.TUTORIAL_TURN_FIRST
+        return "" if fires else texts.TUTORIAL_TOO_FAST
+    return texts.TUTORIAL_TOO_HIGH if fires and leaves_at_the_top(env) else ""
+
+
+def dangers(env: LanderEnv) -> Iterator[str]:
+    """Yield what is about to go wrong around the craft, the most urgent first."""
+    time, conditions = float(env.time[0]), env.conditions
+    start, end = conditions.outage
+    if start <= time < end:
+        yield texts.ENGINE_DEAD.format(seconds=end - time)
+    words = {"above": texts.EDGE_ABOVE, "left": texts.EDGE_LEFT, "right": texts.EDGE_RIGHT}
+    ahead = [words[edge.side].format(metres=math.ceil(edge.away)) for edge in near_edges(env) if edge.ahead]
+    if ahead:
+        yield texts.EDGE_ENDS.format(where=texts.AND.join(ahead))
+    if 0 < start - time < _SOON:
+        yield texts.ENGINE_FAILS.format(seconds=start - time)
+    left = conditions.tank - float(env.fuel[0])
+    if left <= 0:
+        yield texts.TANK_EMPTY
+    elif left < LITTLE_FUEL * conditions.tank:
+        yield texts.TANK_LOW.format(seconds=left)
+    if env.limits.time - time < LITTLE_TIME:
+        yield texts.TIME_SHORT.format(seconds=max(0.0, env.limits.time - time))
+
+
+def surroundings(env: LanderEnv) -> Iterator[str]:
+    """Yield what differs in this flight from one on the moon, for a craft that waits."""
+    params, conditions, time = env.params, env.conditions, float(env.time[0])
+    if params.gravity != PARAMS.gravity:
+        yield texts.GRAVITY.format(times=params.gravity / PARAMS.gravity)
+    if conditions.moves:
+        speed = float(env.pad_velocity[0])
+        yield (texts.PAD_RIGHT if speed > 0 else texts.PAD_LEFT).format(speed=abs(speed))
+    start, _ = conditions.outage
+    if _SOON <= start - time < math.inf:
+        yield texts.ENGINE_FAILS.format(seconds=start - time)
+    yield from dangers(env)
+
+
+# What a co-pilot does
+
+
+def dial_words(assist: float, copilot: CoPilot | None, problem: str = "") -> str:
+    """Say when a guardian at that assist, 0 to 1, steps in; empty for a co-pilot of another kind.
+
+    `problem` says why it goes by points of reward, if it does.
+    """
+    from ai.copilot.copilot import Mode, guardian_margin
+    from ai.copilot.futures import DECISION_STEPS
+    from ai.copilot.guardian import decisions_of
+    from engine import DT
+
+    if copilot is None or copilot.mode is not Mode.GUARDIAN:
+        return ""
+    if assist == 0:
+        return texts.DIAL_NEVER
+    if problem:
+        by_points = texts.DIAL_BY_POINTS.format(margin=float(guardian_margin(assist)))
+        return f"{texts.GUARDIAN_BY_VALUES.format(problem=problem)} {by_points}"
+    return texts.DIAL_LOOKS_AHEAD.format(seconds=f"{decisions_of(assist) * DECISION_STEPS * DT:.1f}")
+
+
+def changed_by(decision: SharedDecision) -> str:
+    """Say in one sentence what a guardian has just changed; empty where it has changed nothing."""
+    landings = Landings.of(decision)
+    if not decision.overridden[0]:
+        return texts.GUARDIAN_LOST if landings.lost and Landing.UNKNOWN not in landings.after else ""
+    action, after = landings.asked
+    name, seconds = texts.said(ACTION_NAMES[action]), f"{landings.seconds:.1f}"
+    return texts.GUARDIAN_SAVED[after.value].format(asked=name, seconds=seconds)
+
+
+def is_late(decision: SharedDecision) -> bool:
+    """Whether a guardian has changed what was asked for because that had not been flown ahead in time."""
+    return bool(decision.overridden[0]) and Landings.of(decision).asked[1] is Landing.UNKNOWN
+
+
+def why_not_saved(flight: Flight, last_chance: LastChance | None) -> str:
+    """Say of a helped flight that was lost why it was not saved, and what would have."""
+    from ai.copilot.copilot import Mode
+
+    guard, copilot = flight.guard, flight.copilot
+    words = ""
+    if guard and guard.bare:
+        since, why = guard.bare
+        words = texts.GUARDIAN_BARE[why].format(since=f"{since:.1f}")
+    elif copilot and copilot.mode is Mode.TOLERANCE:
+        words = texts.NOT_SAVED_TOLERANCE
+    elif copilot and (guard is None or guard.ahead.problem):
+        words = texts.NOT_SAVED_BY_VALUES
+    if last_chance is None or not words:
+        return words
+    told = texts.LAST_CHANCE if last_chance.seconds is not None else texts.LAST_CHANCE_NONE
+    return f"{words} {told.format(seconds=f'{last_chance.seconds or 0.0:.1f}')}"
+
+
+def why_by_futures(decision: SharedDecision, landings: Landings) -> Why:
+    """Explain whose action a guardian flies, by the futures that decided it."""
+    from ai.copilot.guardian import ActionSource
+
+    source = ActionSource(int(decision.source[0]))
+    action, after = landings.asked
+    if source is not ActionSource.PILOT:
+        key = f"changed_{after.value}"
+    elif decision.held is not None and decision.held[0]:
+        key = "passes"
+    else:
+        key = "looking" if Landing.UNKNOWN in landings.after else "none"
+    asked, flown = (texts.said(ACTION_NAMES[each]) for each in (action, landings.flown))
+    words = {"asked": asked.capitalize(), "flown": flown.capitalize(), "seconds": f"{landings.seconds:.1f}"}
+    first, second = (line.format(**words) for line in texts.GUARDIAN_WHY[key])
+    return texts.COPILOT_PANEL_WHY[source.name], first, second
+
+
+def why_by_values(decision: SharedDecision, pad: int) -> Why:
+    """Explain whose action is flown by the values for one of the pads, which decided it."""
+    from ai.copilot.guardian import ActionSource
+
+    source, asked = ActionSource(int(decision.source[0])), int(decision.pilot[0])
+    title = texts.COPILOT_PANEL_WHY[source.name]
+    points = decision.points[0, pad]
+    if not np.isfinite(points).all():
+        return title, *texts.VALUES_DAMAGED
+    if asked == COAST:
+        return title, *texts.COPILOT_PANEL_HANDS_OFF
+    loss = float(points.max() - points[asked])
+    name = texts.said(ACTION_NAMES[asked]).capitalize()
+    told = texts.COPILOT_PANEL_BELOW if loss >= _LEAST_LOSS else texts.COPILOT_PANEL_SAME
+    flown = texts.COPILOT_PANEL_ENOUGH if source is ActionSource.PILOT else texts.COPILOT_PANEL_CHANGED
+    action = texts.said(ACTION_NAMES[int(decision.action[0])])
+    return title, told.format(asked=name, loss=f"{loss:.1f}"), flown.format(flown=action)

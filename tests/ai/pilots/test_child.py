@@ -1,0 +1,101 @@
+"""What the process of a player's file makes of it, asked without a process."""
+
+import io
+
+import numpy as np
+import pytest
+
+from ai.lander.environment import LanderEnv
+from ai.lander.rewards import REWARDS, Situation
+from ai.pilots.child import ACT, LONGEST, PAY, load, problem, read_block, write_block
+from ai.pilots.shelf import TEMPLATES
+
+PATH = "/pilots/pilot.py"
+OBSERVATIONS = np.zeros((3, 9), np.float32)
+RAISING = """
+def far(o):
+    return o[9]
+
+def act(observation):
+    return far(observation)
+"""
+
+# What stands in a file, and what is said of it.
+WRONG = {
+    "def act(o)\n    return 0": "1 SyntaxError: expected ':'",
+    "\nimport nowhere": "2 ModuleNotFoundError: No module named 'nowhere'",
+    "x = 1": "0 there is no function act in it",
+    "act = 3": "0 there is no function act in it",
+    "exit()": "1 SystemExit",
+    RAISING: "3 IndexError: index 9 is out of bounds for axis 0 with size 9",
+    "def act(o): return 6": "0 act must return a whole number from 0 to 5, and returned 6",
+    "def act(o): return -1": "0 act must return a whole number from 0 to 5, and returned -1",
+    "def act(o): return 2.0": "0 act must return a whole number from 0 to 5, and returned 2.0",
+    "def act(o): return True": "0 act must return a whole number from 0 to 5, and returned True",
+    "def act(o): pass": "0 act must return a whole number from 0 to 5, and returned None",
+    "def act(o): return float('nan')": "0 act must return a whole number from 0 to 5, and returned nan",
+    "def act(o): return [1, [2]]": "0 act must return a whole number from 0 to 5, and returned [1, [2]]",
+    "def act_many(o): return [0, 1]": "0 act_many must return 3 whole numbers from 0 to 5, and returned [0, 1]",
+}
+
+
+def told(source: str, kind: str = ACT, question: bytes = OBSERVATIONS.tobytes()) -> str:
+    try:
+        load(kind, PATH, source)(question)
+    except BaseException as error:
+        return problem(error, PATH)
+    return ""
+
+
+def test_what_is_wrong_with_a_file_is_told_with_its_line(subtests):
+    for source, words in WRONG.items():
+        with subtests.test(source):
+            assert told(source).startswith(words)
+
+
+def test_what_a_file_raises_may_be_of_any_length_and_kind():
+    assert len(told("raise ValueError('x\\n' * 10_000)")) < 400
+    assert told("class Odd(Exception):\n    def __str__(self): return 'a\\nb'\nraise Odd") == "3 Odd: a b"
+
+
+def test_act_and_act_many_answer_row_by_row_and_may_change_what_they_get():
+    rows = np.arange(27, dtype=np.float32).reshape(3, 9)
+    one = load(ACT, PATH, "def act(o):\n    o += 1\n    return int(o[0]) % 6")(rows.tobytes())
+    many = load(ACT, PATH, "def act_many(o):\n    o += 1\n    return o[:, 0].astype(int) % 6")(rows.tobytes())
+    assert one == many == bytes([1, 4, 1])
+
+
+def test_the_template_of_a_pay_is_the_usual_pay():
+    pay = load(PAY, PATH, (TEMPLATES / "pay.py").read_text())
+    env, rng = LanderEnv(64, 3), np.random.default_rng(4)
+    env.reset()
+    ended = 0
+    for _ in range(150):
+        before = Situation.of(env)
+        result = env.step(rng.choice([0, 3, 3, 4, 5], 64))
+        after = Situation.of(env)
+        question = np.array([*vars(before).values(), *vars(after).values()], float)
+        assert np.frombuffer(pay(question.tobytes()), float) == pytest.approx(result.reward, abs=1e-3)
+        ended += int(result.terminated.sum())
+    assert ended
+    assert len(REWARDS) == 9
+
+
+def test_a_pay_that_is_none_is_told(subtests):
+    question = np.zeros((18, 2)).tobytes()
+    for returned in ("None", "1.0", "after.tilt[:1]", "'ab'"):
+        with subtests.test(returned):
+            assert "pay must return 2 finite numbers" in told(
+                f"def pay(before, action, after): return {returned}", PAY, question
+            )
+    assert "finite" in told("def pay(b, a, after): return after.tilt + float('nan')", PAY, question)
+
+
+def test_blocks_are_bounded():
+    stream = io.BytesIO()
+    for block in (b"", b"a\x01", b"x" * 1000):
+        write_block(stream, block)
+    stream.seek(0)
+    assert [read_block(stream) for _ in range(4)] == [b"", b"a\x01", b"x" * 1000, None]
+    assert read_block(io.BytesIO((LONGEST + 1).to_bytes(4, "little") + b"abc")) is None
+    assert read_block(io.BytesIO(b"\x09\0\0\0abc")) is None  # cut short

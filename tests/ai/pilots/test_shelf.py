@@ -1,0 +1,90 @@
+"""The player's folder: new files, measurements, and the editor."""
+
+import errno
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from ai.files import writing
+from ai.pilots import shelf
+from ai.pilots.child import ACT, PAY, load
+from ai.pilots.own import MeasuredPilot
+from ai.pilots.shelf import TEMPLATES, Measured, Shelf
+from ai.training.tasks import evaluate
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
+
+
+def test_new_files_lie_beside_each_other_and_are_never_overwritten(tmp_path: Path):
+    for kind, names in ((ACT, ["pilot", "pilot 2"]), (PAY, ["pay", "pay 2"])):
+        files = Shelf(tmp_path, kind)
+        assert files.files() == {}
+        first = files.new()
+        first.write_text("mine")
+        files.new()
+        assert list(files.files()) == names
+        assert first.read_text() == "mine"
+        load(kind, "pilot.py", files.files()[names[1]].read_text())
+
+
+def test_a_full_disk_leaves_no_half_of_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    def full(path: Path) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(writing, "synchronise", full)
+    with pytest.raises(OSError, match="space"):
+        Shelf(tmp_path).new()
+    assert Shelf(tmp_path).files() == {}
+    assert not list((tmp_path / "pilots").iterdir())
+
+
+def test_measurements_are_kept_in_their_order_whatever_else_is_in_the_file(tmp_path: Path):
+    files = Shelf(tmp_path)
+    assert files.measured() == []
+    told = [Measured("pilot", 0.25, 7.5, 3.0, 1e9), Measured("pilot", 0.9, 8.0, 2.5, 1e9 + 1)]
+    files.keep(told[0])
+    with (tmp_path / "pilots" / "measured.jsonl").open("a") as file:
+        file.write('{"name": 3}\nnonsense\n{"name": "x", "landed": 7}\n')
+    files.keep(told[1])
+    assert files.measured() == told
+
+
+def test_an_editor_is_opened_on_the_file_and_none_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    called = []
+
+    class Opened:
+        def __init__(self, command, **_):
+            called.append(command)
+
+        def wait(self):
+            pass
+
+    monkeypatch.setattr(sys, "platform", "linux")
+    monkeypatch.setattr(subprocess, "Popen", Opened)
+    shelf.edit(tmp_path / "pilot.py")
+    assert called == [["xdg-open", str(tmp_path / "pilot.py")]]
+    monkeypatch.undo()
+    monkeypatch.setattr(sys, "platform", "linux")
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(OSError, match="xdg-open"):
+        shelf.edit(tmp_path / "pilot.py")
+
+
+@pytest.mark.parametrize(
+    ("path", "aim", "least", "most"),
+    [
+        (TEMPLATES / "pilot.py", "0.0", 0.1, 0.4),
+        (TEMPLATES / "pilot.py", "-0.3 * offset(observation)", 0.85, 1.0),  # what it asks for
+        (EXAMPLES / "pilot_by_hand.py", "0.0", 0.95, 1.0),
+    ],
+)
+def test_the_template_nearly_lands_and_the_example_does(
+    tmp_path: Path, path: Path, aim: str, least: float, most: float
+):
+    (tmp_path / "pilot.py").write_text(path.read_text().replace("aim = 0.0", f"aim = {aim}"))
+    pilot = MeasuredPilot(tmp_path / "pilot.py")
+    score = evaluate(pilot, 100, 7)
+    pilot.close()
+    assert least <= score.success <= most

@@ -1,0 +1,140 @@
+"""The player's own pilots in the game: made, edited, measured and flown in Watch as they are saved."""
+
+import errno
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.pilots import shelf
+from ai.pilots.own import OwnPilot
+from game.core import texts
+from game.flight import own
+from game.scenes.watch import pilots
+from game.scenes.watch.pilots import PilotsScene
+from game.scenes.watch.scene import WatchScene
+from game.ui.context import Context
+from tests.support.driver import Driver
+from tests.support.inline_worker import InlineWorker
+
+Open = Callable[..., Driver]
+GOOD = "def act(o):\n    return 4"
+
+
+@pytest.fixture
+def edited(monkeypatch: pytest.MonkeyPatch) -> list[Path]:
+    """The files that the editor was opened on."""
+    opened: list[Path] = []
+    monkeypatch.setattr(pilots, "edit", opened.append)
+    return opened
+
+
+@pytest.fixture
+def watching(open_game: Open, context: Context, tmp_path: Path) -> Driver:
+    context.models_dir = tmp_path / "models"  # only the scripted pilot is here
+    return open_game(WatchScene, seed=2)
+
+
+def scene(driver: Driver) -> WatchScene:
+    assert isinstance(driver.top, WatchScene)
+    return driver.top
+
+
+def test_from_watch_to_a_new_pilot_that_flies_as_it_is_saved(watching: Driver, context: Context, edited: list[Path]):
+    watching.key(pygame.K_o)
+    assert isinstance(watching.top, PilotsScene)
+    watching.press_on(texts.PILOTS_WORDS["act"][2])
+    [path] = edited
+    assert path == context.user_dir / "pilots" / "pilot.py"
+    path.write_text(GOOD)
+    watching.press_on(texts.PILOTS_WORDS["act"][3])
+    watch = scene(watching)
+    watching.wait(lambda: watch.network.name == "pilot.py")
+    pilot = watch.network.policy
+    assert isinstance(pilot, OwnPilot)
+    pilot._patience = 60.0
+    assert watch.decision.action[0] == 4
+    assert texts.WATCH_OWN.format(name="pilot.py") == watch._said
+    assert context.settings.model != "pilot.py"  # the next game asks again
+    path.write_text("def act(o):\n    return 1 / 0 if o[1] < 99 else 0")
+    watching.wait(lambda: pilot.problem)
+    assert pilot.problem == "line 2: ZeroDivisionError: division by zero"
+    assert watch.decision.action[0] == 4
+    watching.key(pygame.K_m)
+    watching.frames(5)
+    assert watch.swarm.landed == 0
+
+
+def test_a_file_that_cannot_be_loaded_leaves_the_last_pilot_flying(watching: Driver, context: Context):
+    shelf.Shelf(context.user_dir).new().write_text("def act(:")
+    watching.key(pygame.K_o)
+    watching.press_on(texts.PILOTS_WORDS["act"][3])
+    watch = scene(watching)
+    watching.wait(lambda: "SyntaxError" in watch._problem())
+    assert watch.network.name == "scripted"
+    assert watch._problem().startswith("pilot.py: line 1: SyntaxError")
+
+
+def test_no_file_flies_before_it_was_chosen_in_this_game(open_game: Open, context: Context):
+    shelf.Shelf(context.user_dir).new()
+    context.settings.model = "pilot.py"
+    driver = open_game(WatchScene, seed=2)
+    assert "pilot.py" not in scene(driver).policies.names
+    assert context.pilot is None
+
+
+@pytest.mark.parametrize("fails", ["editor", "disk"])
+def test_what_goes_wrong_with_a_new_file_is_told(
+    watching: Driver, context: Context, monkeypatch: pytest.MonkeyPatch, written: list[str], fails: str
+):
+    def refuse(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left")
+
+    monkeypatch.setattr(*((pilots, "edit") if fails == "editor" else (shelf, "write_text")), refuse)
+    watching.key(pygame.K_o)
+    watching.press_on(texts.PILOTS_WORDS["act"][2])
+    folder = context.user_dir / "pilots"
+    told = watching.top._said
+    if fails == "editor":
+        assert told == texts.PILOTS_NO_EDITOR.format(path=folder / "pilot.py")
+    else:
+        assert told == texts.PILOTS_NOT_WRITTEN.format(path=folder, reason="No space left")
+        assert not watching.top._files
+
+
+def test_it_is_measured_beside_the_others_and_kept(watching: Driver, context: Context, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(own, "STARTS", 20)
+    monkeypatch.setattr(pilots, "Worker", InlineWorker)
+    shelf.Shelf(context.user_dir).new()
+    watching.key(pygame.K_o)
+    for _ in range(2):
+        watching.press_on(texts.PILOTS_MEASURE)
+        watching.wait(lambda: watching.top._worker is None)
+    measured = shelf.Shelf(context.user_dir).measured()
+    assert [each.name for each in measured] == ["pilot", "/scripted", "pilot"]  # the rival once
+    assert measured[0].landed == measured[2].landed <= 0.8 < own.rivals(measured)["scripted"].landed
+    assert [each.name for each in own.own(measured)] == ["pilot", "pilot"]
+    watching.frames(2)
+
+
+def test_what_is_wrong_with_a_measured_file_is_told(watching: Driver, context: Context, monkeypatch):
+    monkeypatch.setattr(pilots, "Worker", InlineWorker)
+    shelf.Shelf(context.user_dir).new().write_text("def act(o): return 9")
+    watching.key(pygame.K_o)
+    watching.press_on(texts.PILOTS_MEASURE)
+    watching.wait(lambda: watching.top._worker is None)
+    assert "whole number from 0 to 5" in watching.top._said
+    assert shelf.Shelf(context.user_dir).measured() == []
+
+
+def test_each_key_tells_what_it_did_while_all_stands_still(watching: Driver):
+    watching.key(pygame.K_SPACE)
+    watch = scene(watching)
+    said = {}
+    for key in (pygame.K_PERIOD, pygame.K_q, pygame.K_z, pygame.K_m, pygame.K_n, pygame.K_r, pygame.K_PLUS):
+        watching.key(key)
+        assert watch._told not in said.values(), pygame.key.name(key)
+        said[key] = watch._told
+    assert np.all([said.values()])
