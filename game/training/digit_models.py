@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from ai.digits.checkpoints import TRAINING_FILE, read_summary
 from ai.digits.classifier import DIGITS_FILE, NETWORK
+from ai.digits.training import read_summary
+from ai.run import TRAINING_FILE
 from game.core import texts
 from game.core.collection import Collection, ItemKind
 from game.training.workers import DIGITS

@@ -95,7 +95,7 @@ class Laboratory:
             "came": came_words(self.came, chosen.guess) or early,
             "why": why(self.came, chosen.experiment.sabotage),
             "measured": measured(chosen.experiment.sabotage)
-            if self.came and chosen.experiment.sabotage in CARDS and run.config == PRESETS[MEASURED]
+            if self.came and chosen.experiment.sabotage and run.config == PRESETS[MEASURED]
             else "",
         }
 

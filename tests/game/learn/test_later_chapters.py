@@ -9,9 +9,9 @@ import pytest
 
 from ai.agent.agent import DeepQAgent
 from ai.lander.environment import LanderEnv, Outcome
-from ai.training.checkpoints import AGENTS
 from ai.training.config import Config
 from ai.training.loop import Training
+from ai.training.run import save
 from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.core.scene import Push
@@ -212,7 +212,7 @@ def test_the_list_ticks_what_was_really_done_and_nothing_before(made: Made, cont
     assert race.press() is None  # there is none to race yet
     training = Training(Config(num_envs=4, learning_starts=8, batch_size=8), validation_episodes=2, evaluate_every=0)
     training.advance()
-    AGENTS.save(training, context.user_dir / "models" / "mine", state=False)
+    save(training, context.user_dir / "models" / "mine", state=False)
     assert look(chapter) == {"train"}
     assert "mine" in chapter.why(None)
     context.settings.model = "mine"
