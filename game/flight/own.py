@@ -8,11 +8,12 @@ from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from ai.environment import Doubles
 from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.pilots import Pilot
 from ai.pilots.own import MeasuredPilot, OwnPilot
 from ai.pilots.shelf import Measured, Shelf
-from ai.training.tasks import FlightSums, flown
+from ai.training.tasks import Evaluation, flown
 from game.flight import networks
 from game.flight.flight_file import Entry
 
@@ -73,14 +74,14 @@ def _measured(shelf: Shelf, name: str, pilot: Pilot) -> Generator[list[Any], Non
     env = LanderEnv(STARTS, _SEED)
     env.reset()
     trial = flown(pilot, env)
-    sums: FlightSums | None = None
+    sums: Doubles | None = None
     while sums is None:
         try:
             next(trial)
             yield [float((env.outcome != Outcome.FLYING).mean())]
         except StopIteration as done:
             sums = done.value
-    score = sums.evaluation()
+    score = Evaluation.of(sums)
     told = Measured(name, score.success, score.mean_time or 0.0, score.mean_fuel or 0.0, round(time.time(), 3))
     shelf.keep(told)
     yield [told]
