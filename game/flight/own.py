@@ -8,7 +8,6 @@ from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from ai.environment import Doubles
 from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.pilots import Pilot
 from ai.pilots.own import MeasuredPilot, OwnPilot
@@ -74,14 +73,13 @@ def _measured(shelf: Shelf, name: str, pilot: Pilot) -> Generator[list[Any], Non
     env = LanderEnv(STARTS, _SEED)
     env.reset()
     trial = flown(pilot, env)
-    sums: Doubles | None = None
-    while sums is None:
+    score: Evaluation | None = None
+    while score is None:
         try:
             next(trial)
             yield [float((env.outcome != Outcome.FLYING).mean())]
         except StopIteration as done:
-            sums = done.value
-    score = Evaluation.of(sums)
+            score = Evaluation.of(done.value)
     told = Measured(name, score.success, score.mean_time or 0.0, score.mean_fuel or 0.0, round(time.time(), 3))
     shelf.keep(told)
     yield [told]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Hashable
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import pygame
 
@@ -48,9 +48,6 @@ MORE: Final = "more"  # what a player can open: the words for all else, every ch
 CHARTS: Final = "charts"
 KNOBS: Final = "knobs"
 INSIDE: Final = "inside"
-_SWITCHES: Final = {
-    MORE: texts.TRAIN_MORE, CHARTS: texts.TRAIN_MORE_CHARTS, KNOBS: texts.TRAIN_MORE_KNOBS, INSIDE: texts.TRAIN_LOOK,
-}  # fmt: skip
 
 
 class TrainingScene(FormScene, ABC):
@@ -72,7 +69,6 @@ class TrainingScene(FormScene, ABC):
     """
 
     flows = True
-    titles: ClassVar[tuple[str, str]]  # of the scene, and the name under which a run is saved
     knobs: KnobsPanel
     charts: TrainingCharts
     panel: Panel
@@ -113,6 +109,11 @@ class TrainingScene(FormScene, ABC):
     @abstractmethod
     def _status(self) -> TrainingStatus:
         """What the run has come to."""
+
+    @property
+    @abstractmethod
+    def _suggestion(self) -> str:
+        """Name for the run, after its settings."""
 
     @property
     @abstractmethod
@@ -166,7 +167,9 @@ class TrainingScene(FormScene, ABC):
 
     def switch(self, column: Column, name: str) -> None:
         """Add the word that opens a part, or closes it."""
-        column.button(_SWITCHES[name][self.opened(name)], partial(self.open, name)).pad = 3.0
+        words = {MORE: texts.TRAIN_MORE, CHARTS: texts.TRAIN_MORE_CHARTS, KNOBS: texts.TRAIN_MORE_KNOBS,
+                 INSIDE: texts.TRAIN_LOOK}  # fmt: skip
+        column.button(words[name][self.opened(name)], partial(self.open, name)).pad = 3.0
 
     # Rows
 
@@ -325,7 +328,7 @@ class TrainingScene(FormScene, ABC):
     def _keep(self) -> None:
         runs = self.run.collection
         if self._worth_keeping:
-            name = runs.free_name(self._suggestion if self.run.alive else runs.kind.rescued)
+            name = runs.free_name(self._suggestion if self.run.alive else runs.kind.rescued())
             if problem := self._save_as(name):
                 self.context.note(problem)
 
@@ -340,11 +343,6 @@ class TrainingScene(FormScene, ABC):
 
     def _go_on_with_last(self) -> None:
         self._start(self.knobs.config, self.knobs.seed, self.run.collection.unsaved)
-
-    @property
-    def _suggestion(self) -> str:
-        """Name for the run, after its settings."""
-        return self.titles[1].format(preset=self.knobs.name)
 
     def _save(self) -> Transition | None:
         """Ask for a name to save the run under."""
@@ -395,7 +393,7 @@ class TrainingScene(FormScene, ABC):
 
     def _write_title(self, cursor: Cursor, status: TrainingStatus) -> None:
         head = cursor.in_style(TITLE)
-        head.text(self.titles[0])
+        head.text(status.title)
         cursor.y = head.y
         if status.figure:
             assert self._layout is not None

@@ -58,7 +58,8 @@ class ChartKind(NamedTuple):
         limits: of the vertical axis; None where it follows the numbers.
         log: whether that is logarithmic.
         smooth: whether the curve has noise.
-        second: name and curve of a second one, which is shown of a run that stands alone, and what is said of both.
+        second: a second curve, which is shown of a run that stands alone.
+        words: name of the second one, and what is said of both.
 
     """
 
@@ -67,7 +68,8 @@ class ChartKind(NamedTuple):
     limits: Limits | None = None
     log: bool = False
     smooth: bool = True
-    second: tuple[str, Callable[[History, str], Line], str] | None = None
+    second: Callable[[History, str], Line] | None = None
+    words: Callable[[], tuple[str, str]] = lambda: ("", "")
 
 
 def _column(name: str, times: float = 1.0) -> Callable[[History, str], Line]:
@@ -85,7 +87,9 @@ def _held_out(history: History, _: str) -> Line:
 
 LANDER_CHARTS: Final = {
     "success": ChartKind(_column("success", 100.0), "{:.0f}", (0.0, 100.0)),
-    SCORE: ChartKind(_column(SCORE), "{:.0f}", second=(texts.TRAIN_EXPECTED, _expected, texts.TRAIN_SCORES)),
+    SCORE: ChartKind(
+        _column(SCORE), "{:.0f}", second=_expected, words=lambda: (texts.TRAIN_EXPECTED, texts.TRAIN_SCORES)
+    ),
     "loss": ChartKind(_column("loss"), "{:.3g}", log=True),
     "epsilon": ChartKind(_column("epsilon"), "{:.2f}", (0.0, 1.0), smooth=False),
 }
@@ -95,7 +99,8 @@ DIGIT_CHARTS: Final = {
         _held_out,
         "{:.2f}",
         smooth=False,
-        second=(texts.DIGIT_RUN_BATCHES, _column("accuracy", 100.0), texts.DIGIT_RUN_BOTH),
+        second=_column("accuracy", 100.0),
+        words=lambda: (texts.DIGIT_RUN_BATCHES, texts.DIGIT_RUN_BOTH),
     ),
 }
 
@@ -143,7 +148,7 @@ class Beside:
     """
 
     runs: Sequence[EarlierRun] = ()
-    name: str = texts.TRAIN_THIS
+    name: str = ""
     paid_otherwise: bool = False
     emphasised: int | None = None
 
@@ -205,7 +210,9 @@ class TrainingCharts(Charts):
             self._mark(self.moment)
         if odd or number >= len(self.charts):
             return
-        runs = [each for each in (EarlierRun(beside.name, history, 0), *beside.runs) if len(each.run)]
+        runs = [
+            each for each in (EarlierRun(beside.name or texts.TRAIN_THIS, history, 0), *beside.runs) if len(each.run)
+        ]
         shown = [(each.name, each.style) for each in runs]
         told = (len(history), len(history.validations), shown, beside.emphasised, self.axis, self.zoom.shown,
                 len(history.setting_changes))  # fmt: skip
@@ -224,7 +231,7 @@ class TrainingCharts(Charts):
                 colour = mix(colour, NIGHT0, _DIMMED)
             series.append(Series(*kind.curve(each.run, across), each.name, colour, dash, kind.smooth))
         if kind.second and len(runs) == 1 and len(self._history):
-            series.append(Series(*kind.second[1](self._history, across), kind.second[0], HUMAN, _DASH))
+            series.append(Series(*kind.second(self._history, across), kind.words()[0], HUMAN, _DASH))
             said = f"{self._both(kind)}\n{said}".strip()
         ends = [float(np.max(each.x)) for each in series if np.size(each.x)]
         self.zoom.end = max([_SHORTEST[self.axis], *ends])
@@ -234,10 +241,9 @@ class TrainingCharts(Charts):
 
     def _both(self, kind: ChartKind) -> str:
         """Say what both curves of a chart are, by their latest numbers; empty before there are any."""
-        assert kind.second is not None
-        _, second, words = kind.second
-        latest = [float(line(self._history, AXES[self.axis])[1][-1:].sum()) for line in (kind.curve, second)]
-        return words.format(*latest).replace("-", "−") if all(map(math.isfinite, latest)) else ""
+        curves = (kind.curve, kind.second or kind.curve)
+        latest = [float(curve(self._history, AXES[self.axis])[1][-1:].sum()) for curve in curves]
+        return kind.words()[1].format(*latest).replace("-", "−") if all(map(math.isfinite, latest)) else ""
 
     def _place(self, seconds: float) -> float:
         """Return the place of a moment of the current run on the axis."""

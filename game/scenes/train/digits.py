@@ -26,7 +26,6 @@ from game.scenes.train.knobs import KnobsPanel
 from game.scenes.train.layout import Layout
 from game.scenes.train.status import TrainingStatus, digit_status
 from game.training.digit_models import DigitModels, runs_dir
-from game.training.knob_descriptions import knob_descriptions
 from game.training.run import TrainingRun
 from game.training.run_settings import RunKind
 from game.training.workers import DIGITS
@@ -39,9 +38,9 @@ from game.ui.widget import Widget
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier
 
-_OFFERED: Final = {name: preset for name, preset in DIGIT_PRESETS.items() if name in texts.DIGIT_RUN_PRESETS}
+_OFFERED: Final = {name: preset for name, preset in DIGIT_PRESETS.items() if name in ("classic", "modern")}
 KNOBS: Final = RunKind(
-    tuple(knob_descriptions(DigitConfig)), _OFFERED, texts.DIGIT_RUN_PRESETS, "images",
+    DigitConfig, _OFFERED, lambda: texts.DIGIT_RUN_PRESETS, "images",
     first=("learning_rate", "batch_size", "dropout"),
 )  # fmt: skip
 FALLEN: Final = 0.15  # drop of the accuracy below its best at which a return to the best is offered
@@ -71,8 +70,6 @@ class DigitTrainingScene(TrainingScene):
 
     """
 
-    titles = (texts.DIGIT_RUN_TITLE, texts.DIGIT_RUN_NAME)
-
     def __init__(self, context: Context) -> None:
         self.view = 0
         super().__init__(context, TrainingRun(DIGITS, DigitModels(runs_dir(context.user_dir))))
@@ -98,6 +95,10 @@ class DigitTrainingScene(TrainingScene):
     @property
     def _unfinished(self) -> str:
         return texts.TRAIN_LEFT if self.run.unfinished else ""
+
+    @property
+    def _suggestion(self) -> str:
+        return texts.DIGIT_RUN_NAME.format(preset=self.knobs.name)
 
     @property
     def _fallen(self) -> tuple[float, float] | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import partial
-from typing import Final, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 from ai.training.config import PRESETS, Config
 from ai.training.experiments import (
@@ -28,8 +28,6 @@ from game.training.knob_descriptions import KnobDescription, figure, label
 from game.training.run import TrainingRun
 from game.training.run_settings import LANDER
 from game.ui.panel import Column
-
-_KNOBS: Final = {each.name: each for each in LANDER.knob_descriptions}
 
 
 class Chosen(NamedTuple):
@@ -111,11 +109,11 @@ class Laboratory:
         for name in CARDS:
             word, told = texts.SABOTAGES[name]
             column.button(word, partial(self._ask, name, word), told, colour=INK)
-        for name in self._knobs.first:
-            column.aside(texts.LAB_TURN.format(knob=_KNOBS[name].label))
+        for knob in (each for each in LANDER.knob_descriptions if each.name in self._knobs.first):
+            column.aside(texts.LAB_TURN.format(knob=knob.label))
             column.words([
-                (experiment_word(each, _KNOBS[name]), partial(self._try, each, _KNOBS[name]))
-                for each in experiments(self._knobs.config, name)
+                (experiment_word(each, knob), partial(self._try, each, knob))
+                for each in experiments(self._knobs.config, knob.name)
             ])  # fmt: skip
         column.button(texts.BACK, self.close)
 

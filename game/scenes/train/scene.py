@@ -61,8 +61,6 @@ class TrainScene(TrainingScene):
 
     """
 
-    titles = (texts.TRAIN_TITLE, texts.TRAIN_NAME)
-
     def __init__(self, context: Context, resume: Path | None = None) -> None:
         self.library = Library(context.user_dir)
         super().__init__(context, TrainingRun(LANDERS, self.library))
@@ -183,7 +181,7 @@ class TrainScene(TrainingScene):
         if not shown.runs:
             return
         column.line()
-        for name, style in ((shown.name, 0), *((each.name, each.style) for each in shown.runs)):
+        for name, style in ((shown.name or texts.TRAIN_THIS, 0), *((each.name, each.style) for each in shown.runs)):
             press = partial(take_away, [] if self.run.twin else self.run.earlier, style)
             self._legend.append(column.widget(RunRow(self.form.manager, name, style, press)))
         if not self.run.twin:
@@ -306,8 +304,8 @@ class TrainScene(TrainingScene):
 
     @property
     def _suggestion(self) -> str:
-        taught = self.run.demonstrations > 0
-        return texts.TRAIN_TAUGHT_NAME.format(preset=self.knobs.name) if taught else super()._suggestion
+        name = texts.TRAIN_TAUGHT_NAME if self.run.demonstrations else texts.TRAIN_NAME
+        return name.format(preset=self.knobs.name)
 
     def _teach(self) -> None:
         """Add the player's landings to the run's training as demonstrations, or start a run with them."""

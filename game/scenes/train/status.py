@@ -11,8 +11,9 @@ from game.training.run import TrainingRun
 
 
 class TrainingStatus(NamedTuple):
-    """A line of text, and a figure in percent with what it counts; the figure is empty before it is known."""
+    """Title of the screen, a line of text, and a figure in percent with what it counts, empty before it is known."""
 
+    title: str
     line: str
     figure: str
     words: str
@@ -25,14 +26,16 @@ def lander_status(run: TrainingRun, moment: int | None = None, row: int = -1) ->
     """
     history, swarm_state = run.history, run.swarm_state
     if swarm_state is None or not run.measured:
-        return TrainingStatus(texts.TRAIN_BEGINS if run.alive else texts.TRAIN_LINE, "", texts.TRAIN_LANDED)
+        line = texts.TRAIN_BEGINS if run.alive else texts.TRAIN_LINE
+        return TrainingStatus(texts.TRAIN_TITLE, line, "", texts.TRAIN_LANDED)
     line = texts.TRAIN_FIGURES.format(
         landers=len(swarm_state.outcome),
         seconds=history["seconds"][row],
         count=int(swarm_state.decisions) if moment is None else moment,
     )
     landed = history["success"][row]
-    return TrainingStatus(line, "" if np.isnan(landed) else f"{100 * landed:.0f}", texts.TRAIN_LANDED)
+    figure = "" if np.isnan(landed) else f"{100 * landed:.0f}"
+    return TrainingStatus(texts.TRAIN_TITLE, line, figure, texts.TRAIN_LANDED)
 
 
 def digit_status(run: TrainingRun) -> TrainingStatus:
@@ -50,4 +53,4 @@ def digit_status(run: TrainingRun) -> TrainingStatus:
             read = f"{100 * scores[-1].success:.2f} %" if scores else "–"
             line = texts.DIGIT_RUN_KEPT_BEST.format(epoch=run.kept_epoch, last=read)
         part, words = run.test, texts.DIGIT_RUN_TESTED
-    return TrainingStatus(line, "" if part is None else f"{100 * part:.2f}", words)
+    return TrainingStatus(texts.DIGIT_RUN_TITLE, line, "" if part is None else f"{100 * part:.2f}", words)
