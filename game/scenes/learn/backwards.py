@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import pygame
@@ -17,15 +17,13 @@ from game.core import texts
 from game.core.scene import Route
 from game.digits.kept import classifier_in, mnist_test
 from game.digits.pictures import GREY, SIGNED, picture
+from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import CAPTION, HUMAN, INK, MUTE, NET, SMALL
 from game.panels.figures import decimal, percent
 from game.scenes.learn.chapter import Chapter, Code
-
-if TYPE_CHECKING:
-    from game.drawing.canvas import Canvas
-    from game.ui.context import Context
-    from game.ui.panel import Column
+from game.ui.context import Context
+from game.ui.panel import Column
 
 RATE: Final = 0.01
 SEARCHED: Final = 1000  # test images in which misread ones are looked for
@@ -66,7 +64,6 @@ class BackwardsChapter(Chapter):
         self.restart()
 
     def restart(self) -> None:
-        """Show the first digit again, to the network as it was shipped."""
         self._digit, self.tried = 0, False
         if not self.problem:
             self._begin()
@@ -87,7 +84,6 @@ class BackwardsChapter(Chapter):
         return self.classifier.network
 
     def controls(self, column: Column) -> None:
-        """Add what sends the error back and steps, and what shows another digit."""
         if not self.problem:
             label = texts.LEARN_BACKWARDS_BACK if self.reached < 4 else texts.LEARN_BACKWARDS_STEP
             column.button(label, self.go_on)
@@ -152,7 +148,6 @@ class BackwardsChapter(Chapter):
         ) if self.steps else texts.LEARN_BACKWARDS_AGAIN  # fmt: skip
 
     def code(self) -> Sequence[Code]:
-        """Return the way back through the layers."""
         if self.problem:
             return [Code(NeuralNetwork.backward_propagate)]
         shapes = " ← ".join(str(blame.size) for blame in self.blames[1:])
@@ -165,11 +160,9 @@ class BackwardsChapter(Chapter):
         ]  # fmt: skip
 
     def below(self, column: Column) -> None:
-        """Add what the colours mean, or why there is nothing to show."""
         column.text(lambda: self.problem or texts.LEARN_BACKWARDS_COLOURS[self.reached > 0], size=SMALL, colour=MUTE)
 
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
-        """Draw the digit, the units of both layers and the answers, with the blame as far as it has come."""
         if self.problem:
             return
         for stage, (left, width, columns, rows) in enumerate(_BOXES):

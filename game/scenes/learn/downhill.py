@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import pygame
@@ -14,16 +14,14 @@ from ai.lander.environment import LanderEnv
 from ai.nn import SGD, Adam, Array, CostFunctions, DivergenceError, FullyConnectedLayer, NeuralNetwork, Optimizer
 from game.core import texts
 from game.core.scene import Route
+from game.drawing.canvas import Canvas, Point
 from game.drawing.paint_cache import InPieces, PaintCache, Steps
 from game.drawing.tokens import CAPTION, FAINT, HUMAN, MUTE, NET, SMALL, Colour
 from game.panels.figures import decimal
 from game.scenes.learn.chapter import Chapter, Code
 from game.scenes.learn.pictures import paint_heat
-
-if TYPE_CHECKING:
-    from game.drawing.canvas import Canvas, Point
-    from game.ui.context import Context
-    from game.ui.panel import Column
+from game.ui.context import Context
+from game.ui.panel import Column
 
 RATES: Final = (0.005, 0.5)
 ADAM_RATE: Final = 0.3
@@ -153,7 +151,6 @@ class DownhillChapter(Chapter):
         return heights
 
     def restart(self) -> None:
-        """Forget all tries, and stand at the start with short steps."""
         self.rate, self.valley, self.tried = _FIRST_RATE, False, False
         self.results: dict[str, dict[str, float]] = {}
         self.begin()
@@ -166,7 +163,6 @@ class DownhillChapter(Chapter):
         self._wait = 0
 
     def controls(self, column: Column) -> None:
-        """Add the choice of the picture, the step length, and the way back to the start."""
         column.choice("", texts.LEARN_DOWNHILL_PICTURES, int(self.valley), self.choose)
         low, high = map(math.log10, RATES)
         column.slider(texts.LEARN_DOWNHILL_RATE, math.log10(self.rate), (low, high),
@@ -185,7 +181,6 @@ class DownhillChapter(Chapter):
         self.begin()
 
     def update(self) -> None:
-        """Take a step now and then."""
         self._wait += 1
         if self._wait % _PAUSE[self.valley]:
             return
@@ -215,14 +210,12 @@ class DownhillChapter(Chapter):
         return " ".join(told[kind].format(**self.results[kind]) for kind in KINDS if kind in self.results)
 
     def code(self) -> Sequence[Code]:
-        """Return the step of the optimizers, with this moment's slope."""
         slope = float((self.plain if self.valley else self.line).slopes[0])
         plain = Code(SGD._fill_step, np.multiply, {np.multiply: f"{slope:+.3f} · {self.rate:.3f}"})
         adam = Code(Adam._fill_step, np.divide, {np.divide: texts.LEARN_DOWNHILL_ADAM_NOTE})
         return [plain, adam, Code(Optimizer.step, "values")]
 
     def below(self, column: Column) -> None:
-        """Add where the ball is, or how far both have come."""
         column.text(lambda: self._told(self.plain) if self.valley else self._step(), size=SMALL, colour=HUMAN)
         column.text(lambda: self._told(self.adam) if self.valley else "", size=SMALL, colour=NET)
 
@@ -246,7 +239,6 @@ class DownhillChapter(Chapter):
     # The picture
 
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
-        """Draw the line with its ball, or the map with two trails."""
         if self.valley:
             side = pygame.FRect(box.left, box.top, min(box.width, 1.3 * box.height), box.height)
             paint, trails = self._paint_map, [(self.plain.trail, HUMAN), (self.adam.trail, NET)]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import pygame
@@ -17,6 +17,7 @@ from ai.training.config import Config
 from ai.training.small_run import SMALL_RUN, TESTED, Plan, SmallState
 from game.core import texts
 from game.core.scene import Route
+from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.paint import mix
 from game.drawing.paint_cache import PaintCache
@@ -24,11 +25,8 @@ from game.drawing.tokens import CAPTION, HUMAN, INK, MUTE, NET, NIGHT1, SMALL, C
 from game.panels.figures import percent
 from game.scenes.learn.chapter import Code
 from game.scenes.learn.runs import RunsChapter, draw_landers
-
-if TYPE_CHECKING:
-    from game.drawing.canvas import Canvas
-    from game.ui.context import Context
-    from game.ui.panel import Column
+from game.ui.context import Context
+from game.ui.panel import Column
 
 KINDS: Final = ("even", "surprising", "latest")
 YESTERDAY: Final = 600  # decisions from high up; then flights begin low
@@ -61,7 +59,6 @@ class MemoryChapter(RunsChapter):
         super().__init__(context)
 
     def restart(self) -> None:
-        """Forget the runs and their results."""
         super().restart()
         self.results: dict[str, tuple[float, float]] = {}
 
@@ -75,16 +72,13 @@ class MemoryChapter(RunsChapter):
         self._come = np.zeros(cells, dtype=np.intp)
 
     def configs(self) -> Sequence[Config]:
-        """Return the configuration with the chosen memory."""
         return [SMALL_RUN.changed(prioritised=KINDS[self.choice] == "surprising")]
 
     @property
     def plan(self) -> Plan:
-        """The two days, with the memory that is chosen."""
         return self.PLAN._replace(keep=LATEST if KINDS[self.choice] == "latest" else None)
 
     def controls(self, column: Column) -> None:
-        """Add the choice, and the button that starts."""
         column.choice("", texts.LEARN_MEMORY_KINDS, self.choice, self.choose)
         self.starter(column, texts.LEARN_MEMORY_START)
 
@@ -130,7 +124,6 @@ class MemoryChapter(RunsChapter):
         )
 
     def code(self) -> Sequence[Code]:
-        """Return how memories are drawn, evenly and by priority, and where the agent draws them."""
         memory = self.states[-1][0].memory if self.states else None
         count = memory.first + len(memory.cells.action) - memory.oldest if memory else 0
         held = texts.LEARN_MEMORY_HELD.format(count=count) if memory else ""
@@ -141,7 +134,6 @@ class MemoryChapter(RunsChapter):
         ]
 
     def below(self, column: Column) -> None:
-        """Add what the wall's marks and colours mean."""
         super().below(column)
         column.aside(texts.LEARN_MEMORY_WALL)
         column.add(_write_cells)
@@ -149,7 +141,6 @@ class MemoryChapter(RunsChapter):
     # The picture
 
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
-        """Draw the wall, today's flights, and the tests from high up."""
         self._draw_wall(canvas, pygame.FRect(box.left, box.top, box.width, _WALL * box.height))
         state, half = self.states[-1][0] if self.states else None, (box.width - 32) / 2
         day = texts.LEARN_MEMORY_DAYS[bool(state) and self.states[-1][0].decisions > YESTERDAY]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import pygame
@@ -21,16 +21,14 @@ from engine import DT
 from game.core import texts
 from game.core.scene import Route
 from game.core.worker import Worker, WorkerState
+from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, SMALL
 from game.flight.poses import Poses
 from game.scenes.learn.chapter import Chapter, Code
 from game.scenes.learn.pictures import draw_ground, view_in
+from game.ui.context import Context
+from game.ui.panel import Column
 from game.world.craft import draw_crowd, draw_fires
-
-if TYPE_CHECKING:
-    from game.drawing.canvas import Canvas
-    from game.ui.context import Context
-    from game.ui.panel import Column
 
 # What each pay is: a landing, haste, time aloft, fuel. By the key of its texts.
 PAYS: Final = {
@@ -120,7 +118,6 @@ class PayChapter(Chapter):
         self.restart()
 
     def restart(self) -> None:
-        """Forget all runs."""
         self.pay, self.tried = ASKED, False
         self.results: dict[str, Flown] = {}
         self._clear()
@@ -133,7 +130,6 @@ class PayChapter(Chapter):
         self._checkpoint: Checkpoint | None = None
 
     def close(self) -> None:
-        """End the run."""
         if self._worker:
             self._worker.close()
             self._worker = None
@@ -145,11 +141,9 @@ class PayChapter(Chapter):
 
     @property
     def running(self) -> bool:
-        """Whether a run goes on, or its flights do."""
         return self.learning or (self.trial is not None and not self.trial.over)
 
     def controls(self, column: Column) -> None:
-        """Add the choice of the pay, and what begins or ends a run."""
         keys = list(PAYS)
         column.choice("", [texts.LEARN_PAY_NAMES[key] for key in keys], keys.index(self.pay), self.choose)
         column.text(self._paid, size=SMALL, colour=HUMAN)
@@ -176,7 +170,6 @@ class PayChapter(Chapter):
         self._runs += 1
 
     def update(self) -> None:
-        """Hear the run; once it has learnt for long enough, fly what it has learnt."""
         if self._worker:
             self._hear(self._worker)
         elif self.trial and not self.trial.over:
@@ -212,13 +205,11 @@ class PayChapter(Chapter):
         )
 
     def code(self) -> Sequence[Code]:
-        """Return the step of the environment that adds up the pay, with this pay's weights."""
         pay = PAYS[self.pay]
         weights = texts.LEARN_PAY_NOTE.format(time=pay.time, terminal=pay.terminal)
         return [Code(LanderEnv.step, "parts", {"parts": weights, np.add.accumulate: f"{len(REWARDS)}"})]
 
     def below(self, column: Column) -> None:
-        """Add how far the run is, or how its flights end."""
         column.bar(lambda: self.decisions / DECISIONS)
         column.text(self._state, size=SMALL)
 
@@ -231,7 +222,6 @@ class PayChapter(Chapter):
         return self.note or texts.LEARN_PAY_WAITING
 
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
-        """Draw the landers of the run, or those that fly what it has learnt."""
         view = view_in(box, _MIDDLE, _METRES, canvas.scale)
         draw_ground(canvas, box, view)
         poses, burning = self._shown(alpha)

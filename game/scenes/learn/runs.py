@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, ClassVar, Final
+from typing import ClassVar, Final
 
 import numpy as np
 import pygame
@@ -15,16 +15,14 @@ from ai.training.config import Config
 from ai.training.small_run import Flown, Plan, SmallState, small_runs
 from game.core import texts
 from game.core.worker import Worker, WorkerState
+from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import CAPTION, FAINT, INK, MUTE, SMALL
 from game.scenes.learn.chapter import Chapter
 from game.scenes.learn.pictures import inside, view_in
+from game.ui.context import Context
+from game.ui.panel import Column
 from game.world.craft import draw_crowd, draw_fires
-
-if TYPE_CHECKING:
-    from game.drawing.canvas import Canvas
-    from game.ui.context import Context
-    from game.ui.panel import Column
 
 PACE: Final = 40.0  # decisions a second: four times as fast as they would fly
 _APART: Final = 2.6  # metres between two landers of the picture
@@ -58,11 +56,9 @@ class RunsChapter(Chapter):
 
     @property
     def plan(self) -> Plan:
-        """Where flights begin."""
         return self.PLAN
 
     def restart(self) -> None:
-        """Forget the runs and the choice."""
         self._forget()
         self.seed, self.tried, self.choice, self.flown = 0, False, self.first, self.first
 
@@ -85,13 +81,11 @@ class RunsChapter(Chapter):
         self.changed = True
 
     def close(self) -> None:
-        """End the worker's process."""
         if self._worker is not None:
             self._worker.close(0.0)
 
     @property
     def running(self) -> bool:
-        """Whether the runs go on."""
         return self._worker is not None and self._worker.state in (WorkerState.STARTING, WorkerState.RUNNING)
 
     @property
@@ -105,7 +99,6 @@ class RunsChapter(Chapter):
         return self._worker.problem if self._worker is not None else ""
 
     def update(self) -> None:
-        """Take what the worker has told, and end it when the runs are long enough."""
         if self._worker is None or len(self.states) > self.LENGTH:
             return
         for states in self._worker.poll()[: self.LENGTH + 1 - len(self.states)]:
@@ -136,7 +129,6 @@ class RunsChapter(Chapter):
         column.button(label, self.start, colour=MUTE if self.running else INK)
 
     def below(self, column: Column) -> None:
-        """Add how far the runs are, or what is wrong, and what the marks under landers mean."""
         column.bar(lambda: max(len(self.states) - 1, 0) / self.LENGTH)
         column.text(self._status, size=SMALL, colour=MUTE)
         column.add(_write_ends)

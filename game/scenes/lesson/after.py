@@ -1,29 +1,24 @@
-"""Frame after the step: the weights that changed most, the value again, and who pulled on it."""
+"""Frame after the step: the value again, and who pulled on it."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import pygame
 
 from ai.explain.recorder import Function
 from game.core import texts
+from game.drawing.canvas import Canvas
 from game.drawing.tokens import EMBER, FAINT, HUMAN, LINE, MUTE, NET, SMALL
-from game.panels.figures import decimal, number, points, signed
-from game.panels.tables import Line, table, told
+from game.panels.figures import number, points
+from game.panels.tables import told
 from game.scenes.lesson.frame import Frame, in_points
-from game.scenes.lesson.step import LearningStep, Pulls, WeightPlace
+from game.scenes.lesson.step import LearningStep, Pulls
+from game.ui.panel import Column
 
-if TYPE_CHECKING:
-    from game.drawing.canvas import Canvas
-    from game.ui.panel import Column
-
-_WEIGHTS: Final = 8
-_LEAST: Final = 340.0  # width of a column
-_LINE, _ROW = 36.0, 22.0  # heights
+_LINE, _ROW = 60.0, 30.0  # heights
 _NAMES, _FIGURES = 0.52, 0.66  # of the width: where names and figures of pulls end
 
 
@@ -59,35 +54,13 @@ class AfterFrame(Frame):
             self._told = f"{self._told} {texts.LESSON_STRONGEST.format(name=name)}"
 
     def describe(self, column: Column) -> None:
-        """Add the value, who pulled on it, and the weights that changed most."""
-        left, right = column.beside((1, 1), _LEAST)
-        left.text(self._told, size=SMALL)
-        left.picture(_LINE, self._draw_value)
+        column.text(self._told, size=SMALL)
+        column.picture(_LINE, self._draw_value)
         if self._pulled:
-            left.gap(8)
-            left.aside(texts.LESSON_PULLS if self.pulls else texts.LESSON_NO_PULL)
+            column.gap(8)
+            column.aside(texts.LESSON_PULLS if self.pulls else texts.LESSON_NO_PULL)
         if self.pulls:
-            left.picture(_ROW * len(texts.LESSON_PULL_PARTS), self._draw_pulls)
-        changed = [line for place in self.step.strongest(self.step.taken.taken, _WEIGHTS) for line in self._line(place)]
-        right.add(table((texts.LESSON_CHANGED, *texts.LESSON_CHANGED_COLUMNS), lambda: changed))
-
-    def _line(self, place: WeightPlace) -> list[Line]:
-        """Return the line of a weight; none for one of a dueling layer."""
-        step, taken = self.step, self.step.taken
-        if (index := step.index(place)) is None:
-            return []
-        before, after, moved, slope, share = (
-            float(each[index])
-            for each in (taken.values_before, taken.values_after, -taken.taken, taken.gradient, taken.share)
-        )
-        rows = told(
-            (texts.LESSON_BEFORE, decimal(before, 6)), (texts.LESSON_STEP, signed(moved)),
-            (texts.LESSON_NOW, decimal(after, 6)), (texts.LESSON_SLOPE_BATCH, signed(slope)),
-            (texts.LESSON_SLOPE_SHARE, signed(share)),
-        )  # fmt: skip
-        return [
-            Line((step.weight_name(place), number(before), number(after), signed(moved)), texts.LESSON_WEIGHT, rows)
-        ]
+            column.picture(_ROW * len(texts.LESSON_PULL_PARTS), self._draw_pulls)
 
     def _found(self) -> list[float]:
         """Return the pulls in points, in the order of their texts."""
@@ -119,7 +92,7 @@ class AfterFrame(Frame):
         most, zero = max(1e-12, *map(abs, found)), box.left + 0.83 * box.width
         canvas.line((zero, box.top), (zero, box.bottom), LINE)
         for row, (pull, (word, help_)) in enumerate(zip(found, texts.LESSON_PULL_PARTS, strict=True)):
-            y, length = box.top + _ROW * row + 15, 0.16 * box.width * pull / most
+            y, length = box.top + _ROW * row + 19, 0.16 * box.width * pull / most
             canvas.text(word.format(count=self.step.examples - 1), (box.left, y), size=SMALL, colour=MUTE,
                         room=_NAMES * box.width)  # fmt: skip
             end = box.left + _FIGURES * box.width

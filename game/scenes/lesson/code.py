@@ -2,29 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
-import pygame
 
 from ai.explain.learning_step import Value
 from ai.explain.recorder import Line
 from game.core import texts
 from game.core.source import Source, source_of
 from game.drawing.cursor import Cursor
-from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import CAPTION, INK, NET
-from game.panels.code_listing import draw_listing
+from game.panels.code_listing import add_listing
 from game.panels.figures import number
 from game.panels.tables import told
 from game.scenes.lesson.frame import Frame
-
-if TYPE_CHECKING:
-    from game.drawing.canvas import Canvas
-    from game.ui.panel import Column
+from game.ui.panel import Column
 
 _LISTING: Final = 300.0  # height
 _MOST: Final = 6  # values of a line that are shown
@@ -69,7 +64,6 @@ class CodeWalk:
         sets = [place for place, line in enumerate(self.lines[:-1]) if place and line.values]
         named = (place for place in reversed(sets) if frame.begin in self.lines[place].values)
         self.index = next(named, next(iter(sets), 0))
-        self._cache = PaintCache()
 
     @property
     def line(self) -> Line | None:
@@ -86,7 +80,8 @@ class CodeWalk:
         last = len(self.lines) - 1
         if self.source is None:
             column.aside(texts.LESSON_NO_SOURCE)
-        column.picture(_LISTING, self._draw_listing)
+        else:
+            add_listing(column, _LISTING, self._shown)
         if last > 0:
             column.slider(
                 texts.LESSON_LINE, self.index, (0, last), self._go, step=1,
@@ -97,24 +92,18 @@ class CodeWalk:
     def _go(self, index: float) -> None:
         self.index = round(index)
 
-    def _draw_listing(self, canvas: Canvas, box: pygame.FRect) -> None:
-        if source := self.source:
-            number, sheet = self.line.number if self.line else None, (0, 0, *box.size)
-            self._cache.draw(
-                canvas, box, self.index,
-                lambda picture: draw_listing(picture, sheet, source, number, dict(self._notes(source))),
-            )  # fmt: skip
-
-    def _notes(self, source: Source) -> Iterator[tuple[int, str]]:
-        """Yield what the lines of this call have set so far, by their numbers, the last of a loop last."""
-        call = []
+    def _shown(self) -> tuple[Source, int | None, dict[int, str]]:
+        """Return the source, the lit line, and beside lines what this call has set there so far, in a loop the last."""
+        source, notes = self.source, dict[int, str]()
+        assert source is not None
         for line in reversed(self.lines[: self.index + 1]):
             if self.line is None or line.function != self.line.function:
                 continue
             if line.number == source.lines[0][0]:
                 break  # the head of the call
-            call.append(line)
-        return ((line.number, _note(list(line.values.values()))) for line in reversed(call) if line.values)
+            if line.values:
+                notes.setdefault(line.number, _note(list(line.values.values())))
+        return source, self.line.number if self.line else None, notes
 
     def _write_values(self, cursor: Cursor) -> None:
         """Write the name and the shape of what the current line has set, and the numbers of this case."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from itertools import pairwise
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import pygame
@@ -14,15 +14,13 @@ from ai.agent.agent import DeepQAgent
 from ai.explain.agent_lesson import Lesson
 from ai.nn.costs import COSTS, Cost
 from game.core import texts
+from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import CAPTION, EMBER, FAINT, HUMAN, INK, LINE, MUTE, NET, SMALL
 from game.panels.figures import decimal, number, points, signed
 from game.panels.tables import Part, formula, told
 from game.scenes.lesson.frame import Frame, in_points
-
-if TYPE_CHECKING:
-    from game.drawing.canvas import Canvas
-    from game.ui.panel import Column
+from game.ui.panel import Column
 
 Curve = Callable[[float], float]
 _LINE, _CHART = 72.0, 180.0  # heights
@@ -56,7 +54,6 @@ class ErrorFrame(Frame):
         return float(self._cost.derivative(np.array([error]), np.array([0.0]))[0])
 
     def describe(self, column: Column) -> None:
-        """Add the value beside its target, the two curves, and what goes back into the network."""
         column.picture(_LINE, self._draw_line)
         cost = self._lesson.config.cost
         curves = ((texts.LESSON_COSTS[cost], self.cost_of, texts.LESSON_COST_HELP),

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from ai.explain.recorder import Function
 from game.core import texts
+from game.drawing.canvas import Point
 from game.panels.figures import points
-
-if TYPE_CHECKING:
-    from game.drawing.canvas import Point
-    from game.ui.panel import Column
+from game.ui.panel import Column
 
 
 class Frame:

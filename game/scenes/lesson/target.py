@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -15,9 +15,7 @@ from game.panels.figures import number, points
 from game.panels.tables import Line, Part, formula, table, told
 from game.scenes.lesson.flight import said_action
 from game.scenes.lesson.frame import Frame, in_points
-
-if TYPE_CHECKING:
-    from game.ui.panel import Column
+from game.ui.panel import Column
 
 _LEAST: Final = 300.0  # width of a column
 
@@ -31,7 +29,6 @@ class TargetFrame(Frame):
         super().__init__(texts.LESSON_FRAMES["target"], in_points(lesson.target / self._scale), functions, "targets")
 
     def describe(self, column: Column) -> None:
-        """Add the sum, and who picks and judges the value in it."""
         column.add(formula(self._sum))
         column.gap(4)
         left, right = column.beside((1, 1), _LEAST)
