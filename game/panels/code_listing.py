@@ -17,6 +17,7 @@ from game.drawing.tokens import FAINT, INK, LABEL, LINE, MUTE, NET, Colour
 if TYPE_CHECKING:
     from game.ui.panel import Column
 
+Shown = tuple[Source, int | None, Mapping[int, str]]  # a function, its lit line, and what stands beside lines
 _LEADING: Final = 16.0
 _NUMBER: Final = 34.0  # room for the line's number
 _INDENT: Final = 6  # characters by which the rest of a long line is moved to the right
@@ -101,13 +102,8 @@ def _coloured(text: str, lit: bool) -> Iterator[tuple[str, Colour, int]]:
         yield mark + comment, MUTE, len(code)
 
 
-def add_listing(
-    column: Column,
-    height: float,
-    shown: Callable[[], tuple[Source, int | None, Mapping[int, str]]],
-    beside: float = 0.0,
-) -> None:
-    """Add a listing to a column: of what `shown` returns, a source, its lit line, and notes; painted when it changes."""
+def add_listing(column: Column, height: float, shown: Callable[[], Shown], beside: float = 0.0) -> None:
+    """Add a listing to a column, painted when what `shown` returns has changed; `beside` as `notes_width` is."""
     cache = PaintCache()
 
     def draw(canvas: Canvas, box: pygame.FRect) -> None:

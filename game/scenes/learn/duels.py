@@ -80,9 +80,7 @@ class DuelChapter(RunsChapter):
             canvas.text(self.name(run, shown), (left, box.top + 14), size=SMALL + 1, colour=colour, room=half)
             sky = pygame.FRect(left, box.top + 22, half, 0.42 * box.height)
             state = self.states[-1][run] if self.states else None
-            draw_landers(
-                canvas, sky, state.flown if state else None, self.last[run] if state else None, len(self.states)
-            )
+            draw_landers(canvas, sky, state.flown if state else None, len(self.states))
             chart = pygame.FRect(left + 72, sky.bottom + 34, half - 72, box.bottom - sky.bottom - 44)
             self.draw_chart(canvas, chart, run if state else None, colour)
             if state:

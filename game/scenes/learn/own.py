@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Hashable, Iterator, Sequence
+from collections.abc import Hashable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
@@ -27,7 +27,8 @@ from game.training.library import Library
 from game.ui.context import Context
 from game.ui.panel import Column
 
-STEPS: Final = ("train", "land", "choose", "hand", "race")
+# Where each step is done; a race is begun here.
+STEPS: Final = {"train": "train", "land": "runs", "choose": "runs", "hand": "play", "race": ""}
 _LOOK: Final = 60  # updates between two looks at the player's files
 _INDENT: Final = 32.0
 
@@ -60,12 +61,8 @@ class OwnChapter(Chapter):
         self._look()
 
     def controls(self, column: Column) -> None:
-        doors: dict[str, Callable[[], Transition | None]] = {
-            "train": partial(push, "train"), "land": partial(push, "runs"), "choose": partial(push, "runs"),
-            "hand": partial(push, "play"), "race": self.race,
-        }  # fmt: skip
-        for name in STEPS:
-            column.button(texts.LEARN_OWN_DOORS[name], doors[name])
+        for name, route in STEPS.items():
+            column.button(texts.LEARN_OWN_DOORS[name], partial(push, route) if route else self.race)
 
     def update(self) -> None:
         self._wait = (self._wait + 1) % _LOOK

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -30,6 +29,8 @@ from game.ui.context import Context
 from game.ui.panel import Column
 from game.world.craft import draw_crowd, draw_fires
 
+Flown = dict[str, float]
+ENDS: Final = dict(zip(("landed", "crashed", "gone", "late"), list(Outcome)[1:], strict=True))
 # What each pay is: a landing, haste, time aloft, fuel. By the key of its texts.
 PAYS: Final = {
     "landing": RewardWeights(time=-0.4, switch=-0.05),
@@ -52,18 +53,6 @@ def config_of(pay: RewardWeights) -> Config:
         num_envs=64, spawn=SPAWN, gradient_steps=6, learning_starts=1000, epsilon_decisions=8000,
         schedule_decisions=DECISIONS, replay_size=100_000, reward_weights=pay,
     )  # fmt: skip
-
-
-@dataclass(frozen=True)
-class Flown:
-    """How the flights after a training ended: numbers of each kind, and means over all of them, in seconds."""
-
-    landed: int
-    crashed: int
-    gone: int
-    late: int
-    time: float
-    fuel: float
 
 
 class Trial:
@@ -91,10 +80,9 @@ class Trial:
         self.poses.take()
 
     def flown(self) -> Flown:
-        """Return how the flights have ended so far."""
-        outcome = self.env.outcome
-        landed, crashed, gone, late = (int((outcome == kind).sum()) for kind in list(Outcome)[1:])
-        return Flown(landed, crashed, gone, late, float(self.env.time.mean()), float(self.env.fuel.mean()))
+        """Return how the flights have ended so far: how many of each kind, and their mean time and fuel in seconds."""
+        ends = {name: int((self.env.outcome == kind).sum()) for name, kind in ENDS.items()}
+        return {**ends, "time": float(self.env.time.mean()), "fuel": float(self.env.fuel.mean())}
 
 
 class PayChapter(Chapter):
@@ -199,7 +187,7 @@ class PayChapter(Chapter):
     def why(self) -> str:
         """Return how the flights of each run ended."""
         return " ".join(
-            texts.LEARN_PAY_WHY.format(name=texts.LEARN_PAY_NAMES[key], count=FLIGHTS, **vars(self.results[key]))
+            texts.LEARN_PAY_WHY.format(name=texts.LEARN_PAY_NAMES[key], count=FLIGHTS, **self.results[key])
             for key in PAYS
             if key in self.results
         )
@@ -215,8 +203,8 @@ class PayChapter(Chapter):
 
     def _state(self) -> str:
         if self.trial:
-            flown = vars(self.trial.flown())
-            return texts.LEARN_PAY_FLIGHTS.format(count=FLIGHTS, seconds=self.trial.env.time.max(), **flown)
+            seconds = self.trial.env.time.max()
+            return texts.LEARN_PAY_FLIGHTS.format(count=FLIGHTS, seconds=seconds, **self.trial.flown())
         if self.learning:
             return texts.LEARN_PAY_TRAINING.format(decisions=self.decisions, most=DECISIONS)
         return self.note or texts.LEARN_PAY_WAITING

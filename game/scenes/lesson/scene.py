@@ -17,8 +17,7 @@ from game.drawing.tokens import CAPTION, INK, LINE, MUTE, NET, SMALL
 from game.input.controls import Command
 from game.panels.explained import Explained
 from game.panels.lesson_door import ImageDoor
-from game.scenes.lesson.code import CodeWalk
-from game.scenes.lesson.frame import Frame
+from game.scenes.lesson.frame import CodeWalk, Frame
 from game.scenes.lesson.frames import parts_of
 from game.ui.actions import Action, Table
 from game.ui.context import Context

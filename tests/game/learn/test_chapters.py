@@ -291,13 +291,13 @@ def test_each_pay_teaches_what_it_pays_for(made: Made, monkeypatch: pytest.Monke
     landing = trained(chapter, "landing")
     monkeypatch.setattr("game.scenes.learn.pay.DECISIONS", 8_000)  # it does not take long to learn to fall
     haste = trained(chapter, "haste")
-    assert landing.landed > 0.5 * FLIGHTS
-    assert haste.crashed > 0.6 * FLIGHTS
-    assert haste.time < landing.time
+    assert landing["landed"] > 0.5 * FLIGHTS
+    assert haste["crashed"] > 0.6 * FLIGHTS
+    assert haste["time"] < landing["time"]
     assert chapter.tried
     told = chapter.why()
-    assert str(landing.landed) in told
-    assert str(haste.crashed) in told
+    assert str(landing["landed"]) in told
+    assert str(haste["crashed"]) in told
     chapter.close()
     assert not chapter.running
 
