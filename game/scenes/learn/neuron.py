@@ -150,7 +150,8 @@ class NeuronChapter(Chapter):
 
     def why(self) -> str:
         """Return for how long the best flight lasted, and with which weights."""
-        seconds, (tilt, spin, speed) = self.best
+        seconds, weights = self.best
+        tilt, spin, speed = (decimal(weight, 1, "+") for weight in weights)
         told = texts.LEARN_NEURON_WHY["flew" if seconds >= GOAL else "fell"]
         return told.format(seconds=seconds, tilt=tilt, spin=spin, speed=speed)
 
