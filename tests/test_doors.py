@@ -20,6 +20,7 @@ OPENED = {
     "ai.files.reading": ({"open", "os.open", "archive.open", "zipfile.ZipFile"}, "the door"),
     "ai.files.writing": ({"os.open", "temporary.open", "path.open"}, "writes, appends, and waits for the disk"),
     "ai.cli.command_line": ({"os.open"}, "the null device"),
+    "ai.pilots.child": ({"os.open"}, "the null device"),
     "ai.sweep.search": ({"self._path.open"}, "appends to the journal of a study that is claimed"),
     "ai.sweep.trial": ({"path.read_bytes"}, "its own code for a hash"),
     "game.audio.mixer": ({"self.open"}, "the sound device"),
@@ -34,6 +35,9 @@ OPENED = {
     "tranquility.__main__": ({"os.open"}, "the null device"),
 }
 STARTED = {
+    "ai.pilots.child": ({"exec"}, "the file that the player has chosen, in a process of its own"),
+    "ai.pilots.process": ({"subprocess.Popen"}, "that process: Python itself"),
+    "ai.pilots.shelf": ({"subprocess.Popen"}, "the system's editor"),
     "ai.training.gym_task": ({"self._gymnasium.make"}, "`check_env` stands before every file's name"),
     "game.core.worker": ({"pickle.loads"}, "the pipe to its own worker"),
     "game.core.worker_process": ({"pickle.loads"}, "the pipe from its own window"),

@@ -33,6 +33,7 @@ class Settings:
     reduced_motion: bool = False
     colour_safe: bool = False
     show_hints: bool = True
+    language: str = ""  # code of the language that the player chose; empty for the system's
     text_size: str = "normal"  # a name of game.drawing.tokens.TEXT_SIZES
     muted: bool = False  # whether nothing is heard at all
     master_volume: Share = 1.0  # factor on all other volumes

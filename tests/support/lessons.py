@@ -11,7 +11,6 @@ from ai.explain.agent_lesson import Lesson
 from ai.explain.digit_lesson import DigitLesson, explain_digit
 from ai.training.config import PRESETS, Config
 from ai.training.lander_session import live
-from ai.training.messages import Explain
 from tests.support.driver import Driver
 from tests.support.written import words_written
 
@@ -34,7 +33,7 @@ def lesson_from(config: Config, turns: int = 60, slot: int = 0) -> Lesson:
     run = live(config, 3)
     for _ in range(turns + 1):
         next(run)
-    answer = run.send(Explain(slot))
+    answer = run.send(("explain", slot))
     run.close()
     (lesson,) = [message for message in answer if isinstance(message, Lesson)]
     return lesson

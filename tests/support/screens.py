@@ -28,9 +28,8 @@ from game.scenes.lesson.scene import LessonScene
 from game.scenes.logbook.replay import ReplayScene
 from game.scenes.logbook.scene import LogbookScene
 from game.scenes.menus.dialogs import ListDialog, NameDialog, QuestionDialog
-from game.scenes.menus.flights import FlightsScene
 from game.scenes.menus.keys import BindingsScene
-from game.scenes.menus.menu import MenuScene
+from game.scenes.menus.menu import FlightsScene, MenuScene
 from game.scenes.menus.settings import SettingsScene
 from game.scenes.physics.exhibits import EXHIBITS, Exhibit
 from game.scenes.physics.scene import PhysicsScene

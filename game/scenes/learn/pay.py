@@ -11,7 +11,6 @@ import pygame
 from ai.environment import Bools, Doubles, Ints
 from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.rewards import REWARDS, RewardWeights
-from ai.training.checkpoints import agent_of
 from ai.training.config import Config
 from ai.training.history import Checkpoint
 from ai.training.lander_session import live
@@ -59,7 +58,7 @@ class Trial:
     """Flights of an agent without random actions, one physics step at a time."""
 
     def __init__(self, config: Config, checkpoint: Checkpoint, flights: int = FLIGHTS) -> None:
-        self.agent = agent_of(config, checkpoint)
+        self.agent = checkpoint.agent(config)
         self.env = LanderEnv(flights, _SEED, SPAWN, frame_skip=1)
         self.env.reset()
         self.poses = Poses(self.env)

@@ -10,7 +10,6 @@ from typing import Final
 
 import pygame
 
-from ai.training.checkpoints import agent_of
 from ai.training.config import PRESETS, Config
 from ai.training.experiments import Experiment, differences
 from game.core import texts
@@ -375,7 +374,7 @@ class TrainScene(TrainingScene):
             self.context.note(texts.TRAIN_NO_CHECKPOINT)
             return None
         try:
-            rival = agent_of(self.lander_run.config, checkpoint)
+            rival = checkpoint.agent(self.lander_run.config)
         except ValueError as error:
             self.context.note(str(error))
             return None
