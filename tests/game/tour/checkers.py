@@ -295,7 +295,8 @@ NOT_AT = {
 FLOWING = {
     "MenuScene", "FlightsScene", "SettingsScene", "BindingsScene", "QuestionDialog", "NameDialog",
     "ListDialog", "sound", "controls", "flights", "ChoicesScene", "PauseScene", "FlightPauseScene, of a flight",
-    "DaysScene", "MissionsScene", "LogbookScene", "PhysicsScene", "PhysicsStepScene", "TrainScene", "DigitTrainingScene",
+    "DaysScene", "MissionsScene", "LogbookScene", "PhysicsScene", "PhysicsStepScene", "TrainScene",
+    "DigitTrainingScene",
 }  # fmt: skip
 IN_FLIGHT = {
     "Play, in flight", "mission, in flight", "descent, in flight", "daily, in flight", "tutorial, in flight",

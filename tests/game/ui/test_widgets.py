@@ -23,8 +23,7 @@ from game.ui.panel import Panel
 from game.ui.panel_scene import PanelScene
 from game.ui.rows import SliderRow
 from game.ui.widget import PointsManager
-from game.ui.widgets import Choice
-from game.ui.words import GAP
+from game.ui.widgets import GAP, Choice
 from tests.support.driver import Driver
 
 COLUMNS = [pygame.Rect(x, y, 80, 20) for x in (0, 200) for y in (0, 40, 80)]
