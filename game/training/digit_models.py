@@ -65,7 +65,7 @@ class DigitModels(Collection[SavedDigitModel]):
     """Collection of a player's own digit networks in `folder`."""
 
     def __init__(self, folder: Path) -> None:
-        super().__init__(folder, ItemKind(PARTS, _read_model, texts.RUN_UNNAMED))
+        super().__init__(folder, ItemKind(PARTS, _read_model, lambda: texts.RUN_UNNAMED))
 
 
 def figures_of(run: TrainingRun) -> tuple[str, float, float | None]:

@@ -100,7 +100,7 @@ def read_run(folder: Path, name: str = "") -> SavedRun:
     return SavedRun(name, folder, saved, flyable=True, problem=problem)
 
 
-RUNS: Final = ItemKind(_CLAIMS, read_run, texts.RUN_RESCUED)
+RUNS: Final = ItemKind(_CLAIMS, read_run, lambda: texts.RUN_RESCUED)
 
 
 class Library(Collection[SavedRun]):
