@@ -93,12 +93,10 @@ class DigitTraining(Run):
 
     @property
     def steps(self) -> int:
-        """Learning steps in the whole run."""
         return self.config.epochs * self.steps_per_epoch
 
     @property
     def moment(self) -> int:
-        """Learning steps so far."""
         return self.step
 
     @property
@@ -111,7 +109,6 @@ class DigitTraining(Run):
         return rise * (config.final_learning_rate + (config.learning_rate - config.final_learning_rate) * fall)
 
     def apply_live(self, config: DigitConfig) -> None:
-        """Take over the live knobs of another configuration."""
         self.config = self.config.with_live(config)
 
     def advance(self) -> DigitProgress:
@@ -196,7 +193,6 @@ class DigitTraining(Run):
         self.optimizer = OPTIMIZERS[self.config.optimizer](self.config.learning_rate)
 
     def restore_best(self) -> None:
-        """Restore the best network so far."""
         if self.best_values is not None:
             self.restore(self.best_values)
 
@@ -226,7 +222,6 @@ class DigitTraining(Run):
 
     @classmethod
     def begun(cls, folder: Path, *, data: tuple[Images, Labels] | None = None, **_: Any) -> Self:
-        """Return the run that a folder describes, without its state; raises ModelFormatError."""
         config, seed, step = read_settings(folder)
         try:
             run = cls(config, seed, data)
