@@ -52,6 +52,10 @@ class DigitProgress:
     held_out: float | None = None  # accuracy on the images held out, when an epoch ends
     best: float | None = None  # the highest of those
 
+    def __str__(self) -> str:
+        best = f", held out {self.best:.2%}" if self.best is not None else ""
+        return f"epoch {self.epoch:.1f}, loss {self.loss:.3f}{best}"
+
 
 class DigitTraining(Run):
     """Digit training run: all state that changes as it goes on. `data` are images and labels in place of MNIST's.

@@ -56,6 +56,12 @@ class Progress:
     best: Score | None = None
     env: str = LANDER
 
+    def __str__(self) -> str:
+        best = f" best {self.best.figure}" if self.best else ""
+        lander = self.env in (LANDER, ANYWHERE)
+        recent = f"landed {self.success_rate:.0%}" if lander else f"return {self.mean_return:.1f}, mean"
+        return f"{recent} of the last 100, ε {self.epsilon:.2f}, {self.decisions:,} decisions{best}"
+
 
 class Training(Run):
     """Training run of the lander, or of another task: all state that changes as it goes on.
