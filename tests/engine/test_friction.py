@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from engine import DT, Circle, Polygon, World
+from engine import Circle, Polygon, World
 from tests.support.worlds import advance
 
 G = 9.81
