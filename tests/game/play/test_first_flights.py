@@ -20,7 +20,8 @@ from game.flight.flight_file import Entry
 from game.flight.outcomes import outcome_card
 from game.scenes.play.free import FreeFlight
 from game.scenes.play.help import HELP
-from game.scenes.play.scene import CRASHES, PlayScene
+from game.scenes.play.scene import PlayScene
+from game.scenes.play.sitting import CRASHES
 from game.scenes.play.tutorial import Tutorial
 from game.ui.context import Context
 from tests.support.driver import Driver
@@ -98,15 +99,6 @@ def test_landings_lead_up_and_crashes_down_and_the_card_and_title_say_so(open_ga
     assert play(driver).ending.card.climb == texts.LADDER_LOWEST
     driver.app.close()
     assert driver.saved()["rung"] == 0
-
-
-def test_a_helped_landing_on_the_ladder_says_one_thing_on_what_it_counts_for(open_game: Open):
-    driver = open_game(PlayScene, ladder=True)
-    driver.app.context.settings.assist = 0.4
-    driver.key(pygame.K_r)
-    end(driver, ON_PAD)
-    card = play(driver).ending.card
-    assert (card.reason, card.climb) == (texts.OUTCOMES["LANDED"][1], texts.LADDER_UP.format(number=2))
 
 
 def test_another_try_by_key_is_the_very_same_start(open_game: Open):
