@@ -30,9 +30,10 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import pygame
 
-from ai.training.checkpoints import resume_run
 from ai.training.config import PRESETS
 from ai.training.history import History
+from ai.training.loop import Training
+from ai.training.run import resume
 from game.core.scene import Push
 from game.core.settings import Settings
 from game.core.worker import WorkerState
@@ -119,7 +120,7 @@ def kill(game: Game, rounds: int, rng: np.random.Generator) -> list[str]:
     runs = lander_run.collection.items()
     for run in runs:
         try:
-            resume_run(run.folder)
+            resume(Training, run.folder)
             History.read(run.folder)
         except Exception as error:
             problems.append(f"{run.name}: {error}")

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from ai.digits.checkpoints import TRAINING_FILE, read_summary
 from ai.digits.classifier import DIGITS_FILE, NETWORK
+from ai.digits.training import read_summary
 from ai.files import brief
+from ai.run import TRAINING_FILE
 from game.core import texts
 from game.core.collection import Collection, ItemKind
 from game.core.names import LONGEST_NAME
@@ -64,7 +65,7 @@ class DigitModels(Collection[SavedDigitModel]):
     """Collection of a player's own digit networks in `folder`."""
 
     def __init__(self, folder: Path) -> None:
-        super().__init__(folder, ItemKind(PARTS, _read_model, texts.RUN_UNNAMED))
+        super().__init__(folder, ItemKind(PARTS, _read_model, lambda: texts.RUN_UNNAMED))
 
 
 def figures_of(run: TrainingRun) -> tuple[str, float, float | None]:

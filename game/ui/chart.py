@@ -56,12 +56,13 @@ class Chart:
         *,
         limits: Limits | None = None,
         read: Callable[[float], str] = plotting.compact,
-        read_x: Callable[[float], str] = texts.CHART_SECONDS.format,
+        read_x: Callable[[float], str] | None = None,
         log: bool = False,
-        empty: str = texts.CHART_EMPTY,
+        empty: str = "",
     ) -> None:
         self.box = pygame.FRect(box)
-        self.label, self.read_x, self._empty = label, read_x, empty
+        self.label, self._empty = label, empty or texts.CHART_EMPTY
+        self.read_x = read_x or texts.CHART_SECONDS.format
         self._value: Callable[[float], float] = (lambda height: 10.0**height) if log else float
         self._make_grid = plotting.decades if log else plotting.grid
         self._log, self._read = log, read

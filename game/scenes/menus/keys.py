@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 FLYING: Final[tuple[Meaning, ...]] = (Held.MAIN, Held.LEFT, Held.RIGHT, Held.FINE, Command.HANDOVER)
 _LEAST: Final = 108.0  # points of a column
 _BETWEEN: Final = "  ·  "
-_DEVICES: Final = (texts.KEYS_KEYBOARD, texts.KEYS_PAD)
 
 
 class BindingCell(RowWidget):
@@ -152,7 +151,9 @@ class BindingsScene(PanelScene):
         panel.choice("", texts.BINDINGS_HALVES, self._half, self._show, size=18.0)
         panel.text(lambda: self.said, size=TEXT, colour=HUMAN)
         panel.gap(4)
-        for column, words in zip(panel.beside((1.1, 1, 1), _LEAST, 24.0), (" ", *_DEVICES), strict=True):
+        for column, words in zip(
+            panel.beside((1.1, 1, 1), _LEAST, 24.0), (" ", texts.KEYS_KEYBOARD, texts.KEYS_PAD), strict=True
+        ):
             column.caption(words)
         for meaning in FLYING if self._half == 0 else [each for each in controls.keys.table if each not in FLYING]:
             panel.line()

@@ -8,7 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Final
 
 from game.audio.instruments import GROUPS, altitude_key
-from game.core import texts
+from game.core import catalogue, texts
 from game.core.names import LibraryError
 from game.core.scene import Push, Transition, push
 from game.core.settings import PACES
@@ -99,6 +99,10 @@ class SettingsScene(PanelScene):
             texts.TEXT_SIZE, [texts.TEXT_SIZES[name] for name in sizes], sizes.index(chosen) if chosen in sizes else 0,
             lambda number: self._set("text_size", sizes[number]),
         )  # fmt: skip
+        names = catalogue.languages(catalogue.LOCALE)
+        codes = list(names)
+        spoken, choose = codes.index(texts.LANGUAGE), lambda number: self._set("language", codes[number])
+        left.choice(texts.LANGUAGE_CHOICE, list(names.values()), spoken, choose)
         self._toggles(left, "reduced_motion", "show_hints")
         self._toggles(right, "colour_safe")
         right.gap(6)

@@ -51,10 +51,9 @@ class DailyStart(Challenge):
 
     name = DAILY
     alone = eases = True
-    title = texts.DAILY
-    copy_hint = texts.DAILY_HINT_COPY
 
     def __init__(self, day: date, days: Days, *, past: bool = False) -> None:
+        self.title, self.copy_hint = texts.DAILY, texts.DAILY_HINT_COPY
         self.seed, self.line = day.toordinal(), day.isoformat()
         self._day, self._days, self._past = day, days, past
         self._begun = False

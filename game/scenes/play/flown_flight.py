@@ -249,8 +249,8 @@ class FlownFlight:
 
     # The end
 
-    def make_card(self, best: int) -> OutcomeCard:
-        """Return the outcome card of the finished flight; `best` is the score to beat in free flights."""
+    def make_card(self, best: int, best_here: int) -> OutcomeCard:
+        """Return the outcome card; `best` is the score to beat in free flights, `best_here` from this start."""
         flight, credit, ending = self.flight, self.credit, self.ending
         ending.whole = self.scenery.shot_of(self.path.places)
         unranked = rung_of(flight) is not None or self.challenge.name
@@ -258,6 +258,7 @@ class FlownFlight:
         card = replace(
             card, score=credit.score(0 if unranked else best), reason=credit.reason(card.reason),
             assists=credit.assists, place=self.path.clear_place(ending.whole.view(1.0)),
+            compared=self._compared(best_here),
         )  # fmt: skip
         if credit.helped:
             chance = None if card.good else self._last_chance
@@ -269,7 +270,7 @@ class FlownFlight:
             card = replace(card, stepped_in=times, watched=watched, bare=bare, advice=advice)
         return self.challenge.card(card, flight, credit)
 
-    def compared(self, best: int) -> tuple[tuple[str, str], ...]:
+    def _compared(self, best: int) -> tuple[tuple[str, str], ...]:
         """Return other scores from the same start: the player's `best` before, 0 for none, and the network's."""
         rows = [(texts.CARD_BEST_HERE, texts.SCORE.format(count=best))] if best else []
         if shadow := self._network_here:

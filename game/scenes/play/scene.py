@@ -181,7 +181,7 @@ class PlayScene(Scene):
 
     def _card_actions(self) -> list[Action]:
         offer = [Action(Command.HANDOVER, self._accept_help, texts.HELP_HINT)] if self._sitting.offers else []
-        hint = self.challenge.copy_hint
+        hint = self.challenge.copy_hint or texts.CODE_HINT_COPY
         copy = [Action(pygame.K_k, self._copy, hint, Command.STEP)] if self.flown.record else []
         return [*card_actions(self, self._go_on), *offer, *copy] if self.ending.card else []
 
@@ -385,7 +385,7 @@ class PlayScene(Scene):
             if ending.due:
                 self.retry()
         elif ending.card is None:
-            card = self.flown.make_card(self._best)
+            card = self.flown.make_card(self._best, self._sitting.best_here(self.flight))
             ending.card = self._sitting.add(self.flown, card)
             if self._sitting.first:
                 self._sound.play("choose")

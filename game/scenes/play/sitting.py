@@ -9,6 +9,7 @@ from typing import Final
 from ai.flights.verification import landing_score
 from ai.lander.environment import Outcome
 from game.core import texts
+from game.flight.flight import Flight
 from game.flight.flight_file import Entry
 from game.flight.outcomes import OutcomeCard
 from game.scenes.play.flown_flight import FlownFlight
@@ -35,14 +36,17 @@ class Sitting:
         """Count crashes anew."""
         self._crashes, self.offers = 0, False
 
+    def best_here(self, flight: Flight) -> int:
+        """Return the player's best score from the start of a flight, 0 for none."""
+        return self._best_here.get(_start(flight), 0)
+
     def add(self, flown: FlownFlight, card: OutcomeCard) -> OutcomeCard:
         """Take note of a finished flight; return its card, with what is to be said after those before."""
-        recording, counts = flown.flight.recording, flown.credit.counts and card.good and flown.challenge.kept
-        here = recording.seed, recording.spawn, recording.pads
-        card = replace(card, compared=flown.compared(self._best_here.get(here, 0)))
+        counts = flown.credit.counts and card.good and flown.challenge.kept
         self.first = counts and not self._landed_before
         if counts:
-            self._best_here[here] = max(landing_score(flown.flight.env), self._best_here.get(here, 0))
+            score, here = landing_score(flown.flight.env), _start(flown.flight)
+            self._best_here[here] = max(score, self.best_here(flown.flight))
             self._landed_before = True
         if self.first:
             card = replace(card, title=texts.FIRST_LANDING, reason=texts.FIRST_LANDING_LINE)
@@ -51,3 +55,7 @@ class Sitting:
         there = flown.flight.copilot is not None and not flown.credit.alone
         self.offers = self._crashes >= CRASHES and there and flown.helped.assist == 0
         return replace(card, advice=texts.HELP_OFFER) if self.offers else card
+
+
+def _start(flight: Flight) -> tuple[int, str, int]:
+    return flight.recording.seed, flight.recording.spawn, flight.recording.pads

@@ -131,7 +131,7 @@ class TrainingCharts:
         self,
         history: History,
         beside: Sequence[EarlierRun],
-        name: str = texts.TRAIN_THIS,
+        name: str = "",
         say: Callable[[str], str] = lambda _: "",
         *,
         paid_otherwise: bool = False,
@@ -148,7 +148,7 @@ class TrainingCharts:
         self._mark()
         if odd or number >= len(self.charts.charts):
             return
-        runs = [each for each in (EarlierRun(name, history, 0), *beside) if len(each.run)]
+        runs = [each for each in (EarlierRun(name or texts.TRAIN_THIS, history, 0), *beside) if len(each.run)]
         shown = [(each.name, each.style) for each in runs]
         told = (len(history), shown, emphasised, self.axis, self.charts.zoom.shown)
         if self._told[number] == told:

@@ -18,7 +18,7 @@ from game.digits.matrix import ConfusionMatrix
 from game.drawing.canvas import Canvas
 from game.drawing.sky import NightSky
 from game.drawing.tokens import HUMAN, LABEL, MUTE, SMALL
-from game.lesson.door import ImageDoor
+from game.panels.lesson_door import ImageDoor
 from game.scenes.menus.dialogs import QuestionDialog
 from game.scenes.train.base import KNOBS as ALL_KNOBS
 from game.scenes.train.base import MORE, TrainingScene
@@ -27,7 +27,6 @@ from game.scenes.train.knobs import KnobsPanel
 from game.scenes.train.layout import Layout
 from game.scenes.train.status import digit_status
 from game.training.digit_models import DigitModels, figures_of, runs_dir
-from game.training.knob_descriptions import knob_descriptions
 from game.training.run import TrainingRun
 from game.training.run_settings import RunKind
 from game.training.workers import DIGITS
@@ -40,9 +39,9 @@ from game.ui.widget import Widget
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier
 
-_OFFERED: Final = {name: preset for name, preset in DIGIT_PRESETS.items() if name in texts.DIGIT_RUN_PRESETS}
+_OFFERED: Final = {name: preset for name, preset in DIGIT_PRESETS.items() if name in ("classic", "modern")}
 KNOBS: Final = RunKind(
-    tuple(knob_descriptions(DigitConfig)), _OFFERED, texts.DIGIT_RUN_PRESETS, "images",
+    DigitConfig, _OFFERED, lambda: texts.DIGIT_RUN_PRESETS, "images",
     first=("learning_rate", "batch_size", "dropout"),
 )  # fmt: skip
 FALLEN: Final = 0.15  # drop of the accuracy below its best at which a return to the best is offered

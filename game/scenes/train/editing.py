@@ -14,7 +14,7 @@ import pygame
 
 from ai.explain.inspection import links
 from ai.nn import NeuralNetwork
-from ai.training.edits import EditNetwork, LearnOn, SetWeight, SilenceUnit, UndoEdit
+from ai.training.edits import Edit
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, SMALL
@@ -131,13 +131,13 @@ class NetworkEditing:
 
     def _silence(self) -> None:
         if isinstance(self.picked, Unit):
-            self._run.edit(EditNetwork(SilenceUnit(self.picked.stage, self.picked.unit)))
+            self._run.edit("edit", Edit(self.picked.stage, self.picked.unit))
 
     def update(self) -> None:
         """Send what was changed in this frame, and lay the words that fit."""
         if self._wanted is not None and isinstance(self.picked, Link) and self.enabled:
             link = self.picked
-            self._run.edit(EditNetwork(SetWeight(link.layer, link.start, link.end, self._wanted), self._amends))
+            self._run.edit("edit", Edit(link.layer, link.start, link.end, self._wanted), self._amends)
             self._amends = self._wanted != 0.0  # a cut is a step of its own
             if self._slider is not None:
                 self._slider.value = self._wanted
@@ -169,11 +169,11 @@ class NetworkEditing:
             column.text(lambda: self._sentence, size=SMALL, colour=HUMAN)
             words += self._describe_picked(column) if self.enabled and not self._silent else []
         if self.enabled and edits.steps:
-            words.append((texts.EDIT_UNDO, lambda: self._run.edit(UndoEdit())))
+            words.append((texts.EDIT_UNDO, lambda: self._run.edit("undo")))
         if self.enabled and edits.way_back:
-            words.append((texts.EDIT_RESTORE, lambda: self._run.edit(UndoEdit(all=True))))
+            words.append((texts.EDIT_RESTORE, lambda: self._run.edit("undo", True)))
         if self.enabled and edits.holds:
-            words.append((texts.EDIT_LEARN_ON, lambda: self._run.edit(LearnOn())))
+            words.append((texts.EDIT_LEARN_ON, lambda: self._run.edit("learn_on")))
         if words:
             column.words(words)
 

@@ -10,7 +10,6 @@ from typing import Final
 
 import pygame
 
-from ai.training.checkpoints import agent_of
 from ai.training.config import PRESETS, Config
 from ai.training.experiments import Experiment, differences
 from game.core import texts
@@ -21,8 +20,8 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import LINE, NIGHT0, SMALL
 from game.flight.demonstrations import FILE_NAME, count_demonstrations
 from game.input.controls import Command
-from game.lesson.door import LessonDoor
 from game.panels.explained import Explained
+from game.panels.lesson_door import LessonDoor
 from game.scenes.menus.dialogs import QuestionDialog
 from game.scenes.train.advice import Advice
 from game.scenes.train.base import CHARTS, INSIDE, KNOBS, MORE, TrainingScene
@@ -375,7 +374,7 @@ class TrainScene(TrainingScene):
             self.context.note(texts.TRAIN_NO_CHECKPOINT)
             return None
         try:
-            rival = agent_of(self.lander_run.config, checkpoint)
+            rival = checkpoint.agent(self.lander_run.config)
         except ValueError as error:
             self.context.note(str(error))
             return None

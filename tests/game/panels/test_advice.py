@@ -26,7 +26,7 @@ def collapsed() -> History:
     for number in range(400):
         success = 0.97 if number < 300 else 0.2
         run.append(replace(HEALTHY, seconds=number / 10, decisions=1000.0 * number, episodes=9.0 * number,
-                           success=success, landed=success))  # fmt: skip
+                           success=success))  # fmt: skip
     run.append(Checkpoint(20.0, 200_000, 0.97, np.zeros(3, np.float32)))
     run.append(Checkpoint(39.0, 390_000, 0.2, np.zeros(3, np.float32)))
     return run
@@ -64,11 +64,7 @@ def test_a_remedy_is_applied_and_undone_the_way_back_too(context: Context, colla
         growing.append(checkpoint)
     for row in collapsed.points:
         values = row.tolist()
-        growing.append(
-            replace(
-                HEALTHY, seconds=values[0], decisions=values[1], episodes=values[2], success=values[3], landed=values[3]
-            )
-        )
+        growing.append(replace(HEALTHY, seconds=values[0], decisions=values[1], episodes=values[2], success=values[3]))
         advice.follow(growing, config)
     assert advice.adviser.shown is not None
     assert advice.adviser.shown.name == "collapsed"

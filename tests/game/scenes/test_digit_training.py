@@ -18,8 +18,8 @@ from ai.digits.filters import FilterMoment
 from ai.digits.training import DigitTraining
 from ai.digits.validation import Confusion
 from ai.files import state_folder
-from ai.training import checkpoints
 from ai.training.history import DigitPoint, Validation
+from ai.training.run import save
 from game.core import texts
 from game.core.names import LibraryError
 from game.core.worker import WorkerState
@@ -138,7 +138,7 @@ def test_a_run_is_named_dreams_and_is_quizzed(train: Driver, tmp_path: Path, mon
 )
 def test_a_nameless_run_is_asked_about_before_a_new_one(train: Driver, tmp_path: Path, answer: str):
     scene, runs = train.top, tmp_path / "user" / "digits" / "runs"
-    checkpoints.DIGITS.save(DigitTraining(SMALL, 3), runs / ".training")
+    save(DigitTraining(SMALL, 3), runs / ".training")
     train.key(pygame.K_RETURN)
     assert train.top_name == "QuestionDialog"
     if answer:

@@ -5,7 +5,7 @@ import pygame
 import pytest
 
 from ai.explain.inspection import links
-from ai.training.edits import NetworkEdits, UndoEdit
+from ai.training.edits import NetworkEdits
 from game.core import texts
 from game.core.worker import WorkerState
 from game.scenes.train.editing import NetworkEditing
@@ -25,7 +25,7 @@ def paused(driver: Driver) -> Driver:
     driver.key(pygame.K_RETURN)
     driver.wait(lambda: driver.top.lander_run.state is WorkerState.PAUSED)
     driver.press_on(texts.TRAIN_LOOK[0])
-    driver.top.lander_run.edit(UndoEdit())  # of nothing: the answer is the network as it is now
+    driver.top.lander_run.edit("undo")  # of nothing: the answer is the network as it is now
     driver.frames(3)
     return driver
 
@@ -66,7 +66,7 @@ def test_a_unit_is_silenced_by_the_mouse_and_is_as_it_was_bit_for_bit(train: Dri
     train.frames(2)
     train.click(train.widget(texts.EDIT_SILENCE).box.center)
     train.frames(3)
-    assert edits(train) == NetworkEdits(((1, unit),), (), 1, True, True)
+    assert edits(train) == NetworkEdits(((1, unit, None),), 1, True, True)
     assert not links(train.top.inside.network)[1].weights[unit].any()
     assert texts.EDIT_SILENCE not in words(train), "that is done"
     train.click(train.widget(texts.EDIT_RESTORE).box.center)
@@ -91,7 +91,7 @@ def test_a_link_is_pulled_turned_by_the_wheel_cut_and_undone_step_by_step(train:
     train.frames(2)
     assert weight(train, link) > first
     assert edits(train).steps == 1, "a pull is one step"
-    assert edits(train).weights == ((link.layer, link.start, link.end),)
+    assert edits(train).weights == [(link.layer, link.start, link.end)]
     pulled_to = weight(train, link)
     train.post(pygame.MOUSEWHEEL, x=0, y=-2)
     train.frames(2)

@@ -228,7 +228,7 @@ def test_a_short_history_of_which_little_is_known_or_fits_is_rewound(
     history = driver.top.lander_run.history
     for decisions in (300.0, 600.0):
         history.append(
-            Point(**(dict.fromkeys(list(COLUMNS[:10]), np.nan) | {"seconds": decisions / 100, "decisions": decisions}))
+            Point(**(dict.fromkeys(list(COLUMNS[:9]), np.nan) | {"seconds": decisions / 100, "decisions": decisions}))
         )
     if values is not None:  # a checkpoint of another network
         history.append(Checkpoint(1.0, 100, 0.0, values))

@@ -14,12 +14,12 @@ import pytest
 
 from ai.lander.pilots import ScriptedPilot
 from ai.lander.rewards import RewardWeights
-from ai.training.checkpoints import resume_run
 from ai.training.config import PRESETS
 from ai.training.demonstrations import demonstrate, write
 from ai.training.history import History
 from ai.training.lander_session import TAUGHT
 from ai.training.loop import Training
+from ai.training.run import resume
 from game.core import texts
 from game.core.scene import Push
 from game.core.worker import WorkerState
@@ -370,7 +370,7 @@ def test_killed_again_and_again_it_goes_on_and_what_was_saved_loads(beside: Driv
         assert beside.top is scene
     for run in scene.library.runs():
         assert not run.problem
-        assert resume_run(run.folder).agent.decisions > 0
+        assert resume(Training, run.folder).agent.decisions > 0
 
 
 def _kept() -> list[object]:
