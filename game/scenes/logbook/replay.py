@@ -109,7 +109,7 @@ class ReplayScene(FormScene):
         stop, step, *speeds = self.playback.actions(
             texts.HINT_STEP, stop=self._stop_or_go, gamepad=Command.CONFIRM, resting=self.ended
         )
-        on_strip = self.form.focused is self._reward_bar
+        on_strip = self.form.focused is self._strip
         if self.context.controls.gamepad_in_use and not on_strip:  # its A presses what is in focus
             stop = self.form.confirms(texts.HINT_CHOOSE)
         table = [
@@ -135,7 +135,7 @@ class ReplayScene(FormScene):
     def update(self) -> Transition | None:
         self.flight_replay.scout(1 if self.flight_replay.touching else _SCOUT)
         self._look_ahead()
-        self._reward_bar.reached = self.flight_replay.reached
+        self._strip.reached = self.flight_replay.reached
         self.explained.update()
         if self.export:
             self._follow_export(self.export)
@@ -206,7 +206,7 @@ class ReplayScene(FormScene):
 
     def _look(self) -> None:
         """Update the read-outs; at the end they keep the values of the last moment before."""
-        self._reward_bar.at = self.flight_replay.at
+        self._strip.at = self.flight_replay.at
         flight = self.flight_replay.flight
         self._readouts = (
             readouts.at_touch(self._readouts, flight.env) if flight.over else readouts.flight_readouts(flight.env)
@@ -226,7 +226,7 @@ class ReplayScene(FormScene):
 
     def _build(self) -> None:
         manager, recording = self.form.manager, self.record.recording
-        self._reward_bar = self.form.add(
+        self._strip = self.form.add(
             Timeline(
                 manager, _STRIP, texts.REPLAY_LANES, recording.actions, recording.hands, self.seek, self._stop_or_go
             )

@@ -184,7 +184,7 @@ def test_without_a_clipboard_the_code_is_written_to_a_file(
     monkeypatch.setattr(pygame.scrap, "get_text", broken)
     driver = open_game(LogbookScene)
     driver.frames(2)
-    driver.press_on(texts.LOGBOOK_COPY)
+    driver.press_on(texts.CODE_COPY)
     (path,) = (context.user_dir / "codes").iterdir()
     assert path.name in driver.said
     assert sharing.flight_in_file(path).recording == record.recording

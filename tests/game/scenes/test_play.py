@@ -116,7 +116,7 @@ def test_after_a_crash_a_key_flies_the_same_start_again_and_after_a_landing_ente
         driver.key(key)
         assert not play(driver).flight.over
         assert (play(driver).flight.recording.seed == 3) is same
-        assert (np.abs(play(driver).flight.poses.now - began).max() < 0.3) is same
+        assert bool(np.abs(play(driver).flight.poses.now - began).max() < 0.3) is same
 
 
 def test_a_thrust_held_through_the_end_does_not_dismiss_the_card(begin: Open):
