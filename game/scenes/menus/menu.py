@@ -156,7 +156,7 @@ class FlightsScene(_OverMoon):
 
     def describe(self, panel: Panel) -> None:
         panel.title(texts.FLIGHTS_TITLE)
-        panel.gap(12)
+        panel.gap(8)
         for name, route in FLIGHTS.items():
             panel.button(
                 texts.FLIGHTS[name][0], partial(push, route), partial(self._line, name),

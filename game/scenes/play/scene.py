@@ -15,14 +15,11 @@ from game.drawing.canvas import Canvas
 from game.flight import networks
 from game.flight.credit import eased
 from game.flight.flight import StickHolder
-from game.flight.flight_file import Record
 from game.flight.logbook import Records, best_alone
-from game.flight.replay import FlightReplay
 from game.input.controls import Command, translate
 from game.panels.explained import Explained
 from game.scenes.play.card import ShownCard
-from game.scenes.play.challenge import Challenge, ContinuedFlight, Duel, against, dated
-from game.scenes.play.descent import Descent
+from game.scenes.play.challenge import Challenge, Duel
 from game.scenes.play.flight_controls import FlightControls
 from game.scenes.play.flown_flight import FlownFlight
 from game.scenes.play.free import FreeFlight
@@ -84,15 +81,14 @@ class PlayScene(Scene):
         self._controls, self._settings, self._sound = context.controls, context.settings, context.sound
         self._stick = FlightControls(context.controls, context.settings)
         self.explained = Explained()
-        self._away = 0  # steps since the window was left; 0 while it is in use
-        self._held_next = 0  # steps for which the key for what comes next is held; 0 while it is not
+        self._away = self._held_next = 0  # steps since the window was left, and the key for what comes next is held
         self._records = Records(context.user_dir)
         entries = self._records.entries()
         if self._records.problem:
             context.note(self._records.problem)
         self._best, self._sitting = best_alone(entries), Sitting(entries)
-        newcomer = seed is None and not context.settings.tutored
-        usual = Duel(rival, rival_name) if rival else Tutorial() if newcomer else FreeFlight(context.settings)
+        new = seed is None and not context.settings.tutored
+        usual = Duel(rival, rival_name) if rival else Tutorial() if new else FreeFlight(context.settings)
         self.challenge = challenge or usual
         self.challenge.recall(entries)
         self._load_network()
@@ -134,7 +130,6 @@ class PlayScene(Scene):
 
     @property
     def takes_switch(self) -> bool:  # type: ignore[override]
-        """Whether the one switch flies."""
         return not self.flight.over
 
     def update(self) -> Transition | None:
@@ -231,7 +226,6 @@ class PlayScene(Scene):
             self.context.note(text.format(name=network.name, problem=network.problem))
 
     def _copy(self) -> None:
-        """Copy what tells a friend of the flight that is over."""
         if self.flown.record:
             give(self.context, *self.challenge.message(self.flown.record))
 
@@ -275,7 +269,6 @@ class PlayScene(Scene):
 
     @property
     def _head(self) -> Head:
-        """The words at the head."""
         named = self._settings.show_hints or self._controls.mouse_in_use  # for the mouse, they are what it presses
         hints = hints_of(self._flight_actions(), self._controls) if named else []
         return head_of(self.flown, hints, whole=False)
@@ -363,7 +356,6 @@ class PlayScene(Scene):
         return Pop()
 
     def _end_challenge(self) -> None:
-        """Go on with free flights."""
         self._held_next = 0
         self.challenge.leave()
         self._remember()
@@ -402,32 +394,7 @@ class PlayScene(Scene):
             self._best = max(self._best, best_alone([entry]))
 
     def _accept_help(self) -> None:
-        """Turn the dial to the offered help, and try again."""
         choose(self.flown.helped, "guard")
         self._sitting.begin()
         self.context.apply_settings()
         self._go_on()
-
-
-# Flights that other screens lead to, by their routes
-
-
-def tutorial(context: Context) -> PlayScene:
-    """Fly the first flight, again if need be."""
-    return PlayScene(context, 0, challenge=Tutorial())
-
-
-def descent(context: Context) -> PlayScene:
-    """Fly from pad to pad."""
-    return PlayScene(context, challenge=Descent())
-
-
-def race(context: Context, record: Record, rival: str = "") -> PlayScene:
-    """Race against a recorded flight."""
-    return PlayScene(context, record.recording.seed, challenge=against(record, rival))
-
-
-def fly_on(context: Context, record: Record, flight_replay: FlightReplay, rival: str = "") -> PlayScene:
-    """Fly on from a replay's present moment, beside the recorded flight as a ghost."""
-    challenge = ContinuedFlight(flight_replay, rival or dated(record))
-    return PlayScene(context, record.recording.seed, challenge=challenge)

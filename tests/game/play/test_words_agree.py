@@ -23,7 +23,8 @@ from game.scenes.play.challenge import FlownMission, against
 from game.scenes.play.choices import ChoicesScene
 from game.scenes.play.daily import DailyStart
 from game.scenes.play.missions import MissionsScene
-from game.scenes.play.scene import PlayScene, fly_on
+from game.scenes.play.scene import PlayScene
+from game.scenes.play.starts import fly_on
 from game.scenes.play.tutorial import Tutorial
 from game.ui.context import Context
 from tests.support.driver import Driver
