@@ -197,7 +197,7 @@ class BackwardsChapter(Chapter):
         odds, blame, y = float(self.odds[digit]), float(self.blames[-1][digit]), box.centery
         colour = canvas.palette.good if digit == self.label else INK
         canvas.text(str(digit), (box.left + 6, y + 5), size=SMALL, colour=colour, weight="medium")
-        canvas.bar((box.left + 24, y - 2, 0.45 * box.width, 4), odds, NET)
+        canvas.bar((box.left + 24, y - 2, max(box.width - 100, 20), 4), odds, NET)
         canvas.text(percent(odds), (box.right - 26, y + 5), size=SMALL, colour=colour, align="right", tabular=True)
         canvas.explain(box, self.unit(len(_BOXES), digit))
         if self.reached:

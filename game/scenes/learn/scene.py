@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from functools import partial
 from typing import Final
@@ -29,7 +28,7 @@ PREDICT, TRY, WHY, CODE = range(len(PAGES))
 _SHARES, _LEAST, _APART = (1.0, 1.8), 240.0, 36.0  # of the columns of words and of the picture
 _BODY: Final = SMALL + 1.5
 _OPEN: Final[Colour] = (190, 198, 214)  # an answer that was not given
-_AROUND, _LOWEST = 250.0, 0.42  # points above and below the picture; its least height, as a share of its width
+_AROUND, _LOWEST = 250.0, 0.85  # points above and below the picture; the least share of its height
 _LISTING, _NOTES = 420.0, 230.0  # height of a listing, and width of what stands beside its lines
 _INDENT: Final = 18.0  # of a verdict, behind its line
 
@@ -139,6 +138,7 @@ class ChapterScene(PanelScene):
         left, right = panel.beside(_SHARES, _LEAST, _APART)
         [self._describe_predict, self._describe_try, self._describe_why, self._describe_code][self.page](left)
         self._picture: Row | None = None
+        self._high = 0.0
         if self.page == CODE:
             self._describe_listing(right)
         else:
@@ -152,8 +152,10 @@ class ChapterScene(PanelScene):
 
     def _leave_room(self, cursor: Cursor) -> None:
         """Leave room for the picture: as high as it should be, or as all else leaves room for in the window."""
-        wide, room = cursor.width, cursor.seen.height - _AROUND if cursor.seen else math.inf
-        cursor.take(min(self.chapter.shape * wide, max(room, _LOWEST * wide)))
+        if cursor.canvas is None and cursor.seen:
+            whole = self.chapter.shape * cursor.width
+            self._high = min(whole, max(cursor.seen.height - _AROUND, _LOWEST * whole))
+        cursor.take(self._high)
 
     def _describe_predict(self, column: Column) -> None:
         column.text(self.chapter.words["lead"], size=_BODY, colour=MUTE)
