@@ -70,7 +70,7 @@ class ChapterScene(PanelScene):
             self._progress.note(self.key, done=True)
         self._told = self.chapter.why() if self.chapter.tried else ""
         # Of what runs on, the numbers of this moment: they could not be read otherwise.
-        self._code = list(self.chapter.code()) if page == CODE else []
+        self._code = list(self.chapter.code()) if page == CODE and not self.chapter.problem else []
         self.context.apply_settings()
         self.panel.scrolled = 0.0
         self.build()
@@ -79,8 +79,9 @@ class ChapterScene(PanelScene):
 
     def _restart(self) -> None:
         """Begin the chapter's picture anew."""
-        self.chapter.restart()
-        self.build()
+        if not self.chapter.problem:
+            self.chapter.restart()
+            self.build()
 
     def actions(self) -> Table:
         again = [Action(Command.RETRY, self._restart, texts.LEARN_AGAIN)] if self.page == TRY else []
@@ -101,7 +102,7 @@ class ChapterScene(PanelScene):
         return None if self.explained.handle_event(event) else super().handle_event(event)
 
     def update(self) -> Transition | None:
-        if self.page != PREDICT:
+        if self.page != PREDICT and not self.chapter.problem:
             self.chapter.update()
         if self.page == WHY and self.chapter.tried and (self.chapter.changed or not self._told):
             self.turn_to(WHY)  # what was begun on the page before has come to its end
@@ -139,7 +140,9 @@ class ChapterScene(PanelScene):
         [self._describe_predict, self._describe_try, self._describe_why, self._describe_code][self.page](left)
         self._picture: Row | None = None
         self._high = 0.0
-        if self.page == CODE:
+        if self.chapter.problem:
+            right.text(self.chapter.problem, colour=MUTE)
+        elif self.page == CODE:
             self._describe_listing(right)
         else:
             self._picture = right.add(self._leave_room)
@@ -168,7 +171,8 @@ class ChapterScene(PanelScene):
     def _describe_try(self, column: Column) -> None:
         column.text(lambda: self.chapter.words["task"], size=_BODY)
         column.gap(6)
-        self.chapter.controls(column)
+        if not self.chapter.problem:
+            self.chapter.controls(column)
 
     def _describe_why(self, column: Column) -> None:
         guess = self._progress.guess(self.key)
