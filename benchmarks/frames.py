@@ -50,16 +50,16 @@ from game.core.scene import Scene
 from game.core.settings import Settings
 from game.digits.kept import classifier_in
 from game.drawing.paint_cache import A_FRAME, idle, spread
-from game.learn.path import PATH
 from game.scenes import scene_of
 from game.scenes.ahead import load
-from game.scenes.chapter import ChapterScene
 from game.scenes.digits.dream import DreamScene
 from game.scenes.digits.inside import DigitInsideScene
 from game.scenes.digits.quiz import QuizScene
 from game.scenes.digits.why_not import WhyNotScene
 from game.scenes.error_screen import ErrorScene
-from game.scenes.lesson import LessonScene
+from game.scenes.learn.path import PATH
+from game.scenes.learn.scene import ChapterScene
+from game.scenes.lesson.scene import LessonScene
 from game.scenes.menus.background import LOADER
 from game.scenes.menus.dialogs import ListDialog, NameDialog, QuestionDialog
 from game.scenes.menus.menu import MenuScene

@@ -2,7 +2,7 @@
 
     python -m benchmarks.pay [--seeds 3]
 
-The runs and the flights are those of the chapter (`game.learn.pay`).
+The runs and the flights are those of the chapter (`game.scenes.learn.pay`).
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import argparse
 
 from ai.training.history import Checkpoint
 from ai.training.lander_session import live
-from game.learn.pay import DECISIONS, FLIGHTS, PAYS, Flown, Trial, config_of
+from game.scenes.learn.pay import DECISIONS, FLIGHTS, PAYS, Flown, Trial, config_of
 
 
 def flown(pay: str, seed: int) -> Flown:

@@ -12,9 +12,8 @@ from ai.training.config import Config
 from ai.training.small_run import SMALL_RUN, Plan, SmallRun, SmallState
 from ai.training.statistics import wilson
 from benchmarks.sabotages import mean_of_shares
-from game.learn.daring import DARING, PAY
-from game.learn.memory import LATEST, TODAY, YESTERDAY, MemoryChapter
-from game.learn.target import BOUND, EVERY, NORMALISED, config_of
+from game.scenes.learn.duels import BOUND, DARING, EVERY, NORMALISED, PAY, config_of
+from game.scenes.learn.memory import LATEST, TODAY, YESTERDAY, MemoryChapter
 
 DECISIONS = 600
 

@@ -31,9 +31,9 @@ from ai.training.loop import Training
 from game.core.scene import Scene
 from game.core.settings import Settings
 from game.scenes import scene_of
-from game.scenes.chapter import ChapterScene
 from game.scenes.digits.scene import DigitsScene
-from game.scenes.lesson import LessonScene
+from game.scenes.learn.scene import ChapterScene
+from game.scenes.lesson.scene import LessonScene
 from game.scenes.menus.menu import MenuScene
 from game.scenes.physics.scene import PhysicsScene
 from game.scenes.play.challenge import FlownMission

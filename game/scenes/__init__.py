@@ -23,8 +23,9 @@ ROUTES: Final = {
     "logbook": "logbook.scene.LogbookScene", "replay": "logbook.replay.ReplayScene",
     "settings": "menus.settings.SettingsScene", "bindings": "menus.keys.BindingsScene",
     "choices": "play.choices.ChoicesScene", "pause": "play.pause.PauseScene",
-    "flight_pause": "play.pause.FlightPauseScene", "learn": "learn.LearnScene", "chapter": "chapter.ChapterScene",
-    "lesson": "lesson.LessonScene", "error_screen": "error_screen.ErrorScene", "study": "train.study.StudyScene",
+    "flight_pause": "play.pause.FlightPauseScene", "learn": "learn.list.LearnScene",
+    "chapter": "learn.scene.ChapterScene", "lesson": "lesson.scene.LessonScene",
+    "error_screen": "error_screen.ErrorScene", "study": "train.study.StudyScene",
 }  # fmt: skip
 
 

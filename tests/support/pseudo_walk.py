@@ -32,15 +32,14 @@ from game.core.scene import Scene
 from game.core.settings import Settings
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
-from game.learn import pay
-from game.learn.daring import DaringChapter
-from game.learn.memory import MemoryChapter
-from game.learn.target import TargetChapter
 from game.scenes import scene_of
-from game.scenes.chapter import ChapterScene
 from game.scenes.digits.inside import DigitInsideScene
 from game.scenes.error_screen import ErrorScene
-from game.scenes.lesson import LessonScene
+from game.scenes.learn import pay
+from game.scenes.learn.duels import DaringChapter, TargetChapter
+from game.scenes.learn.memory import MemoryChapter
+from game.scenes.learn.scene import ChapterScene
+from game.scenes.lesson.scene import LessonScene
 from game.scenes.menus.dialogs import QuestionDialog
 from game.scenes.play.scene import PlayScene
 from game.scenes.train.base import INSIDE

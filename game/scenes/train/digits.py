@@ -18,7 +18,7 @@ from game.digits.matrix import ConfusionMatrix
 from game.drawing.canvas import Canvas
 from game.drawing.sky import NightSky
 from game.drawing.tokens import HUMAN, LABEL, MUTE, SMALL
-from game.lesson.door import ImageDoor
+from game.panels.lesson_door import ImageDoor
 from game.scenes.menus.dialogs import QuestionDialog
 from game.scenes.train.base import KNOBS as ALL_KNOBS
 from game.scenes.train.base import MORE, TrainingScene

@@ -20,8 +20,8 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import LINE, NIGHT0, SMALL
 from game.flight.demonstrations import FILE_NAME, count_demonstrations
 from game.input.controls import Command
-from game.lesson.door import LessonDoor
 from game.panels.explained import Explained
+from game.panels.lesson_door import LessonDoor
 from game.scenes.menus.dialogs import QuestionDialog
 from game.scenes.train.advice import Advice
 from game.scenes.train.base import CHARTS, INSIDE, KNOBS, MORE, TrainingScene

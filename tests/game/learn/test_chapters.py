@@ -4,7 +4,6 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-import pygame
 import pytest
 
 from ai.lander.environment import Outcome
@@ -12,17 +11,18 @@ from ai.nn import SGD
 from ai.nn.optimizers import Adam
 from game.core import texts
 from game.core.source import source_of
-from game.learn import downhill, plane
-from game.learn.backwards import BackwardsChapter
-from game.learn.chapter import Chapter
-from game.learn.downhill import DownhillChapter
-from game.learn.neuron import GOAL, HINT, NeuronChapter
-from game.learn.path import PATH, chapter_type
-from game.learn.pay import ASKED, DECISIONS, FLIGHTS, PAYS, Flown, PayChapter, config_of
-from game.learn.plane import PlaneChapter
-from game.scenes.chapter import placed
+from game.scenes.learn import downhill, plane
+from game.scenes.learn.backwards import BackwardsChapter
+from game.scenes.learn.chapter import Chapter
+from game.scenes.learn.downhill import DownhillChapter
+from game.scenes.learn.neuron import GOAL, HINT, NeuronChapter
+from game.scenes.learn.path import PATH, chapter_type
+from game.scenes.learn.pay import ASKED, DECISIONS, FLIGHTS, PAYS, Flown, PayChapter, config_of
+from game.scenes.learn.plane import PlaneChapter
+from game.scenes.learn.scene import placed
 from game.ui.context import Context
 from game.ui.form import Form
+from game.ui.panel import Column
 from tests.support import inline_worker
 
 SECOND = 60
@@ -32,7 +32,7 @@ Made = Callable[[type[Chapter]], Any]
 @pytest.fixture
 def made(context: Context) -> Made:
     """Make a chapter, as its scene does."""
-    return lambda kind: kind(context, Form(context).manager)
+    return lambda kind: kind(context)
 
 
 @pytest.mark.parametrize("key", PATH)
@@ -76,7 +76,7 @@ def test_the_weights_of_the_hint_fly_upright_and_in_sight_and_bear_a_push(made: 
         chapter.update()
     assert chapter.best[0] > 24
     assert chapter.tried
-    assert "-4.0" in chapter.why(None)
+    assert "-4.0" in chapter.why()
 
 
 @pytest.mark.parametrize("weights", [(-4.0, 0.0, 2.0), (-2.0, 0.0, 1.0), (-6.0, 0.0, 4.0), (-4.0, -4.0, 2.0)])
@@ -145,13 +145,12 @@ def test_the_plane_shows_what_the_trained_network_answers(made: Made):
     chapter = made(PlaneChapter)
     chapter.update()
     assert not chapter.tried
-    choice, _ = chapter.widgets()
-    choice.choose(len(plane.UNITS) - 1)
+    chapter.choose(len(plane.UNITS) - 1)
     for _ in range(plane.SPOKEN):
         chapter.update()
     assert chapter.tried
     assert chapter.results == {8: chapter.right}
-    assert str(chapter.right) in chapter.why(None)
+    assert str(chapter.right) in chapter.why()
     chapter.restart()
     assert not chapter.tried
     assert chapter.units == 0
@@ -165,14 +164,13 @@ def test_the_plane_shows_what_the_trained_network_answers(made: Made):
 )
 def test_steps_are_too_short_right_or_too_long(made: Made, rate: float, kind: str):
     chapter = made(DownhillChapter)
-    _, slider, _ = chapter.widgets()
-    slider.set(rate)
+    chapter.set_rate(rate)
     for _ in range(15 * (downhill.ENOUGH + 2)):
         chapter.update()
     assert list(chapter.results) == [kind]
     figures = chapter.results[kind]
     assert figures["rate"] == rate
-    assert f"{rate:.3f}" in chapter.why(None)
+    assert f"{rate:.3f}" in chapter.why()
     costs = chapter.line.costs
     assert figures["last"] == costs[-1]
     if rate == 0.2:  # it overshoots, and is on the other side after every step
@@ -194,9 +192,8 @@ def test_the_ball_stands_on_the_real_cost_and_steps_by_the_real_gradient(made: M
 @pytest.mark.parametrize("rate", [0.01, 0.1, 0.25])
 def test_in_the_valley_adam_gets_further_than_plain_steps_of_any_length(made: Made, rate: float):
     chapter = made(DownhillChapter)
-    picture, slider, _ = chapter.widgets()
-    picture.choose(1)
-    slider.set(rate)
+    chapter.choose(1)
+    chapter.set_rate(rate)
     for _ in range(6 * (downhill.VALLEY_STEPS + 2)):
         chapter.update()
     assert chapter.adam.costs[-1] < 0.2 * chapter.plain.costs[-1]
@@ -205,14 +202,13 @@ def test_in_the_valley_adam_gets_further_than_plain_steps_of_any_length(made: Ma
 
 def test_steps_that_are_far_too_long_are_lost_and_the_chapter_goes_on(made: Made):
     chapter = made(DownhillChapter)
-    picture, slider, _ = chapter.widgets()
-    picture.choose(1)
-    slider.set(0.5)
+    chapter.choose(1)
+    chapter.set_rate(0.5)
     for _ in range(6 * (downhill.VALLEY_STEPS + 2)):
         chapter.update()
     assert chapter.plain.lost
     assert "lost" in chapter.results
-    assert chapter.why(None)
+    assert chapter.why()
 
 
 # Backwards
@@ -250,29 +246,27 @@ def test_a_step_makes_the_right_answer_likelier_and_moves_about_one_weight_in_fi
         without_ink = chapter.classifier.shaped(chapter._image)[0] == 0
         first, shipped = chapter.network.layers[0].weights, chapter._shipped.network.layers[0].weights
         assert (first[without_ink] == shipped[without_ink]).all()
-        assert f"{chapter.moved:,}" in chapter.why(None)
+        assert f"{chapter.moved:,}" in chapter.why()
         chapter.another()
 
 
-def test_pointing_at_a_unit_tells_its_blame(made: Made):
+def test_a_unit_tells_its_blame_once_it_has_come_so_far(made: Made):
     chapter = made(BackwardsChapter)
-    before = chapter._told()
-    chapter.handle_event(
-        pygame.Event(pygame.MOUSEMOTION, pos=(448 + 212 + 5, 164 + 200), rel=(0, 0), buttons=(0, 0, 0))
-    )
-    assert before != chapter._told()
-    silent = chapter._told()
-    for _ in range(4):
+    silent = chapter.unit(1, 3)
+    for _ in range(3):
         chapter.go_on()
-    assert chapter._told() != silent
+    assert chapter.unit(1, 3) != silent
+    blame = float(chapter.blames[1][3])
+    assert f"{abs(blame):.3f}" in chapter.unit(1, 3)
 
 
 @pytest.mark.parametrize("missing", ["models_dir", "assets_dir"])
 def test_without_a_network_or_images_the_chapter_says_so(context: Context, missing: str, tmp_path):
     setattr(context, missing, tmp_path)
-    chapter = BackwardsChapter(context, Form(context).manager)
+    chapter, column = BackwardsChapter(context), Column(Form(context))
+    chapter.controls(column)
     assert chapter.problem
-    assert not chapter.widgets()
+    assert not column.rows
     assert chapter.code()
     chapter.restart()
 
@@ -281,10 +275,9 @@ def test_without_a_network_or_images_the_chapter_says_so(context: Context, missi
 
 
 def trained(chapter: Any, pay: str) -> Flown:
-    choice, _ = chapter.widgets()
-    choice.choose(list(PAYS).index(pay))
+    chapter.choose(list(PAYS).index(pay))
     chapter.train()
-    assert chapter.running
+    assert chapter.learning
     while pay not in chapter.results:
         chapter.update()
         assert not chapter.note
@@ -296,13 +289,13 @@ def test_each_pay_teaches_what_it_pays_for(made: Made, monkeypatch: pytest.Monke
     inline_worker.install(monkeypatch.setattr)
     chapter = made(PayChapter)
     landing = trained(chapter, "landing")
-    monkeypatch.setattr("game.learn.pay.DECISIONS", 8_000)  # it does not take long to learn to fall
+    monkeypatch.setattr("game.scenes.learn.pay.DECISIONS", 8_000)  # it does not take long to learn to fall
     haste = trained(chapter, "haste")
     assert landing.landed > 0.5 * FLIGHTS
     assert haste.crashed > 0.6 * FLIGHTS
     assert haste.time < landing.time
     assert chapter.tried
-    told = chapter.why(None)
+    told = chapter.why()
     assert str(landing.landed) in told
     assert str(haste.crashed) in told
     chapter.close()
@@ -311,7 +304,7 @@ def test_each_pay_teaches_what_it_pays_for(made: Made, monkeypatch: pytest.Monke
 
 def test_the_flights_after_a_run_are_those_of_its_network(made: Made, monkeypatch: pytest.MonkeyPatch):
     inline_worker.install(monkeypatch.setattr)
-    monkeypatch.setattr("game.learn.pay.DECISIONS", 64 * 40)
+    monkeypatch.setattr("game.scenes.learn.pay.DECISIONS", 64 * 40)
     chapter = made(PayChapter)
     chapter.train()
     while chapter.trial is None:
@@ -330,7 +323,7 @@ def test_a_run_that_fails_is_told_and_another_can_begin(made: Made, monkeypatch:
     inline_worker.install(monkeypatch.setattr)
     chapter = made(PayChapter)
 
-    monkeypatch.setattr("game.learn.pay.live", _failing)
+    monkeypatch.setattr("game.scenes.learn.pay.live", _failing)
     chapter.train()
     for _ in range(3):
         chapter.update()

@@ -16,18 +16,17 @@ from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.core.scene import Push
 from game.flight.logbook import Records
-from game.learn import runs as runs_module
-from game.learn.chapter import Chapter
-from game.learn.choice import ChoiceChapter
-from game.learn.daring import DaringChapter
-from game.learn.memory import KINDS, MemoryChapter
-from game.learn.moment import MOMENTS, MomentChapter
-from game.learn.own import OwnChapter
-from game.learn.runs import RunsChapter
-from game.learn.target import TargetChapter
-from game.panels.q_values import signed
+from game.panels.figures import percent, points
+from game.scenes.learn import runs as runs_module
+from game.scenes.learn.chapter import Chapter
+from game.scenes.learn.duels import DaringChapter, TargetChapter
+from game.scenes.learn.memory import KINDS, MemoryChapter
+from game.scenes.learn.moment import MOMENTS, ChoiceChapter, MomentChapter
+from game.scenes.learn.own import OwnChapter
+from game.scenes.learn.runs import RunsChapter
 from game.ui.context import Context
 from game.ui.form import Form
+from game.ui.panel import Column
 from tests.support.flights import landed
 from tests.support.inline_worker import InlineWorker
 
@@ -41,7 +40,7 @@ def made(context: Context, monkeypatch: pytest.MonkeyPatch) -> Iterator[Made]:
     chapters: list[Chapter] = []
 
     def make(kind: type[Chapter]) -> Chapter:
-        chapters.append(kind(context, Form(context).manager))
+        chapters.append(kind(context))
         return chapters[-1]
 
     yield make
@@ -81,8 +80,8 @@ def test_the_value_is_the_networks_own_and_what_comes_is_the_discounted_pay(made
         agrees = 2 if number == 0 else None  # about 20 points; the other flights are shorter
         assert chapter.verdict() == agrees
         chapter.turn()
-        assert signed(judged.value) in str([code.notes for code in chapter.code()]), "the moment that was judged"
-    assert "3 moments" in chapter.why(None)
+        assert points(judged.value, 1) in str([code.notes for code in chapter.code()]), "the moment that was judged"
+    assert "3 moments" in chapter.why()
 
 
 def test_the_network_judges_moments_better_than_a_guess_of_the_whole_score(made: Made):
@@ -101,9 +100,10 @@ def test_the_network_judges_moments_better_than_a_guess_of_the_whole_score(made:
 
 def test_a_missing_network_is_said_and_the_chapter_stays_usable(context: Context, tmp_path):
     context.models_dir = tmp_path
-    chapter = MomentChapter(context, Form(context).manager)
+    chapter, column = MomentChapter(context), Column(Form(context))
+    chapter.controls(column)
     assert chapter.problem
-    assert chapter.widgets() == []
+    assert not column.rows
     chapter.update()
     chapter.restart()
     assert len(chapter.code()) == 3
@@ -116,7 +116,7 @@ def test_a_missing_network_is_said_and_the_chapter_stays_usable(context: Context
 def test_a_run_learns_to_its_end_and_tells_its_own_numbers(made: Made, kind, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(kind, "LENGTH", 90)
     if kind is MemoryChapter:
-        monkeypatch.setattr("game.learn.memory.YESTERDAY", 45)
+        monkeypatch.setattr("game.scenes.learn.memory.YESTERDAY", 45)
         monkeypatch.setattr(kind, "PLAN", kind.PLAN._replace(change=45))
     chapter = made(kind)
     assert isinstance(chapter, RunsChapter)
@@ -129,12 +129,12 @@ def test_a_run_learns_to_its_end_and_tells_its_own_numbers(made: Made, kind, mon
     assert chapter.tried
     assert not chapter.running
     assert [states[0].decisions for states in chapter.states] == list(range(91))
-    told = chapter.why(None)
+    told = chapter.why()
     assert "{" not in told
     last = chapter.states[-1]
     if kind is not MemoryChapter:
-        assert f"{last[0].landed:.0%}" in told
-        assert f"{last[1].landed:.0%}" in told
+        assert percent(last[0].landed) in told
+        assert percent(last[1].landed) in told
     chapter.restart()
     assert not chapter.states
     assert not chapter.tried
@@ -146,7 +146,7 @@ def test_a_guess_gets_its_verdict_from_this_very_run(made: Made, kind, monkeypat
     chapter = made(kind)
     asked, other = (0, 2) if kind is TargetChapter else (1, 2)
     for choice in (other, asked):
-        chapter.widgets()[0].choose(choice)
+        chapter.choose(choice)
         chapter.start()
         while not chapter.over:
             chapter.update()
@@ -163,11 +163,11 @@ def test_a_guess_gets_its_verdict_from_this_very_run(made: Made, kind, monkeypat
 
 def test_each_memory_that_was_tried_is_compared(made: Made, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(MemoryChapter, "LENGTH", 60)
-    monkeypatch.setattr("game.learn.memory.YESTERDAY", 30)
+    monkeypatch.setattr("game.scenes.learn.memory.YESTERDAY", 30)
     monkeypatch.setattr(MemoryChapter, "PLAN", MemoryChapter.PLAN._replace(change=30))
     chapter = made(MemoryChapter)
     for number in range(len(KINDS)):
-        chapter.widgets()[0].choose(number)
+        chapter.choose(number)
         chapter.start()
         for _ in range(70):
             chapter.update()
@@ -176,7 +176,7 @@ def test_each_memory_that_was_tried_is_compared(made: Made, monkeypatch: pytest.
     assert set(chapter.results) == set(KINDS)
     lost = [before - after for before, after in (chapter.results[kind] for kind in KINDS)]
     assert chapter.verdict() == (int(np.argmax(lost)) if max(lost) >= 0.25 else 3)
-    assert all(name in chapter.why(None) for name in texts.LEARN_MEMORY_NAMES)
+    assert all(name in chapter.why() for name in texts.LEARN_MEMORY_NAMES)
     assert chapter.states[-1][0].memory.oldest > 0  # the last one kept the latest only
 
 
@@ -208,13 +208,12 @@ def test_the_list_ticks_what_was_really_done_and_nothing_before(made: Made, cont
     chapter = made(OwnChapter)
     assert isinstance(chapter, OwnChapter)
     assert look(chapter) == set()
-    race = chapter.widgets()[4]
-    assert race.press() is None  # there is none to race yet
+    assert chapter.race() is None  # there is none to race yet
     training = Training(Config(num_envs=4, learning_starts=8, batch_size=8), validation_episodes=2, evaluate_every=0)
     training.advance()
     save(training, context.user_dir / "models" / "mine", state=False)
     assert look(chapter) == {"train"}
-    assert "mine" in chapter.why(None)
+    assert "mine" in chapter.why()
     context.settings.model = "mine"
     assert look(chapter) == {"train", "choose"}
     records = Records(context.user_dir)
@@ -223,7 +222,7 @@ def test_the_list_ticks_what_was_really_done_and_nothing_before(made: Made, cont
     records.keep(landed(), time.time(), network="mine")
     assert "hand" in look(chapter)
     assert "race" not in look(chapter)
-    pushed = race.press()
+    pushed = chapter.race()
     assert isinstance(pushed, Push)
     assert "race" not in look(chapter)  # opened, and not flown yet
     records.keep(landed(), time.time() + 5, network="mine")
@@ -252,15 +251,15 @@ def test_six_values_and_what_comes_of_each_are_the_networks_own(made: Made):
             pays.append(float(result.reward[0]))
             flown = agent.decide(result.observation, held=env.actions).action
         came = sum(agent.config.discount**number * pay for number, pay in enumerate(pays))
-        assert chapter.results[action].points == pytest.approx(came, abs=0.5)
+        assert chapter.results[action].came == pytest.approx(came, abs=0.5)
         assert chapter.results[action].landed == (env.outcome[0] == Outcome.LANDED)
     best, worst = chapter.results[chapter.best], chapter.results[chapter.worst]
     assert best.landed
-    assert (texts.LEARN_CHOICE_SURPRISE in chapter.why(None)) == (best.points < worst.points)
-    chapter.results[chapter.worst] = worst._replace(points=best.points + 1.0)
-    assert texts.LEARN_CHOICE_SURPRISE in chapter.why(None)
+    assert (texts.LEARN_CHOICE_SURPRISE in chapter.why()) == (best.came < worst.came)
+    chapter.results[chapter.worst] = worst._replace(came=best.came + 1.0)
+    assert texts.LEARN_CHOICE_SURPRISE in chapter.why()
     chapter.results[chapter.worst] = worst
-    expected = 0 if not worst.landed else 1 if best.points - worst.points <= 5 else 2
+    expected = 0 if not worst.landed else 1 if best.came - worst.came <= 5 else 2
     assert chapter.verdict() == expected
     assert chapter.tried
     chapter.turn()

@@ -7,9 +7,8 @@ import pytest
 
 from game.core import texts
 from game.core.worker import WorkerState
-from game.scenes.lesson import LessonScene
+from game.scenes.lesson.scene import LessonScene
 from game.scenes.train.digits import DigitTrainingScene
-from game.ui.hints import HintRow
 from tests.support.driver import Driver
 from tests.support.lessons import digit_lesson_of
 from tests.support.small import DIGITS
@@ -54,16 +53,7 @@ def test_the_mouse_alone_opens_a_lesson_and_goes_to_another_image(train: Driver)
     train.click(train.widget(texts.LESSON_WHY).box.center)
     train.wait(lambda: isinstance(train.top, LessonScene))
     train.frames(3)
-    canvas = train.app.canvas
-    (row,) = train.top.hint_rows(canvas)
-    assert isinstance(row, HintRow)
-    x, y = next(
-        (x, y)
-        for y in range(680, 716, 4)
-        for x in range(40, 1240, 6)
-        if (hint := row.at(canvas, (x, y))) and hint.meaning == texts.LESSON_ANOTHER_IMAGE
-    )
-    train.click((x, y))
+    train.click(train.hints()[texts.LESSON_ANOTHER_IMAGE])
     train.wait(lambda: train.top.lesson.step.row == 1)
 
 

@@ -4,7 +4,7 @@ import pygame
 
 from game.core import texts
 from game.core.worker import WorkerState
-from game.scenes.lesson import LessonScene
+from game.scenes.lesson.scene import LessonScene
 from game.scenes.train.scene import TrainScene
 from game.ui.scrubber import Scrubber
 from game.ui.virtual_pointer import VirtualPointer
