@@ -71,6 +71,7 @@ from game.scenes.play.choices import ChoicesScene
 from game.scenes.play.descent import Descent
 from game.scenes.play.pause import PauseScene
 from game.scenes.play.scene import PlayScene
+from game.scenes.train.laboratory import Chosen
 from game.scenes.train.scene import TrainScene
 from game.scenes.watch.scene import COUNTS, WatchScene
 from game.shell.app import App
@@ -223,8 +224,9 @@ def _read(context: Context, name: str = "modern") -> tuple[Context, DigitClassif
 def _split(context: Context) -> Scene:
     """Make Train with an experiment beside its run, from the first frame on."""
     scene = TrainScene(context)
-    scene.laboratory.choose(experiments(scene.knobs.config, "learning_rate")[-1], "")
-    scene.laboratory.fly(None)
+    experiment = experiments(scene.knobs.config, "learning_rate")[-1]
+    scene.laboratory.chosen = Chosen(experiment, "")
+    scene._split(experiment)
     return scene
 
 

@@ -91,7 +91,7 @@ def kill(game: Game, rounds: int, rng: np.random.Generator) -> list[str]:
     """Kill so many runs; return what went wrong."""
     problems, states = [], dict.fromkeys(("starting", "learning", "saving"), 0)
     game.enter()
-    lander_run = game.scene.lander_run
+    lander_run = game.scene.run
     for number in range(rounds):
         if game.app.scenes.top is not game.scene:
             return [*problems, f"round {number}: {game.app.scenes.top} came up"]
@@ -140,7 +140,7 @@ def visit(game: Game, visits: int) -> list[str]:
         if game.wait(lambda: game.app.scenes.top is not game.scene, 0.1):  # it asks about the run left last time
             game.key(pygame.K_ESCAPE)
         game.key(pygame.K_RETURN)
-        game.wait(lambda: len(game.scene.lander_run.history) >= 40)
+        game.wait(lambda: len(game.scene.run.history) >= 40)
         game.leave()
         game.rest(0.2)
         if active_children():

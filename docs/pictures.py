@@ -164,7 +164,7 @@ def _move_pen(scene: DigitsScene, frame: int) -> None:
 
 
 def _has_learnt(scene: TrainScene) -> bool:
-    history = scene.lander_run.history
+    history = scene.run.history
     return bool(len(history) and history["success"][-1] > 0.9)
 
 

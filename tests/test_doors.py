@@ -29,8 +29,7 @@ OPENED = {
     "game.drawing.typeface": ({"pygame.font.Font"}, "comes with the program"),
     "game.export.gif": ({"path.open"}, "writes"),
     "game.panels.lesson_door": ({"self.open"}, "a dialog"),
-    "game.scenes.train.base": ({"self.open"}, "a part of the panel"),
-    "game.scenes.train.scene": ({"self.open", "super().open", "self.pages.open"}, "a part of the panel"),
+    "game.scenes.train.scene": ({"self.open", "self.laboratory.open"}, "a part of the panel"),
     "game.start": ({"context.sound.open"}, "the sound device"),
     "tranquility.__main__": ({"os.open"}, "the null device"),
 }

@@ -9,12 +9,9 @@ from typing import Final
 
 from ai.digits.classifier import DIGITS_FILE, NETWORK
 from ai.digits.training import read_summary
-from ai.files import brief
 from ai.run import TRAINING_FILE
 from game.core import texts
 from game.core.collection import Collection, ItemKind
-from game.core.names import LONGEST_NAME
-from game.training.run import TrainingRun
 from game.training.workers import DIGITS
 
 PATIENCE: Final = DIGITS.patience  # seconds for a worker's turn
@@ -66,20 +63,6 @@ class DigitModels(Collection[SavedDigitModel]):
 
     def __init__(self, folder: Path) -> None:
         super().__init__(folder, ItemKind(PARTS, _read_model, lambda: texts.RUN_UNNAMED))
-
-
-def figures_of(run: TrainingRun) -> tuple[str, float, float | None]:
-    """Return the preset, the training time in seconds and the accuracy of a run without a name, as far as known."""
-    history = run.history
-    seconds = float(history["seconds"][-1]) if len(history) else 0.0
-    preset, part = "", history.validations[-1].success if history.validations else None
-    if not run.alive:
-        with suppress(OSError, ValueError):
-            summary = read_summary(run.collection.unsaved)
-            preset, seconds = brief(summary.preset, LONGEST_NAME), summary.seconds
-            known = summary.held_out if summary.test is None else summary.test
-            part = part if known is None else known
-    return preset, seconds, part
 
 
 def runs_dir(user_dir: Path) -> Path:

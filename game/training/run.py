@@ -181,7 +181,7 @@ class TrainingRun(OneAfterAnother):
         Returns a note for the player, or ""; for a run that goes on, the note comes from `poll`.
         """
         if self.waiting:
-            raise LibraryError(texts.DIGIT_RUN_NOTHING)
+            raise LibraryError(texts.TRAIN_NOTHING)
         if self.alive:
             folder = self.collection.new_folder(name)
             self._saving.append(folder)

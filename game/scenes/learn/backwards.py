@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import pygame
@@ -17,15 +17,13 @@ from game.core import texts
 from game.core.scene import Route
 from game.digits.kept import classifier_in, mnist_test
 from game.digits.pictures import GREY, SIGNED, picture
+from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import CAPTION, HUMAN, INK, MUTE, NET, SMALL
 from game.panels.figures import decimal, percent
 from game.scenes.learn.chapter import Chapter, Code
-
-if TYPE_CHECKING:
-    from game.drawing.canvas import Canvas
-    from game.ui.context import Context
-    from game.ui.panel import Column
+from game.ui.context import Context
+from game.ui.panel import Column
 
 RATE: Final = 0.01
 SEARCHED: Final = 1000  # test images in which misread ones are looked for
@@ -35,6 +33,7 @@ _MODEL: Final = "classic"
 # Left end, width, columns and rows of the pictures, as shares of the whole: the image, and the two layers of units.
 _BOXES: Final = ((0.0, 0.23, 28, 28), (0.28, 0.2, 10, 10), (0.53, 0.1, 5, 10))
 _ANSWERS: Final = 0.69  # left end of the answers
+_LINKS: Final = 24  # connections that are drawn from layer to layer: those most to blame
 
 
 class BackwardsChapter(Chapter):
@@ -47,6 +46,7 @@ class BackwardsChapter(Chapter):
         reached: how many layers the error has reached: 0 none, 1 the answers, 4 the image.
         steps: learning steps taken on this digit.
         blames: derivative of the cost by the image, by each unit's answer, and by the ten answers.
+        links: for each layer, the weights that are most to blame.
 
     """
 
@@ -66,7 +66,6 @@ class BackwardsChapter(Chapter):
         self.restart()
 
     def restart(self) -> None:
-        """Show the first digit again, to the network as it was shipped."""
         self._digit, self.tried = 0, False
         if not self.problem:
             self._begin()
@@ -87,7 +86,6 @@ class BackwardsChapter(Chapter):
         return self.classifier.network
 
     def controls(self, column: Column) -> None:
-        """Add what sends the error back and steps, and what shows another digit."""
         if not self.problem:
             label = texts.LEARN_BACKWARDS_BACK if self.reached < 4 else texts.LEARN_BACKWARDS_STEP
             column.button(label, self.go_on)
@@ -125,6 +123,7 @@ class BackwardsChapter(Chapter):
         # A pixel without ink sends nothing on: whatever its weights are, it has no part in the mistake.
         pixels = np.where(shaped.ravel() > 0, network.input_gradient(shaped, error)[0], 0.0)
         self.blames: list[Array] = [pixels, *hidden, error[0]]
+        self.links = [_steepest(layer.parameters[0].gradient) for layer in layers]
 
     def _right(self) -> int:
         """Return how many of 500 other digits it reads right."""
@@ -152,7 +151,6 @@ class BackwardsChapter(Chapter):
         ) if self.steps else texts.LEARN_BACKWARDS_AGAIN  # fmt: skip
 
     def code(self) -> Sequence[Code]:
-        """Return the way back through the layers."""
         if self.problem:
             return [Code(NeuralNetwork.backward_propagate)]
         shapes = " ← ".join(str(blame.size) for blame in self.blames[1:])
@@ -165,30 +163,28 @@ class BackwardsChapter(Chapter):
         ]  # fmt: skip
 
     def below(self, column: Column) -> None:
-        """Add what the colours mean, or why there is nothing to show."""
         column.text(lambda: self.problem or texts.LEARN_BACKWARDS_COLOURS[self.reached > 0], size=SMALL, colour=MUTE)
 
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
-        """Draw the digit, the units of both layers and the answers, with the blame as far as it has come."""
         if self.problem:
             return
-        for stage, (left, width, columns, rows) in enumerate(_BOXES):
-            cell = width * box.width / columns
-            high = rows * cell
-            area = pygame.FRect(box.left + left * box.width, box.centery - high / 2, columns * cell, high)
+        for stage, links in enumerate(self.links):
+            for start, end, slope in links if self.reached >= 4 - stage else ():
+                line = _spot(box, stage, start).center, _spot(box, stage + 1, end).midleft
+                canvas.line(*line, NET if slope < 0 else canvas.palette.warn, 1, 0.35)
+        for stage, (_, _, columns, rows) in enumerate(_BOXES):
+            area = _spot(box, stage, 0).union(_spot(box, stage, columns * rows - 1))
             blamed = self.reached >= 4 - stage
             shows = (stage, blamed, self.steps, self.chosen)
             self._cache.draw(canvas, area, shows, partial(self._paint, stage, blamed, columns))
-            name = (area.left, area.top - 10)
-            canvas.text(texts.LEARN_BACKWARDS_STAGES[stage], name, size=CAPTION, colour=MUTE)
+            canvas.text(texts.LEARN_BACKWARDS_STAGES[stage], (area.left, area.top - 10), size=CAPTION, colour=MUTE)
             for unit in range(columns * rows if stage else 0):
-                row, place = divmod(unit, columns)
-                spot = pygame.FRect(area.left + place * cell, area.top + row * cell, cell, cell)
+                spot = _spot(box, stage, unit)
                 canvas.explain(spot, self.unit(stage, unit))
                 if canvas.pointer and spot.collidepoint(canvas.pointer):
                     canvas.outline(spot, 2, HUMAN, 1.5)
-        self._draw_answers(canvas, pygame.FRect(box.left + _ANSWERS * box.width, box.top, (1 - _ANSWERS) * box.width,
-                                                box.height))  # fmt: skip
+        for digit in range(DIGITS):
+            self._draw_answer(canvas, _spot(box, len(_BOXES), digit), digit)
 
     def _paint(self, stage: int, blamed: bool, columns: int, sheet: Canvas) -> None:
         values = self.blames[stage] if blamed else self._image[0] if stage == 0 else np.abs(self.units[stage - 1])
@@ -196,16 +192,32 @@ class BackwardsChapter(Chapter):
         shades = SIGNED if blamed else GREY
         sheet.surface.blit(picture(shown.reshape(-1, columns), sheet.size, shades), (0, 0))
 
-    def _draw_answers(self, canvas: Canvas, box: pygame.FRect) -> None:
-        """Draw how likely each digit is said to be, and which way its answer should go."""
-        largest, pitch = max(float(np.abs(self.blames[-1]).max()), 1e-9), box.height / DIGITS
-        for digit, (odds, blame) in enumerate(zip(self.odds.tolist(), self.blames[-1].tolist(), strict=True)):
-            y = box.top + (digit + 0.5) * pitch
-            colour = canvas.palette.good if digit == self.label else INK
-            canvas.text(str(digit), (box.left, y + 5), size=SMALL, colour=colour, weight="medium")
-            canvas.bar((box.left + 20, y - 2, 0.45 * box.width, 4), odds, NET)
-            canvas.text(percent(odds), (box.right - 26, y + 5), size=SMALL, colour=colour, align="right", tabular=True)
-            canvas.explain((box.left, y - pitch / 2, box.width, pitch), self.unit(3, digit))
-            if self.reached:
-                mark, tint = ("triangle", NET) if blame < 0 else ("triangle_down", canvas.palette.warn)
-                canvas.marker(mark, (box.right - 10, y), 4 + 12 * abs(blame) / largest, tint)  # type: ignore[arg-type]
+    def _draw_answer(self, canvas: Canvas, box: pygame.FRect, digit: int) -> None:
+        """Draw how likely a digit is said to be, and which way its answer should go."""
+        odds, blame, y = float(self.odds[digit]), float(self.blames[-1][digit]), box.centery
+        colour = canvas.palette.good if digit == self.label else INK
+        canvas.text(str(digit), (box.left + 6, y + 5), size=SMALL, colour=colour, weight="medium")
+        canvas.bar((box.left + 24, y - 2, 0.45 * box.width, 4), odds, NET)
+        canvas.text(percent(odds), (box.right - 26, y + 5), size=SMALL, colour=colour, align="right", tabular=True)
+        canvas.explain(box, self.unit(len(_BOXES), digit))
+        if self.reached:
+            size = 4 + 12 * abs(blame) / max(float(np.abs(self.blames[-1]).max()), 1e-9)
+            tint = NET if blame < 0 else canvas.palette.warn
+            canvas.marker("triangle" if blame < 0 else "triangle_down", (box.right - 10, y), size, tint)
+
+
+def _steepest(slopes: Array) -> list[tuple[int, int, float]]:
+    """Return the weights (inputs, outputs) that are most to blame: both their ends and their slopes."""
+    places = np.argsort(-np.abs(slopes), axis=None)[:_LINKS]
+    starts, ends = np.unravel_index(places, slopes.shape)
+    return list(zip(starts.tolist(), ends.tolist(), slopes[starts, ends].tolist(), strict=True))
+
+
+def _spot(box: pygame.FRect, stage: int, unit: int) -> pygame.FRect:
+    """Return where a unit of a stage stands in the picture: a pixel, a unit of a layer, an answer."""
+    if stage == len(_BOXES):
+        pitch, left = box.height / DIGITS, _ANSWERS * box.width
+        return pygame.FRect(box.left + left, box.top + unit * pitch, box.width - left, pitch)
+    left, width, columns, rows = _BOXES[stage]
+    cell, (row, column) = width * box.width / columns, divmod(unit, columns)
+    return pygame.FRect(box.left + left * box.width + column * cell, box.centery + (row - rows / 2) * cell, cell, cell)

@@ -5,18 +5,16 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import pygame
 
 from game.core import texts
 from game.core.scene import Route
 from game.core.source import Mark
-
-if TYPE_CHECKING:
-    from game.drawing.canvas import Canvas
-    from game.ui.context import Context
-    from game.ui.panel import Column
+from game.drawing.canvas import Canvas
+from game.ui.context import Context
+from game.ui.panel import Column
 
 
 @dataclass(frozen=True)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import partial
 from itertools import pairwise
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import pygame
@@ -14,17 +15,16 @@ from ai.lander.environment import LanderEnv
 from ai.nn import SGD, Adam, Array, CostFunctions, DivergenceError, FullyConnectedLayer, NeuralNetwork, Optimizer
 from game.core import texts
 from game.core.scene import Route
+from game.drawing.canvas import Canvas, Point
 from game.drawing.paint_cache import InPieces, PaintCache, Steps
-from game.drawing.tokens import CAPTION, FAINT, HUMAN, MUTE, NET, SMALL, Colour
+from game.drawing.tokens import CAPTION, HUMAN, MUTE, NET, SMALL, Colour
 from game.panels.figures import decimal
 from game.scenes.learn.chapter import Chapter, Code
 from game.scenes.learn.pictures import paint_heat
+from game.ui.context import Context
+from game.ui.panel import Column
 
-if TYPE_CHECKING:
-    from game.drawing.canvas import Canvas, Point
-    from game.ui.context import Context
-    from game.ui.panel import Column
-
+Reach = tuple[tuple[float, float], tuple[float, float]]  # what is seen of two quantities, across and up
 RATES: Final = (0.005, 0.5)
 ADAM_RATE: Final = 0.3
 ENOUGH: Final = 20  # steps on the line
@@ -134,7 +134,7 @@ class DownhillChapter(Chapter):
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
-        self._cache = PaintCache(most=2)
+        self._cache = PaintCache()
         coasting, burning = flights(_COAST, 0.0), flights(_MAIN, 0.2)
         self.line = Descent(coasting[0][:, :1], coasting[1], SGD(_FIRST_RATE), LINE_START)
         self.plain = Descent(*burning, SGD(_FIRST_RATE), VALLEY_START)
@@ -153,7 +153,6 @@ class DownhillChapter(Chapter):
         return heights
 
     def restart(self) -> None:
-        """Forget all tries, and stand at the start with short steps."""
         self.rate, self.valley, self.tried = _FIRST_RATE, False, False
         self.results: dict[str, dict[str, float]] = {}
         self.begin()
@@ -166,7 +165,6 @@ class DownhillChapter(Chapter):
         self._wait = 0
 
     def controls(self, column: Column) -> None:
-        """Add the choice of the picture, the step length, and the way back to the start."""
         column.choice("", texts.LEARN_DOWNHILL_PICTURES, int(self.valley), self.choose)
         low, high = map(math.log10, RATES)
         column.slider(texts.LEARN_DOWNHILL_RATE, math.log10(self.rate), (low, high),
@@ -185,7 +183,6 @@ class DownhillChapter(Chapter):
         self.begin()
 
     def update(self) -> None:
-        """Take a step now and then."""
         self._wait += 1
         if self._wait % _PAUSE[self.valley]:
             return
@@ -215,14 +212,12 @@ class DownhillChapter(Chapter):
         return " ".join(told[kind].format(**self.results[kind]) for kind in KINDS if kind in self.results)
 
     def code(self) -> Sequence[Code]:
-        """Return the step of the optimizers, with this moment's slope."""
         slope = float((self.plain if self.valley else self.line).slopes[0])
         plain = Code(SGD._fill_step, np.multiply, {np.multiply: f"{slope:+.3f} · {self.rate:.3f}"})
         adam = Code(Adam._fill_step, np.divide, {np.divide: texts.LEARN_DOWNHILL_ADAM_NOTE})
         return [plain, adam, Code(Optimizer.step, "values")]
 
     def below(self, column: Column) -> None:
-        """Add where the ball is, or how far both have come."""
         column.text(lambda: self._told(self.plain) if self.valley else self._step(), size=SMALL, colour=HUMAN)
         column.text(lambda: self._told(self.adam) if self.valley else "", size=SMALL, colour=NET)
 
@@ -246,65 +241,47 @@ class DownhillChapter(Chapter):
     # The picture
 
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
-        """Draw the line with its ball, or the map with two trails."""
+        line = [(weight, cost) for (weight,), cost in zip(self.line.trail, self.line.costs, strict=True)]
+        trails, reach, words = [(line, HUMAN)], _LINE, texts.LEARN_DOWNHILL_AXES
         if self.valley:
-            side = pygame.FRect(box.left, box.top, min(box.width, 1.3 * box.height), box.height)
-            paint, trails = self._paint_map, [(self.plain.trail, HUMAN), (self.adam.trail, NET)]
+            ways = [[(across, up) for across, up in each.trail] for each in (self.plain, self.adam)]
+            trails, reach, words = list(zip(ways, (HUMAN, NET), strict=True)), _MAP, texts.LEARN_DOWNHILL_MAP
+            box = pygame.FRect(box.left, box.top, min(box.width, 1.3 * box.height), box.height)
+            self._cache.draw(canvas, box, self._heights.whole, self._paint_map)
         else:
-            side, paint = box, self._paint_line
-            trails = [
-                ([(*weights, cost) for weights, cost in zip(self.line.trail, self.line.costs, strict=True)], HUMAN)
-            ]
-        reach = _MAP if self.valley else _LINE
-        self._cache.draw(canvas, side, (self.valley, self.valley and self._heights.whole), paint)
+            _draw_way(canvas, box, reach, self._curve, NET)
         for trail, colour in trails:
-            places = [_on(side, reach, point) for point in trail if _seen(reach, point)]
             if self.valley:
-                for start, end in pairwise(places):
-                    canvas.line(start, end, colour, 1.5)
-            for place in places:
-                canvas.dot(place, 2.5, colour, 0.7)
-            if places and _seen(reach, trail[-1]):
-                if not self.valley:
-                    self._draw_slope(canvas, side)
-                canvas.dot(places[-1], 7, colour)
-
-    def _draw_slope(self, canvas: Canvas, box: pygame.FRect) -> None:
-        """Draw the slope under the ball."""
-        (weight,), cost, slope = self.line.trail[-1], self.line.costs[-1], float(self.line.slopes[0])
-        span = 0.5 / math.hypot(1.0, 0.1 * slope)
-        left, right = (_on(box, _LINE, (weight + side * span, cost + side * span * slope)) for side in (-1, 1))
-        canvas.line(left, right, MUTE, 1)
-
-    def _paint_line(self, sheet: Canvas) -> None:
-        box = _sheet_box(sheet)
-        for start, end in pairwise(_on(box, _LINE, point) for point in self._curve if _seen(_LINE, point)):
-            sheet.line(start, end, NET, 2)
-        sheet.line(box.bottomleft, box.bottomright, FAINT)
-        _paint_axes(sheet, box, texts.LEARN_DOWNHILL_AXES)
+                _draw_way(canvas, box, reach, trail, colour)
+            for point in filter(partial(_seen, reach), trail):
+                canvas.dot(_on(box, reach, point), 2.5, colour, 0.7)
+            if _seen(reach, trail[-1]):
+                canvas.dot(_on(box, reach, trail[-1]), 7, colour)
+        if not self.valley and _seen(reach, line[-1]):  # the slope under the ball
+            (weight, cost), slope = line[-1], float(self.line.slopes[0])
+            span = 0.5 / math.hypot(1.0, 0.1 * slope)
+            ends = [(weight + side * span, cost + side * span * slope) for side in (-1, 1)]
+            _draw_way(canvas, box, reach, ends, MUTE)
+        canvas.text(words[0], (box.left + 8, box.top + 16), size=CAPTION, colour=MUTE)
+        canvas.text(words[1], (box.right - 8, box.bottom - 8), size=CAPTION, colour=MUTE, align="right")
 
     def _paint_map(self, sheet: Canvas) -> None:
         bands = np.floor(2.0 * np.log2(self._heights.picture + 0.05))
         levels = (bands - bands.min()) / (bands.max() - bands.min())
         paint_heat(sheet, 1.0 - levels, _DEEP, _DEEP)
-        _paint_axes(sheet, _sheet_box(sheet), texts.LEARN_DOWNHILL_MAP[::-1])
 
 
-def _paint_axes(sheet: Canvas, box: pygame.FRect, names: Sequence[str]) -> None:
-    up, across = names
-    sheet.text(up, (8, 16), size=CAPTION, colour=MUTE)
-    sheet.text(across, (box.right - 8, box.bottom - 8), size=CAPTION, colour=MUTE, align="right")
+def _draw_way(canvas: Canvas, box: pygame.FRect, reach: Reach, points: Sequence[Point], colour: Colour) -> None:
+    """Draw lines from point to point, as far as they are seen."""
+    for start, end in pairwise(_on(box, reach, point) for point in points if _seen(reach, point)):
+        canvas.line(start, end, colour, 1.5)
 
 
-def _sheet_box(sheet: Canvas) -> pygame.FRect:
-    return pygame.FRect(0, 0, sheet.size[0] / sheet.scale, sheet.size[1] / sheet.scale)
-
-
-def _seen(reach: Sequence[tuple[float, float]], point: Sequence[float]) -> bool:
+def _seen(reach: Reach, point: Sequence[float]) -> bool:
     return all(low <= value <= high for value, (low, high) in zip(point, reach, strict=True))
 
 
-def _on(box: pygame.FRect, reach: Sequence[tuple[float, float]], point: Sequence[float]) -> Point:
+def _on(box: pygame.FRect, reach: Reach, point: Sequence[float]) -> Point:
     """Return where two numbers stand in a box that shows so much of both."""
     across, up = ((value - low) / (high - low) for value, (low, high) in zip(point, reach, strict=True))
     return box.left + across * box.width, box.bottom - up * box.height

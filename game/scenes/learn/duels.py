@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import pygame
@@ -18,15 +18,13 @@ from ai.training.config import Config
 from ai.training.small_run import SMALL_RUN, Plan, SmallState
 from game.core import texts
 from game.core.scene import Route
+from game.drawing.canvas import Canvas
 from game.drawing.tokens import CAPTION, HUMAN, MUTE, NET, NIGHT0, SMALL
 from game.panels.figures import percent, points
 from game.scenes.learn.chapter import Code
 from game.scenes.learn.pictures import draw_axis, draw_curve
 from game.scenes.learn.runs import RunsChapter, draw_landers
-
-if TYPE_CHECKING:
-    from game.drawing.canvas import Canvas
-    from game.ui.panel import Column
+from game.ui.panel import Column
 
 EVERY: Final = (1, 10, 100, 1)  # gradient steps between two copies, to choose from; the last with normalised layers
 NORMALISED: Final = len(EVERY) - 1
@@ -71,22 +69,18 @@ class DuelChapter(RunsChapter):
         return tuple(state.landed or 0.0 for state in self.states[-1])
 
     def controls(self, column: Column) -> None:
-        """Add the choice, and the button that starts."""
         label, words = self.options
         column.choice(label, words, self.choice, self.choose)
         self.starter(column, texts.LEARN_RUNS_START[bool(self.seed)])
 
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
-        """Draw both groups of landers, and below each its chart."""
         half, shown = (box.width - 32) / 2, self.flown if self.states else self.choice
         for run, colour in enumerate((NET, HUMAN)):
             left = box.left + run * (half + 32)
             canvas.text(self.name(run, shown), (left, box.top + 14), size=SMALL + 1, colour=colour, room=half)
             sky = pygame.FRect(left, box.top + 22, half, 0.42 * box.height)
             state = self.states[-1][run] if self.states else None
-            draw_landers(
-                canvas, sky, state.flown if state else None, self.last[run] if state else None, len(self.states)
-            )
+            draw_landers(canvas, sky, state.flown if state else None, len(self.states))
             chart = pygame.FRect(left + 72, sky.bottom + 34, half - 72, box.bottom - sky.bottom - 44)
             self.draw_chart(canvas, chart, run if state else None, colour)
             if state:
@@ -99,16 +93,13 @@ class TargetChapter(DuelChapter):
     key = "target"
 
     def configs(self) -> Sequence[Config]:
-        """Return the configurations: that of all small runs, and the same with the chosen copies."""
         return SMALL_RUN, config_of(self.choice)
 
     @property
     def options(self) -> tuple[str, Sequence[str]]:
-        """The steps between two copies."""
         return texts.LEARN_TARGET_LABEL, [*map(str, EVERY[:NORMALISED]), texts.LEARN_TARGET_NORMALISED]
 
     def name(self, run: int, choice: int) -> str:
-        """Return how often an agent copies its network."""
         usual, some, always, normalised = texts.LEARN_TARGET_NAMES
         return {0: always, NORMALISED: normalised}.get(choice, some.format(every=EVERY[choice])) if run else usual
 
@@ -134,7 +125,6 @@ class TargetChapter(DuelChapter):
         return f"{told} {texts.LEARN_TARGET_LANDED.format(usual=usual, other=other)}"
 
     def code(self) -> Sequence[Code]:
-        """Return how a target is made, and when the target network is copied."""
         discount = texts.LEARN_TARGET_DISCOUNT.format(discount=SMALL_RUN.discount)
         every = texts.LEARN_TARGET_EVERY.format(every=EVERY[self.choice])
         return [
@@ -144,12 +134,10 @@ class TargetChapter(DuelChapter):
         ]
 
     def told(self, state: SmallState) -> str:
-        """Return what the agent expects of its landers, and how many land."""
         expects = texts.LEARN_TARGET_EXPECTS.format(points=_figure(state.value))
         return expects if state.landed is None else f"{expects}, {_landed(state)}"
 
     def draw_chart(self, canvas: Canvas, box: pygame.FRect, run: int | None, colour: tuple[int, int, int]) -> None:
-        """Draw the values that are expected, below a line that no flight's score can pass."""
         draw_axis(canvas, box, [(float(_height(np.array(tick))), word) for tick, word in _TICKS])
         y = box.bottom - box.height * float(_height(np.array(BOUND)))
         canvas.line((box.left, y), (box.right, y), MUTE, 1.5)
@@ -173,7 +161,6 @@ class DaringChapter(DuelChapter):
     PLAN = Plan(heights=(5.0, 8.0))
 
     def configs(self) -> Sequence[Config]:
-        """Return a configuration without random actions, and the same with the chosen share of them."""
         return [
             SMALL_RUN.changed(n_step=5, reward_weights=PAY, epsilon_start=share, epsilon_end=share)
             for share in (DARING[0], DARING[self.choice])
@@ -181,11 +168,9 @@ class DaringChapter(DuelChapter):
 
     @property
     def options(self) -> tuple[str, Sequence[str]]:
-        """The shares of random actions."""
         return texts.LEARN_DARING_LABEL, list(map(percent, DARING))
 
     def name(self, run: int, choice: int) -> str:
-        """Return how often an agent acts at random."""
         return texts.LEARN_DARING_NAMES[run].format(share=percent(DARING[choice]))
 
     def verdict(self) -> int | None:
@@ -202,18 +187,15 @@ class DaringChapter(DuelChapter):
         return texts.LEARN_DARING_WHY.format(share=share, never=never, other=other, decisions=self.LENGTH)
 
     def code(self) -> Sequence[Code]:
-        """Return where an action is replaced by a random one, and the schedule."""
         share = f"ε = {DARING[self.choice]:g}"
         return [Code(DeepQAgent.act, "explore", {"explore": share}), Code(exploration)]
 
     def told(self, state: SmallState) -> str:
-        """Return how many of the agent's flights land."""
         if state.landed is None:
             return texts.LEARN_RUNS_NOTHING
         return texts.LEARN_RUNS_FLIGHTS.format(count=state.flights, landed=_landed(state))
 
     def draw_chart(self, canvas: Canvas, box: pygame.FRect, run: int | None, colour: tuple[int, int, int]) -> None:
-        """Draw the share of landings."""
         draw_axis(canvas, box, [(share, percent(share)) for share in (0.0, 0.5, 1.0)])
         if run is not None:
             draw_curve(canvas, box, self.history(run, "landed"), colour, self.LENGTH)

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from game.core import texts
 from game.core.scene import Transition, push
 from game.drawing.tokens import HUMAN, INK, MUTE, SMALL, TITLE
 from game.scenes.learn.path import FIRST, PATH, Progress
 from game.ui.actions import Table
+from game.ui.context import Context
+from game.ui.listing import Row
+from game.ui.panel import Panel
 from game.ui.panel_scene import PanelScene
-
-if TYPE_CHECKING:
-    from game.ui.context import Context
-    from game.ui.listing import Row
-    from game.ui.panel import Panel
-    from game.ui.rows import ListRow
+from game.ui.rows import ListRow
 
 _KEYS: Final = tuple(PATH)
 _LEAST, _AROUND = 300.0, 100.0  # points of a column, and above and below the list
@@ -40,16 +38,13 @@ class LearnScene(PanelScene):
         self.chosen = last if last in PATH else next((key for key in PATH if not self._progress.done(key)), FIRST)
 
     def enter(self) -> None:
-        """Read again what has been done; the arrows lead on from the chapter that was left."""
         self._choose_last()
         self.build()
 
     def actions(self) -> Table:
-        """Move, choose, go back."""
         return [self.form.moves, *super().actions()]
 
     def describe(self, panel: Panel) -> None:
-        """Add the list, and what there is to say of the chosen chapter."""
         panel.title(texts.LEARN_TITLE)
         panel.aside(texts.LEARN_LINE.format(done=sum(map(self._progress.done, PATH)), count=len(PATH)))
         panel.gap(8)

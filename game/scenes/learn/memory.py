@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import pygame
@@ -12,11 +12,11 @@ import pygame
 from ai.agent.agent import DeepQAgent
 from ai.agent.replay import PrioritisedReplayBuffer, ReplayBuffer
 from ai.environment import Doubles
-from ai.lander.environment import OBSERVATION_SCALE
 from ai.training.config import Config
 from ai.training.small_run import SMALL_RUN, TESTED, Plan, SmallState
 from game.core import texts
 from game.core.scene import Route
+from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.paint import mix
 from game.drawing.paint_cache import PaintCache
@@ -24,11 +24,8 @@ from game.drawing.tokens import CAPTION, HUMAN, INK, MUTE, NET, NIGHT1, SMALL, C
 from game.panels.figures import percent
 from game.scenes.learn.chapter import Code
 from game.scenes.learn.runs import RunsChapter, draw_landers
-
-if TYPE_CHECKING:
-    from game.drawing.canvas import Canvas
-    from game.ui.context import Context
-    from game.ui.panel import Column
+from game.ui.context import Context
+from game.ui.panel import Column
 
 KINDS: Final = ("even", "surprising", "latest")
 YESTERDAY: Final = 600  # decisions from high up; then flights begin low
@@ -37,8 +34,7 @@ LATEST: Final = 200  # memories that are held of the latest only
 _COLUMNS, _ROWS = 45, 10
 _EACH: Final = (YESTERDAY + TODAY) * SMALL_RUN.num_envs // (_COLUMNS * _ROWS)  # memories that a cell stands for
 _WALL: Final = 0.52  # share of the picture's height
-_HIGHEST: Final = 9.0  # metres, of a cell's picture
-_PAID: Final = 20.0  # points beyond which a cell is lit as a landing or a crash
+_LARGE: Final = 20.0  # points beyond which a cell is lit as a landing or a crash
 _FORGOTTEN: Final = 0.25  # share of the tests that landed before and do not now
 _FADE: Final = 0.5  # light of a drawn cell that is left after a decision
 
@@ -61,7 +57,6 @@ class MemoryChapter(RunsChapter):
         super().__init__(context)
 
     def restart(self) -> None:
-        """Forget the runs and their results."""
         super().restart()
         self.results: dict[str, tuple[float, float]] = {}
 
@@ -70,21 +65,17 @@ class MemoryChapter(RunsChapter):
         cells = _COLUMNS * _ROWS
         self.light: Doubles = np.zeros(cells)
         self._oldest = 0
-        # Of each cell: height, speed and pay of the one memory that is pictured, and how many have come.
-        self._pictured: Doubles = np.zeros((cells, 3))
+        self._paid: Doubles = np.zeros(cells)  # the pay of each cell's memory that was paid most, or cost most
         self._come = np.zeros(cells, dtype=np.intp)
 
     def configs(self) -> Sequence[Config]:
-        """Return the configuration with the chosen memory."""
         return [SMALL_RUN.changed(prioritised=KINDS[self.choice] == "surprising")]
 
     @property
     def plan(self) -> Plan:
-        """The two days, with the memory that is chosen."""
         return self.PLAN._replace(keep=LATEST if KINDS[self.choice] == "latest" else None)
 
     def controls(self, column: Column) -> None:
-        """Add the choice, and the button that starts."""
         column.choice("", texts.LEARN_MEMORY_KINDS, self.choice, self.choose)
         self.starter(column, texts.LEARN_MEMORY_START)
 
@@ -97,14 +88,11 @@ class MemoryChapter(RunsChapter):
         super()._take(states)
         memory = states[0].memory
         self._oldest = memory.oldest
-        heights = memory.cells.state[:, 0] / OBSERVATION_SCALE[1]
-        speeds = memory.cells.state[:, 1] / OBSERVATION_SCALE[3]
-        pays = memory.cells.reward / SMALL_RUN.reward_scale
-        for number, *moment in zip(memory.first + np.arange(len(pays)), heights, speeds, pays, strict=True):
-            cell = min(int(number) // _EACH, len(self._come) - 1)
-            if not self._come[cell] or abs(moment[2]) > abs(self._pictured[cell, 2]):
-                self._pictured[cell] = moment
+        for number, pay in enumerate((memory.cells.reward / SMALL_RUN.reward_scale).tolist(), memory.first):
+            cell = min(number // _EACH, len(self._come) - 1)
             self._come[cell] += 1
+            if abs(pay) > abs(self._paid[cell]):
+                self._paid[cell] = pay
         self.light *= _FADE
         drawn = memory.drawn[: SMALL_RUN.batch_size]  # for the first of this decision's learning steps
         self.light[np.minimum(drawn // _EACH, len(self.light) - 1)] = 1.0
@@ -130,7 +118,6 @@ class MemoryChapter(RunsChapter):
         )
 
     def code(self) -> Sequence[Code]:
-        """Return how memories are drawn, evenly and by priority, and where the agent draws them."""
         memory = self.states[-1][0].memory if self.states else None
         count = memory.first + len(memory.cells.action) - memory.oldest if memory else 0
         held = texts.LEARN_MEMORY_HELD.format(count=count) if memory else ""
@@ -141,7 +128,6 @@ class MemoryChapter(RunsChapter):
         ]
 
     def below(self, column: Column) -> None:
-        """Add what the wall's marks and colours mean."""
         super().below(column)
         column.aside(texts.LEARN_MEMORY_WALL)
         column.add(_write_cells)
@@ -149,7 +135,6 @@ class MemoryChapter(RunsChapter):
     # The picture
 
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
-        """Draw the wall, today's flights, and the tests from high up."""
         self._draw_wall(canvas, pygame.FRect(box.left, box.top, box.width, _WALL * box.height))
         state, half = self.states[-1][0] if self.states else None, (box.width - 32) / 2
         day = texts.LEARN_MEMORY_DAYS[bool(state) and self.states[-1][0].decisions > YESTERDAY]
@@ -158,7 +143,7 @@ class MemoryChapter(RunsChapter):
             area = pygame.FRect(box.left + side * (half + 32), top, half, box.bottom - top)
             canvas.text(name, (area.left, top - 6), size=SMALL, colour=(NET, INK)[side], room=0.76 * half)
             flown = None if state is None else state.tested if side else state.flown
-            draw_landers(canvas, area, flown, self.last[0] if state and not side else None, len(self.states), count)
+            draw_landers(canvas, area, flown, len(self.states), count)
             share = (state.passed if side else state.landed) if state else None
             if share is not None:
                 told = texts.LEARN_RUNS_LANDED.format(share=percent(share))
@@ -187,17 +172,13 @@ class MemoryChapter(RunsChapter):
             if not self._come[cell] or (cell + 1) * _EACH <= self._oldest:
                 sheet.fill(area, NIGHT1, 0.5)
                 continue
-            height, speed, pay = self._pictured[cell].tolist()
-            sheet.fill(area, _colour(sheet, pay))
-            lander = (x + wide / 2, 0.8 * high - 0.6 * high * min(max(height / _HIGHEST, 0.0), 1.0))
-            sheet.line(lander, (lander[0], lander[1] - speed), INK, 1, 0.99)
-            sheet.dot(lander, 1.6, INK)
+            sheet.fill(area, _colour(sheet, float(self._paid[cell])))
 
 
 def _write_cells(cursor: Cursor) -> None:
     """Write what the colours of the wall mean."""
     small, x = cursor.in_style(CAPTION, MUTE), cursor.left
-    for name, pay in (("good", 2 * _PAID), ("warn", -2 * _PAID), ("net", 5.0)):
+    for name, pay in (("good", 2 * _LARGE), ("warn", -2 * _LARGE), ("net", 5.0)):
         words = texts.LEARN_MEMORY_CELLS[name]
         if canvas := cursor.canvas:
             canvas.fill(canvas.rect(x, small.baseline - 10, 11, 11), _colour(canvas, pay))
@@ -208,6 +189,6 @@ def _write_cells(cursor: Cursor) -> None:
 
 def _colour(canvas: Canvas, pay: float) -> Colour:
     """Return the colour of a cell, by the pay of its memory."""
-    if abs(pay) > _PAID:
+    if abs(pay) > _LARGE:
         return mix(NIGHT1, canvas.palette.good if pay > 0 else canvas.palette.warn, 0.55)
     return mix(NIGHT1, NET, 0.25 + 0.25 * min(max(pay / 5.0, -1.0), 1.0))

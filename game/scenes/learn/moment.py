@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import pairwise
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 import pygame
@@ -20,6 +20,7 @@ from ai.training.config import Config
 from game.core import texts
 from game.core.scene import Route
 from game.core.source import Mark
+from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
 from game.drawing.tokens import CAPTION, FAINT, HUMAN, INK, LINE, MUTE, NET, NIGHT1, SMALL
 from game.flight import networks
@@ -28,11 +29,8 @@ from game.panels.figures import points
 from game.panels.tables import Part, formula
 from game.scenes.learn.chapter import Chapter, Code
 from game.scenes.learn.pictures import DrawnLander, draw_ground, inside, view_in
-
-if TYPE_CHECKING:
-    from game.drawing.canvas import Canvas
-    from game.ui.context import Context
-    from game.ui.panel import Column
+from game.ui.context import Context
+from game.ui.panel import Column
 
 # Moments of flights of the shipped network: seed, kind of start, and decisions flown before.
 MOMENTS: Final = (
@@ -96,7 +94,6 @@ class MomentChapter(Chapter):
         self.restart()
 
     def restart(self) -> None:
-        """Begin with the first moment, and forget what was judged."""
         self._number, self.tried = 0, False
         self.judged.clear()
         self._freeze()
@@ -133,17 +130,14 @@ class MomentChapter(Chapter):
 
     @property
     def running(self) -> bool:
-        """Whether the flight from this moment goes on."""
         return self.flying and not self.over
 
     @property
     def words(self) -> dict[str, str]:
-        """The chapter's texts; what to do becomes how to read the figures, once it flies."""
         words = super().words
         return {**words, "task": words["flown"]} if self.flying and "flown" in words else words
 
     def controls(self, column: Column) -> None:
-        """Add the slider for the guess, and what to press."""
         if self.flying:
             column.button(texts.LEARN_MOMENT_NEXT, self.turn, colour=INK)
         elif self.agent is not None:
@@ -166,7 +160,6 @@ class MomentChapter(Chapter):
         self.changed = True
 
     def update(self) -> None:
-        """Fly one physics step, and add what it is paid; every decision counts a little less than the one before."""
         if self.agent is None or not self.running:
             return
         if self._steps % DECISION_STEPS == 0 and self._steps:
@@ -213,7 +206,6 @@ class MomentChapter(Chapter):
         return f"{told} {texts.LEARN_MOMENT_MISSED.format(count=len(self.judged), yours=yours, its=its)}"
 
     def code(self) -> Sequence[Code]:
-        """Return the network's answer, its unit, and the target it was taught with."""
         if self.agent is None:
             return [Code(DeepQAgent.q_values), Code(in_points), Code(DeepQAgent.targets)]
         config, told = self.agent.config, self.judged[-1].decision if self.judged else self._first
@@ -229,7 +221,6 @@ class MomentChapter(Chapter):
         ]
 
     def below(self, column: Column) -> None:
-        """Add what was guessed and what came, or why there is nothing to show."""
         if self.agent is None:
             column.text(self.problem, colour=MUTE)
         else:
@@ -248,7 +239,6 @@ class MomentChapter(Chapter):
     # The picture
 
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
-        """Draw the flight, and what it is worth below it."""
         if self.agent is None:
             return
         world = pygame.FRect(box.left, box.top, box.width, self.sky * box.height)
@@ -305,7 +295,6 @@ class ChoiceChapter(MomentChapter):
         super().__init__(context)
 
     def restart(self) -> None:
-        """Begin with the first moment, and forget what came of it."""
         self.first, self.results = None, {}
         super().restart()
 
@@ -315,7 +304,6 @@ class ChoiceChapter(MomentChapter):
         super().turn()
 
     def controls(self, column: Column) -> None:
-        """Add a button for each action, and what goes on to the next moment."""
         for action, name in enumerate(ACTION_NAMES if self.agent else ()):
             colour = NET if action == self.best else INK
             column.button(
@@ -368,12 +356,10 @@ class ChoiceChapter(MomentChapter):
         return f"{told} {texts.LEARN_CHOICE_SURPRISE}" if surprises else told
 
     def code(self) -> Sequence[Code]:
-        """Return where the six values come from, and where the highest is taken."""
         best: dict[Mark, str] = {NeuralNetwork.predict: texts.said(ACTION_NAMES[self.best])}
         return [Code(DeepQAgent.q_values, NeuralNetwork.predict, best), Code(DeepQAgent.decide)]
 
     def below(self, column: Column) -> None:
-        """Add what the marks mean, or why there is nothing to show."""
         column.aside(texts.LEARN_CHOICE_LEGEND if self.agent else self.problem)
 
     def draw_worth(self, canvas: Canvas, box: pygame.FRect) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import pygame
@@ -17,15 +17,13 @@ from engine import DT
 from game.core import texts
 from game.core.scene import Route
 from game.core.source import Mark
+from game.drawing.canvas import Canvas
 from game.drawing.tokens import LINE, MUTE, NET, SMALL
 from game.panels.figures import decimal
 from game.scenes.learn.chapter import Chapter, Code
 from game.scenes.learn.pictures import DrawnLander, inside, view_in
-
-if TYPE_CHECKING:
-    from game.drawing.canvas import Canvas
-    from game.ui.context import Context
-    from game.ui.panel import Column
+from game.ui.context import Context
+from game.ui.panel import Column
 
 # What the neuron senses: indices of sin of the tilt, spin and sideways speed in an observation.
 SENSES: Final = (4, 6, 2)
@@ -69,7 +67,6 @@ class NeuronChapter(Chapter):
         self.restart()
 
     def restart(self) -> None:
-        """Set all weights to 0, and begin the first flight."""
         self.network.values[:] = 0.0
         self.best: tuple[float, tuple[float, ...]] = (0.0, (0.0, 0.0, 0.0))
         self._flights, self.tried = 0, False
@@ -81,7 +78,6 @@ class NeuronChapter(Chapter):
         return tuple(self.layer.weights[:, 0].tolist())
 
     def controls(self, column: Column) -> None:
-        """Add a slider for each weight, and two buttons."""
         for number, name in enumerate(texts.LEARN_NEURON_INPUTS):
             column.slider(name, self.weights[number], (-_MOST, _MOST), partial(self.set, number), step=0.5,
                           figure=lambda weight: decimal(weight, 1, "+"))  # fmt: skip
@@ -127,7 +123,6 @@ class NeuronChapter(Chapter):
         self.action = np.array([3 * int(sinking) + self.steer])
 
     def update(self) -> None:
-        """Fly one physics step; after a fall, begin anew."""
         if self._over:
             self._over -= 1
             if not self._over:
@@ -155,19 +150,18 @@ class NeuronChapter(Chapter):
 
     def why(self) -> str:
         """Return for how long the best flight lasted, and with which weights."""
-        seconds, (tilt, spin, speed) = self.best
+        seconds, weights = self.best
+        tilt, spin, speed = (decimal(weight, 1, "+") for weight in weights)
         told = texts.LEARN_NEURON_WHY["flew" if seconds >= GOAL else "fell"]
         return told.format(seconds=seconds, tilt=tilt, spin=spin, speed=speed)
 
     def code(self) -> Sequence[Code]:
-        """Return the layer's sum, with the numbers of this decision."""
         inputs, weights = self.sensed[0], self.layer.weights[:, 0]
         total = " ".join(f"{value:+.2f}×{weight:.1f}" for value, weight in zip(inputs, weights, strict=True))
         sums: dict[Mark, str] = {np.dot: total, "output": f"{float(self.layer.bias[0]):+.1f}"}
         return [Code(FullyConnectedLayer.predict, np.dot, sums)]
 
     def below(self, column: Column) -> None:
-        """Add the sum, what it is squeezed to, and what that does."""
         column.text(self._summed, size=SMALL)
         column.aside(f"{texts.LEARN_NEURON_FIRES.format(output=_FIRES)} {texts.LEARN_NEURON_RULE}")
 
@@ -180,7 +174,6 @@ class NeuronChapter(Chapter):
         return products
 
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
-        """Draw the flight, and the neuron below it."""
         world = pygame.FRect(box.left, box.top, box.width, (1 - _NEURON) * box.height)
         view = view_in(world, (0.0, _HEIGHT - 0.5), 2 * _SIGHT + 2, canvas.scale)
         with inside(canvas, world):

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Hashable, Iterator, Sequence
+from collections.abc import Hashable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import pygame
 
@@ -15,6 +15,7 @@ from ai.agent.agent import DeepQAgent
 from ai.training.loop import Training
 from game.core import texts
 from game.core.scene import Route, Transition, push
+from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, SMALL, TITLE
 from game.flight import networks
@@ -23,13 +24,11 @@ from game.panels.figures import percent
 from game.scenes.learn.chapter import Chapter, Code
 from game.scenes.learn.path import Progress
 from game.training.library import Library
+from game.ui.context import Context
+from game.ui.panel import Column
 
-if TYPE_CHECKING:
-    from game.drawing.canvas import Canvas
-    from game.ui.context import Context
-    from game.ui.panel import Column
-
-STEPS: Final = ("train", "land", "choose", "hand", "race")
+# Where each step is done; a race is begun here.
+STEPS: Final = {"train": "train", "land": "runs", "choose": "runs", "hand": "play", "race": ""}
 _LOOK: Final = 60  # updates between two looks at the player's files
 _INDENT: Final = 32.0
 
@@ -57,22 +56,15 @@ class OwnChapter(Chapter):
         self.restart()
 
     def restart(self) -> None:
-        """Look at the player's files again."""
         self._wait = 0
         self._seen: Hashable = None
         self._look()
 
     def controls(self, column: Column) -> None:
-        """Add where each step can be done."""
-        doors: dict[str, Callable[[], Transition | None]] = {
-            "train": partial(push, "train"), "land": partial(push, "runs"), "choose": partial(push, "runs"),
-            "hand": partial(push, "play"), "race": self.race,
-        }  # fmt: skip
-        for name in STEPS:
-            column.button(texts.LEARN_OWN_DOORS[name], doors[name])
+        for name, route in STEPS.items():
+            column.button(texts.LEARN_OWN_DOORS[name], partial(push, route) if route else self.race)
 
     def update(self) -> None:
-        """Look now and then whether something has been done."""
         self._wait = (self._wait + 1) % _LOOK
         if self._wait == 0:
             self._look()
@@ -147,11 +139,9 @@ class OwnChapter(Chapter):
         return f"{told} {self.steps['land'].told}"
 
     def code(self) -> Sequence[Code]:
-        """Return one decision of training."""
         return [Code(Training.advance, DeepQAgent.train_step), Code(DeepQAgent.train_step), Code(DeepQAgent.learn)]
 
     def below(self, column: Column) -> None:
-        """Add the list."""
         for name in STEPS:
             column.add(partial(self._write_step, name))
         column.text(lambda: texts.LEARN_OWN_DONE.format(done=sum(step.done for step in self.steps.values()),

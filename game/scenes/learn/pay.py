@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import pygame
@@ -20,17 +19,17 @@ from engine import DT
 from game.core import texts
 from game.core.scene import Route
 from game.core.worker import Worker, WorkerState
+from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, SMALL
 from game.flight.poses import Poses
 from game.scenes.learn.chapter import Chapter, Code
 from game.scenes.learn.pictures import draw_ground, view_in
+from game.ui.context import Context
+from game.ui.panel import Column
 from game.world.craft import draw_crowd, draw_fires
 
-if TYPE_CHECKING:
-    from game.drawing.canvas import Canvas
-    from game.ui.context import Context
-    from game.ui.panel import Column
-
+Flown = dict[str, float]
+ENDS: Final = dict(zip(("landed", "crashed", "gone", "late"), list(Outcome)[1:], strict=True))
 # What each pay is: a landing, haste, time aloft, fuel. By the key of its texts.
 PAYS: Final = {
     "landing": RewardWeights(time=-0.4, switch=-0.05),
@@ -53,18 +52,6 @@ def config_of(pay: RewardWeights) -> Config:
         num_envs=64, spawn=SPAWN, gradient_steps=6, learning_starts=1000, epsilon_decisions=8000,
         schedule_decisions=DECISIONS, replay_size=100_000, reward_weights=pay,
     )  # fmt: skip
-
-
-@dataclass(frozen=True)
-class Flown:
-    """How the flights after a training ended: numbers of each kind, and means over all of them, in seconds."""
-
-    landed: int
-    crashed: int
-    gone: int
-    late: int
-    time: float
-    fuel: float
 
 
 class Trial:
@@ -92,10 +79,9 @@ class Trial:
         self.poses.take()
 
     def flown(self) -> Flown:
-        """Return how the flights have ended so far."""
-        outcome = self.env.outcome
-        landed, crashed, gone, late = (int((outcome == kind).sum()) for kind in list(Outcome)[1:])
-        return Flown(landed, crashed, gone, late, float(self.env.time.mean()), float(self.env.fuel.mean()))
+        """Return how the flights have ended so far: how many of each kind, and their mean time and fuel in seconds."""
+        ends = {name: int((self.env.outcome == kind).sum()) for name, kind in ENDS.items()}
+        return {**ends, "time": float(self.env.time.mean()), "fuel": float(self.env.fuel.mean())}
 
 
 class PayChapter(Chapter):
@@ -119,7 +105,6 @@ class PayChapter(Chapter):
         self.restart()
 
     def restart(self) -> None:
-        """Forget all runs."""
         self.pay, self.tried = ASKED, False
         self.results: dict[str, Flown] = {}
         self._clear()
@@ -132,7 +117,6 @@ class PayChapter(Chapter):
         self._checkpoint: Checkpoint | None = None
 
     def close(self) -> None:
-        """End the run."""
         if self._worker:
             self._worker.close()
             self._worker = None
@@ -144,11 +128,9 @@ class PayChapter(Chapter):
 
     @property
     def running(self) -> bool:
-        """Whether a run goes on, or its flights do."""
         return self.learning or (self.trial is not None and not self.trial.over)
 
     def controls(self, column: Column) -> None:
-        """Add the choice of the pay, and what begins or ends a run."""
         keys = list(PAYS)
         column.choice("", [texts.LEARN_PAY_NAMES[key] for key in keys], keys.index(self.pay), self.choose)
         column.text(self._paid, size=SMALL, colour=HUMAN)
@@ -175,7 +157,6 @@ class PayChapter(Chapter):
         self._runs += 1
 
     def update(self) -> None:
-        """Hear the run; once it has learnt for long enough, fly what it has learnt."""
         if self._worker:
             self._hear(self._worker)
         elif self.trial and not self.trial.over:
@@ -205,32 +186,29 @@ class PayChapter(Chapter):
     def why(self) -> str:
         """Return how the flights of each run ended."""
         return " ".join(
-            texts.LEARN_PAY_WHY.format(name=texts.LEARN_PAY_NAMES[key], count=FLIGHTS, **vars(self.results[key]))
+            texts.LEARN_PAY_WHY.format(name=texts.LEARN_PAY_NAMES[key], count=FLIGHTS, **self.results[key])
             for key in PAYS
             if key in self.results
         )
 
     def code(self) -> Sequence[Code]:
-        """Return the step of the environment that adds up the pay, with this pay's weights."""
         pay = PAYS[self.pay]
         weights = texts.LEARN_PAY_NOTE.format(time=pay.time, terminal=pay.terminal)
         return [Code(LanderEnv.step, "parts", {"parts": weights, np.add.accumulate: f"{len(REWARDS)}"})]
 
     def below(self, column: Column) -> None:
-        """Add how far the run is, or how its flights end."""
         column.bar(lambda: self.decisions / DECISIONS)
         column.text(self._state, size=SMALL)
 
     def _state(self) -> str:
         if self.trial:
-            flown = vars(self.trial.flown())
-            return texts.LEARN_PAY_FLIGHTS.format(count=FLIGHTS, seconds=self.trial.env.time.max(), **flown)
+            seconds = self.trial.env.time.max()
+            return texts.LEARN_PAY_FLIGHTS.format(count=FLIGHTS, seconds=seconds, **self.trial.flown())
         if self.learning:
             return texts.LEARN_PAY_TRAINING.format(decisions=self.decisions, most=DECISIONS)
         return self.note or texts.LEARN_PAY_WAITING
 
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
-        """Draw the landers of the run, or those that fly what it has learnt."""
         view = view_in(box, _MIDDLE, _METRES, canvas.scale)
         draw_ground(canvas, box, view)
         poses, burning = self._shown(alpha)

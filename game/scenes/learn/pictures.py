@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from itertools import pairwise
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import pygame
@@ -13,15 +13,13 @@ import pygame
 from ai.environment import Doubles
 from ai.lander.environment import PARAMS, LanderEnv
 from ai.nn import Array
+from game.drawing.canvas import Canvas
 from game.drawing.tokens import CAPTION, FAINT, LINE, MUTE, NIGHT0, VIEW_SIZE, Colour
 from game.flight.poses import Poses
 from game.world import lander as art
 from game.world.camera import POINTS_PER_METRE, View
 from game.world.craft import draw_craft
 from game.world.landscape.pad import draw_pad
-
-if TYPE_CHECKING:
-    from game.drawing.canvas import Canvas
 
 _IGNITE: Final = 0.34  # share of the way to full or no thrust that a flame covers per step
 _DEPTH: Final = 0.62  # share of the pure colour at an end of a heat map's scale
@@ -74,7 +72,6 @@ class DrawnLander:
         self._poses.take()
 
     def draw(self, canvas: Canvas, view: View, alpha: float) -> None:
-        """Draw it between its last two poses."""
         draw_craft(canvas, view, art.LANDER, self._poses.at(alpha)[0], self._thrust, 1.0, self._flicker)
 
 

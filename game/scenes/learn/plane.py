@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import pygame
@@ -21,15 +21,13 @@ from ai.nn import (
 from game.core import texts
 from game.core.scene import Route
 from game.core.source import Mark
+from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import CAPTION, FAINT, INK, MUTE, SMALL
 from game.scenes.learn.chapter import Chapter, Code
 from game.scenes.learn.pictures import paint_heat
-
-if TYPE_CHECKING:
-    from game.drawing.canvas import Canvas
-    from game.ui.context import Context
-    from game.ui.panel import Column
+from game.ui.context import Context
+from game.ui.panel import Column
 
 UNITS: Final = (0, 2, 4, 8)  # hidden units to choose from
 QUARTER: Final = 20  # points in each quarter of the plane
@@ -84,7 +82,6 @@ class PlaneChapter(Chapter):
         self.restart()
 
     def restart(self) -> None:
-        """Forget all tries, and begin with a single neuron."""
         self.units, self._seed, self.tried = 0, 0, False
         self.results: dict[int, int] = {}
         self._version = 0
@@ -103,7 +100,6 @@ class PlaneChapter(Chapter):
         return int(((self.network.predict(self.points) > 0) == (self.targets > 0)).sum())
 
     def controls(self, column: Column) -> None:
-        """Add the choice of hidden units, and a button for other first weights."""
         column.choice(texts.LEARN_PLANE_UNITS, list(map(str, UNITS)), UNITS.index(self.units), self.choose)
         column.button(texts.LEARN_PLANE_AGAIN, self.begin)
 
@@ -113,7 +109,6 @@ class PlaneChapter(Chapter):
         self.begin()
 
     def update(self) -> None:
-        """Take one learning step on all points."""
         if self.steps < STEPS:
             self.cost = self.network.train_batch(self.points, self.targets, self._optimizer)
             self.steps += 1
@@ -139,7 +134,6 @@ class PlaneChapter(Chapter):
         )
 
     def code(self) -> Sequence[Code]:
-        """Return a pass through the layers, and a learning step, with this network's shapes and cost."""
         stages = self.network.activations(self.points)
         shapes = " → ".join(str(stage.shape[1]) for stage in (self.points, *stages[1::2]))
         passes: dict[Mark, str] = {FullyConnectedLayer.forward_propagate: shapes}
@@ -150,14 +144,12 @@ class PlaneChapter(Chapter):
         ]
 
     def below(self, column: Column) -> None:
-        """Add how far it is."""
         column.text(
             lambda: texts.LEARN_PLANE_STATE.format(right=self._shown, count=len(self.points), steps=self.steps),
             size=SMALL,
         )
 
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
-        """Draw the plane with its points, and the network beside it."""
         side = box.height - 22
         plane = pygame.FRect(box.left, box.top, side, side)
         self._draw_plane(canvas, plane, -1)

@@ -4,33 +4,29 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, ClassVar, Final
+from typing import ClassVar, Final
 
 import numpy as np
 import pygame
 
-from ai.environment import Doubles, Ints
+from ai.environment import Doubles
 from ai.lander.environment import PARAMS, Outcome
 from ai.training.config import Config
 from ai.training.small_run import Flown, Plan, SmallState, small_runs
 from game.core import texts
 from game.core.worker import Worker, WorkerState
-from game.drawing.cursor import Cursor
-from game.drawing.tokens import CAPTION, FAINT, INK, MUTE, SMALL
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import FAINT, INK, MUTE, SMALL
 from game.scenes.learn.chapter import Chapter
 from game.scenes.learn.pictures import inside, view_in
+from game.ui.context import Context
+from game.ui.panel import Column
 from game.world.craft import draw_crowd, draw_fires
-
-if TYPE_CHECKING:
-    from game.drawing.canvas import Canvas
-    from game.ui.context import Context
-    from game.ui.panel import Column
 
 PACE: Final = 40.0  # decisions a second: four times as fast as they would fly
 _APART: Final = 2.6  # metres between two landers of the picture
 _SKY: Final = 14.0  # metres of height that are shown, at least
 _SHARE: Final = 0.5  # a lander's size
-_ENDS: Final = (("landed", Outcome.LANDED), ("crashed", Outcome.CRASHED), ("lost", Outcome.OUT_OF_BOUNDS))
 
 
 class RunsChapter(Chapter):
@@ -39,7 +35,6 @@ class RunsChapter(Chapter):
     Attributes:
         choice: what the player has chosen, by its number; `flown` is that of the runs which are shown.
         states: states of all runs, after each decision so far.
-        last: how each lander's last flight ended, for each run; `Outcome.FLYING` before.
 
     """
 
@@ -58,18 +53,15 @@ class RunsChapter(Chapter):
 
     @property
     def plan(self) -> Plan:
-        """Where flights begin."""
         return self.PLAN
 
     def restart(self) -> None:
-        """Forget the runs and the choice."""
         self._forget()
         self.seed, self.tried, self.choice, self.flown = 0, False, self.first, self.first
 
     def _forget(self) -> None:
         self.close()
         self.states: list[tuple[SmallState, ...]] = []
-        self.last: list[Ints] = []
 
     def choose(self, index: int) -> None:
         """Choose what the next runs are to differ by."""
@@ -85,13 +77,11 @@ class RunsChapter(Chapter):
         self.changed = True
 
     def close(self) -> None:
-        """End the worker's process."""
         if self._worker is not None:
             self._worker.close(0.0)
 
     @property
     def running(self) -> bool:
-        """Whether the runs go on."""
         return self._worker is not None and self._worker.state in (WorkerState.STARTING, WorkerState.RUNNING)
 
     @property
@@ -105,7 +95,6 @@ class RunsChapter(Chapter):
         return self._worker.problem if self._worker is not None else ""
 
     def update(self) -> None:
-        """Take what the worker has told, and end it when the runs are long enough."""
         if self._worker is None or len(self.states) > self.LENGTH:
             return
         for states in self._worker.poll()[: self.LENGTH + 1 - len(self.states)]:
@@ -120,11 +109,6 @@ class RunsChapter(Chapter):
 
     def _take(self, states: tuple[SmallState, ...]) -> None:
         self.states.append(states)
-        if not self.last:
-            self.last = [np.zeros_like(state.flown.outcome) for state in states]
-        for last, state in zip(self.last, states, strict=True):
-            ended = state.flown.outcome != Outcome.FLYING
-            last[ended] = state.flown.outcome[ended]
 
     def history(self, run: int, name: str) -> Doubles:
         """Return a figure of one run after each decision, by the name of a field of `SmallState`; NaN for None."""
@@ -136,10 +120,8 @@ class RunsChapter(Chapter):
         column.button(label, self.start, colour=MUTE if self.running else INK)
 
     def below(self, column: Column) -> None:
-        """Add how far the runs are, or what is wrong, and what the marks under landers mean."""
         column.bar(lambda: max(len(self.states) - 1, 0) / self.LENGTH)
         column.text(self._status, size=SMALL, colour=MUTE)
-        column.add(_write_ends)
 
     def _status(self) -> str:
         key = "over" if self.over else "learning" if self.states else "starting" if self.running else "ready"
@@ -147,48 +129,19 @@ class RunsChapter(Chapter):
         return self.problem or texts.LEARN_RUNS[key].format(done=done, all=self.LENGTH)
 
 
-def _write_ends(cursor: Cursor) -> None:
-    """Write what the marks under landers mean."""
-    small, x = cursor.in_style(CAPTION, MUTE), cursor.left
-    for words, outcome in ((texts.LEARN_RUNS_LEGEND, 0), *((texts.LEARN_RUNS_ENDS[name], end) for name, end in _ENDS)):
-        if cursor.canvas:
-            _draw_end(cursor.canvas, (x + 4, small.baseline - 4), outcome)
-            left = x + 12 * bool(outcome)
-            cursor.canvas.text(words, (left, small.baseline), size=CAPTION, colour=MUTE)
-        x += small.measured(words) + 30
-    cursor.gap(20)
-
-
-def _draw_end(canvas: Canvas, place: tuple[float, float], outcome: int) -> None:
-    """Draw the mark of a flight's end: a dot for a landing, a triangle for a crash, a dash for all others."""
-    x, y = place
-    if outcome == Outcome.LANDED:
-        canvas.dot(place, 2.5, canvas.palette.good)
-    elif outcome == Outcome.CRASHED:
-        canvas.marker("triangle", place, 6, canvas.palette.warn)
-    elif outcome:
-        canvas.line((x - 3, y), (x + 3, y), MUTE, 1.5)
-
-
-def draw_landers(
-    canvas: Canvas, box: pygame.FRect, flown: Flown | None, last: Ints | None, flicker: int, count: int = 16
-) -> None:
-    """Draw one-engine landers side by side, and under each how its last flight ended; the ground before they fly."""
-    metres, foot = _APART * (count + 0.6), box.bottom - 14
-    height = metres * (box.height - 14) / box.width
-    picture = pygame.FRect(box.left, box.top, box.width, box.height - 14)
-    view = view_in(picture, (0.0, height / 2), metres, canvas.scale)
-    canvas.line((box.left, foot), (box.right, foot), FAINT)
+def draw_landers(canvas: Canvas, box: pygame.FRect, flown: Flown | None, flicker: int, count: int = 16) -> None:
+    """Draw one-engine landers side by side; only the ground before they fly."""
+    metres = _APART * (count + 0.6)
+    height = metres * box.height / box.width
+    view = view_in(box, (0.0, height / 2), metres, canvas.scale)
+    canvas.line(box.bottomleft, box.bottomright, FAINT)
     if flown is None:
         return
     across = _APART * (np.arange(count) - (count - 1) / 2)
     # A picture lower than the sky is squeezed: heights are drawn to a scale of their own.
     squeeze = min(1.0, (height - 2 * PARAMS.stand) / _SKY)
     poses = np.stack([across, flown.height * squeeze + PARAMS.stand, np.zeros(count)], axis=1)
-    with inside(canvas, picture):
+    with inside(canvas, box):
         burning = flown.main & (flown.outcome == Outcome.FLYING)
         draw_fires(canvas, view, poses[burning], flicker, 2 * _SHARE)
         draw_crowd(canvas, view, poses, 2 * _SHARE)
-    if last is not None:
-        for (x, _), outcome in zip(view.points(poses[:, :2]).tolist(), last.tolist(), strict=True):
-            _draw_end(canvas, (x, foot + 8), outcome)

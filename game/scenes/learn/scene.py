@@ -5,28 +5,25 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import pygame
 
 from game.core import texts
 from game.core.scene import Push, Replace, Route, Transition
 from game.core.source import Source, source_of
-from game.drawing.paint_cache import PaintCache
+from game.drawing.canvas import Canvas
+from game.drawing.cursor import Cursor
 from game.drawing.tokens import HUMAN, INK, MUTE, NET, SMALL, STEP, TEXT, TITLE, Colour
 from game.input.controls import Command
-from game.panels.code_listing import draw_listing
+from game.panels.code_listing import add_listing
 from game.panels.explained import Explained
 from game.scenes.learn.chapter import Code
 from game.scenes.learn.path import FIRST, PAGES, PATH, Progress, chapter_type, following
 from game.ui.actions import Action, Table
+from game.ui.context import Context
+from game.ui.panel import Column, Panel, Row
 from game.ui.panel_scene import PanelScene
-
-if TYPE_CHECKING:
-    from game.drawing.canvas import Canvas
-    from game.drawing.cursor import Cursor
-    from game.ui.context import Context
-    from game.ui.panel import Column, Panel, Row
 
 PREDICT, TRY, WHY, CODE = range(len(PAGES))
 _SHARES, _LEAST, _APART = (1.0, 1.8), 240.0, 36.0  # of the columns of words and of the picture
@@ -53,12 +50,10 @@ class ChapterScene(PanelScene):
         # One that is done asks for a guess again. Of any other, a try from an earlier visit is gone with its numbers.
         self.page = PREDICT if self._progress.done(key) else min(self._progress.page(key), TRY)
         self._function, self._told, self._code = 0, "", list[Code]()
-        self._listing = PaintCache()
         context.settings.chapter = key
         self.turn_to(self.page)
 
     def close(self) -> None:
-        """Save the progress, and let the chapter release what it holds."""
         self.chapter.close()
         self.context.apply_settings()
 
@@ -89,7 +84,6 @@ class ChapterScene(PanelScene):
         self.build()
 
     def actions(self) -> Table:
-        """Move, press, turn the page; go back."""
         again = [Action(Command.RETRY, self._restart, texts.LEARN_AGAIN)] if self.page == TRY else []
         on = texts.LEARN_NEXT_PAGE
         if self.page == CODE:
@@ -105,11 +99,9 @@ class ChapterScene(PanelScene):
         ]
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Explain on; everything else is the form's."""
         return None if self.explained.handle_event(event) else super().handle_event(event)
 
     def update(self) -> Transition | None:
-        """Advance the chapter, unless its question still stands."""
         if self.page != PREDICT:
             self.chapter.update()
         if self.page == WHY and self.chapter.tried and (self.chapter.changed or not self._told):
@@ -138,7 +130,6 @@ class ChapterScene(PanelScene):
     # Rows
 
     def describe(self, panel: Panel) -> None:
-        """Add the question, the pages, and beside the words of this one its picture or its code."""
         number, words = list(PATH).index(self.key) + 1, self.chapter.words
         panel.title(f"{number}   {words['title']}", TITLE + 6)
         panel.text(words["question"], colour=MUTE)
@@ -231,19 +222,9 @@ class ChapterScene(PanelScene):
             column.text(texts.LEARN_NO_SOURCE, size=_BODY, colour=MUTE)
             return
         current, notes = placed(source, code)
-        shows, room = (source, current, tuple(notes.items())), _NOTES if notes else 0.0
-
-        def draw(canvas: Canvas, box: pygame.FRect) -> None:
-            area, beside = (0, 0, *box.size), min(room, box.width / 3)
-            self._listing.draw(
-                canvas, box, shows,
-                lambda sheet: draw_listing(sheet, area, source, current, notes, notes_width=beside),
-            )  # fmt: skip
-
-        column.picture(_LISTING, draw)
+        add_listing(column, _LISTING, lambda: (source, current, notes), _NOTES)
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the rows, the picture, and what is asked of them."""
         super().draw(canvas, alpha)
         if self._picture:
             before = canvas.surface.get_clip()

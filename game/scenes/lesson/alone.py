@@ -3,24 +3,22 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import pygame
 
 from ai.explain.agent_lesson import LearnedAlone, Lesson
 from ai.nn import NeuralNetwork
 from game.core import texts
+from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
-from game.drawing.tokens import CAPTION, FAINT, HUMAN, INK, LINE, MUTE, NET, NIGHT0, SMALL, TITLE
+from game.drawing.tokens import CAPTION, FAINT, HUMAN, INK, LINE, MUTE, NET, NIGHT0, SMALL
 from game.panels.figures import points
+from game.panels.tables import Part, formula
 from game.scenes.lesson.flight import said_action
 from game.scenes.lesson.frame import Frame
 from game.scenes.lesson.step import LearningStep
-
-if TYPE_CHECKING:
-    from game.drawing.canvas import Canvas
-    from game.drawing.cursor import Cursor
-    from game.ui.panel import Column
+from game.ui.panel import Column
 
 _HEIGHT: Final = 250.0  # of the way, and of the six values
 _PACE: Final = 4  # frames between two steps, while it goes on by itself
@@ -64,7 +62,6 @@ class AloneFrame(Frame):
         self.going = True
 
     def update(self, still: bool) -> None:
-        """Take a step now and then, while it goes on; all at once with reduced motion."""
         self._frames += 1
         while self.going and (still or self._frames % _PACE == 0):
             self._learn()
@@ -77,11 +74,10 @@ class AloneFrame(Frame):
             self.alone.step()
 
     def describe(self, column: Column) -> None:
-        """Add what learns it, the way of its value, and what that does to the six."""
         column.words([(texts.LESSON_ALONE_ONCE, self.once), (texts.LESSON_ALONE_GO, self.go),
                       (texts.LESSON_ALONE_AGAIN, self.again)])  # fmt: skip
         way, six = column.beside((3, 2), _LEAST)
-        way.add(self._write_value)
+        way.add(formula(self._figures))
         way.picture(_HEIGHT, self._draw_way)
         six.caption(texts.LESSON_ALONE_OTHERS)
         six.picture(_HEIGHT, self._draw_values)
@@ -91,21 +87,11 @@ class AloneFrame(Frame):
         words = texts.LESSON_ALONE_ARRIVED if self.alone.arrived else texts.LESSON_ALONE_MORE
         return words.format(count=self._step.examples - 1)
 
-    def _write_value(self, cursor: Cursor) -> None:
-        """Write the value, and its target, large."""
-        target = cursor.in_style(TITLE + 4, HUMAN, "light")
-        target.left, target.width = cursor.left + cursor.width / 2, cursor.width / 2
-        value = cursor.in_style(TITLE + 4, NET, "light")
-        value.width = target.width
+    def _figures(self) -> list[Part]:
+        """Return the value, and its target."""
         count = texts.LESSON_ALONE_VALUE.format(count=len(self.alone.way) - 1)
-        for each, figure, words in ((value, self.alone.way[-1], count),
-                                    (target, self.alone.target, texts.LESSON_ALONE_TARGET)):  # fmt: skip
-            if each.canvas:
-                each.canvas.text(points(figure / self._scale), (each.left, each.baseline), size=each.size,
-                                 colour=each.colour, weight="light", tabular=True)  # fmt: skip
-            each.y += 1.3 * each.size
-            each.aside(words)
-        cursor.y = max(value.y, target.y)
+        return [Part(points(self.alone.way[-1] / self._scale), count, colour=NET), Part("→"),
+                Part(points(self.alone.target / self._scale), texts.LESSON_ALONE_TARGET, colour=HUMAN)]  # fmt: skip
 
     def _draw_way(self, canvas: Canvas, box: pygame.FRect) -> None:
         """Draw the way of the value to its target, step by step."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import pygame
@@ -13,15 +13,13 @@ from ai.environment import Floats
 from ai.explain.digit_lesson import DigitLesson
 from ai.explain.recorder import Function
 from game.core import texts
+from game.drawing.canvas import Canvas
+from game.drawing.cursor import Cursor
 from game.drawing.tokens import TITLE
 from game.panels.figures import number, signed
 from game.panels.tables import Line, table, told
 from game.scenes.lesson.frame import Frame
-
-if TYPE_CHECKING:
-    from game.drawing.canvas import Canvas
-    from game.drawing.cursor import Cursor
-    from game.ui.panel import Column
+from game.ui.panel import Column
 
 SIDE: Final = 28  # pixels of an image
 OUTPUT, PROBABILITY, TARGET, BACK = 1, 2, 3, 4  # columns, by their texts
@@ -41,7 +39,6 @@ class ImageFrame(Frame):
         super().__init__(texts.LESSON_DIGIT_FRAMES["image"], self._said, (DigitTraining.advance,), "images")
 
     def describe(self, column: Column) -> None:
-        """Add the image, and which digit it is."""
         left, right = column.beside((1, 1), _LEAST)
         left.add(self._write_image)
         right.text(self._said, size=TITLE)
@@ -93,6 +90,5 @@ class DigitFrame(Frame):
             self._lines.append(Line((str(each), *figures), what, rows, each == digit, bars))
 
     def describe(self, column: Column) -> None:
-        """Add the table."""
         left, _ = column.beside((3, 2), _LEAST)
         left.add(table(self._head, lambda: self._lines))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import pygame
@@ -16,21 +16,19 @@ from ai.environment import Doubles, Floats
 from ai.explain.agent_lesson import Flown, Lesson
 from ai.lander.environment import ACTION_NAMES, OBSERVATION_SCALE, PARAMS, Outcome
 from game.core import texts
+from game.drawing.canvas import Canvas
+from game.drawing.cursor import Cursor
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import INK, SMALL, VIEW_SIZE
 from game.panels.figures import decimal, number, points
 from game.panels.tables import Line, table, told
 from game.scenes.lesson.frame import Frame, in_points
+from game.ui.panel import Column
 from game.world.camera import HOME, POINTS_PER_METRE, View
 from game.world.craft import draw_craft
 from game.world.lander import LANDER
 from game.world.landscape.backdrop import Backdrop
 from game.world.landscape.pad import draw_pad
-
-if TYPE_CHECKING:
-    from game.drawing.canvas import Canvas
-    from game.drawing.cursor import Cursor
-    from game.ui.panel import Column
 
 _LEAST: Final = 300.0  # width of a column
 _ARROW: Final = 9.0  # points of the velocity's arrow for each metre per second
@@ -77,7 +75,6 @@ class MomentFrame(Frame):
         ]  # fmt: skip
 
     def describe(self, column: Column) -> None:
-        """Add the picture, and the table."""
         left, right = column.beside((1, 1), _LEAST)
         left.add(self._write_picture)
         left.aside(texts.LESSON_PICTURE_NOTE)
@@ -117,7 +114,6 @@ class HappenedFrame(Frame):
         super().__init__(texts.LESSON_FRAMES["happened"], in_points(self._pay), (NStep.add,), "self._returns")
 
     def describe(self, column: Column) -> None:
-        """Add the pay of each decision with its sum, and the state after."""
         lesson, flown, count = self._lesson, self._lesson.flown, int(self._lesson.cell.steps)
         left, right = column.beside((1, 1), _LEAST)
         lines = self._decisions(flown) if flown else []

@@ -19,16 +19,13 @@ from ai.nn import OPTIMIZERS, Optimizer
 from ai.nn.costs import softmax
 from game.core import texts
 from game.panels.figures import number, points, signed
-from game.scenes.lesson.after import AfterFrame
 from game.scenes.lesson.alone import AloneFrame
-from game.scenes.lesson.code import CodeWalk, in_points_of_reward
 from game.scenes.lesson.digit import BACK, OUTPUT, PROBABILITY, SIDE, TARGET, DigitFrame, ImageFrame, pixel_name
-from game.scenes.lesson.error import ErrorFrame
 from game.scenes.lesson.flight import HappenedFrame, MomentFrame, said_action
-from game.scenes.lesson.frame import Frame, in_points
+from game.scenes.lesson.frame import CodeWalk, Frame, in_points, in_points_of_reward
 from game.scenes.lesson.network import GradientFrame, NetworkFrame
 from game.scenes.lesson.step import LearningStep
-from game.scenes.lesson.target import TargetFrame
+from game.scenes.lesson.update import AfterFrame, ErrorFrame, TargetFrame
 
 
 @dataclass(frozen=True)

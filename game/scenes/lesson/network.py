@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
 from ai.explain.recorder import Function
 from ai.nn import Adam, Array
 from game.core import texts
-from game.drawing.canvas import Point
+from game.drawing.canvas import Canvas, Point
+from game.drawing.cursor import Cursor
 from game.drawing.tokens import HUMAN, SMALL
 from game.panels.figures import decimal, number, points, signed
 from game.panels.network_plan import Show
@@ -19,11 +20,7 @@ from game.panels.network_view import NetworkView
 from game.panels.tables import Line, table, told
 from game.scenes.lesson.frame import Frame
 from game.scenes.lesson.step import LearningStep, WeightPlace
-
-if TYPE_CHECKING:
-    from game.drawing.canvas import Canvas
-    from game.drawing.cursor import Cursor
-    from game.ui.panel import Column
+from game.ui.panel import Column
 
 _HEIGHTS: Final[dict[Show, float]] = {"weights": 370.0, "activations": 370.0, "gradients": 190.0}
 _TERMS: Final = 6  # products of a unit's sum that are written out one by one; the others are summed
@@ -54,7 +51,6 @@ class NetworkFrame(Frame):
         self.view.set(self._network, self.step.observation)
 
     def describe(self, column: Column) -> None:
-        """Add the drawing."""
         column.add(self._write_network)
 
     def _write_network(self, cursor: Cursor) -> None:
@@ -66,11 +62,9 @@ class NetworkFrame(Frame):
             self._draw(cursor.canvas)
 
     def point(self, place: Point | None) -> None:
-        """Light the links of the unit at a place."""
         self.view.hover(place)
 
     def update(self, still: bool) -> None:
-        """Paint a part of what is new, and let pulses travel."""
         self.view.update(at_once=still)
 
     def _draw(self, canvas: Canvas) -> None:
@@ -136,7 +130,6 @@ class GradientFrame(NetworkFrame):
         self.weight = self._ranked[0] if self._ranked else None
 
     def describe(self, column: Column) -> None:
-        """Add whose gradient is shown, the drawing, the share of this example, and the step of the picked weight."""
         whose = [words.format(count=self.step.examples) for words in texts.LESSON_WHOSE]
         column.choice("", whose, int(self.alone), self.show_alone, SMALL)
         super().describe(column)

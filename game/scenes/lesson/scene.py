@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import pygame
 
@@ -11,23 +11,20 @@ from ai.explain.agent_lesson import Lesson
 from ai.explain.digit_lesson import DigitLesson
 from game.core import texts
 from game.core.scene import Transition
-from game.drawing.cursor import BASELINE, Cursor
-from game.drawing.tokens import CAPTION, INK, LINE, MUTE, NET, SMALL, STEP, TITLE
+from game.drawing.canvas import Canvas
+from game.drawing.cursor import Cursor
+from game.drawing.tokens import CAPTION, INK, LINE, MUTE, NET, SMALL
 from game.input.controls import Command
 from game.panels.explained import Explained
 from game.panels.lesson_door import ImageDoor
-from game.scenes.lesson.code import CodeWalk
-from game.scenes.lesson.frame import Frame
+from game.scenes.lesson.frame import CodeWalk, Frame
 from game.scenes.lesson.frames import parts_of
 from game.ui.actions import Action, Table
+from game.ui.context import Context
+from game.ui.panel import Panel
 from game.ui.panel_scene import PanelScene
 from game.ui.rows import RowWidget
 from game.ui.widget import PointsManager
-
-if TYPE_CHECKING:
-    from game.drawing.canvas import Canvas
-    from game.ui.context import Context
-    from game.ui.panel import Panel
 
 _CARD: Final = 132.0  # the least width of a card, in points
 _HIGH, _GAP = 64.0, 8.0
@@ -128,14 +125,12 @@ class LessonScene(PanelScene):
 
     @property
     def code(self) -> CodeWalk:
-        """The walk through the code beside it."""
         return self.parts[self.current].code
 
     # Rows
 
     def describe(self, panel: Panel) -> None:
-        """Add the cards, the sentence, and the frame, with its code beside it if wanted."""
-        panel.add(self._write_head)
+        panel.pair(texts.LESSON_TITLE, self._whose, MUTE)
         frames = [part.frame for part in self.parts]
         self.cards = panel.widget(Cards(self.form.manager, frames, self.current, self.show))
         panel.gap(8)
@@ -145,22 +140,6 @@ class LessonScene(PanelScene):
         self.frame.describe(left)
         for column in right:
             self.code.describe(column)
-
-    def _write_head(self, cursor: Cursor) -> None:
-        """Write the title, and whose lesson it is."""
-        title, whose = cursor.in_style(TITLE), self._whose()
-        wide = title.measured(texts.LESSON_TITLE) + 3 * STEP
-        aside = cursor.in_style(SMALL, MUTE)
-        if wide + aside.measured(whose) <= cursor.width:
-            aside.left, aside.width = cursor.left + wide, cursor.width - wide
-            aside.y += BASELINE * (title.size - aside.size)
-            title.text(texts.LESSON_TITLE)
-            aside.text(whose, "right")
-            cursor.y = title.y
-        else:
-            title.text(texts.LESSON_TITLE)
-            cursor.y = title.y
-            cursor.aside(whose)
 
     def _whose(self) -> str:
         lesson = self.lesson
@@ -176,7 +155,6 @@ class LessonScene(PanelScene):
     # What can be done
 
     def actions(self) -> Table:
-        """Go from frame to frame; see the code, explanations, another image; go back."""
         another = [Action(Command.RETRY, self._another, texts.LESSON_ANOTHER_IMAGE)] if self._door else []
         return [
             self.form.moves,
@@ -211,7 +189,6 @@ class LessonScene(PanelScene):
         self.build()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Explain on; follow the mouse over the frame; everything else is the form's."""
         if self.explained.handle_event(event):
             return None
         if event.type == pygame.MOUSEMOTION:
@@ -219,7 +196,6 @@ class LessonScene(PanelScene):
         return super().handle_event(event)
 
     def update(self) -> Transition | None:
-        """Let gradients flow; take apart the lesson of another image once it has come."""
         if self._door and (lesson := self._door.next_lesson()):
             self._take(lesson)
         self.frame.update(self.context.settings.reduced_motion)
@@ -227,6 +203,5 @@ class LessonScene(PanelScene):
         return super().update()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the rows, and what is asked of them."""
         super().draw(canvas, alpha)
         self.explained.draw(canvas)

@@ -159,6 +159,7 @@ def packed(path, method, names=("steps",), array=3):
     return path.read_bytes()
 
 
+@pytest.mark.filterwarnings("ignore:Duplicate name")
 def test_archives_that_numpy_does_not_write_are_refused(tmp_path, subtests):
     path = tmp_path / "a.npz"
     whole, packer = packed(path, zipfile.ZIP_STORED), zipfile.ZIP_STORED
@@ -178,6 +179,7 @@ def test_archives_that_numpy_does_not_write_are_refused(tmp_path, subtests):
         (many, 10**6, "too many"),
         (many, 1000, "larger than"),
         (packed(path, packer, array=[None]), 1000, "steps holds more bytes"),
+        (packed(path, packer, ["a", "a"]), 1000, "two arrays of one name"),
     ):
         path.write_bytes(held)
         with subtests.test(said=said), pytest.raises((ValueError, OSError), match=said):
@@ -202,7 +204,7 @@ def fully(inputs, outputs):
 
 
 def convolution(shape, filters):
-    sizes = {"inputs": shape, "filters": filters, "kernel": 3, "stride": 1, "padding": 1}
+    sizes = {"inputs": shape, "filters": filters, "kernel": 3}
     return {"type": "ConvolutionLayer", **sizes, "arrays": {}}
 
 
@@ -213,7 +215,7 @@ def test_a_small_config_cannot_ask_for_a_huge_network(tmp_path, subtests):
         ([fully(3400, 3400)] * 2, "at most 12,000,000 parameters"),
         ([fully(1_000_000, 64)], "at most 12,000,000 parameters"),
         ([convolution([28, 28, 1], 1 << 20)], "values of an example"),
-        ([convolution([32, 32, 256], 256)] * 2, "multiplications"),
+        ([convolution([34, 34, 256], 256), convolution([32, 32, 256], 256)], "multiplications"),
         ([convolution([1024, 1024, 1], 1 << 20)], "values of an example"),
     ):
         edit(tmp_path / "model" / "config.json", layers=layers)
@@ -367,6 +369,11 @@ def _thesis(folder):
     (folder / "config.json").write_text("{}")
 
 
+def _within_linked(folder):
+    (folder / "training.json").rename(folder.parent / "mine.json")
+    (folder / "training.json").symlink_to(folder.parent / "mine.json")
+
+
 def _linked(folder):
     (folder / "target").rename(folder.parent / "elsewhere")
     (folder / "target").symlink_to(folder.parent / "elsewhere")
@@ -381,6 +388,7 @@ def test_training_replaces_only_what_is_its_own(saved, tmp_path, capsys, subtest
         ("digits", classic, lambda folder: None),
         ("notes", saved, lambda folder: _of_another(folder / "notes.txt")),
         ("notes within", saved, lambda folder: _of_another(folder / "online" / "notes.txt")),
+        ("a link within", saved, _within_linked),
         ("repository", saved, lambda folder: _of_another(folder / ".git" / "HEAD")),
         ("linked", saved, _linked),
     ):

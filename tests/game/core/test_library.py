@@ -19,7 +19,7 @@ from game.core import collection, texts
 from game.core.collection import UNSAVED
 from game.core.names import LONGEST_NAME, LibraryError, is_valid_name
 from game.flight import networks
-from game.scenes.train.run_page import row
+from game.scenes.train.networks import row
 from game.training.library import Library, read_run
 
 SMALL = Config(hidden=(8,), num_envs=4, learning_starts=16, replay_size=100, batch_size=16)
