@@ -11,11 +11,14 @@ import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import fields
 from datetime import UTC, datetime
+from functools import cache
 from pathlib import Path
 
 from babel.messages.catalog import Catalog, Message
 from babel.messages.mofile import write_mo
 from babel.messages.pofile import read_po, write_po
+from font_manrope import font_files
+from pygame import freetype
 
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))
@@ -26,6 +29,7 @@ from ai.training.config import Config
 from game.core import catalogue
 
 DOMAINS = (catalogue.DOMAIN, catalogue.AI_DOMAIN)
+CONTROL = "\n"
 STUB = ROOT / "game" / "core" / "texts.pyi"
 _HEAD = '''"""Names and shapes of all texts, made by docs/translations.py from tranquility.pot: do not edit."""
 
@@ -129,7 +133,7 @@ def untranslated(translated: Catalog, english_texts: Catalog) -> list[str]:
 
 
 def faults(translated: Catalog) -> Iterator[str]:
-    """Yield what is wrong with translations: other braces than the English, missing forms."""
+    """Yield what is wrong with translations: other braces than the English, missing forms, letters without pictures."""
     for message in translated:
         told, forms = _forms(message.string), _forms(message.id)
         if not message.id or not any(told) or message.fuzzy:
@@ -140,6 +144,15 @@ def faults(translated: Catalog) -> Iterator[str]:
         wanted, may_miss = set.union(*map(braces, forms)), {"count"} if len(forms) > 1 else set()
         if any(not wanted - may_miss <= braces(form) <= wanted for form in told if form):
             yield f"{_name(message)}: {told} has other braces than {forms}"
+        if missing := [letter for form in told for letter in form if letter not in CONTROL and not drawn(letter)]:
+            yield f"{_name(message)}: Manrope has no {', '.join(map(repr, missing))}"
+
+
+@cache
+def drawn(letter: str) -> bool:
+    """Whether the game's type has a picture of a letter."""
+    freetype.init()
+    return freetype.Font(font_files["Manrope"], 16).get_metrics(letter)[0] is not None
 
 
 def braces(text: str) -> set[str]:

@@ -171,7 +171,7 @@ class Listing(Widget):
 
 def shortened(canvas: Canvas, text: str, size: float, room: float) -> str:
     """Return a text, cut with an ellipsis if necessary, that `Canvas.text` can write within the room in points."""
-    room /= least()
+    room *= size / least(size)
     if canvas.text_width(text, size=size) <= room:
         return text
     lengths = range(len(text))
