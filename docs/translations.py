@@ -6,6 +6,7 @@ python -m docs.translations de    begin German, or bring it up to date with the 
 
 from __future__ import annotations
 
+import os
 import string
 import sys
 from collections.abc import Iterator, Sequence
@@ -18,10 +19,12 @@ from babel.messages.catalog import Catalog, Message
 from babel.messages.mofile import write_mo
 from babel.messages.pofile import read_po, write_po
 from font_manrope import font_files
-from pygame import freetype
 
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))
+os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
+
+from pygame import freetype
 
 from ai.digits.config import DigitConfig
 from ai.lander.rules import ACTION_NAMES

@@ -275,7 +275,7 @@ class Canvas:
         """
         scale, (left, top) = self.scale, self.origin
         parts, width, above, below = typeface.line(
-            string, self.grown(size), weight, colour, tabular, scale, room, least(size)
+            string, self.grown(size), weight, colour, tabular, scale, room, self.least(size)
         )
         x, y = left + position[0] * scale - _SHIFT[align] * width, top + round(position[1] * scale)
         if alpha >= 1:
@@ -293,6 +293,10 @@ class Canvas:
         """Return the width in points of `text` with the same arguments."""
         pixels = typeface.fitting(string, self.grown(size), weight, tabular, self.scale, math.inf, size)
         return typeface.span(string, pixels, weight, tabular) / self.scale
+
+    def least(self, size: float) -> float:
+        """Return the least size of a text with too little room, in points: English always fits, others are longer."""
+        return size if texts.LANGUAGE == ENGLISH else max(_LEAST * size, min(size, LABEL / max(self.scale, 1.0)))
 
     def grown(self, size: float) -> float:
         """Return the size at which a text of this size is written here, both in points."""
@@ -442,11 +446,6 @@ class Canvas:
         surface = shapes.glow(pixels if pixels < 24 else 4 * round(pixels / 4), colour, level)
         half, (left, top), scale = surface.width // 2, self.origin, self.scale
         return surface, (round(centre[0] * scale) + left - half, round(centre[1] * scale) + top - half)
-
-
-def least(size: float) -> float:
-    """Return the least size of a text that has too little room, in points: English always fits, others are longer."""
-    return size if texts.LANGUAGE == ENGLISH else max(_LEAST * size, min(size, LABEL))
 
 
 def moved(view: pygame.FRect, across: int, down: int) -> Point:
