@@ -22,7 +22,6 @@ from game.ui.context import Context
 from tests.support.driver import Driver
 
 
-
 class Probe(Scene):
     """A scene that records what it is given and does as it is told."""
 
