@@ -112,7 +112,7 @@ class Bounce(Exhibit):
         """Place the balls, and mark the height to which each will bounce."""
         drop = self.values["drop"]
         self.restitutions = np.array((0.0, 0.25, 0.5, self.values["restitution"], 1.0))
-        self.expected, self.columns = self.restitutions**2 * drop, -8.4 + 4.0 * np.arange(len(self.restitutions))
+        self.expected, self.columns = self.restitutions**2 * drop, -8.8 + 4.0 * np.arange(len(self.restitutions))
         self.balls: list[Body] = []
         for number, restitution in enumerate(self.restitutions.tolist()):
             x, y = float(self.columns[number]), float(self.expected[number])
@@ -120,7 +120,7 @@ class Bounce(Exhibit):
             place = (x, drop + self.radius)
             self.balls.append(self.add(Circle(self.radius), place, image, restitution=restitution))
             if restitution:
-                self.rules.append(((x - 0.9, y), (x + 0.9, y)))
+                self.rules.append(((x - 0.7, y), (x + 0.7, y)))
         self.peaks = np.zeros(len(self.balls))
         self.bounced, self.rising, self.measured = np.zeros((3, len(self.balls)), dtype=bool)
 
@@ -158,7 +158,7 @@ class Bounce(Exhibit):
             if restitution:
                 words = texts.BOUNCE_PEAK if self.measured[number] else texts.BOUNCE_MARK
                 text = words.format(expected=expected, peak=self.peaks[number])
-                labels.append(Label(text, (x + 2.0, expected - 0.02)))
+                labels.append(Label(text, (x + 2.15, expected - 0.02)))
         return labels
 
 

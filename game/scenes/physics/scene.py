@@ -197,7 +197,7 @@ class PhysicsScene(PanelScene):
     def describe(self, panel: Panel) -> None:
         words = [texts.EXHIBITS[name][0] for name in EXHIBITS]
         panel.choice(texts.PHYSICS_TITLE, words, list(EXHIBITS).index(self.chosen), self._choose)
-        panel.explain(texts.EXHIBITS[self.chosen][1])
+        panel.explain("")  # the law stands below
         panel.gap()
         left, right = panel.beside((9, 4), least=_LEAST, apart=40.0)
         left.text(texts.EXHIBITS[self.chosen][1])

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from game.ui.zoom import MOST, Zoom
+from game.ui.charts import MOST, Zoom
 
 STEPS = st.lists(st.tuples(st.floats(0.2, 5.0), st.floats(0.0, 1.0), st.floats(0.0, 2.0)), max_size=20)
 
