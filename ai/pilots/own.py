@@ -76,6 +76,8 @@ class OwnPilot:
     Attributes:
         path: the file.
         problem: what is wrong with the file as it was saved last; empty while there is nothing.
+        chosen: whether it is to fly, and not another that the player chose since.
+        told: the problem that was told last, for whoever tells each once.
         ready: whether a process has answered yet; until then it coasts.
 
     """
@@ -83,7 +85,7 @@ class OwnPilot:
     work = 100_000  # multiplications that a decision may well take the time of, for those who ask for many
 
     def __init__(self, path: Path, patience: float = PATIENCE, clock: Callable[[], float] = time.monotonic) -> None:
-        self.path, self.problem, self.ready = path, "", False
+        self.path, self.problem, self.told, self.ready, self.chosen = path, "", "", False, True
         self._patience, self._clock = patience, clock
         self._flying: PilotProcess | None = None
         self._before: PilotProcess | None = None  # flew well, and waits in case that the one that flies does not

@@ -32,6 +32,17 @@ def take(context: Context, path: Path) -> None:
     context.pilot = OwnPilot(path)
 
 
+def flying(context: Context) -> networks.Network | None:
+    """Return the player's own pilot where it was the last that they chose, and say once what is wrong with it."""
+    pilot = context.pilot
+    if pilot is None or not pilot.chosen:
+        return None
+    if pilot.problem not in ("", pilot.told):
+        pilot.told = pilot.problem
+        context.note(f"{pilot.path.name}: {pilot.problem}")
+    return networks.Network(pilot.path.name, pilot)
+
+
 def measure(user_dir: Path, models_dir: Path, path: Path) -> Generator[list[Any], None, None]:
     """Measure a file's pilot, then those rivals that never were, and write it down; a generator for a worker.
 

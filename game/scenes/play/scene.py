@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 from typing import Final
 
 import pygame
@@ -15,7 +16,7 @@ from ai.lander.environment import Outcome
 from game.core import texts
 from game.core.scene import Pop, Push, Scene, Transition, push
 from game.drawing.canvas import Canvas
-from game.flight import networks
+from game.flight import networks, own
 from game.flight.credit import Credit, eased
 from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Record
@@ -149,6 +150,7 @@ class PlayScene(Scene):
         """Advance by 1/60 s: fly a step, unless the craft waits or slowed time makes none due."""
         self.flown.breathe()
         self.explained.update()
+        own.flying(self.context)
         self._away += self._away > 0
         if self._away > _AWAY_STEPS and not self.flight.over:
             return self.pause()
@@ -272,7 +274,8 @@ class PlayScene(Scene):
     def _pause_words(self) -> list[tuple[str, OnPress]]:
         name = networks.word(self.network.name)
         words: list[tuple[str, OnPress]] = [
-            (texts.PAUSE_NETWORK.format(name=name), lambda: push("runs", choose=self.choose_network))
+            (texts.PAUSE_NETWORK.format(name=name), lambda: push("runs", choose=self.choose_network)),
+            (texts.PILOTS_OPEN, lambda: push("pilots", self._choose_own)),
         ]
         if self.challenge.next_hint:
             words.append((texts.TUTORIAL_LEAVE, self._leave_challenge))
@@ -286,7 +289,14 @@ class PlayScene(Scene):
     def choose_network(self, name: str) -> None:
         """Change the network to hand over to, also during a flight."""
         self._settings.model = name
+        if self.context.pilot:
+            self.context.pilot.chosen = False
         self.context.apply_settings()
+        self._load_network()
+        self.flown.change_network(self.network)
+
+    def _choose_own(self, path: Path) -> None:
+        own.take(self.context, path)
         self._load_network()
         self.flown.change_network(self.network)
 
@@ -357,7 +367,9 @@ class PlayScene(Scene):
     def _load_network(self) -> None:
         context, self._loaded_for = self.context, self._elsewhere
         settings = context.settings
-        self.network = networks.chosen(context.models_dir, context.user_dir, settings.model, self._elsewhere)
+        self.network = own.flying(context) or networks.chosen(
+            context.models_dir, context.user_dir, settings.model, self._elsewhere
+        )
         if self.network.problem:
             context.note(texts.NO_NETWORK.format(problem=self.network.problem))
         elif self.network.stands_in:

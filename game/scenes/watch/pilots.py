@@ -11,7 +11,7 @@ from typing import Final
 from ai.pilots.child import ACT
 from ai.pilots.shelf import Measured, Shelf, edit
 from game.core import texts
-from game.core.scene import Pop, Transition
+from game.core.scene import Pop, Transition, push
 from game.core.worker import Worker, WorkerState
 from game.drawing.tokens import HUMAN, INK, MUTE, TEXT
 from game.flight import networks, own
@@ -90,7 +90,8 @@ class PilotsScene(PanelScene):
         column.text(self._name, size=22.0, weight="light")
         column.aside(str(path))
         measuring = [] if self._shelf.kind != ACT or self._worker else [(texts.PILOTS_MEASURE, self._measure)]
-        column.words([(self._words[3], self._use), (texts.PILOTS_EDIT, self._edit), *measuring])
+        race = [(texts.PILOTS_RACE, self._race)] if self._shelf.kind == ACT else []
+        column.words([(self._words[3], self._use), (texts.PILOTS_EDIT, self._edit), *measuring, *race])
         if self._shelf.kind != ACT:
             return
         if self._worker:
@@ -146,6 +147,10 @@ class PilotsScene(PanelScene):
     def _use(self) -> Transition:
         self._choose(self._files[self._name])
         return Pop()
+
+    def _race(self) -> Transition:
+        own.take(self.context, self._files[self._name])
+        return push("play", rival=self.context.pilot, rival_name=self._name)
 
     def _measure(self) -> None:
         context, self._share, self._said = self.context, 0.0, ""
