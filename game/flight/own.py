@@ -37,6 +37,7 @@ def flying(context: Context) -> networks.Network | None:
     pilot = context.pilot
     if pilot is None or not pilot.chosen:
         return None
+    pilot.look()
     if pilot.problem not in ("", pilot.told):
         pilot.told = pilot.problem
         context.note(f"{pilot.path.name}: {pilot.problem}")

@@ -152,13 +152,13 @@ def test_play_hands_over_to_it_and_it_is_no_record(open_game: Open, context: Con
     assert isinstance(play, PlayScene)
     assert play.network.name == "pilot.py"
     assert play.flight.copilot is None  # it has no values to share the stick by
-    driver.wait(lambda: context.pilot and context.pilot.act(play.flight.observation) is not None and context.pilot.ready)
+    driver.wait(lambda: context.pilot and context.pilot.ready, 60)
     driver.key(pygame.K_TAB)
-    driver.wait(lambda: play.flight.over)
+    driver.wait(lambda: play.flight.over, 60)
     assert play.flight.guard is None
     assert play.credit.bar == "handed_over"
     path.write_text("def act(:")
-    driver.wait(lambda: "SyntaxError" in driver.said)
+    driver.wait(lambda: "SyntaxError" in driver.said, 30)
     play.choose_network("modern")
     assert play.network.name == "modern"
 
