@@ -5,15 +5,22 @@ from __future__ import annotations
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
-from typing import Any
+from pathlib import Path
+from typing import Any, ClassVar, Final, Self
+
+from ai.files import FolderKind
+
+TRAINING_FILE: Final = "training.json"  # in a run's folder: how it was made, and what it has measured
 
 
 class Run(ABC):
     """A run of training: landers and environments of Gymnasium (`ai.training.loop`), digits (`ai.digits.training`).
 
-    Each says how it steps and what it goes on from. What is around a run is there once, in `ai.training`.
+    Each says how it steps, what its folder holds, and what it goes on from. What is around a run is there once, in
+    `ai.training`.
 
     Attributes:
+        kind: what its folder may hold.
         config, seed: what all of it follows from.
         clock: counts seconds.
         seconds: spent in training, as the caller counts them.
@@ -24,6 +31,8 @@ class Run(ABC):
         states: has the blocks of that state; None for a new run.
 
     """
+
+    kind: ClassVar[FolderKind]
 
     def __init__(self, config: Any, seed: int) -> None:
         self.config, self.seed = config, seed
@@ -66,6 +75,28 @@ class Run(ABC):
     def restore_best(self) -> None:
         """Restore the best networks so far, if there are any: training cannot go on from diverged ones."""
 
+    # On disk
+
+    @abstractmethod
+    def snapshot(self, final: bool = False) -> tuple[dict[str, Any], Callable[[Path], None]]:
+        """Return what its training file says now, and what writes its networks as they are now into a new folder.
+
+        A `final` one is measured on what neither trained nor chose it.
+        """
+
+    @classmethod
+    @abstractmethod
+    def begun(cls, folder: Path, **options: Any) -> Self:
+        """Return the run that a folder describes, without its state; raises ModelFormatError."""
+
     @abstractmethod
     def state(self) -> dict[str, Any]:
         """Return copies of all that the run goes on from, besides its settings and replay buffers."""
+
+    @abstractmethod
+    def load_state(self, state: dict[str, Any] | None, folder: Path) -> bool:
+        """Go on from a state that lies beside `folder`; return whether that was done, or else say in `lost` why not.
+
+        Raises ModelFormatError where nothing can go on without one, and OSError, KeyError, TypeError, AttributeError,
+        ArithmeticError or ValueError for what no such run can have been.
+        """

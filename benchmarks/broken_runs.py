@@ -31,10 +31,10 @@ from ai.agent.network import build_network
 from ai.explain.inspection import NetworkHealth
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.training.config import PRESETS, Config
-from ai.training.experiments import SABOTAGES, sabotaged
+from ai.training.experiments import SABOTAGES
 from ai.training.history import Point
 from ai.training.lander_session import live
-from ai.training.messages import ChangeSetting, NetworkState
+from ai.training.messages import NetworkState
 
 COLUMNS: Final = (
     "seconds", "decisions", "episodes", "success", "mean_return", "loss", "mean_q", "epsilon", "stage",
@@ -51,6 +51,18 @@ TURNED: Final = (
     "epsilon_decay", "epsilon_decisions", "epsilon_spread", "random_main", "steadiness", "num_envs", "frame_skip",
     "final_touchdown_limits", "reward_scale",
 )  # fmt: skip
+
+
+# Parts that are taken away from a preset; the sabotages of Train are some of them.
+WEAKENED: Final[dict[str, Callable[[Config], dict[str, Any]]]] = {
+    **SABOTAGES,
+    "no_target": lambda _: {"target_update_interval": 1, "tau": 1.0},
+    "no_n_step": lambda _: {"n_step": 1},
+    "one_lander": lambda _: {"num_envs": 1},
+    "uniform_actions": lambda _: {"random_main": 0.5},
+    "no_practice": lambda _: {"spawn": "random"},
+    "plain_steps": lambda _: {"optimizer": "sgd"},
+}
 
 
 @dataclass(frozen=True)
@@ -83,8 +95,8 @@ def cases() -> Iterator[tuple[str, Case]]:
     yield "modern healthy, another seed", Case("modern", {}, LATE, seed=1)
     broken = {140_000: at_one("modern"), 160_000: as_preset("modern")}
     yield "modern rates to 1 and back, late", Case("modern", {}, LATE, broken)
-    for name in SABOTAGES:
-        changed = sabotaged(PRESETS["modern"], name)
+    for name, sabotage in WEAKENED.items():
+        changed = PRESETS["modern"].changed(**sabotage(PRESETS["modern"]))
         changes = {
             item.name: value
             for item in fields(Config)
@@ -130,7 +142,7 @@ def record(case: Case) -> tuple[np.ndarray, dict[str, Any]]:
                     rows.append([*(getattr(message, name) for name in COLUMNS[:-2]), *shares])
             if turns and taken >= turns[0][0]:
                 for name, value in turns.pop(0)[1].items():
-                    going.send(ChangeSetting(name, value))
+                    going.send(("change", name, value))
                     done.append((taken, name, value))
             told = next(going)
     except FloatingPointError as error:

@@ -50,16 +50,16 @@ from game.core.scene import Scene
 from game.core.settings import Settings
 from game.digits.kept import classifier_in
 from game.drawing.paint_cache import A_FRAME, idle, spread
-from game.learn.path import PATH
 from game.scenes import scene_of
 from game.scenes.ahead import load
-from game.scenes.chapter import ChapterScene
 from game.scenes.digits.dream import DreamScene
 from game.scenes.digits.inside import DigitInsideScene
 from game.scenes.digits.quiz import QuizScene
 from game.scenes.digits.why_not import WhyNotScene
 from game.scenes.error_screen import ErrorScene
-from game.scenes.lesson import LessonScene
+from game.scenes.learn.path import PATH
+from game.scenes.learn.scene import ChapterScene
+from game.scenes.lesson.scene import LessonScene
 from game.scenes.menus.background import LOADER
 from game.scenes.menus.dialogs import ListDialog, NameDialog, QuestionDialog
 from game.scenes.menus.menu import MenuScene
@@ -71,6 +71,7 @@ from game.scenes.play.choices import ChoicesScene
 from game.scenes.play.descent import Descent
 from game.scenes.play.pause import PauseScene
 from game.scenes.play.scene import PlayScene
+from game.scenes.train.laboratory import Chosen
 from game.scenes.train.scene import TrainScene
 from game.scenes.watch.scene import COUNTS, WatchScene
 from game.shell.app import App
@@ -223,8 +224,9 @@ def _read(context: Context, name: str = "modern") -> tuple[Context, DigitClassif
 def _split(context: Context) -> Scene:
     """Make Train with an experiment beside its run, from the first frame on."""
     scene = TrainScene(context)
-    scene.laboratory.choose(experiments(scene.knobs.config, "learning_rate")[-1], "")
-    scene.laboratory.fly(None)
+    experiment = experiments(scene.knobs.config, "learning_rate")[-1]
+    scene.laboratory.chosen = Chosen(experiment, "")
+    scene._split(experiment)
     return scene
 
 

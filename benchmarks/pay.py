@@ -2,7 +2,7 @@
 
     python -m benchmarks.pay [--seeds 3]
 
-The runs and the flights are those of the chapter (`game.learn.pay`).
+The runs and the flights are those of the chapter (`game.scenes.learn.pay`).
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import argparse
 
 from ai.training.history import Checkpoint
 from ai.training.lander_session import live
-from game.learn.pay import DECISIONS, FLIGHTS, PAYS, Flown, Trial, config_of
+from game.scenes.learn.pay import DECISIONS, ENDS, FLIGHTS, PAYS, Flown, Trial, config_of
 
 
 def flown(pay: str, seed: int) -> Flown:
@@ -36,8 +36,8 @@ def main() -> None:
     for pay in PAYS:
         for seed in range(seeds):
             each = flown(pay, seed)
-            ends = f"{each.landed:3} {each.crashed:3} {each.gone:3} {each.late:3}"
-            print(f"{pay:8} {seed}  {ends}  {each.time:5.1f} {each.fuel:5.1f}", flush=True)
+            ends = " ".join(f"{each[name]:3}" for name in ENDS)
+            print(f"{pay:8} {seed}  {ends}  {each['time']:5.1f} {each['fuel']:5.1f}", flush=True)
 
 
 if __name__ == "__main__":

@@ -30,12 +30,12 @@ from ai.agent.network import build_network
 from ai.explain.inspection import NetworkHealth
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.training.config import PRESETS, Config
-from ai.training.edits import EditNetwork, SilenceUnit
-from ai.training.experiments import SABOTAGES
+from ai.training.edits import Edit
 from ai.training.hints import Adviser, Hint, RecentCurves
 from ai.training.history import Checkpoint, History, Point, SettingChange
 from ai.training.lander_session import live
-from ai.training.messages import ChangeSetting, NetworkState, RestoreCheckpoint, RunStarted
+from ai.training.messages import NetworkState, RunStarted
+from benchmarks.broken_runs import WEAKENED
 
 NEAR: Final = PRESETS["modern"].changed(
     num_envs=128, spawn="near", hidden=(64,), gradient_steps=8, learning_starts=500, epsilon_decisions=4_000,
@@ -55,7 +55,7 @@ TURNS: Final[dict[str, dict[str, Any]]] = {
     "edited": {},
 }
 FROM_THE_START: Final[dict[str, Callable[[Config], dict[str, Any]]]] = {
-    **{name: SABOTAGES[name] for name in ("plain_steps", "no_replay", "one_lander")},
+    **{name: WEAKENED[name] for name in ("plain_steps", "no_replay", "one_lander")},
     "epsilon_end 0.6 from the start": lambda _: {"epsilon_end": 0.6},
     "tau 0.0001 from the start": lambda _: {"tau": 1e-4},
 }
@@ -93,11 +93,11 @@ class Watched:
         """Share of the last hundred flights."""
         return round(RecentCurves(self.history, self.config).last("success"), 3)
 
-    def send(self, command: Any) -> None:
+    def send(self, *command: Any) -> None:
         """Carry out a command."""
         self.take(self._run.send(command))
-        if isinstance(command, ChangeSetting):
-            self.config = self.config.turned(command.name, command.value)
+        if command[0] == "change":
+            self.config = self.config.turned(*command[1:])
 
     def go_on(self) -> Hint | None:
         """Take one step; return the hint that is shown."""
@@ -144,9 +144,9 @@ def follow(run: Watched, *, apply: bool, until: int) -> tuple[list[str], float, 
             run, last = Watched(config), WITH_FAULT
             continue
         for name, value in remedy.items():
-            run.send(ChangeSetting(name, value))
+            run.send("change", name, value)
         if back_to is not None:
-            run.send(RestoreCheckpoint(back_to))
+            run.send("restore", back_to)
     return pressed, fault, run
 
 
@@ -157,15 +157,15 @@ def broken(name: str, base: Path) -> tuple[float, Watched]:
     run = Watched(NEAR, base)
     before = run.landed
     for knob, value in TURNS[name].items():
-        run.send(ChangeSetting(knob, value))
+        run.send("change", knob, value)
     if name == "rates 1 and back":
         while run.decisions < HEALTHY + 5_000:
             run.go_on()
         for knob in TURNS[name]:
-            run.send(ChangeSetting(knob, getattr(NEAR, knob)))
+            run.send("change", knob, getattr(NEAR, knob))
     if name == "edited":
         for unit in range(NEAR.hidden[-1]):
-            run.send(EditNetwork(SilenceUnit(1, unit)))
+            run.send("edit", Edit(1, unit))
     return before, run
 
 

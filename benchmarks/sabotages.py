@@ -16,17 +16,29 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is imported, 
 
 import argparse
 import json
+from collections.abc import Sequence
+from math import sqrt
 from multiprocessing import Pool
+from statistics import mean, stdev
 from typing import Final
 
 from ai.files import write_text
 from ai.training.config import PRESETS
 from ai.training.experiments import MEASURED, sabotaged
 from ai.training.loop import Training
-from ai.training.statistics import mean_of_shares
 from game.scenes.train.cards import CARDS, FILE
 
 DECISIONS: Final = 100_000
+
+
+# Student's t of a two-sided 95 % interval, by degrees of freedom from 1 on.
+_T: Final = (12.71, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160, 2.145, 2.131)
+
+
+def mean_of_shares(shares: Sequence[float]) -> tuple[float, float, float]:
+    """Return the mean of two or more shares, and its 95 % interval within 0 to 1 (Student's t)."""
+    half = _T[min(len(shares) - 1, len(_T)) - 1] * stdev(shares) / sqrt(len(shares))
+    return mean(shares), max(0.0, mean(shares) - half), min(1.0, mean(shares) + half)
 
 
 def share(name: str, seed: int) -> float:

@@ -10,10 +10,10 @@ from collections.abc import Sequence
 
 from ai.training.config import Config
 from ai.training.small_run import SMALL_RUN, Plan, SmallRun, SmallState
-from ai.training.statistics import mean_of_shares, wilson
-from game.learn.daring import DARING, PAY
-from game.learn.memory import LATEST, TODAY, YESTERDAY, MemoryChapter
-from game.learn.target import BOUND, EVERY, NORMALISED, config_of
+from ai.training.statistics import wilson
+from benchmarks.sabotages import mean_of_shares
+from game.scenes.learn.duels import BOUND, DARING, EVERY, NORMALISED, PAY, config_of
+from game.scenes.learn.memory import LATEST, TODAY, YESTERDAY, MemoryChapter
 
 DECISIONS = 600
 

@@ -30,9 +30,10 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import pygame
 
-from ai.training.checkpoints import resume_run
 from ai.training.config import PRESETS
 from ai.training.history import History
+from ai.training.loop import Training
+from ai.training.run import resume
 from game.core.scene import Push
 from game.core.settings import Settings
 from game.core.worker import WorkerState
@@ -90,7 +91,7 @@ def kill(game: Game, rounds: int, rng: np.random.Generator) -> list[str]:
     """Kill so many runs; return what went wrong."""
     problems, states = [], dict.fromkeys(("starting", "learning", "saving"), 0)
     game.enter()
-    lander_run = game.scene.lander_run
+    lander_run = game.scene.run
     for number in range(rounds):
         if game.app.scenes.top is not game.scene:
             return [*problems, f"round {number}: {game.app.scenes.top} came up"]
@@ -119,7 +120,7 @@ def kill(game: Game, rounds: int, rng: np.random.Generator) -> list[str]:
     runs = lander_run.collection.items()
     for run in runs:
         try:
-            resume_run(run.folder)
+            resume(Training, run.folder)
             History.read(run.folder)
         except Exception as error:
             problems.append(f"{run.name}: {error}")
@@ -139,7 +140,7 @@ def visit(game: Game, visits: int) -> list[str]:
         if game.wait(lambda: game.app.scenes.top is not game.scene, 0.1):  # it asks about the run left last time
             game.key(pygame.K_ESCAPE)
         game.key(pygame.K_RETURN)
-        game.wait(lambda: len(game.scene.lander_run.history) >= 40)
+        game.wait(lambda: len(game.scene.run.history) >= 40)
         game.leave()
         game.rest(0.2)
         if active_children():

@@ -63,9 +63,9 @@ def run(seed: int, limit: float) -> tuple[float, list[float], list[float]]:
                 raise RuntimeError("the game was closed")
             frames.append(1e3 * (time.perf_counter() - before[0]))
             spent.append(1e3 * (time.process_time() - before[1]))
-            if app.scenes.top is not scene or scene.lander_run.problem:
-                raise RuntimeError(scene.lander_run.problem or f"{app.scenes.top} came up: see above")
-            history = scene.lander_run.history
+            if app.scenes.top is not scene or scene.run.problem:
+                raise RuntimeError(scene.run.problem or f"{app.scenes.top} came up: see above")
+            history = scene.run.history
             if len(history) and history["success"][-1] >= SHARE and history["episodes"][-1] >= FLIGHTS:
                 reached = time.perf_counter() - start
             due = max(due + 1 / 60, time.perf_counter() - 1 / 60)

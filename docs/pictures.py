@@ -31,9 +31,9 @@ from ai.training.loop import Training
 from game.core.scene import Scene
 from game.core.settings import Settings
 from game.scenes import scene_of
-from game.scenes.chapter import ChapterScene
 from game.scenes.digits.scene import DigitsScene
-from game.scenes.lesson import LessonScene
+from game.scenes.learn.scene import ChapterScene
+from game.scenes.lesson.scene import LessonScene
 from game.scenes.menus.menu import MenuScene
 from game.scenes.physics.scene import PhysicsScene
 from game.scenes.play.challenge import FlownMission
@@ -164,7 +164,7 @@ def _move_pen(scene: DigitsScene, frame: int) -> None:
 
 
 def _has_learnt(scene: TrainScene) -> bool:
-    history = scene.lander_run.history
+    history = scene.run.history
     return bool(len(history) and history["success"][-1] > 0.9)
 
 

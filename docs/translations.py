@@ -1,16 +1,19 @@
 """Make what the game reads from the texts that people write; needs Babel, of the extra `test`.
 
-python docs/translations.py       after a change to a text or a translation: update and compile all
-python docs/translations.py de    begin German: game/locale/de/LC_MESSAGES/tranquility.po, and ai.po
+python -m docs.translations       after any change: compile all, and say what is missing or out of date
+python -m docs.translations de    begin German, or bring it up to date with the English, in game/locale/de
 """
 
 from __future__ import annotations
 
+import string
 import sys
+from collections.abc import Iterator, Sequence
 from dataclasses import fields
+from datetime import UTC, datetime
 from pathlib import Path
 
-from babel.messages.catalog import Catalog
+from babel.messages.catalog import Catalog, Message
 from babel.messages.mofile import write_mo
 from babel.messages.pofile import read_po, write_po
 
@@ -34,6 +37,7 @@ LANGUAGE: Final[str]
 damaged: Final[str]  # the path of a catalogue that cannot be read
 
 def said(sentence: str, /) -> str: ...
+def choose(language: str = "") -> bool: ...
 
 '''
 
@@ -49,7 +53,13 @@ msgstr ""
 def template(domain: str, folder: Path = catalogue.LOCALE, language: str = catalogue.ENGLISH) -> Catalog:
     """Read an English template: the texts, each with an empty translation, in a language's plural forms."""
     lines = (folder / f"{domain}.pot").read_bytes().splitlines(keepends=True)
-    return read_po(lines, locale=language, abort_invalid=True)
+    return _dated(read_po(lines, locale=language, abort_invalid=True))
+
+
+def _dated(texts: Catalog) -> Catalog:
+    """Give a catalogue a date that stays, so that the same texts are the same bytes."""
+    texts.creation_date = texts.revision_date = datetime(2026, 1, 1, tzinfo=UTC)
+    return texts
 
 
 def english(folder: Path = catalogue.LOCALE) -> Catalog:
@@ -86,13 +96,75 @@ def _type(text: object) -> str:
     return "Plural" if isinstance(text, catalogue.Plural) else "str"
 
 
-def begin(language: str, folder: Path = catalogue.LOCALE) -> None:
-    """Write the catalogues of a language that has none yet: nothing in them is translated."""
+def translations(path: Path) -> Catalog:
+    """Read a language's catalogue, of which the folder says the language."""
+    return _dated(read_po(path.read_bytes().splitlines(keepends=True), locale=path.parts[-3]))
+
+
+def merged(translated: Catalog, english_texts: Catalog) -> Catalog:
+    """Return all texts with their translations; one that was made from other English is fuzzy, and keeps that."""
+    before = {_name(message): message for message in translated if message.id}
+    for message in english_texts:
+        if message.id and (known := before.get(_name(message))) and any(_forms(known.string)):
+            message.flags |= known.flags & {"fuzzy"}
+            message.previous_id = known.previous_id
+            if known.id != message.id:
+                message.flags.add("fuzzy")
+                message.previous_id = _forms(known.id)
+            if isinstance(known.id, str) == isinstance(message.id, str):
+                message.string = known.string
+    return english_texts
+
+
+def untranslated(translated: Catalog, english_texts: Catalog) -> list[str]:
+    """Return the names of the texts that are missing in a language, or were made from other English."""
+    return [
+        _name(message)
+        for message in english_texts
+        if message.id
+        and not (
+            (known := translated.get(message.id, message.context)) and any(_forms(known.string)) and not known.fuzzy
+        )
+    ]
+
+
+def faults(translated: Catalog) -> Iterator[str]:
+    """Yield what is wrong with translations: other braces than the English, missing forms."""
+    for message in translated:
+        told, forms = _forms(message.string), _forms(message.id)
+        if not message.id or not any(told) or message.fuzzy:
+            continue
+        if len(forms) > 1 and (len(told) != translated.num_plurals or not all(told)):
+            yield f"{_name(message)}: plural forms are missing"
+        # The form for one may say the number in a word.
+        wanted, may_miss = set.union(*map(braces, forms)), {"count"} if len(forms) > 1 else set()
+        if any(not wanted - may_miss <= braces(form) <= wanted for form in told if form):
+            yield f"{_name(message)}: {told} has other braces than {forms}"
+
+
+def braces(text: str) -> set[str]:
+    """Return the names in a text's braces."""
+    return {field for _, field, _, _ in string.Formatter().parse(text) if field is not None}
+
+
+def _forms(text: str | Sequence[str] | None) -> list[str]:
+    return [text or ""] if isinstance(text, str | None) else list(text)
+
+
+def _name(message: Message) -> str:
+    return message.context or str(message.id)
+
+
+def follow(language: str, folder: Path = catalogue.LOCALE) -> None:
+    """Write the catalogues of a language with all texts of today, as far as they are translated."""
     for domain in DOMAINS:
         path = folder / language / "LC_MESSAGES" / f"{domain}.po"
         path.parent.mkdir(parents=True, exist_ok=True)
-        if not path.exists():
-            _write_po(path, template(domain, folder, language))
+        texts = template(domain, folder, language)
+        with path.open("wb") as file:
+            write_po(
+                file, merged(translations(path), texts) if path.exists() else texts, width=120, include_previous=True
+            )
 
 
 def compile_all(folder: Path = catalogue.LOCALE) -> None:
@@ -104,11 +176,17 @@ def compile_all(folder: Path = catalogue.LOCALE) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     write_compiled(path, english(folder))
     for source in sorted(folder.glob("*/LC_MESSAGES/*.po")):
-        translated = read_po(source.read_bytes().splitlines(keepends=True), locale=source.parts[-3])
-        translated.update(template(source.stem, folder))
-        _write_po(source, translated)
-        write_compiled(source.with_suffix(".mo"), translated)
+        write_compiled(source.with_suffix(".mo"), translations(source))
     STUB.write_text(stub(catalogue.read(folder)), encoding="utf-8")
+
+
+def check(folder: Path = catalogue.LOCALE) -> Iterator[str]:
+    """Yield what there is to do for each language."""
+    for source in sorted(folder.glob("*/LC_MESSAGES/*.po")):
+        translated, texts = translations(source), template(source.stem, folder)
+        missing = untranslated(translated, texts)
+        for each in (*faults(translated), *([f"in English as yet: {', '.join(missing)}"] if missing else [])):
+            yield f"{source.parts[-3]}: {each}"
 
 
 def write_compiled(path: Path, texts: Catalog) -> None:
@@ -117,12 +195,8 @@ def write_compiled(path: Path, texts: Catalog) -> None:
         write_mo(file, texts)
 
 
-def _write_po(path: Path, texts: Catalog) -> None:
-    with path.open("wb") as file:
-        write_po(file, texts, width=120)
-
-
 if __name__ == "__main__":
     for language in sys.argv[1:]:
-        begin(language)
+        follow(language)
     compile_all()
+    print("\n".join(check()))

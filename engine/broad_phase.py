@@ -10,7 +10,7 @@ is quickest along the last axis, and that is the longest one.
 
 from __future__ import annotations
 
-from itertools import product
+from itertools import product, zip_longest
 
 import numpy as np
 
@@ -34,8 +34,8 @@ class BroadPhase:
         self._boxes = np.zeros((4, len(params.group), batch))
         self._shape_boxes = np.zeros((4, len(shapes), batch))  # only those of fixed bodies are filled
         self._stale = self._fixed.copy()  # fixed bodies (bodies,) whose boxes are to be computed anew
-        self.pairs, self._rows = _meeting_pairs(params, shapes)
-        self._meet = self._rows[..., :1] >= 0  # (moving, bodies, 1)
+        self._body_pairs = _meeting_bodies(params)
+        self.pairs, self._rows = _meeting_shapes(self._body_pairs, shapes)
 
     def forget_boxes(self, bodies: Span = ALL) -> None:
         """Discard the kept boxes of fixed bodies, which were put elsewhere."""
@@ -47,26 +47,22 @@ class BroadPhase:
         Given which bodies are `awake`, (batch, bodies), pairs without any are left out.
         """
         boxes = self._body_boxes(state)
-        world, mover, other = self._bodies_near(boxes, state.active, awake)
+        a, b = self._body_pairs
+        overlap = _overlap(boxes, a, b)  # (pairs of bodies, batch)
+        if not state.active.all():
+            overlap &= (state.active[:, a] & state.active[:, b]).T
+        if awake is not None:
+            overlap &= (awake[:, a] | awake[:, b]).T
+        met, world = overlap.nonzero()
         if not len(world):
             return world, world
-        rows = self._rows[mover, other]
+        order = np.argsort(world, kind="stable")
+        met, world = met[order], world[order]
+        rows = self._rows[met]
         meet = rows >= 0
         world, pair = world[meet.nonzero()[0]], rows[meet]
         near = self._shapes_near(state, world, pair)
         return world[near], pair[near]
-
-    def _bodies_near(self, boxes: Array, active: Bools, awake: Bools | None) -> tuple[Ints, Ints, Ints]:
-        """Return world, row of the moving body and the other body, each (n,), where bodies' boxes overlap."""
-        overlap = _overlap(boxes[:, self._moving, None], boxes[:, None], self._meet)  # (moving, bodies, batch)
-        if not active.all():
-            overlap &= (active[:, self._moving, None] & active[:, None]).transpose(1, 2, 0)
-        if awake is not None:
-            overlap &= (awake[:, self._moving, None] | awake[:, None]).transpose(1, 2, 0)
-        # Many times as fast as `nonzero` of three axes.
-        mover, other, world = np.unravel_index(np.flatnonzero(overlap), overlap.shape)
-        order = np.argsort(world, kind="stable")
-        return world[order], mover[order], other[order]
 
     def _body_boxes(self, state: BodyState) -> Array:
         """Boxes (4, bodies, batch) of all bodies as they are now."""
@@ -95,35 +91,43 @@ class BroadPhase:
         centre = self._shapes.centres(state, world[loose], shape[loose]).T
         reach = self._shape_reach[shape[loose]]
         boxes[:2, loose], boxes[2:, loose] = centre - reach, centre + reach
-        return _overlap(boxes[:, : len(pair)], boxes[:, len(pair) :])
+        return _overlap(boxes, slice(len(pair)), slice(len(pair), None))
 
 
-def _overlap(a: Array, b: Array, meet: Bools | bool = True) -> Bools:
-    """Whether boxes overlap that may `meet`; all are broadcast against each other."""
-    overlap: Bools = (a[1] <= b[3]) & meet
-    for low, high in ((b[1], a[3]), (a[0], b[2]), (b[0], a[2])):
+def _overlap(boxes: Array, a: Span, b: Span) -> Bools:
+    """Whether the boxes `a` overlap as many boxes `b`."""
+    overlap: Bools = boxes[1, a] <= boxes[3, b]
+    for low, one, high, other in ((1, b, 3, a), (0, a, 2, b), (0, b, 2, a)):
         if overlap.any():
-            overlap &= low <= high
+            overlap &= boxes[low, one] <= boxes[high, other]
     return overlap
 
 
-def _meeting_pairs(params: BodyParams, shapes: ShapeTable) -> tuple[Ints, Ints]:
-    """Return all pairs of shapes that may meet, (pairs, 2), and their rows by pair of bodies, (moving, bodies, most).
+def _meeting_bodies(params: BodyParams) -> Ints:
+    """Return all pairs of bodies that may meet, (2, pairs): one that can move, and one that their groups let it touch.
 
-    Two bodies may meet if one of them can move and their groups let them touch. Where two have fewer pairs of shapes
-    than the most, -1 stands in place of rows.
+    Of two that can move, each pair is there once.
     """
-    bodies = np.arange(len(params.group))
-    moving = bodies[span(params.dynamic)]
-    meet = (bodies > moving[:, None]) | ~params.dynamic  # of two that can move, each pair once
+    bodies, moving = np.arange(len(params.group)), np.flatnonzero(params.dynamic)
+    meet = (bodies > moving[:, None]) | ~params.dynamic
     meet &= (params.group == 0) | (params.group != params.group[moving, None])
-    shapes_of = [np.flatnonzero(shapes.body == body).tolist() for body in bodies]
-    parts = np.array([*map(len, shapes_of)], dtype=np.intp)
-    most = (parts[moving, None] * parts * meet).max(initial=1)
-    rows = np.full((*meet.shape, most), -1, dtype=np.intp)
+    mover, other = meet.nonzero()
+    return np.stack([moving[mover], other])
+
+
+def _meeting_shapes(body_pairs: Ints, shapes: ShapeTable) -> tuple[Ints, Ints]:
+    """Return all pairs of shapes that may meet, (pairs, 2), and which of them each pair of bodies has, (n, most).
+
+    Where two bodies have fewer pairs of shapes than the most, -1 stands in place of rows.
+    """
+    parts: dict[int, list[int]] = {}
+    for shape, body in enumerate(shapes.body.tolist()):
+        parts.setdefault(body, []).append(shape)
     pairs: list[tuple[int, int]] = []
-    for mover, other in np.argwhere(meet).tolist():
-        both = list(product(shapes_of[moving[mover]], shapes_of[other]))
-        rows[mover, other, : len(both)] = np.arange(len(pairs), len(pairs) + len(both))
+    rows: list[range] = []
+    for one, other in body_pairs.T.tolist():
+        both = list(product(parts[one], parts[other]))
+        rows.append(range(len(pairs), len(pairs) + len(both)))
         pairs += [(b, a) if shapes.is_circle[a] and not shapes.is_circle[b] else (a, b) for a, b in both]
-    return np.array(pairs, dtype=np.intp).reshape(-1, 2), rows
+    padded = np.array(list(zip_longest(*rows, fillvalue=-1)), dtype=np.intp).T
+    return np.array(pairs, dtype=np.intp).reshape(-1, 2), padded

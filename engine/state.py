@@ -73,9 +73,24 @@ class BodyParams:
     version: int  # one more each time a table is replaced
 
     def __init__(self, **tables: object) -> None:
-        self.__dict__["version"] = 0
-        for name, value in tables.items():
-            self._put(name, np.array(value, dtype=np.intp if name == "group" else float))
+        vars(self)["version"] = 0
+        for name, table in tables.items():
+            setattr(self, name, table)
+
+    def __setattr__(self, name: str, value: object) -> None:
+        """Replace a table by a copy of `value`."""
+        table = np.array(value, dtype=np.intp if name == "group" else float)
+        before = vars(self).get(name, table)
+        most_axes = 3 if name == "quadratic_drag" else before.ndim
+        if table.shape[-2:] != before.shape[-2:] or table.ndim > most_axes:
+            raise ValueError(f"{name} must be of shape {before.shape[-2:]}, not {table.shape}")
+        given = table[~np.isnan(table)] if name in ("restitution", "friction") else table
+        most = 1.0 if name == "restitution" else _LARGEST
+        if name != "group" and not ((given >= 0) & (given <= most)).all():
+            raise ValueError(f"{name} must be from 0 to {most}, not {table.tolist()}")
+        table.flags.writeable = table.ndim == 3
+        vars(self)[name] = table
+        vars(self)["version"] += 1
 
     @classmethod
     def empty(cls) -> BodyParams:
@@ -90,24 +105,6 @@ class BodyParams:
 
     def append(self, row: BodyParams) -> None:
         """Add the rows of `row` to every table."""
-        for name in BodyParams.__annotations__:
-            if name != "version":
-                self._put(name, np.concatenate([getattr(self, name), getattr(row, name)]))
-
-    def __setattr__(self, name: str, value: object) -> None:
-        """Replace a table by a copy of `value`."""
-        before = getattr(self, name)
-        table = np.array(value, dtype=before.dtype)
-        most_axes = 3 if name == "quadratic_drag" else before.ndim
-        if table.shape[-2:] != before.shape[-2:] or table.ndim > most_axes:
-            raise ValueError(f"{name} must be of shape {before.shape[-2:]}, not {table.shape}")
-        self._put(name, table)
-
-    def _put(self, name: str, table: Array | Ints) -> None:
-        given = table[~np.isnan(table)] if name in ("restitution", "friction") else table
-        most = 1.0 if name == "restitution" else _LARGEST
-        if name != "group" and not ((given >= 0) & (given <= most)).all():
-            raise ValueError(f"{name} must be from 0 to {most}, not {table.tolist()}")
-        table.flags.writeable = table.ndim == 3
-        self.__dict__[name] = table
-        self.__dict__["version"] += 1
+        names = vars(row).keys() - {"version"}
+        grown = BodyParams(**{name: np.concatenate([getattr(self, name), getattr(row, name)]) for name in names})
+        vars(self).update(vars(grown), version=self.version + 1)

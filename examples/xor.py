@@ -4,12 +4,11 @@ import numpy as np
 
 from ai.nn import ActivationFunctions, ActivationLayer, CostFunctions, FullyConnectedLayer, NeuralNetwork
 
-rng = np.random.default_rng(1)
 network = (
-    NeuralNetwork(*CostFunctions.use_mse())
-    .add_layer(FullyConnectedLayer(2, 4, rng=rng))
+    NeuralNetwork(*CostFunctions.use_mse(), rng=np.random.default_rng(1))
+    .add_layer(FullyConnectedLayer(2, 4))
     .add_layer(ActivationLayer(*ActivationFunctions.use_tanh()))
-    .add_layer(FullyConnectedLayer(4, 1, rng=rng))
+    .add_layer(FullyConnectedLayer(4, 1))
     .add_layer(ActivationLayer(*ActivationFunctions.use_tanh()))
 )
 questions = np.array([[0, 0], [0, 1], [1, 0], [1, 1]], np.float32)

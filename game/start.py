@@ -52,6 +52,7 @@ def play(folder: Path | None = None, full_screen: bool | None = None, begin: Rou
     log_to(folder)
     file = SettingsFile(folder)
     context = Context(folder, file.load(), ahead=_ahead)
+    texts.choose(context.settings.language)
     if full_screen is not None:
         context.settings.full_screen = full_screen
     try:

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from game.learn.path import PATH
 from game.scenes import ROUTES
+from game.scenes.learn.path import PATH
 from packaging_app import licences, recipe, start
 from packaging_app.archive import needed_glibc, pack
 from packaging_app.extras import add_extras, draw_icons, write_metadata
@@ -110,7 +110,7 @@ def test_the_game_opens_nothing_that_is_left_out(files, tmp_path: Path):
 def test_every_module_that_is_found_by_its_name_is_packed():
     modules = set(recipe.modules())
     named = {f"game.scenes.{place.partition('.')[0]}" for place in ROUTES.values()}
-    named |= {f"game.learn.{entry.place.partition('.')[0]}" for entry in PATH.values()}
+    named |= {f"game.scenes.learn.{entry.place.partition('.')[0]}" for entry in PATH.values()}
     named |= {"game.cli", "ai.cli.train", "ai.cli.evaluate", "ai.cli.copilot", "tranquility.__main__"}
     assert named <= modules
     assert not modules & set(recipe.excluded())

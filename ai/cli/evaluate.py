@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import json
 from contextlib import closing
-from functools import reduce
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -110,11 +109,12 @@ def _own(arguments: argparse.Namespace) -> Score:
 def _flown(arguments: argparse.Namespace, agent: DeepQAgent, episodes: int) -> Score:
     """Fly the flights, in shards; in several processes if that is asked for."""
     from ai.sweep.shards import results, shards
+    from ai.training.tasks import Evaluation
 
     parts = shards(agent, episodes, arguments.seed, arguments.spawn or "random")
     with cli.progress_bar(len(parts), "flying", unit="shard", disable=True if len(parts) == 1 else None) as bar:
         sums = results(parts, arguments.workers or 1, bar.update)
-    return reduce(type(sums[0]).plus, sums).evaluation()
+    return Evaluation.of(sum(sums[1:], sums[0]))
 
 
 @cli.refusing

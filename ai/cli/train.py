@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ai.run import Run
     from ai.training.config import Config
     from ai.training.loop import Progress
-    from ai.training.run import Limit, RunKind
+    from ai.training.run import Limit
 
 _RANGES: Final = {
     "decisions": (1, 10**12), "validation": cli.EPISODES, "seed": cli.SEEDS, "seconds": cli.SECONDS,
@@ -60,8 +60,8 @@ def add_commands(commands: Any) -> None:
 
 
 def _train(arguments: argparse.Namespace) -> int:
-    from ai.training.checkpoints import AGENTS
     from ai.training.config import ANYWHERE, LANDER
+    from ai.training.loop import Training
 
     def shown(progress: Progress) -> str:
         best = f" best {progress.best.figure}" if progress.best else ""
@@ -69,11 +69,11 @@ def _train(arguments: argparse.Namespace) -> int:
         recent = f"landed {progress.success_rate:.0%}" if lander else f"return {progress.mean_return:.1f}, mean"
         return f"{recent} of the last 100, ε {progress.epsilon:.2f}, {progress.decisions:,} decisions{best}"
 
-    return _run(arguments, AGENTS, lander_config, shown, lambda training, _: str(training.best))
+    return _run(arguments, Training, lander_config, shown, lambda training, _: str(training.best))
 
 
 def _train_digits(arguments: argparse.Namespace) -> int:
-    from ai.training.checkpoints import DIGITS
+    from ai.digits.training import DigitTraining
 
     def shown(progress: DigitProgress) -> str:
         best = f", held out {progress.best:.2%}" if progress.best is not None else ""
@@ -82,7 +82,7 @@ def _train_digits(arguments: argparse.Namespace) -> int:
     def verdict(_: Run, described: dict[str, Any]) -> str:
         return f"{described['test']:.2%} of MNIST's test images read right"
 
-    return _run(arguments, DIGITS, digit_config, shown, verdict)
+    return _run(arguments, DigitTraining, digit_config, shown, verdict)
 
 
 def lander_config(arguments: argparse.Namespace, begun: Config | None = None) -> Config:
@@ -115,7 +115,7 @@ def _preset(named: str | None, presets: Mapping[str, Preset], begun: Preset | No
 
 
 def _run(
-    arguments: argparse.Namespace, kind: RunKind, config: Callable[..., Any], shown: Callable[[Any], str],
+    arguments: argparse.Namespace, kind: type[Run], config: Callable[..., Any], shown: Callable[[Any], str],
     verdict: Callable[[Any, dict[str, Any]], str],
 ) -> int:  # fmt: skip
     """Train a run that is begun or resumed, keep what comes of it, and return the exit code.
@@ -124,7 +124,7 @@ def _run(
     saved run is.
     """
     from ai.files import claimed_folder
-    from ai.training.run import Limit
+    from ai.training.run import Limit, resume
 
     output = arguments.output or arguments.resume
     limit = Limit(arguments.seconds, getattr(arguments, "decisions", None))
@@ -136,22 +136,22 @@ def _run(
             if limit.seconds is None and limit.moment is None and "decisions" in arguments:
                 raise ValueError("say when to stop: --seconds S or --decisions N")
             if arguments.resume is None:
-                training = kind.begin(config(arguments), arguments.seed or 0)
+                training: Any = kind(config(arguments), arguments.seed or 0)
             else:
-                training = kind.resume(arguments.resume, env=getattr(arguments, "env", None))
+                training = resume(kind, arguments.resume, env=getattr(arguments, "env", None))
                 _go_on(training, config(arguments, training.config), arguments)
             if getattr(arguments, "validation", None):
                 training.validation_episodes = arguments.validation
             if limit.share(training) >= 1.0:
                 spent = f"{training.seconds:,.1f} seconds, {training.moment:,} steps"
                 raise ValueError(f"this run has taken {spent} already; limits are of the whole run: ask for more")
-            claims.enter_context(claimed_folder(output, kind.folder))
+            claims.enter_context(claimed_folder(output, kind.kind))
             another = output.is_dir() and any(output.iterdir())
             if another and not arguments.replace and not (arguments.resume and output.samefile(arguments.resume)):
                 raise ValueError(f"{output} holds an earlier run: --resume {output} goes on with it, --replace ends it")
         except cli.REFUSED as error:
             return cli.fail(cli.reason(error))
-        return _train_and_keep(training, output, kind, limit, shown, verdict)
+        return _train_and_keep(training, output, limit, shown, verdict)
 
 
 def _go_on(training: Run, wanted: Any, arguments: argparse.Namespace) -> None:
@@ -167,22 +167,21 @@ def _go_on(training: Run, wanted: Any, arguments: argparse.Namespace) -> None:
 
 
 def _train_and_keep(
-    training: Run, output: Path, kind: RunKind, limit: Limit, shown: Callable[[Any], str],
-    verdict: Callable[[Any, Any], str],
+    training: Run, output: Path, limit: Limit, shown: Callable[[Any], str], verdict: Callable[[Any, Any], str]
 ) -> int:  # fmt: skip
     stopped, saved = "", False
     try:
         with cli.stoppable() as stop:
             try:
-                _advance(training, output, kind, limit, shown, stop)
+                _advance(training, output, limit, shown, stop)
             except FloatingPointError as error:
                 stopped = f"training stopped: {error}. "
                 training.restore_best()
             # Save before measuring, which takes seconds: the user may stop the program meanwhile.
-            output, described = _kept(training, output, kind, final=False)
+            output, described = _kept(training, output, final=False)
             saved = True
         if not stopped:
-            output, described = _kept(training, output, kind, final=True)
+            output, described = _kept(training, output, final=True)
     except OSError as error:
         return cli.fail(f"{stopped}could not write to {output}: {error.strerror or error}")
     except ValueError as error:
@@ -194,9 +193,7 @@ def _train_and_keep(
     return cli.exit_code(stop)
 
 
-def _advance(
-    training: Run, output: Path, kind: RunKind, limit: Limit, shown: Callable[[Any], str], stop: list[int]
-) -> None:
+def _advance(training: Run, output: Path, limit: Limit, shown: Callable[[Any], str], stop: list[int]) -> None:
     """Train until the limit or the user, who adds to `stop`, says so; keep the run now and then, and show how it goes.
 
     That is a progress bar on a terminal, and elsewhere a line now and then. That the run could not be kept is told
@@ -204,7 +201,7 @@ def _advance(
     """
     from ai.training.run import Keeper
 
-    keeper, line_at = Keeper(training, kind, output), time.monotonic() + _LINE_SECONDS
+    keeper, line_at = Keeper(training, output), time.monotonic() + _LINE_SECONDS
     with cli.progress_bar(_PARTS, "training", bar_format=_BAR) as bar:
         for progress in limit.run(training):
             share, words = limit.share(training), shown(progress)
@@ -221,16 +218,17 @@ def _advance(
     keeper.wait()
 
 
-def _kept(training: Run, output: Path, kind: RunKind, *, final: bool) -> tuple[Path, dict[str, Any]]:
+def _kept(training: Run, output: Path, *, final: bool) -> tuple[Path, dict[str, Any]]:
     """Save a run; return its folder and its description. Raises OSError if it cannot be written.
 
     If something else was put there meanwhile, that stays, and the run is saved beside it.
     """
     from ai.files import free_path
+    from ai.training.run import save
 
     try:
-        return output, kind.save(training, output, final=final)
+        return output, save(training, output, final=final)
     except FileExistsError as error:
         cli.fail(str(error))
         beside = free_path(output.parent, output.name)
-        return beside, kind.save(training, beside, final=final)
+        return beside, save(training, beside, final=final)

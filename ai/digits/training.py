@@ -1,23 +1,39 @@
-"""Training of a digit network, and its evaluation."""
+"""Training of a digit network, its evaluation, and its run on disk."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Final
+from pathlib import Path
+from typing import Annotated, Any, Final, Self
 
 import numpy as np
 import numpy.typing as npt
 
 from ai.digits.augmentation import Strength, augment
-from ai.digits.classifier import DigitClassifier
-from ai.digits.config import DigitConfig, build_digit_network
+from ai.digits.classifier import KIND, DigitClassifier
+from ai.digits.config import DIGIT_PRESETS, DigitConfig, build_digit_network
 from ai.digits.handwriting import drawings
-from ai.digits.mnist import TRAIN, Images, Labels, load_part
-from ai.files import array_like, count_of, number_of
-from ai.nn import OPTIMIZERS, Array
-from ai.run import Run
+from ai.digits.mnist import TEST, TRAIN, Images, Labels, load_part
+from ai.files import (
+    Count,
+    Duration,
+    OneOf,
+    Seed,
+    Share,
+    Sized,
+    array_like,
+    count_of,
+    inside,
+    number_of,
+    problem_in,
+    read_as,
+    read_json,
+)
+from ai.files.knobs import nearest_preset
+from ai.nn import OPTIMIZERS, Array, ModelFormatError
+from ai.run import TRAINING_FILE, Run
 
 SPLIT_SEED: Final = 28  # which images are held out does not depend on the run
 
@@ -47,6 +63,7 @@ class DigitTraining(Run):
 
     """
 
+    kind = KIND
     config: DigitConfig
 
     def __init__(self, config: DigitConfig, seed: int = 0, data: tuple[Images, Labels] | None = None) -> None:
@@ -83,27 +100,6 @@ class DigitTraining(Run):
     def moment(self) -> int:
         """Learning steps so far."""
         return self.step
-
-    def state(self) -> dict[str, Any]:
-        """Return copies of what it goes on from; each step has its own randomness."""
-        return {
-            "step": self.step, "seconds": self.seconds, "best": self.best, "history": [*self.history],
-            "best_values": None if self.best_values is None else self.best_values.copy(),
-            "loss": self._loss, "accuracy": self._accuracy, "values": self.classifier.network.values.copy(),
-            "average": self.average.copy(), "optimizer": self.optimizer.state(),
-        }  # fmt: skip
-
-    def load_state(self, state: Mapping[str, Any]) -> None:
-        """Go on from what `state` returned; raises KeyError, TypeError or ValueError for what no run can have been."""
-        network, best = self.classifier.network, state["best_values"]
-        network.values = array_like(network.values, state["values"], "values")
-        self.average[...] = array_like(self.average, state["average"], "average")
-        self.optimizer.load_state(state["optimizer"], network.values)
-        self.best_values = None if best is None else array_like(self.average, best, "best_values")
-        self.best = None if state["best"] is None else float(number_of(state["best"], 0))
-        self.step, self.seconds = count_of(state["step"]), float(number_of(state["seconds"], 0))
-        self._loss, self._accuracy = float(number_of(state["loss"])), float(number_of(state["accuracy"]))
-        self.history = list(state["history"])
 
     @property
     def learning_rate(self) -> float:
@@ -211,6 +207,60 @@ class DigitTraining(Run):
             classifier.network.values = self.best_values
         return classifier
 
+    # On disk
+
+    def snapshot(self, final: bool = False) -> tuple[dict[str, Any], Callable[[Path], None]]:
+        """Return what its training file says now, and what writes its best network into a new folder.
+
+        A `final` one is measured on MNIST's test images; raises MnistError if there are none.
+        """
+        best, presets = self.best_classifier(), {name: preset.to_json() for name, preset in DIGIT_PRESETS.items()}
+        described = {
+            **nearest_preset(self.config.to_json(), presets), "seed": self.seed, "step": self.step,
+            "epochs": self.step // self.steps_per_epoch, "seconds": round(self.seconds, 3), "held_out": self.best,
+            "kept_epoch": self.best_epoch, "history": [*self.history],
+        }  # fmt: skip
+        if final:
+            described["test"] = accuracy(best, *load_part(TEST))
+        return described, best.write
+
+    @classmethod
+    def begun(cls, folder: Path, *, data: tuple[Images, Labels] | None = None, **_: Any) -> Self:
+        """Return the run that a folder describes, without its state; raises ModelFormatError."""
+        config, seed, step = read_settings(folder)
+        try:
+            run = cls(config, seed, data)
+        except (ValueError, OverflowError) as error:
+            raise ModelFormatError(folder, [str(error)]) from error
+        run.step = step
+        return run
+
+    def state(self) -> dict[str, Any]:
+        """Return copies of what it goes on from; each step has its own randomness."""
+        return {
+            "step": self.step, "seconds": self.seconds, "best": self.best, "history": [*self.history],
+            "best_values": None if self.best_values is None else self.best_values.copy(),
+            "loss": self._loss, "accuracy": self._accuracy, "values": self.classifier.network.values.copy(),
+            "average": self.average.copy(), "optimizer": self.optimizer.state(),
+        }  # fmt: skip
+
+    def load_state(self, state: dict[str, Any] | None, folder: Path) -> bool:
+        """Go on from what `state` returned; nothing goes on without one."""
+        if state is None:
+            raise ModelFormatError(
+                folder, ["there is nothing to go on with: the run is finished, or its state is gone"]
+            )
+        network, best = self.classifier.network, state["best_values"]
+        network.values = array_like(network.values, state["values"], "values")
+        self.average[...] = array_like(self.average, state["average"], "average")
+        self.optimizer.load_state(state["optimizer"], network.values)
+        self.best_values = None if best is None else array_like(self.average, best, "best_values")
+        self.best = None if state["best"] is None else float(number_of(state["best"], 0))
+        self.step, self.seconds = count_of(state["step"]), float(number_of(state["seconds"], 0))
+        self._loss, self._accuracy = float(number_of(state["loss"])), float(number_of(state["accuracy"]))
+        self.history = list(state["history"])
+        return True
+
 
 def accuracy(classifier: DigitClassifier, images: Images, labels: Labels) -> float:
     """Return the share of images that are read right."""
@@ -222,3 +272,41 @@ def confusion(classifier: DigitClassifier, images: Images, labels: Labels) -> np
     table = np.zeros((10, 10), np.intp)
     np.add.at(table, (labels, classifier.predict(images).argmax(axis=1)), 1)
     return table
+
+
+@dataclass(frozen=True)
+class DigitRunSummary:
+    """Figures in a run's training file that can be shown even where the rest of it is damaged.
+
+    `test` and `held_out` are accuracies on the test and the validation images, 0 to 1; None if not measured.
+    """
+
+    preset: Annotated[str, Sized(1000)] = ""
+    seconds: Duration = 0.0
+    held_out: Share | None = None
+    test: Share | None = None
+
+
+@dataclass(frozen=True)
+class _Described:
+    preset: Annotated[str, OneOf(DIGIT_PRESETS)]
+    changes: dict[str, Any]
+    seed: Seed
+    step: Count
+
+
+def read_summary(folder: Path, file: str = TRAINING_FILE) -> DigitRunSummary:
+    """Return the figures of a run, or of a fix in its own `file`; raises OSError or ValueError."""
+    return read_as(DigitRunSummary, read_json(folder / file))
+
+
+def read_settings(folder: Path) -> tuple[DigitConfig, int, int]:
+    """Return the settings and the seed of a run in a folder, and its steps so far; raises ModelFormatError."""
+    DigitClassifier.load(folder)
+    try:
+        described = read_as(_Described, read_json(inside(folder, TRAINING_FILE)))
+        preset = DIGIT_PRESETS[described.preset].to_json()
+        config = DigitConfig.from_json(preset | DigitConfig.renamed(described.changes))
+    except (OSError, ValueError, TypeError, ArithmeticError) as error:
+        raise ModelFormatError(folder, [f"{TRAINING_FILE}: {problem_in(error)}"]) from error
+    return config, described.seed, described.step

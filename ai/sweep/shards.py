@@ -21,11 +21,12 @@ from ai.agent.agent import DeepQAgent
 from ai.agent.storage import write_agent
 from ai.copilot import measurement
 from ai.copilot.measurement import AssistedFlights, Help
+from ai.environment import Doubles
 from ai.lander.environment import LanderEnv
 from ai.lander.pilots import Pilot, ScriptedPilot
 from ai.sweep.study import Files, files_in, write_files
 from ai.training.config import Config
-from ai.training.tasks import FlightSums, finished, flown
+from ai.training.tasks import finished, flown
 
 SHARD: Final = 10_000  # flights at once, in 5 KB each
 PILOTS: Final = 32  # of a part of a table: the more fly at once, the less time each takes
@@ -68,8 +69,8 @@ def received(files: Files) -> DeepQAgent:
         return DeepQAgent.load(folder)
 
 
-def fly(files: Files, flights: range, seed: int, spawn: str) -> FlightSums:
-    """Fly some flights of an evaluation, by their numbers."""
+def fly(files: Files, flights: range, seed: int, spawn: str) -> Doubles:
+    """Fly some flights of an evaluation, by their numbers; return their sums (`ai.training.tasks.flown`)."""
     agent = received(files)
     env = LanderEnv(len(flights), seed, spawn, Config.of(agent).frame_skip)
     for slot, number in enumerate(flights):
@@ -79,7 +80,7 @@ def fly(files: Files, flights: range, seed: int, spawn: str) -> FlightSums:
     return finished(flown(agent, env))
 
 
-def shards(agent: DeepQAgent, episodes: int, seed: int, spawn: str) -> list[partial[FlightSums]]:
+def shards(agent: DeepQAgent, episodes: int, seed: int, spawn: str) -> list[partial[Doubles]]:
     """Return the shards of an evaluation of an agent, as tasks; their sums add up."""
     files, parts = packed(agent), [range(first, min(episodes, first + SHARD)) for first in range(0, episodes, SHARD)]
     return [partial(fly, files, flights, seed, spawn) for flights in parts]

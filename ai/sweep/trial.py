@@ -19,15 +19,14 @@ import numpy as np
 
 from ai.digits.config import DigitConfig
 from ai.digits.mnist import TRAIN, load_part
+from ai.digits.training import DigitTraining
 from ai.files.knobs import Knobs
 from ai.sweep.metric import Metric, Point, median
-from ai.sweep.plan import DIGITS as OF_DIGITS
-from ai.sweep.plan import Plan
+from ai.sweep.plan import DIGITS, Plan
 from ai.sweep.study import Files, FinishedTrial, SeedResult, files_in, seed_folder, write_files
-from ai.training.checkpoints import AGENTS, DIGITS
 from ai.training.config import Config
-from ai.training.loop import task_of
-from ai.training.run import Limit
+from ai.training.loop import Training, task_of
+from ai.training.run import Limit, resume, save
 from ai.training.tasks import VALIDATION_SEED
 
 _ROOT: Final = Path(__file__).parents[2]
@@ -52,16 +51,14 @@ class SeedRun:
 
     def __init__(self, plan: Plan, params: dict[str, Any], seed: int, parent: Path | None) -> None:
         config: Any = type(plan.config).from_json(plan.settings | params)
-        self.kind = DIGITS if plan.kind == OF_DIGITS else AGENTS
-        if self.kind is DIGITS and not config.held_out:
+        kind: Any = DigitTraining if plan.kind == DIGITS else Training
+        if kind is DigitTraining and not config.held_out:
             raise ValueError("a study of digits needs images held out: held_out was 0")
-        if parent is None:
-            self.run: Any = self.kind.begin(config, seed)
-        else:
-            self.run = self.kind.resume(parent, env=getattr(config, "env", None))
+        self.run: Any = resume(kind, parent, env=getattr(config, "env", None)) if parent else kind(config, seed)
+        if parent:
             self.run.apply_live(config)
-        self.pace = self.run.steps_per_epoch if self.kind is DIGITS else 1  # steps to a unit of the budget
-        if self.kind is AGENTS:
+        self.pace = self.run.steps_per_epoch if kind is DigitTraining else 1  # steps to a unit of the budget
+        if kind is Training:
             self.run.validation_episodes = plan.validation or self.run.validation_episodes
 
     def advance(self, mark: int) -> Point:
@@ -69,7 +66,7 @@ class SeedRun:
         run, last = self.run, None
         for progress in Limit(moment=mark * self.pace).run(run):
             last = progress
-        if self.kind is DIGITS:
+        if isinstance(run, DigitTraining):
             return Point(mark, run.history[-1]["held_out"], run.history[-1]["held_out"])
         score = last.evaluation if last else None
         score = score or run.task.evaluate(run.agent, run.validation_episodes, VALIDATION_SEED)
@@ -77,7 +74,7 @@ class SeedRun:
 
     def save(self, folder: Path, *, final: bool = False, state: bool = False) -> dict[str, Any]:
         """Save the run as its command does; return the figures of the network that is kept, of a `final` one."""
-        told = self.kind.save(self.run, folder, final=final, state=state)
+        told = save(self.run, folder, final=final, state=state)
         return told.get("best") or {name: told[name] for name in ("held_out", "test") if name in told}
 
 

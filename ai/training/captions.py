@@ -19,27 +19,7 @@ from ai.training.hints import RULES, RecentCurves, returns
 from ai.training.history import PARTS
 
 CHARTS: Final = ("success", "mean_return", "loss", "epsilon")
-# Charts that a hint is about, by its name.
-ABOUT: Final[Mapping[str, tuple[str, ...]]] = {
-    "rate_too_high": ("success", "mean_return", "loss"),
-    "damaged": ("success", "mean_return", "loss"),
-    "loss_explodes": ("loss",),
-    "q_runs_away": ("mean_return", "loss"),
-    "dead_units": ("success", "mean_return", "loss"),
-    "changed": ("success", "mean_return"),
-    "edited": ("success", "mean_return"),
-    "collapsed": ("success", "mean_return"),
-    "target_stands": ("success", "mean_return", "loss"),
-    "short_sight": ("success", "mean_return"),
-    "no_guide": ("success", "mean_return"),
-    "crashes": ("success", "mean_return"),
-    "hovers": ("success", "mean_return"),
-    "small_memory": ("success", "mean_return", "loss"),
-    "overfed": ("success", "mean_return", "loss"),
-    "random": ("epsilon", "success"),
-    "clipped": ("loss",),
-    "plateau": ("success", "mean_return"),
-}
+_ABOUT: Final = {rule.name: rule.about for rule in RULES}
 _MOST: Final = 0.5  # share of flights that are most of them
 _CHANGE: Final = 0.05  # of a share, from which it rises or falls
 _RETURN_CHANGE: Final = 10.0  # points of reward
@@ -73,7 +53,7 @@ def caption(chart: str, run: RecentCurves, hint: str = "", shown: str = "") -> C
     """
     if not run.count:
         return None
-    quiet = chart in ABOUT.get(hint, ())
+    quiet = chart in _ABOUT.get(hint, ())
     rules = sorted(CAPTION_RULES[chart], key=lambda rule: rule.name != shown)
     found = next((rule for rule in rules if not (rule.praises and quiet) and rule.holds(run)), None)
     return Caption(found.name, found.values(run)) if found else None

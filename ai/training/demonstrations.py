@@ -8,17 +8,16 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Annotated, Any, Final
+from typing import Annotated, Final
 
 import numpy as np
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.n_step import NStep
 from ai.agent.replay import Transition
-from ai.environment import Bools, Floats
 from ai.files import (
     OneOf,
     SchemaError,
@@ -107,40 +106,6 @@ def demonstrate(pilot: Pilot, count: int, seed: int = 0, spawn: str = "random") 
     return found
 
 
-def relive(demonstrations: Sequence[Demonstration], config: Config) -> list[Transition | None]:
-    """Fly demonstrations again, and return the transitions of each as `config` would have remembered them.
-
-    None for one that doesn't land, as one made under other rules may not. A transition is a decision of
-    `config.frame_skip` physics steps with the action that was held longest in it.
-    """
-    found: list[Transition | None] = [None] * len(demonstrations)
-    places: dict[tuple[str, int | None], list[int]] = {}
-    for number, demonstration in enumerate(demonstrations):
-        places.setdefault((demonstration.spawn, demonstration.ground), []).append(number)
-    for (spawn, ground), numbers in places.items():
-        flown = _fly_together([demonstrations[number] for number in numbers], spawn, ground, config)
-        for number, cells in zip(numbers, flown, strict=True):
-            found[number] = cells
-    return found
-
-
-def teach(agent: DeepQAgent, demonstrations: Sequence[Demonstration]) -> int:
-    """Put demonstrations into an agent's replay and its list of successes; return how many it could use.
-
-    The agent learns from the list in a second pass of its own, if `config.success_pass` is on, as `taught` has it.
-    """
-    landings = [cells for cells in relive(demonstrations, Config.of(agent)) if cells is not None]
-    for cells in landings:
-        agent.replay.add(cells)
-        agent.successes.add(cells)
-    return len(landings)
-
-
-def taught(config: Config) -> Config:
-    """Return the configuration that learns from demonstrations as well."""
-    return config.changed(success_pass=True)
-
-
 def write(path: Path, demonstrations: Sequence[Demonstration]) -> None:
     """Keep the newest demonstrations in a file, whole or not at all. Raises OSError if it cannot be written."""
     kept = [asdict(demonstration) for demonstration in demonstrations[-MOST:]]
@@ -163,49 +128,48 @@ def read(path: Path) -> list[Demonstration]:
         raise ValueError(f"{path}: {brief(error)}") from error
 
 
-def _stream(seed: int) -> np.random.Generator:
-    """Return the random stream from which a lander that flies alone from this seed draws its start."""
-    return np.random.default_rng(seed).spawn(1)[0]
+def relive(demonstration: Demonstration, config: Config) -> Transition | None:
+    """Fly a demonstration again; return its transitions as `config` would have remembered them.
 
-
-def _fly_together(
-    demonstrations: Sequence[Demonstration], spawn: str, ground: int | None, config: Config
-) -> Iterator[Transition | None]:
-    """Fly demonstrations over the same ground side by side; give the transitions of each, or None."""
-    count, skip = len(demonstrations), config.frame_skip
-    hills = None if ground is None else hilly(np.random.default_rng(ground))
-    env = LanderEnv(count, 0, spawn, frame_skip=1, ground=hills, weights=config.reward_weights)
-    lengths = np.array([len(demonstration.actions) for demonstration in demonstrations])
-    actions = np.zeros((-(-lengths.max() // skip) * skip, count), np.intp)
-    for slot, demonstration in enumerate(demonstrations):
-        env.streams[slot] = _stream(demonstration.seed)
-        actions[: lengths[slot], slot] = demonstration.actions
-    pads = np.array([demonstration.pad for demonstration in demonstrations])
-    env.target[:] = np.minimum(pads, len(env.ground.pads) - 1)
-    observation = env.reset()
-    decisions: list[tuple[Floats, Floats, Floats, Bools, Bools]] = []
+    None if it does not land, as one made under other rules may not, or has no example. A transition is a decision of
+    `config.frame_skip` physics steps with the action that was held longest in it.
+    """
+    skip, hills, actions = config.frame_skip, None, demonstration.actions
+    if demonstration.ground is not None:
+        hills = hilly(np.random.default_rng(demonstration.ground))
+    env = LanderEnv(1, 0, demonstration.spawn, frame_skip=1, ground=hills, weights=config.reward_weights)
+    env.streams[0] = _stream(demonstration.seed)
+    env.target[:] = min(demonstration.pad, len(env.ground.pads) - 1)
+    observation, steps, found = env.reset(), NStep(config.n_step, config.discount), list[Transition]()
     for first in range(0, len(actions), skip):
-        before, reward = observation, np.zeros(count, np.float32)
-        terminated, ended = np.zeros((2, count), bool)
-        for held in actions[first : first + skip]:
-            result = env.step(held)
+        before, held, reward = observation, actions[first : first + skip], np.zeros(1, np.float32)
+        terminated, ended = np.zeros((2, 1), bool)
+        for action in (*held, *[0] * (skip - len(held))):
+            result = env.step(np.array([action]))
             reward += result.reward
             terminated |= result.terminated
             ended |= result.ended
-        observation = result.observation
-        decisions.append((before, reward * np.float32(config.reward_scale), observation, terminated, ended))
-    landed = (env.landed_on == pads) & (env.steps <= lengths)
-    for slot, demonstration in enumerate(demonstrations):
-        yield _transitions(demonstration, decisions, slot, config) if landed[slot] else None
+        observation, longest = result.observation, np.array([np.bincount(held).argmax()])
+        if first >= demonstration.begins:
+            paid = reward * np.float32(config.reward_scale)
+            found.append(steps.add(before, longest, paid, observation, terminated, ended)[0])
+    landed = env.landed_on[0] == demonstration.pad and env.steps[0] <= len(actions)
+    return Transition(*map(np.concatenate, zip(*found, strict=True))) if landed and found else None
 
 
-def _transitions(
-    demonstration: Demonstration, decisions: Sequence[tuple[Any, ...]], slot: int, config: Config
-) -> Transition | None:
-    """Return what one of the flights is remembered as; None if nothing of it is an example."""
-    steps, parts, skip = NStep(config.n_step, config.discount), list[Transition](), config.frame_skip
-    for number in range(-(-demonstration.begins // skip), -(-len(demonstration.actions) // skip)):
-        longest = np.bincount(demonstration.actions[number * skip : (number + 1) * skip]).argmax()
-        before, *after = (part[slot : slot + 1] for part in decisions[number])
-        parts.append(steps.add(before, np.array([longest]), *after)[0])
-    return Transition(*(np.concatenate(column) for column in zip(*parts, strict=True))) if parts else None
+def teach(agent: DeepQAgent, demonstrations: Sequence[Demonstration]) -> int:
+    """Put demonstrations into an agent's replay and its list of successes; return how many it could use.
+
+    The agent learns from the list in a second pass of its own, if `config.success_pass` is on.
+    """
+    config = Config.of(agent)
+    landings = [cells for each in demonstrations if (cells := relive(each, config)) is not None]
+    for cells in landings:
+        agent.replay.add(cells)
+        agent.successes.add(cells)
+    return len(landings)
+
+
+def _stream(seed: int) -> np.random.Generator:
+    """Return the random stream from which a lander that flies alone from this seed draws its start."""
+    return np.random.default_rng(seed).spawn(1)[0]

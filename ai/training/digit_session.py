@@ -15,9 +15,8 @@ from ai.digits.validation import ValidationReading
 from ai.explain.digit_lesson import explain_digit
 from ai.files import array_like, number_of
 from ai.nn import Array
-from ai.training.checkpoints import DIGITS, resume_digit_run
 from ai.training.history import DIGIT_COLUMNS, REVERTED, DigitPoint, Validation
-from ai.training.messages import Explain, RestoreBest
+from ai.training.run import resume as resume_run
 from ai.training.session import Session
 from ai.training.state import State
 
@@ -32,10 +31,10 @@ def live_digits(
     """Train to the last epoch, as `Session.lead` does; every turn is a learning step.
 
     The run is kept in `keep`. With `resume`, it goes on from the run kept there, with its settings. Raises what
-    `DigitTraining` and `resume_digit_run` raise.
+    `DigitTraining` raises, and ModelFormatError.
     """
     early = yield ()  # unpacking the images takes a while: show the caller first that the run is alive
-    training = resume_digit_run(resume, data=data) if resume else DigitTraining(config, seed, data)
+    training = resume_run(DigitTraining, resume, data=data) if resume else DigitTraining(config, seed, data)
     session = DigitSession(training, keep, resume)
     yield from session.lead(early)
 
@@ -43,7 +42,6 @@ def live_digits(
 class DigitSession(Session[DigitTraining]):
     """Session of digits. Some of the images held out are read between two steps."""
 
-    kind = DIGITS
     columns = DIGIT_COLUMNS
 
     def __init__(self, training: DigitTraining, keep: Path | None, resume: Path | None) -> None:
@@ -125,14 +123,16 @@ class DigitSession(Session[DigitTraining]):
 
     # Commands
 
-    def _explain(self, command: Explain) -> None:
-        self.messages.append(explain_digit(self.training, command.slot))
+    def _explain(self, slot: int, _: None = None) -> None:
+        """Explain the next learning step around the image in a row of its batch."""
+        self.messages.append(explain_digit(self.training, slot))
 
-    def _restore_best(self, _: RestoreBest) -> None:
+    def _restore_best(self) -> None:
+        """Restore the network that read the images held out best."""
         if self._best is not None:
             accuracy, values = self._best
             self.training.restore(values)
             self._reading = None  # it was reading for the network that is gone
             self.record_change(REVERTED, None, accuracy)
 
-    commands = Session.commands | {Explain: _explain, RestoreBest: _restore_best}
+    commands = Session.commands | {"explain": _explain, "restore_best": _restore_best}

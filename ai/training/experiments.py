@@ -1,9 +1,9 @@
-"""Experiments: runs in which one knob differs greatly, beside a healthy twin from the same seed, and what came of them.
+"""Experiments: runs in which one thing differs greatly, beside a healthy twin of the same seed, and what came of them.
 
-What there is to try follows from a setting's range and scale. Where an experiment is a sabotage under another name,
-it is that sabotage: one part is taken away from a configuration, so that a run shows what it is for. The effect
-depends on the configuration: the words that go with these names were measured on one preset, with seeds 0 and 1, over
-150,000 decisions each. Shares of training flights are of the last hundred, with their chance moves.
+A sabotage takes one part away from a configuration, so that a run shows what it is for; what else there is to try
+follows from a knob's range and scale. The effect depends on the configuration: the words that go with the sabotages
+were measured on one preset by `python -m benchmarks.sabotages`. Shares of training flights are of the last hundred,
+with their chance moves.
 """
 
 from __future__ import annotations
@@ -19,21 +19,8 @@ from ai.training.config import Config, idle
 from ai.training.hints import RULES, RecentCurves
 from ai.training.history import History
 
-Kind = Literal["times", "divided", "value", "sabotage"]
 FACTOR: Final = 100.0  # on a logarithmic scale
-WEIGHT_FACTOR: Final = 10.0  # of a part of the reward
 _LEAST_FACTOR: Final = 3.0  # below which a difference shows nothing
-_HEAVY: Final = ("num_envs",)  # more of these take the machine, not the learner, to its limits
-# The experiments that a sabotage is, by the setting and its new value as the modern preset has it.
-_SABOTAGES: Final = {
-    ("learning_rate", "times"): "rate_times_100",
-    ("epsilon_end", 0.0): "no_exploration",
-    ("discount", 0.8): "short_sight",
-    ("n_step", 1): "no_n_step",
-    ("num_envs", 1): "one_lander",
-    ("layer_normalisation", False): "no_normalisation",
-    ("optimizer", "sgd"): "plain_steps",
-}
 Verdict = Literal["as_well", "later", "never", "runs_away"]
 VERDICTS: Final[tuple[Verdict, ...]] = ("as_well", "later", "never", "runs_away")
 LANDS: Final = 0.8  # share of a hundred flights from which a run counts as one that lands
@@ -48,20 +35,13 @@ _SMALLEST_MEMORY: Final = 100
 
 # Settings that each changes, given the base configuration.
 SABOTAGES: Final[dict[str, Callable[[Config], dict[str, Any]]]] = {
-    "no_target": lambda _: {"target_update_interval": 1, "tau": 1.0},
     "no_replay": lambda c: {"replay_size": max(_SMALLEST_MEMORY, c.batch_size), "replay_prune": 1},
-    "no_shaping": lambda c: {"reward_weights": RewardWeights(**{**vars(c.reward_weights), **_TERMINAL_ALONE})},
     "no_exploration": lambda _: {"epsilon_start": 0.0, "epsilon_end": 0.0, "epsilon_spread": 0.0},
-    "rate_times_100": lambda c: {
-        "learning_rate": min(1.0, 100 * c.learning_rate),
-        "final_learning_rate": min(1.0, 100 * c.final_learning_rate),
-    },
-    "no_n_step": lambda _: {"n_step": 1},
-    "one_lander": lambda _: {"num_envs": 1},
-    "uniform_actions": lambda _: {"random_main": 0.5},
+    "no_shaping": lambda c: {"reward_weights": RewardWeights(**{**vars(c.reward_weights), **_TERMINAL_ALONE})},
     "short_sight": lambda _: {"discount": 0.8},
-    "no_practice": lambda _: {"spawn": "random"},
-    "plain_steps": lambda _: {"optimizer": "sgd"},
+    "rate_times_100": lambda c: {
+        name: min(1.0, FACTOR * getattr(c, name)) for name in ("learning_rate", "final_learning_rate")
+    },
     "no_normalisation": lambda _: {"layer_normalisation": False},
 }
 
@@ -83,7 +63,7 @@ class Experiment:
 
     """
 
-    kind: Kind
+    kind: Literal["times", "divided", "value", "sabotage"]
     amount: Any
     changes: Mapping[str, Any] = field(hash=False)
     sabotage: str = ""
@@ -93,22 +73,34 @@ class Experiment:
         return config.changed(**self.changes)
 
 
-def experiments(config: Config, name: str) -> list[Experiment]:
-    """Return what can be tried on a knob of a configuration, which is named as `Config.turned` does.
-
-    A number on a logarithmic scale can be a hundred times more or less; any other can be at either end of its range,
-    a part of the reward 0 or ten times more, and a switch or a choice anything else.
-    """
-    head, _, part = name.partition(".")
-    if head in idle(config):  # it would change nothing
-        return []
-    found = _of_weight(config, part) if part else _of_field(config, head)
-    return [each for each in found if _is_valid(config, each)]
-
-
 def experiment_of(config: Config, sabotage: str) -> Experiment:
     """Return the experiment that is a sabotage; raises KeyError for an unknown name."""
     return Experiment("sabotage", None, SABOTAGES[sabotage](config), sabotage)
+
+
+def experiments(config: Config, name: str) -> list[Experiment]:
+    """Return what can be tried on a numeric knob of a configuration: none of one that changes nothing now.
+
+    On a logarithmic scale, a hundred times more or less, or as much of either as the range allows; else either end of
+    the range. What a sabotage does under another name is that sabotage.
+    """
+    item = next(item for item in fields(config) if item.name == name)
+    low, high, value = item.metadata["low"], item.metadata["high"], getattr(config, name)
+    if name in idle(config):
+        return []
+    if item.metadata["log"]:
+        less, more = (float(f"{end:.6g}") for end in (max(low, value / FACTOR), min(high, value * FACTOR)))
+        ends: list[tuple[Any, ...]] = [("divided", value / less, less), ("times", more / value, more)]
+        ends = [each for each in ends if each[1] >= _LEAST_FACTOR]
+    else:
+        kind = int if item.type == "int" else float
+        ends = [("value", kind(end), kind(end)) for end in (low, high) if end != value]
+    found = []
+    for how, amount, end in ends:
+        alike = {sabotage: change(config) for sabotage, change in SABOTAGES.items()}
+        sabotage = next((each for each, changes in alike.items() if changes.get(name) == end), "")
+        found.append(Experiment(how, amount, alike[sabotage] if sabotage else {name: end}, sabotage))
+    return found
 
 
 def differences(before: Config, after: Config) -> dict[str, tuple[Any, Any]]:
@@ -122,66 +114,6 @@ def differences(before: Config, after: Config) -> dict[str, tuple[Any, Any]]:
         elif old != new:
             found[item.name] = (old, new)
     return found
-
-
-def _of_weight(config: Config, part: str) -> list[Experiment]:
-    weights = asdict(config.reward_weights)
-    if not weights[part]:
-        return []
-
-    def turned(value: float) -> dict[str, Any]:
-        return {"reward_weights": RewardWeights(**{**weights, part: value})}
-
-    return [
-        Experiment("value", 0.0, turned(0.0)),
-        Experiment("times", WEIGHT_FACTOR, turned(WEIGHT_FACTOR * weights[part])),
-    ]
-
-
-def _of_field(config: Config, name: str) -> list[Experiment]:
-    item = next(item for item in fields(config) if item.name == name)
-    described, value = item.metadata, getattr(config, name)
-    if item.type == "bool":
-        return [_to(config, name, not value)]
-    if described["choices"]:
-        others = [each for each in described["choices"] if each != value]
-        return [_to(config, name, each) for each in others] if len(others) <= 2 else []
-    if isinstance(value, tuple) or described["low"] is None:
-        return []
-    low, high = described["low"], described["high"]
-    if described["log"] and value:
-        return _by_factors(config, name, low, high)
-    whole = item.type == "int"
-    ends = [end for end in (low, high) if end != value and (end < value or name not in _HEAVY)]
-    return [_to(config, name, int(end) if whole else float(end)) for end in ends]
-
-
-def _by_factors(config: Config, name: str, low: float, high: float) -> list[Experiment]:
-    """Return the hundredth and the hundredfold, or as much of either as the range allows."""
-    value = getattr(config, name)
-    less, more = (
-        round(end) if isinstance(value, int) else float(f"{end:.6g}")
-        for end in (max(low, value / FACTOR), min(high, value * FACTOR))
-    )
-    factors: tuple[tuple[Kind, float, float], ...] = (("divided", less, value / less), ("times", more, more / value))
-    return [_to(config, name, end, kind, factor) for kind, end, factor in factors if factor >= _LEAST_FACTOR]
-
-
-def _to(config: Config, name: str, value: Any, kind: Kind = "value", amount: Any = None) -> Experiment:
-    """Return the experiment of one setting, or the sabotage that it is."""
-    amount = value if amount is None else amount
-    sabotage = _SABOTAGES.get((name, "times" if kind == "times" else value), "")
-    changes = SABOTAGES[sabotage](config) if sabotage else {}
-    if changes.get(name) == value:
-        return Experiment(kind, amount, changes, sabotage)
-    return Experiment(kind, amount, {name: value})
-
-
-def _is_valid(config: Config, experiment: Experiment) -> bool:
-    try:
-        return experiment.applied(config) != config
-    except ValueError:
-        return False
 
 
 class Flown(NamedTuple):

@@ -11,6 +11,7 @@ from typing import Annotated, Any, ClassVar, Final
 
 import numpy as np
 
+from ai.agent.agent import DeepQAgent
 from ai.agent.normalizer import Normalizer
 from ai.environment import Doubles, Floats
 from ai.files import (
@@ -29,6 +30,7 @@ from ai.files import (
     read_json,
 )
 from ai.files import described as array_said
+from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.lander.rewards import REWARDS
 from ai.nn import ModelFormatError
 from ai.training.config import Config
@@ -45,14 +47,22 @@ _MOST_COLUMNS: Final = 1000
 
 
 @dataclass(frozen=True)
-class Point:
+class _Measured:
+    may_thin: ClassVar = True  # of those not fetched yet, every other may be dropped
+
+    @property
+    def values(self) -> tuple[float, ...]:
+        """The numbers of its columns."""
+        return tuple(np.hstack(list(vars(self).values())).tolist())
+
+
+@dataclass(frozen=True)
+class Point(_Measured):
     """Point of an agent's curves after one decision.
 
     Unknown values are NaN: before the first flight has ended, and before the first learning step, which after a
     resumption waits for new memories. Shares and means are of the last hundred flights, random actions included.
     """
-
-    may_thin: ClassVar = True  # of those not fetched yet, every other may be dropped
 
     seconds: float  # of training so far, pauses left out
     decisions: float  # so far, of single landers
@@ -63,25 +73,15 @@ class Point:
     mean_q: float  # what the network expects, in scaled points
     epsilon: float  # share of random actions
     stage: float  # of the curriculum
-    steps_per_second: float  # of physics, of all landers
-    landed: float = 0.0  # share; the next ones too, in the order of Outcome
-    crashed: float = 0.0
+    crashed: float = 0.0  # share; the next ones too
     out_of_bounds: float = 0.0
     timed_out: float = 0.0
     parts: tuple[float, ...] = (0.0,) * len(PARTS)  # points that each part of the reward has paid per flight
 
-    @property
-    def values(self) -> tuple[float, ...]:
-        """The numbers of `COLUMNS`."""
-        *values, parts = vars(self).values()
-        return (*values, *parts)
-
 
 @dataclass(frozen=True)
-class DigitPoint:
+class DigitPoint(_Measured):
     """Point of a digit run's curves; loss and accuracy are means of the batches since the last point."""
-
-    may_thin: ClassVar = True
 
     seconds: float  # of training so far, pauses left out
     step: int  # learning steps so far
@@ -91,11 +91,6 @@ class DigitPoint:
     learning_rate: float
     images_per_second: float
 
-    @property
-    def values(self) -> tuple[float, ...]:
-        """The numbers of `DIGIT_COLUMNS`."""
-        return tuple(vars(self).values())
-
 
 # What a run measures at each of its points, by name.
 COLUMNS: Final = (*(item.name for item in fields(Point)[:-1]), *PARTS)
@@ -104,13 +99,35 @@ DIGIT_COLUMNS: Final = tuple(item.name for item in fields(DigitPoint))
 
 @dataclass(frozen=True, eq=False)
 class Checkpoint:
-    """Network that flew at one moment of a run; `ai.training.checkpoints.agent_of` makes an agent of it."""
+    """Network that flew at one moment of a run."""
 
     seconds: float
     decisions: int
     success: float
     values: Floats  # (parameters,) float32
     normalizer: dict[str, Any] | None = None  # of the observations, as Normalizer.to_json gives it
+
+    def agent(self, config: Config) -> DeepQAgent:
+        """Return an agent that flies as a lander's run did then; raises ValueError if it does not fit."""
+        agent = DeepQAgent(NUM_FEATURES, NUM_ACTIONS, config)
+        if agent.online.values.shape != self.values.shape:
+            raise ValueError(
+                f"the checkpoint has {len(self.values)} parameters, the network {len(agent.online.values)}"
+            )
+        self.restore(agent)
+        agent.decisions = self.decisions
+        return agent
+
+    def restore(self, agent: DeepQAgent) -> None:
+        """Restore the networks of an agent of its size; raises ValueError if its normalizer makes no sense."""
+        normalizer = None
+        if self.normalizer is not None:
+            normalizer = Normalizer(agent.num_features)
+            try:
+                normalizer.load(self.normalizer)
+            except (KeyError, TypeError) as error:
+                raise ValueError(f"the checkpoint's scale of observations: {problem_in(error)}") from error
+        agent.restore(self.values, normalizer)
 
 
 @dataclass(frozen=True)
@@ -143,7 +160,7 @@ class Validation:
     seconds: float = field(default=0.0, compare=False)  # of training
 
 
-Entry = Point | DigitPoint | Checkpoint | SettingChange | Validation
+Entry = _Measured | Checkpoint | SettingChange | Validation
 
 
 @dataclass(frozen=True)
@@ -210,7 +227,7 @@ class History:
     def append(self, entry: Entry) -> None:
         """Record an entry of any kind."""
         match entry:
-            case Point() | DigitPoint():
+            case _Measured():
                 self._append_point(entry)
             case Checkpoint():
                 self._append_checkpoint(entry)
@@ -219,7 +236,7 @@ class History:
             case Validation():
                 self.validations.append(entry)
 
-    def _append_point(self, point: Point | DigitPoint) -> None:
+    def _append_point(self, point: _Measured) -> None:
         # The latest point is always the last row; the next takes its place, unless its number is on the stride.
         if self._length == 0 or (self._told - 1) % self._stride == 0:
             if self._length == CAPACITY:
@@ -257,9 +274,7 @@ class History:
     def copy(self) -> History:
         """Return one that stays as it is while this one goes on; the checkpoints' networks are shared."""
         twin = copy(self)
-        twin._table = self._table.copy()
-        twin.checkpoints, twin.setting_changes = self.checkpoints.copy(), self.setting_changes.copy()
-        twin.validations = self.validations.copy()
+        vars(twin).update({name: copy(value) for name, value in vars(self).items()})
         return twin
 
     def write(self, folder: Path) -> None:
@@ -270,19 +285,13 @@ class History:
             "alterations": [asdict(change) for change in self.setting_changes],
             "validations": [asdict(validation) for validation in self.validations],
             "checkpoints": [
-                {"seconds": each.seconds, "decisions": each.decisions, "success": each.success,
-                 "scale": each.normalizer}
+                asdict(_CheckpointFile(each.seconds, each.decisions, each.success, each.normalizer))
                 for each in self.checkpoints
             ],
         }  # fmt: skip
-        values = [checkpoint.values for checkpoint in self.checkpoints]
-        np.savez(
-            folder / HISTORY_FILE,
-            allow_pickle=False,
-            described=np.array(json.dumps(described)),
-            points=self.points,
-            values=np.array(values, dtype=np.float32) if values else np.empty((0, 0), dtype=np.float32),
-        )
+        values = np.array([each.values for each in self.checkpoints] or np.empty((0, 0)), dtype=np.float32)
+        text = np.array(json.dumps(described))
+        np.savez(folder / HISTORY_FILE, allow_pickle=False, described=text, points=self.points, values=values)
 
     @classmethod
     def read(cls, folder: str | Path, columns: Sequence[str] = COLUMNS) -> History:
@@ -324,15 +333,13 @@ class History:
 
 def _expect(name: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
     """Raise ValueError for an array that no history has."""
+    rows, columns = shape if len(shape) == 2 else (-1, -1)
     fits = {
         "described": shape == () and dtype.kind == "U" and dtype.itemsize <= 4 * _MOST_TEXT,
-        "points": len(shape) == 2 and shape[0] <= CAPACITY and 0 <= shape[1] <= _MOST_COLUMNS and dtype == np.float64,
-        "values": len(shape) == 2
-        and 0 <= shape[0] <= MOST_CHECKPOINTS
-        and shape[1] >= 0
-        and shape[0] * shape[1] <= _MOST_VALUES
+        "points": 0 <= rows <= CAPACITY and 0 <= columns <= _MOST_COLUMNS and dtype == np.float64,
+        "values": 0 <= rows <= MOST_CHECKPOINTS and columns >= 0 and rows * columns <= _MOST_VALUES
         and dtype == np.float32,
-    }
+    }  # fmt: skip
     if not fits.get(name):
         raise ValueError(f"{name} is not what a history has: {array_said(shape, dtype)}")
 

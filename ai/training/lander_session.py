@@ -9,24 +9,17 @@ from typing import Any, Final
 
 import numpy as np
 
-from ai.environment import Ints, StepResult
+from ai.environment import StepResult
 from ai.files import count_of
 from ai.lander.environment import LanderEnv
-from ai.training.checkpoints import AGENTS, restore_checkpoint, resume_run
 from ai.training.config import Config, InForce, in_force
-from ai.training.demonstrations import read, taught, teach
-from ai.training.edits import EDITED, EditNetwork, LearnOn, NetworkEditor, UndoEdit
+from ai.training.demonstrations import read, teach
+from ai.training.edits import EDITED, Edit, NetworkEditor
 from ai.training.explanations import Explanations
 from ai.training.history import COLUMNS, PARTS, REVERTED, Checkpoint, Point, Validation
 from ai.training.loop import Progress, Training
-from ai.training.messages import (
-    AddDemonstrations,
-    ChangeSetting,
-    Explain,
-    NetworkState,
-    RestoreCheckpoint,
-    SwarmState,
-)
+from ai.training.messages import NetworkState, SwarmState
+from ai.training.run import resume as resume_run
 from ai.training.session import Session
 from ai.training.state import State
 from ai.training.tasks import Score
@@ -52,9 +45,7 @@ def live(
     `clock` counts seconds. Raises ModelFormatError if there is nothing to resume from, and ValueError for settings
     that are not a lander's.
     """
-    training = Training(config, seed) if resume is None else resume_run(resume)
-    if not isinstance(training.env, LanderEnv):
-        raise ValueError(f"only landers can be looked into, not {training.config.env}")
+    training = Training(config, seed) if resume is None else resume_run(Training, resume)
     training.clock = clock
     session = LanderSession(training, keep, resume)
     yield from session.lead()
@@ -63,19 +54,18 @@ def live(
 class LanderSession(Session[Training]):
     """Session of landers. They never stand still for a validation: that is flown bit by bit."""
 
-    kind = AGENTS
     columns = COLUMNS
 
     def __init__(self, training: Training, keep: Path | None, resume: Path | None) -> None:
+        if not isinstance(training.env, LanderEnv):
+            raise ValueError(f"only landers can be looked into, not {training.config.env}")
         super().__init__(training, keep, resume)
-        assert isinstance(training.env, LanderEnv)
         self.env = training.env
         self.history.reward_scale = training.config.reward_scale
         training.on_step = self._on_step
         training.validation_pace = 1 + self.env.num_envs // 256
-        self._explanations = Explanations(training)
-        self._editor = NetworkEditor(training.agent)
-        self._swarm_state = self._swarm_state_of(self.env.outcome)
+        self._explanations, self._editor = Explanations(training), NetworkEditor(training.agent)
+        self._swarm_state = self._swarm_state_now()
         self._network_state_at = 0.0
         self._point_at = 0
         self._checkpoint_at = training.agent.decisions + self._checkpoint_every
@@ -135,8 +125,7 @@ class LanderSession(Session[Training]):
         """Tell what came of validation flights, if they are over."""
         training = self.training
         if score is not None and score.success is not None:
-            best = score is training.best
-            evaluated = training.evaluated or 0
+            best, evaluated = score is training.best, training.evaluated or 0
             self.record(Validation(evaluated, score.success, score.mean_return, best, training.seconds))
 
     def finish_measuring(self) -> None:
@@ -147,53 +136,41 @@ class LanderSession(Session[Training]):
         """Restore the networks from the last checkpoint, when training has diverged since."""
         self._editor.forget()
         self.training.diverged = True
-        restore_checkpoint(self.training.agent, self.history.checkpoints[-1])
+        self.history.checkpoints[-1].restore(self.training.agent)
 
     def end(self) -> None:
         """Keep what has not been kept, without an edit that was only looked at."""
         if self.training.agent.paused:
-            self._editor.restore()
+            self._editor.undo(every=True)
         super().end()
 
     def _on_step(self, result: StepResult) -> None:
-        self._swarm_state = self._swarm_state_of(result.outcome)
+        self._swarm_state = self._swarm_state_now()
         self._explanations.follow(self.env.actions, result)
 
-    def _swarm_state_of(self, outcome: Ints) -> SwarmState:
+    def _swarm_state_now(self) -> SwarmState:
         env, training = self.env, self.training
         return SwarmState(
-            env.position.astype(np.float32),
-            env.angle.astype(np.float32),
-            env.actions.astype(np.int8),
-            outcome.astype(np.int8),
-            training.statistics.earned.astype(np.float32),
-            training.agent.decisions,
-        )
-
-    def _network_state(self) -> NetworkState:
-        agent = self.training.agent
-        return NetworkState(
-            agent.online.values.copy(),
-            agent.online.gradients.copy(),
-            self.training.observation[CAREFUL].copy(),
-            agent.decisions,
-        )
+            env.position.astype(np.float32), env.angle.astype(np.float32), env.actions.astype(np.int8),
+            env.outcome.astype(np.int8), training.statistics.earned.astype(np.float32), training.agent.decisions,
+        )  # fmt: skip
 
     def _state_messages(self) -> tuple[NetworkState, InForce]:
         """Return what is sent a few times a second, and whenever a command has changed it."""
-        training = self.training
-        return self._network_state(), in_force(training.config, training.agent.decisions, training.episodes)
+        training, agent = self.training, self.training.agent
+        network, careful = agent.online, training.observation[CAREFUL].copy()
+        state = NetworkState(network.values.copy(), network.gradients.copy(), careful, agent.decisions)
+        return state, in_force(training.config, agent.decisions, training.episodes)
 
     def _point(self, progress: Progress) -> Point:
         flown = 1.0 if self.training.statistics.known else np.nan
         agent = self.training.agent
         learnt = 1.0 if agent.gradient_steps > self._began_learning and not agent.paused else np.nan
-        landed, crashed, out_of_bounds, timed_out = (flown * share for share in progress.shares)
+        _, crashed, out_of_bounds, timed_out = (flown * share for share in progress.shares)
         return Point(
             self.training.seconds, progress.decisions, progress.episodes, flown * progress.success_rate,
             flown * progress.mean_return, learnt * progress.loss, learnt * progress.mean_q, progress.epsilon,
-            progress.stage, progress.steps_per_second, landed, crashed, out_of_bounds,
-            timed_out, progress.parts or NOTHING_PAID,
+            progress.stage, crashed, out_of_bounds, timed_out, progress.parts or NOTHING_PAID,
         )  # fmt: skip
 
     def _checkpoint(self, success: float) -> Checkpoint:
@@ -209,36 +186,50 @@ class LanderSession(Session[Training]):
 
     # Commands
 
-    def _teach(self, command: AddDemonstrations) -> None:
-        new = [each for each in read(command.path) if each.digest not in self._learned_from]
+    def _teach(self, file: Path) -> None:
+        """Learn from the demonstrations in a file as well, as far as this run has not done so yet."""
+        new = [each for each in read(file) if each.digest not in self._learned_from]
         used = teach(self.training.agent, new)
         self._learned_from.update(each.digest for each in new)
         if not used:
             raise ValueError("there are no landings that this run has not learnt from already")
         if not self.training.config.success_pass:
-            self.change(ChangeSetting("success_pass", taught(self.training.config).success_pass))
+            self.change("success_pass", True)
         self.record_change(TAUGHT, None, used)
 
-    def _explain(self, command: Explain) -> None:
-        self.messages.append(self._explanations.explain(command.slot, command.decisions))
+    def _explain(self, slot: int, decisions: int | None = None) -> None:
+        """Explain the learning step of a lander's latest memory, now or at the nearest moment that was kept."""
+        self.messages.append(self._explanations.explain(slot, decisions))
 
-    def _edit(self, command: EditNetwork | UndoEdit | LearnOn) -> None:
+    def _edit(self, edit: Edit, amends: bool = False) -> None:
+        """Edit the network; `amends` says that the weight of the last edit is still being dragged."""
+        self._edited(lambda editor: editor.apply(edit, amends=amends))
+
+    def _undo(self, every: bool = False) -> None:
+        """Undo the last edit, or every one since the network was as it had learnt."""
+        self._edited(lambda editor: editor.undo(every=every))
+
+    def _learn_on(self) -> None:
+        """Learn again, from the network as it was edited."""
+        self._edited(NetworkEditor.learn_on)
+
+    def _edited(self, change: Callable[[NetworkEditor], None]) -> None:
         editor, before = self._editor, self._editor.count
-        editor.carry_out(command)
+        change(editor)
         if editor.count != before:
             self.record_change(EDITED, before, editor.count)
         self.messages += (editor.edits, *self._state_messages())
 
-    def _restore_checkpoint(self, command: RestoreCheckpoint) -> None:
-        checkpoint = self.history.checkpoint_at(command.decisions)
+    def _restore(self, decisions: int) -> None:
+        """Restore the networks from the history's checkpoint of a moment; time does not go back."""
+        checkpoint = self.history.checkpoint_at(decisions)
         if checkpoint is None:
             raise ValueError("this run has no checkpoints yet")
         self._editor.forget()
-        restore_checkpoint(self.training.agent, checkpoint)
+        checkpoint.restore(self.training.agent)
         self.record_change(REVERTED, None, checkpoint.decisions)
         self.messages += (self._editor.edits, *self._state_messages())
 
     commands = Session.commands | {
-        RestoreCheckpoint: _restore_checkpoint, AddDemonstrations: _teach, Explain: _explain,
-        **dict.fromkeys((EditNetwork, UndoEdit, LearnOn), _edit),
+        "restore": _restore, "teach": _teach, "explain": _explain, "edit": _edit, "undo": _undo, "learn_on": _learn_on,
     }  # fmt: skip

@@ -13,7 +13,7 @@ from copy import deepcopy
 from dataclasses import dataclass
 from itertools import repeat
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -22,15 +22,17 @@ from ai.agent.network import make_optimizer
 from ai.agent.normalizer import Normalizer
 from ai.agent.replay import ReplayBuffer, make_replay
 from ai.agent.schedule import exploration, exploration_of_each
-from ai.agent.storage import agent_state, load_agent_state
+from ai.agent.storage import KIND, LAST, agent_state, load_agent_state, write_agent
 from ai.environment import Env, Floats, StepResult
-from ai.files import array_like, count_of, number_of
-from ai.run import Run
-from ai.training.config import ANYWHERE, LANDER, Config
+from ai.files import array_like, count_of, inside, number_of, problem_in, read_json
+from ai.files.knobs import nearest_preset
+from ai.nn import ModelFormatError
+from ai.run import TRAINING_FILE, Run
+from ai.training.config import ANYWHERE, LANDER, Config, load_agent, presets_of
 from ai.training.gym_task import GymTask
 from ai.training.state import State, restore_buffer
 from ai.training.statistics import EpisodeStatistics
-from ai.training.tasks import VALIDATION_SEED, AnywhereTask, LanderTask, Score, Task, Trial
+from ai.training.tasks import TEST_SEED, VALIDATION_SEED, AnywhereTask, LanderTask, Score, Task, Trial
 
 
 @dataclass
@@ -67,6 +69,7 @@ class Training(Run):
 
     """
 
+    kind = KIND
     config: Config
 
     def __init__(
@@ -105,6 +108,11 @@ class Training(Run):
             task.num_features, task.num_actions, config, rng,
             symmetry=task.symmetry, action_chances=task.action_chances, **parts,
         )  # fmt: skip
+
+    @property
+    def moment(self) -> int:
+        """Decisions so far, of single landers."""
+        return self.agent.decisions
 
     @property
     def epsilon(self) -> float:
@@ -196,11 +204,6 @@ class Training(Run):
         assert score is not None
         return score
 
-    def conclude(self) -> None:
-        """Measure the network as it is at the end of a run, unless that has just been done."""
-        if self.evaluated != self.agent.decisions:
-            self.evaluate()
-
     def best_agent(self) -> DeepQAgent:
         """Return an agent that flies with the best network found so far."""
         agent = self._new_agent(self.config)
@@ -223,12 +226,67 @@ class Training(Run):
         if self.best_values is not None:
             self.agent.restore(self.best_values, deepcopy(self.best_normalizer))
 
-    # What it goes on from
+    # On disk
 
-    @property
-    def moment(self) -> int:
-        """Decisions so far, of single landers."""
-        return self.agent.decisions
+    def snapshot(self, final: bool = False) -> tuple[dict[str, Any], Callable[[Path], None]]:
+        """Return what its training file says now, and what writes its networks as they are now into a new folder.
+
+        One that has not been evaluated yet has its latest network for its best. This measures nothing: the clock may
+        decide when it is called, but never which network is best. But a `final` one considers the latest network for
+        the best too, and measures the best one on test spawns, which neither trained nor chose it.
+        """
+        if final and self.evaluated != self.agent.decisions:
+            self.evaluate()
+        agent, config = self.agent, self.config
+        presets = {name: preset.to_json() for name, preset in presets_of(config.env).items()}
+        described = {
+            "env": config.env, **nearest_preset(config.to_json(), presets), "seed": self.seed,
+            "decisions": agent.decisions, "updates": agent.gradient_steps, "episodes": self.episodes,
+            "landings": self.env.landings, "seconds": round(self.seconds, 3),
+            "best": self.best.to_json() if self.best else None,
+        }  # fmt: skip
+        best, last = self.best_agent(), self.last_agent()
+
+        def write(folder: Path) -> None:
+            write_agent(best, folder)
+            write_agent(last, folder / LAST)
+
+        if final:
+            described["evaluation"] = self.task.evaluate(best, self.task.test_episodes, TEST_SEED).to_json()
+        return described, write
+
+    @classmethod
+    def begun(cls, folder: Path, *, env: str | None = None, **_: Any) -> Self:
+        """Return the run that a folder describes, without its state; raises ModelFormatError, as `load_agent`."""
+        best = load_agent(folder, env=env)[0]
+        try:
+            last, config = load_agent(inside(folder, LAST), env=env)
+            described = read_json(inside(folder, TRAINING_FILE))
+            run = cls(config, count_of(described["seed"], most=10**40))
+            run._go_on_from(best, last, described)
+        except OSError as error:
+            file = Path(error.filename or LAST).name
+            raise ModelFormatError(folder, [f"{file}: {error.strerror or error}"]) from error
+        except ModelFormatError:
+            raise
+        except (KeyError, TypeError, ValueError, ArithmeticError) as error:
+            raise ModelFormatError(folder, [f"{TRAINING_FILE}: {problem_in(error)}"]) from error
+        return run
+
+    def _go_on_from(self, best: DeepQAgent, last: DeepQAgent, described: Any) -> None:
+        """Take over what a folder holds; raises KeyError, TypeError or ValueError where it makes no sense."""
+        task = self.task
+        for agent in (best, last):
+            if (agent.num_features, agent.num_actions) != (task.num_features, task.num_actions):
+                raise ValueError(f"its network is not made for {self.config.env}")
+        if described["best"] is not None:
+            if best.network.values.shape != self.agent.network.values.shape:
+                raise ValueError("the best network and the last one are of different sizes")
+            self.best = task.read_score(described["best"])
+            self.best_values, self.best_normalizer = best.network.values.copy(), best.normalizer
+        self.episodes, self.env.landings = count_of(described["episodes"]), count_of(described["landings"])
+        self.seconds = float(number_of(described["seconds"], 0))
+        self.agent.copy_from(last)
 
     @property
     def buffers(self) -> dict[str, ReplayBuffer]:
@@ -250,14 +308,11 @@ class Training(Run):
             },
         }  # fmt: skip
 
-    def load_state(self, state: State, folder: Path) -> bool:
-        """Go on from a state that lies beside `folder`; `lost` says what of it could not be restored.
-
-        Returns whether that was done: a state of other networks is that of another run. Raises OSError, KeyError,
-        TypeError, AttributeError, ArithmeticError or ValueError for what no such run can have been.
-        """
+    def load_state(self, state: State | None, folder: Path) -> bool:
+        """Go on from a state that lies beside `folder`; a state of other networks is that of another run."""
         agent, env = self.agent, self.env
-        if not np.array_equal(state["agent"]["online"], agent.online.values):
+        if state is None or not np.array_equal(state["agent"]["online"], agent.online.values):
+            self.lost = "its state is not there, so it goes on with an empty memory"
             return False
         if lost := self.task.restore_env(env, state["env"]):
             state = state | {"agent": state["agent"] | {"n_step": {}, "episodes": {}}}
@@ -276,24 +331,16 @@ class Training(Run):
         self.lost = lost if all(whole) else "its memory is too large to be kept whole, so the oldest of it is gone"
         self.episodes, self.seconds = count_of(state["episodes"]), float(number_of(state["seconds"], 0))
         self.evaluated = None if state["evaluated"] is None else count_of(state["evaluated"])
-        self._load_best(state["best"])
-        self.around = state.get("around", {})
-        self._load_validation(state["validation"])
-        return True
-
-    def _load_best(self, told: Any) -> None:
         self.best = self.best_values = self.best_normalizer = None
-        if told is not None:
+        if (told := state["best"]) is not None:
             self.best = self.task.read_score(told["score"])
             self.best_values, self.best_normalizer = self._read_network(told, "best")
-
-    def _load_validation(self, told: Any) -> None:
-        """Begin the flights anew that were under way."""
-        if told is not None:
-            agent = self.last_agent()
-            agent.restore(*self._read_network(told, "validated network"))
-            agent.decisions = count_of(told["decisions"])
-            self._begin_validation(agent)
+        if (told := state["validation"]) is not None:  # its flights begin anew
+            validated = self.last_agent()
+            validated.restore(*self._read_network(told, "validated network"))
+            validated.decisions = count_of(told["decisions"])
+            self._begin_validation(validated)
+        return True
 
     def _read_network(self, told: Mapping[str, Any], name: str) -> tuple[Floats, Normalizer | None]:
         normalizer = Normalizer(self.task.num_features) if self.agent.normalizer else None

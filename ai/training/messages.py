@@ -1,4 +1,7 @@
-"""Messages of a session, and commands to it; entries of the history are messages too. All of them can be pickled."""
+"""Messages of a session, and commands to it; entries of the history are messages too. All of them can be pickled.
+
+A command is a tuple of its name and what it takes; the session of a kind has a method for each in `Session.commands`.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ai.environment import Floats
+
+Command = tuple[Any, ...]
 
 
 @dataclass(frozen=True)
@@ -50,64 +55,6 @@ class NetworkState:
 
 
 @dataclass(frozen=True)
-class ChangeSetting:
-    """Command to turn a live knob, by its field's name in Config; "reward_weights.time" is a part of the reward."""
-
-    name: str
-    value: Any
-
-
-@dataclass(frozen=True)
-class Finish:
-    """Command to take no more steps: keep the run, measure it, and end."""
-
-
-@dataclass(frozen=True)
-class Save:
-    """Command to save the run, as it is now, to a folder."""
-
-    folder: Path
-
-
-@dataclass(frozen=True)
-class AutosaveTo:
-    """Command to save the run by itself to this folder from now on."""
-
-    folder: Path
-
-
-@dataclass(frozen=True)
-class RestoreCheckpoint:
-    """Command to restore the networks from a checkpoint of the history; time does not go back."""
-
-    decisions: int
-
-
-@dataclass(frozen=True)
-class AddDemonstrations:
-    """Command to learn from the demonstrations in a file as well, as far as this run has not done so yet."""
-
-    path: Path
-
-
-@dataclass(frozen=True)
-class Explain:
-    """Command to explain a learning step: the one that follows from a lander's latest memory; a Lesson is the answer.
-
-    `decisions` of the run name a moment in the past, of which the nearest that was kept is taken; None is now. Of
-    digits, the next step around the image in row `slot` of its batch; a DigitLesson is the answer.
-    """
-
-    slot: int = 0
-    decisions: int | None = None
-
-
-@dataclass(frozen=True)
-class RestoreBest:
-    """Command to restore the digit network that read the images held out best."""
-
-
-@dataclass(frozen=True)
 class Saved:
     """Result of a save; no problem means that it is on the disk, whole.
 
@@ -127,7 +74,7 @@ class Saved:
 class Refused:
     """Refusal of a command that could not be carried out, and why. Nothing has changed."""
 
-    command: Any
+    command: Command
     problem: str
 
 

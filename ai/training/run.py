@@ -1,4 +1,4 @@
-"""What is around a run of any kind (`ai.run.Run`): its kind, when it ends, and how it is kept."""
+"""What is around a run of any kind (`ai.run.Run`): when it ends, how it is kept, and how it goes on."""
 
 from __future__ import annotations
 
@@ -6,50 +6,22 @@ import json
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor, wait
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
-from ai.files import FolderKind, atomic_folder
-from ai.run import Run
+from ai.files import atomic_folder
+from ai.run import TRAINING_FILE, Run
 from ai.training.messages import Saved, problem_of
-from ai.training.state import State, StateWriter
+from ai.training.state import State, StateWriter, going_on, read_state
 
 if TYPE_CHECKING:
     from ai.training.history import History
 
-TRAINING_FILE: Final = "training.json"
 FIRST_SECONDS: Final = 1.5  # after which a run is kept for the first time
 KEEP_SECONDS: Final = 10.0  # between two times
 SHARE: Final = 0.01  # of a run's time that it may stand still for it, at most
 
-
-@dataclass(frozen=True)
-class RunKind:
-    """Kind of run.
-
-    Attributes:
-        begin: begins a run with a configuration and a seed.
-        resume: goes on with the run that is kept in a folder; `env` as `ai.training.config.load_agent` has it.
-        folder: what its folder may hold.
-        snapshot: returns what a run's training file says now, and what writes its networks as they are now into a new
-            folder. A final one is measured on what neither trained nor chose it.
-
-    """
-
-    begin: Callable[..., Any]
-    resume: Callable[..., Any]
-    folder: FolderKind
-    snapshot: Callable[[Any, bool], tuple[dict[str, Any], Callable[[Path], None]]]
-
-    def save(self, run: Run, folder: str | Path, final: bool = False, *, state: bool = True) -> dict[str, Any]:
-        """Save a run, whole or not at all; return its description. Without `state`, another will not go on from it.
-
-        `final` lets the latest network stand for the best too, and measures the best one; the state is that of before.
-        Raises OSError if it cannot be written, and ValueError, with the disk left as it was, if the numbers of the
-        network are not finite.
-        """
-        return _copied(self, run, Path(folder), run.around if state else None, final)()
+R = TypeVar("R", bound=Run)
 
 
 def step(run: Run) -> Any:
@@ -58,6 +30,31 @@ def step(run: Run) -> Any:
     progress = run.advance()
     run.seconds += run.clock() - began
     return progress
+
+
+def resume(kind: type[R], folder: str | Path, **options: Any) -> R:
+    """Go on with a run of a kind that is kept in a folder: the very same, if its state lies beside that.
+
+    `Run.lost` says what is missing. `options` are those of `begun`: of an agent, `env` is the environment as the user
+    names it, without which "module:Name" is refused. Raises ModelFormatError for anything else.
+    """
+    folder = Path(folder)
+    run = kind.begun(folder, **options)
+    state = read_state(folder, run.moment)
+    with going_on(folder):
+        if run.load_state(state, folder) and state is not None:
+            run.around, run.states = state.get("around", {}), StateWriter(folder, state)
+    return run
+
+
+def save(run: Run, folder: str | Path, final: bool = False, *, state: bool = True) -> dict[str, Any]:
+    """Save a run, whole or not at all; return its description. Without `state`, another will not go on from it.
+
+    `final` lets the latest network stand for the best too, and measures the best one; the state is that of before.
+    Raises OSError if it cannot be written, and ValueError, with the disk left as it was, if the numbers of the
+    network are not finite.
+    """
+    return _copied(run, Path(folder), run.around if state else None, final)()
 
 
 class Limit:
@@ -90,10 +87,13 @@ class Keeper:
     """
 
     def __init__(
-        self, run: Run, kind: RunKind, folder: Path | None, history: History | None = None,
+        self,
+        run: Run,
+        folder: Path | None,
+        history: History | None = None,
         around: Callable[[], State] | None = None,
-    ) -> None:  # fmt: skip
-        self._run, self._kind, self._folder, self._history = run, kind, folder, history
+    ) -> None:
+        self._run, self._folder, self._history = run, folder, history
         self._around = around or (lambda: run.around)
         self._saved_at = run.moment  # as on the disk
         self._due = run.clock() + FIRST_SECONDS
@@ -139,11 +139,11 @@ class Keeper:
     def _write(self, folder: Path, final: bool = False) -> Future[dict[str, Any]]:
         if folder == self._folder:
             self._saved_at = self._run.moment
-        return self._thread.submit(_copied(self._kind, self._run, folder, self._around(), final, self._history))
+        return self._thread.submit(_copied(self._run, folder, self._around(), final, self._history))
 
 
 def _copied(
-    kind: RunKind, run: Run, folder: Path, around: State | None, final: bool, history: History | None = None
+    run: Run, folder: Path, around: State | None, final: bool, history: History | None = None
 ) -> Callable[[], dict[str, Any]]:
     """Copy what is to be kept of a run, and of what is `around` it; return what writes that, while training goes on.
 
@@ -156,13 +156,13 @@ def _copied(
         run.states = states if around is not None else run.states
     if around is not None and not run.diverged and not run.done:
         prepared = states.prepare(run.moment, run.state() | {"around": around}, run.buffers)
-    described, write_networks = kind.snapshot(run, final)
+    described, write_networks = run.snapshot(final)
     history = None if history is None else history.copy()
 
     def write() -> dict[str, Any]:
         if prepared:
             states.write(prepared)
-        with atomic_folder(folder, kind.folder) as temporary:
+        with atomic_folder(folder, run.kind) as temporary:
             write_networks(temporary)
             if history is not None:
                 history.write(temporary)

@@ -15,8 +15,8 @@ from typing import Any, ClassVar, Final, Generic, TypeVar
 
 from ai.run import Run
 from ai.training.history import Entry, History, SettingChange
-from ai.training.messages import AutosaveTo, ChangeSetting, Finish, Refused, RunStarted, Save, problem_of
-from ai.training.run import Keeper, RunKind, step
+from ai.training.messages import Command, Refused, RunStarted, problem_of
+from ai.training.run import Keeper, step
 from ai.training.state import State, going_on
 
 TURNING_SECONDS: Final = 1.0  # between two changes of a knob that is still being turned
@@ -29,22 +29,19 @@ class Session(ABC, Generic[Training]):
     """Session of one run, which is kept in the folder `keep`; one that goes on has its history in `resume`.
 
     Attributes:
-        kind: the kind of run.
         columns: what its history measures.
-        commands: the method that carries out each command, by its class; a subclass adds its own. One that raises
+        commands: the method that carries out each command, by its name; a subclass adds its own. One that raises
             OSError, ValueError or FloatingPointError has changed nothing.
         messages: to be yielded with the next turn.
 
     """
 
-    kind: ClassVar[RunKind]
     columns: ClassVar[Sequence[str]]
-    commands: ClassVar[dict[type, Callable[..., None]]]
 
     def __init__(self, training: Training, keep: Path | None, resume: Path | None) -> None:
         self.training = training
         self.history = History.read(resume, self.columns) if resume else History(self.columns)
-        self.keeper = Keeper(training, self.kind, keep, self.history, self.state)
+        self.keeper = Keeper(training, keep, self.history, self.state)
         self.messages: list[Any] = []
         self._resumed = resume or Path()
         self._turned_at: dict[str, float] = {}  # by the clock, when each knob was turned last
@@ -92,7 +89,7 @@ class Session(ABC, Generic[Training]):
 
     # What is around it
 
-    def lead(self, command: Any = None) -> Generator[Messages, Any, None]:
+    def lead(self, command: Command | None = None) -> Generator[Messages, Command | None, None]:
         """Take the run to its end, or without end; every turn yields the messages of one step.
 
         The first turn only says how the run begins. A turn that is sent a command carries that out, at once and
@@ -110,7 +107,7 @@ class Session(ABC, Generic[Training]):
             )
             self.show()
             command = (yield self._flush()) or command
-            while not (training.done or isinstance(command, Finish)):
+            while not (training.done or command == ("finish",)):
                 if command is None:
                     self.tell(step(training))
                     if not self.keeps_still:
@@ -128,11 +125,12 @@ class Session(ABC, Generic[Training]):
         finally:
             self.end()
 
-    def _answer(self, command: Any) -> Messages:
+    def _answer(self, command: Command | None) -> Messages:
         """Carry out a command, if there is one, or tell why it cannot be; return all messages."""
         if command is not None:
+            name, *arguments = command
             try:
-                self.commands[type(command)](self, command)
+                self.commands[name](self, *arguments)
             except (OSError, ValueError, FloatingPointError) as error:
                 self.messages.append(Refused(command, problem_of(error)))
         return self._flush()
@@ -162,25 +160,29 @@ class Session(ABC, Generic[Training]):
                 del self._turned_at[name]
         self.record(SettingChange(training.moment, name, before, after, amends, training.seconds))
 
-    def change(self, command: ChangeSetting) -> None:
-        """Turn a live knob; raises ValueError for what cannot be turned."""
+    # Commands
+
+    def change(self, name: str, value: Any) -> None:
+        """Turn a live knob, by its field's name, or "reward_weights.time"; raises ValueError for what cannot be."""
         before = self.training.config
-        self.training.apply_live(before.turned(command.name, command.value))
-        name = before.name_now(command.name)
-        value = attrgetter(name)
-        after = value(self.training.config)
-        if after != value(before):
-            self.record_change(name, value(before), after)
+        self.training.apply_live(before.turned(name, value))
+        read = attrgetter(name := before.name_now(name))
+        if read(self.training.config) != read(before):
+            self.record_change(name, read(before), read(self.training.config))
         self.turned()
 
-    def _save(self, command: Save) -> None:
+    def _save(self, folder: Path) -> None:
+        """Save the run, as it is now, to a folder."""
         self.finish_measuring()
-        self.messages.append(self.keeper.save(command.folder))
+        self.messages.append(self.keeper.save(folder))
 
-    def _autosave_to(self, command: AutosaveTo) -> None:
-        self.keeper.move_to(command.folder)
+    def _autosave_to(self, folder: Path) -> None:
+        """Save the run by itself to this folder from now on."""
+        self.keeper.move_to(folder)
 
+    def _finish(self) -> None:
+        """Take no more steps: keep the run, measure it, and end."""
 
-Session.commands = {
-    ChangeSetting: Session.change, Save: Session._save, AutosaveTo: Session._autosave_to, Finish: lambda *_: None
-}  # fmt: skip
+    commands: ClassVar[dict[str, Callable[..., None]]] = {
+        "change": change, "save": _save, "autosave_to": _autosave_to, "finish": _finish,
+    }  # fmt: skip

@@ -13,7 +13,7 @@ from ai.agent.agent import DeepQAgent
 from ai.agent.decision import in_points
 from ai.agent.replay import PrioritisedReplayBuffer, ReplayBuffer, Transition
 from ai.agent.schedule import exploration
-from ai.environment import Bools, Doubles, Floats, Ints
+from ai.environment import Bools, Doubles, Floats, Ints, StepResult
 from ai.lander.environment import Outcome
 from ai.lander.one_engine import OneEngineEnv
 from ai.lander.rewards import RewardWeights
@@ -96,35 +96,61 @@ class WatchedPrioritisedReplay(WatchedReplay, PrioritisedReplayBuffer):
     """The same, prioritised."""
 
 
+class _Landers:
+    """Landers that fly side by side and begin anew; `recent` are whether the latest flights landed."""
+
+    def __init__(self, count: int, rng: np.random.Generator, heights: tuple[float, float], recent: int,
+                 config: Config) -> None:  # fmt: skip
+        self.env = OneEngineEnv(count, rng, heights, config.reward_weights)
+        self.observation = self.env.reset()
+        self.recent: deque[bool] = deque(maxlen=recent)
+        self.flights = 0
+        self.see(self.env.outcome)
+
+    @property
+    def landed(self) -> float | None:
+        """Share of the latest flights; None before the first has ended."""
+        return sum(self.recent) / len(self.recent) if self.recent else None
+
+    def see(self, outcome: Ints) -> None:
+        """Keep how they are."""
+        env = self.env
+        self.flown = Flown(env.altitude, env.velocity[:, 1].copy(), env.actions >= 3, outcome.copy())
+
+    def take(self, result: StepResult) -> None:
+        """Take what came of a decision, and begin flights anew that have ended."""
+        ended = result.ended
+        self.see(result.outcome)
+        self.recent.extend((result.outcome[ended] == Outcome.LANDED).tolist())
+        self.flights += int(ended.sum())
+        self.observation = self.env.reset(ended) if ended.any() else result.observation
+
+
 class SmallRun:
     """Small run, the same for the same configuration, seed and plan."""
 
     def __init__(self, config: Config, seed: int, plan: Plan | None = None) -> None:
         agent_rng, env_rng, test_rng = np.random.default_rng(seed).spawn(3)
         self.config, self.plan = config, plan or Plan()
-        self.env = OneEngineEnv(config.num_envs, env_rng, self.plan.heights, config.reward_weights)
-        self.replay: WatchedReplay = (WatchedPrioritisedReplay if config.prioritised else WatchedReplay)(
-            config.replay_size, self.env.num_features, config.replay_prune
-        )
+        self.learners = _Landers(config.num_envs, env_rng, self.plan.heights, RECENT, config)
+        tested = self.plan.tested
+        self.tests = _Landers(TESTED, test_rng, tested, RECENT_TESTS, config) if tested else None
+        self.env = self.learners.env
+        replay = WatchedPrioritisedReplay if config.prioritised else WatchedReplay
+        self.replay: WatchedReplay = replay(config.replay_size, self.env.num_features, config.replay_prune)
         self.agent = DeepQAgent(self.env.num_features, self.env.num_actions, config, agent_rng, replay=self.replay)
-        self._begin()
-        self._ended: deque[bool] = deque(maxlen=RECENT)
-        self._decisions = self._flights = 0
-        self._tests = _Tests(self.plan.tested, test_rng, config) if self.plan.tested else None
-        self.state = self._look(self.env.outcome)
-
-    def _begin(self) -> None:
-        self._observation = self.env.reset()
-        self._held: Ints = np.zeros(self.config.num_envs, dtype=np.intp)
+        self._held: Ints = np.zeros(config.num_envs, dtype=np.intp)
+        self._decisions = 0
+        self.state = self._look(1.0, self.learners.observation)
 
     def _change(self) -> None:
         """Begin flights elsewhere, and drop all but the newest memories if so planned."""
         self.env.heights = self.plan.later
-        self._begin()
+        self.learners.observation, self._held = self.env.reset(), np.zeros_like(self._held)
         if self.plan.keep is not None and len(self.replay):
             old, count = self.replay, min(self.plan.keep, len(self.replay))
             self.replay = self.agent.replay = WatchedReplay(self.plan.keep, self.env.num_features)
-            self.replay.add(old.at((old.start + len(old) - count + np.arange(count)) % old.capacity))
+            self.replay.add(old.at(_newest(old, count)))
             self.replay.added = old.added
 
     @np.errstate(over="ignore", invalid="ignore")
@@ -134,70 +160,36 @@ class SmallRun:
             return self.state
         if self._decisions == self.plan.change:
             self._change()
-        epsilon = exploration(self.config, self.agent.decisions, self._flights)
+        learners = self.learners
+        epsilon = exploration(self.config, self.agent.decisions, learners.flights)
         try:
-            actions, result = self.agent.train_step(self.env, self._observation, epsilon, self._held)
+            actions, result = self.agent.train_step(self.env, learners.observation, epsilon, self._held)
         except FloatingPointError as error:
             self.state = replace(self.state, problem=str(error))
             return self.state
         self._decisions += 1
-        ended, outcome = result.ended, result.outcome
-        self._flights += int(ended.sum())
-        self._ended.extend((outcome[ended] == Outcome.LANDED).tolist())
-        self._observation = result.observation
-        if self._tests:
-            self._tests.advance(self.agent)
-        self.state = self._look(outcome, epsilon)
-        if ended.any():
-            self._observation = self.env.reset(ended)
-        self._held = np.where(ended, 0, actions)
+        learners.take(result)
+        if self.tests:
+            self.tests.take(self.tests.env.step(self.agent.act(self.tests.observation)))
+        self._held = np.where(result.ended, 0, actions)
+        self.state = self._look(epsilon, result.observation)
         return self.state
 
-    def _look(self, outcome: Ints, epsilon: float = 1.0) -> SmallState:
-        values = in_points(self.agent.q_values(self._observation).max(axis=1), self.config.reward_scale)
-        tests = self._tests
+    def _look(self, epsilon: float, observation: Floats) -> SmallState:
+        values = in_points(self.agent.q_values(observation).max(axis=1), self.config.reward_scale)
+        learners, tests, replay = self.learners, self.tests, self.replay
+        count, oldest = min(self.config.num_envs, len(replay)), replay.added - len(replay)
+        drawn = oldest + (replay.drawn - replay.start) % replay.capacity
+        memory = Memory(replay.at(_newest(replay, count)), replay.added - count, oldest, drawn)
         return SmallState(
-            self._decisions, self._flights, _share(self._ended), float(values.mean()), epsilon,
-            _flown(self.env, outcome), self._memory(), tests.flown if tests else None, tests.passed if tests else None,
+            self._decisions, learners.flights, learners.landed, float(values.mean()), epsilon, learners.flown, memory,
+            tests.flown if tests else None, tests.landed if tests else None,
         )  # fmt: skip
 
-    def _memory(self) -> Memory:
-        replay = self.replay
-        count = min(self.config.num_envs, len(replay))
-        newest = (replay.start + len(replay) - count + np.arange(count)) % replay.capacity
-        oldest = replay.added - len(replay)
-        drawn = oldest + (replay.drawn - replay.start) % replay.capacity
-        return Memory(replay.at(newest), replay.added - count, oldest, drawn)
 
-
-class _Tests:
-    """Landers that fly the network of a small run as it is, without random actions; nothing is learned from them."""
-
-    def __init__(self, heights: tuple[float, float], rng: np.random.Generator, config: Config) -> None:
-        self._env = OneEngineEnv(TESTED, rng, heights, config.reward_weights)
-        self._observation = self._env.reset()
-        self._ended: deque[bool] = deque(maxlen=RECENT_TESTS)
-        self.flown = _flown(self._env, self._env.outcome)
-
-    @property
-    def passed(self) -> float | None:
-        """Share of the latest that landed; None before the first has ended."""
-        return _share(self._ended)
-
-    def advance(self, agent: DeepQAgent) -> None:
-        """Fly one decision."""
-        result = self._env.step(agent.act(self._observation))
-        self.flown = _flown(self._env, result.outcome)
-        self._ended.extend((result.outcome[result.ended] == Outcome.LANDED).tolist())
-        self._observation = self._env.reset(result.ended) if result.ended.any() else result.observation
-
-
-def _share(flights: deque[bool]) -> float | None:
-    return sum(flights) / len(flights) if flights else None
-
-
-def _flown(env: OneEngineEnv, outcome: Ints) -> Flown:
-    return Flown(env.altitude, env.velocity[:, 1].copy(), env.actions >= 3, outcome.copy())
+def _newest(replay: ReplayBuffer, count: int) -> Ints:
+    """Return the rows of so many of the newest memories, oldest first."""
+    return (replay.start + len(replay) - count + np.arange(count)) % replay.capacity
 
 
 def small_runs(

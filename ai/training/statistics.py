@@ -1,4 +1,4 @@
-"""Statistics of the last hundred episodes of a training run, and confidence intervals of a share and of a mean."""
+"""Statistics of the last hundred episodes of a training run, and the confidence interval of a share."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import sqrt
-from statistics import mean, stdev
 from typing import Any, Final
 
 import numpy as np
@@ -100,10 +99,6 @@ class EpisodeStatistics:
         self.parts = tuple(np.mean(parts, axis=0).tolist())
 
 
-# Student's t of a two-sided 95 % interval, by degrees of freedom from 1 on.
-_T: Final = (12.71, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160, 2.145, 2.131)
-
-
 def wilson(share: float, count: int) -> tuple[float, float]:
     """Return the 95 % interval of a share that was found in `count` trials.
 
@@ -113,9 +108,3 @@ def wilson(share: float, count: int) -> tuple[float, float]:
     middle = (share + z * z / (2 * count)) / (1 + z * z / count)
     half = z * sqrt(share * (1 - share) / count + z * z / (4 * count * count)) / (1 + z * z / count)
     return max(0.0, middle - half), min(1.0, middle + half)
-
-
-def mean_of_shares(shares: Sequence[float]) -> tuple[float, float, float]:
-    """Return the mean of two or more shares, and its 95 % interval within 0 to 1 (Student's t)."""
-    half = _T[min(len(shares) - 1, len(_T)) - 1] * stdev(shares) / sqrt(len(shares))
-    return mean(shares), max(0.0, mean(shares) - half), min(1.0, mean(shares) + half)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Generator
 from dataclasses import asdict, dataclass, replace
-from typing import Any, Final, Generic, TypeVar
+from typing import Any, Final, Generic, Self, TypeVar
 
 import numpy as np
 
@@ -145,6 +145,17 @@ class Evaluation(Score):
     switches: float  # times a second that an engine goes on or off, of all flights
     hard: float | None = None  # share of further flights, from hard starts, that landed; None where none were flown
 
+    @classmethod
+    def of(cls, sums: Doubles) -> Self:
+        """Return the means of a number of flights, from their sums as `flown` returns them."""
+        counts, (returns, landing_seconds, landing_fuel, switches, seconds) = sums[: len(Outcome)], sums[-5:].tolist()
+        episodes, landed = int(counts.sum()), int(counts[Outcome.LANDED])
+        success, crash, out_of_bounds, time_out = (counts[Outcome.LANDED :] / episodes).tolist()
+        return cls(
+            episodes, success, crash, out_of_bounds, time_out, returns / episodes,
+            landing_seconds / landed if landed else None, landing_fuel / landed if landed else None, switches / seconds,
+        )  # fmt: skip
+
     def better_than(self, other: Evaluation | None) -> bool:
         """Whether more flights landed, random and hard starts together, or as many and the mean return is higher.
 
@@ -167,42 +178,6 @@ class Evaluation(Score):
         return f"{self.figure} of {self.episodes} validation flights landed{took}"
 
 
-@dataclass(frozen=True)
-class FlightSums:
-    """Counts and sums of a number of flights; those of two parts of all flights add up."""
-
-    outcomes: tuple[int, ...]  # flights by outcome
-    returns: float
-    landing_seconds: float
-    landing_fuel: float  # seconds of main engine, of the landings
-    switches: int  # engines that went on or off
-    seconds: float  # of all flights
-
-    def plus(self, other: FlightSums) -> FlightSums:
-        """Return the sums of both."""
-        outcomes = tuple(map(sum, zip(self.outcomes, other.outcomes, strict=True)))
-        return FlightSums(
-            outcomes, self.returns + other.returns, self.landing_seconds + other.landing_seconds,
-            self.landing_fuel + other.landing_fuel, self.switches + other.switches, self.seconds + other.seconds,
-        )  # fmt: skip
-
-    def evaluation(self) -> Evaluation:
-        """Return the means."""
-        episodes, landed = sum(self.outcomes), self.outcomes[Outcome.LANDED]
-        success, crash, out_of_bounds, time_out = (count / episodes for count in self.outcomes[Outcome.LANDED :])
-        return Evaluation(
-            episodes,
-            success,
-            crash,
-            out_of_bounds,
-            time_out,
-            self.returns / episodes,
-            self.landing_seconds / landed if landed else None,
-            self.landing_fuel / landed if landed else None,
-            self.switches / self.seconds,
-        )
-
-
 def finished(trial: Trial[T]) -> T:
     """Take a trial to its end, and return what came of it."""
     while True:
@@ -212,8 +187,12 @@ def finished(trial: Trial[T]) -> T:
             return done.value  # type: ignore[no-any-return]
 
 
-def flown(pilot: Pilot, env: LanderEnv, told: slice = slice(None)) -> Trial[FlightSums]:
-    """Fly all slots of `env`, which has just been reset, to the end; return what came of the slots `told`."""
+def flown(pilot: Pilot, env: LanderEnv, told: slice = slice(None)) -> Trial[Doubles]:
+    """Fly all slots of `env`, which has just been reset, to the end; return the sums of the slots `told`.
+
+    Those of two parts of all flights add up: how many ended in each outcome; returns; seconds, and seconds of main
+    engine, of the landings; engines that went on or off; seconds of all flights.
+    """
     observation = env.observe()
     returns: Doubles = np.zeros(env.num_envs)
     switches: Ints = np.zeros(env.num_envs, dtype=np.intp)
@@ -228,21 +207,16 @@ def flown(pilot: Pilot, env: LanderEnv, told: slice = slice(None)) -> Trial[Flig
         yield
     outcomes, seconds, fuel = env.outcome[told], env.time[told], env.fuel[told]
     landed = outcomes == Outcome.LANDED
-    return FlightSums(
-        tuple(int((outcomes == outcome).sum()) for outcome in Outcome),
-        float(returns[told].sum()),
-        float(seconds[landed].sum()),
-        float(fuel[landed].sum()),
-        int(switches[told].sum()),
-        float(seconds.sum()),
-    )
+    counts = np.bincount(outcomes, minlength=len(Outcome))
+    sums = returns[told].sum(), seconds[landed].sum(), fuel[landed].sum(), switches[told].sum(), seconds.sum()
+    return np.array([*counts, *sums], dtype=float)
 
 
 def evaluate(pilot: Pilot, episodes: int, seed: int, spawn: str = "random", frame_skip: int = 4) -> Evaluation:
     """Fly `episodes` flights at once, without exploration, from spawns that follow from `seed`."""
     env = LanderEnv(episodes, seed, spawn, frame_skip)
     env.reset()
-    return finished(flown(pilot, env)).evaluation()
+    return Evaluation.of(finished(flown(pilot, env)))
 
 
 class LanderTask(Task[Evaluation]):
@@ -307,7 +281,7 @@ class LanderTask(Task[Evaluation]):
         if beside:
             rng, hard = np.random.default_rng(seed), np.arange(env.num_envs) >= episodes
             env.place(hard, np.array([SPAWNS["hard"](rng) for _ in range(beside)]))
-        score = (yield from flown(pilot, env, slice(episodes))).evaluation()
+        score = Evaluation.of((yield from flown(pilot, env, slice(episodes))))
         return replace(score, hard=float((env.outcome[hard] == Outcome.LANDED).mean())) if beside else score
 
 
@@ -335,7 +309,7 @@ class AnywhereTask(LanderTask):
         """Fly so many flights at once from random spawns, one decision at a time."""
         env = AnywhereEnv(episodes, seed, "random", self.config.frame_skip, sites=tuple(SITES))
         env.reset()
-        return (yield from flown(pilot, env)).evaluation()
+        return Evaluation.of((yield from flown(pilot, env)))
 
 
 def _contacts(env: LanderEnv, new: State, told: Any) -> State:

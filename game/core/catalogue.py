@@ -1,12 +1,13 @@
 """Catalogues of texts: the English names and sentences, in the player's language as far as it has been translated.
 
 A text has a name in the program, which is its context in the catalogue, and English words, which are its message. The
-language is chosen by gettext's own rules: LANGUAGE, LC_ALL, LC_MESSAGES, LANG; English stands in for what is missing.
+language is chosen by gettext's own rules, by the first of VARIABLES; English stands in for what is missing.
 """
 
 from __future__ import annotations
 
 import gettext
+import os
 import struct
 from collections.abc import Callable, Iterator
 from operator import index
@@ -16,6 +17,7 @@ from typing import Any, Final
 DOMAIN: Final = "tranquility"
 AI_DOMAIN: Final = "ai"  # what `ai` says in English, which knows nothing of players or of languages
 ENGLISH: Final = "en"
+VARIABLES: Final = ("LANGUAGE", "LC_ALL", "LC_MESSAGES", "LANG")  # of the environment
 LOCALE = Path(__file__).parents[1] / "locale"  # a test reads another
 _CONTEXT_ENDS, _FORM_ENDS = "\x04", "\0"
 _MAGIC: Final = 0x950412DE  # what a compiled catalogue begins with
@@ -66,6 +68,28 @@ def language(folder: Path) -> str:
     """Return the code of the language that texts are in, as far as they are translated."""
     path = gettext.find(DOMAIN, folder)
     return Path(path).parts[-3] if path and not damaged(folder) else ENGLISH
+
+
+def languages(folder: Path) -> dict[str, str]:
+    """Return all languages that there are, by their codes: how each calls itself."""
+    found = sorted(path.parts[-3] for path in folder.glob(f"*/LC_MESSAGES/{DOMAIN}.mo"))
+    return {code: _named(folder, code) for code in found}
+
+
+def _named(folder: Path, code: str) -> str:
+    try:
+        return gettext.translation(DOMAIN, folder, [code]).pgettext("LANGUAGE_NAME", "English")
+    except _DAMAGE:
+        return code
+
+
+def system() -> str:
+    """Return the system's languages as LANGUAGE has them; where no variable names one, as on Windows, SDL does."""
+    if told := next(filter(None, map(os.environ.get, VARIABLES)), ""):
+        return told
+    from pygame.system import get_pref_locales
+
+    return ":".join(each["language"] for each in get_pref_locales())
 
 
 def damaged(folder: Path) -> str:

@@ -59,13 +59,13 @@ class ItemKind(Generic[Item]):
     Attributes:
         parts: names of files or folders; a folder with any of them is an item, complete or not.
         read: returns an item from its folder and name; never raises.
-        rescued: name to suggest for an item that was left behind without one.
+        rescued: returns the name to suggest for an item that was left behind without one.
 
     """
 
     parts: tuple[str, ...]
     read: Callable[[Path, str], Item]
-    rescued: str
+    rescued: Callable[[], str]
 
 
 class Collection(Generic[Item]):
@@ -219,7 +219,7 @@ class Collection(Generic[Item]):
 
     def rescued(self) -> Item | None:
         """Return the item without a name under a suggested one, if any. Call before a training begins."""
-        return self.kind.read(self.unsaved, self.free_name(self.kind.rescued)) if self.left_behind else None
+        return self.kind.read(self.unsaved, self.free_name(self.kind.rescued())) if self.left_behind else None
 
     def keep_rescued(self, name: str) -> Item:
         """Give the item without a name this one; return it."""
@@ -232,7 +232,7 @@ class Collection(Generic[Item]):
     def discard_rescued(self) -> None:
         """Delete the item without a name, if any; `undo_delete` restores it."""
         if self.left_behind:
-            self._trash.add(self.unsaved, self.free_name(self.kind.rescued))
+            self._trash.add(self.unsaved, self.free_name(self.kind.rescued()))
             remove_state(self.unsaved)
 
 

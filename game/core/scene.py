@@ -38,6 +38,9 @@ class Scene:
     def enter(self) -> None:
         """Become the top scene again, after those above it have been left; the constructor does so the first time."""
 
+    def reword(self) -> None:
+        """Make anew what is kept of texts, for the player has chosen another language."""
+
     def exit(self) -> None:
         """Stop being the top scene, until `enter` or for good; release held keys."""
 

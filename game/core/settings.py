@@ -33,6 +33,7 @@ class Settings:
     reduced_motion: bool = False
     colour_safe: bool = False
     show_hints: bool = True
+    language: str = ""  # code of the language that the player chose; empty for the system's
     text_size: str = "normal"  # a name of game.drawing.tokens.TEXT_SIZES
     muted: bool = False  # whether nothing is heard at all
     master_volume: Share = 1.0  # factor on all other volumes
@@ -61,7 +62,7 @@ class Settings:
     tutored: bool = False  # whether the tutorial flight was flown or skipped, so it is not offered again
     first_flown: bool = False  # whether the tutorial flight was flown to its landing
     rung: Annotated[int, Within(-1, TOP_RUNG)] = -1  # place on the ladder of starts, from 0; -1 before it is known
-    learnt: dict[str, Any] = field(default_factory=dict)  # progress by chapter, as game.learn.progress writes it
+    learnt: dict[str, Any] = field(default_factory=dict)  # progress by chapter, as game.scenes.learn.path writes it
     chapter: str = ""  # key of the chapter last opened
     unknown: dict[str, Any] = field(default_factory=dict)  # values written by a newer version; kept unchanged
     unread: bool = field(default=False, compare=False)  # whether the file exists but could not be read; not saved

@@ -21,9 +21,6 @@ _MOST_WORDS: Final = 256  # text boxes noted in a frame, at most
 _MOST_SEEN: Final = 16  # pads and craft likewise
 _FAINT_WORDS: Final = 0.4  # alpha below which text is not noted
 _AROUND: Final = 4.0  # points of margin around noted text
-# Least size of a text that has too little room, as a share of the size it is laid out in: English always fits; other
-# languages take a third more letters.
-LEAST: Final = 1.0 if texts.LANGUAGE == ENGLISH else 0.7
 
 Align = Literal["left", "centre", "right"]
 _SHIFT: Final[dict[Align, float]] = {"left": 0.0, "centre": 0.5, "right": 1.0}
@@ -277,7 +274,7 @@ class Canvas:
         """
         scale, (left, top) = self.scale, self.origin
         parts, width, above, below = typeface.line(
-            string, self.grown(size), weight, colour, tabular, scale, room, LEAST * size
+            string, self.grown(size), weight, colour, tabular, scale, room, least() * size
         )
         x, y = left + position[0] * scale - _SHIFT[align] * width, top + round(position[1] * scale)
         if alpha >= 1:
@@ -444,6 +441,14 @@ class Canvas:
         surface = shapes.glow(pixels if pixels < 24 else 4 * round(pixels / 4), colour, level)
         half, (left, top), scale = surface.width // 2, self.origin, self.scale
         return surface, (round(centre[0] * scale) + left - half, round(centre[1] * scale) + top - half)
+
+
+def least() -> float:
+    """Return the least size of a text that has too little room, as a share of the size it is laid out in.
+
+    English always fits; other languages take a third more letters.
+    """
+    return 1.0 if texts.LANGUAGE == ENGLISH else 0.7
 
 
 def moved(view: pygame.FRect, across: int, down: int) -> Point:

@@ -19,6 +19,8 @@ import pygame
 from font_manrope import font_files
 
 from ai.files import CONTROLS
+from game.core import texts
+from game.core.catalogue import ENGLISH
 from game.drawing.glyphs import SIGN, draw_sign, sign_width
 from game.drawing.tokens import GROWS, Colour
 
@@ -33,6 +35,10 @@ _FILES: Final[dict[Weight, str]] = {
 }
 _CODE: Final = "data/FiraCode-Regular.ttf"  # in pygame_gui: all letters of it are equally wide
 _PARTS: Final = re.compile(r"\d|\D+")  # single digits, and the text between them
+_NUMBER: Final = re.compile(r"(?<![\w./])(?:\d{1,3}(?:,\d{3})++|\d++)(?:\.\d++)?(?![,.]\d)")
+_DATE: Final = re.compile(  # but not in a file's name
+    r"(?<![\w./-])(?P<year>\d{4})-(?P<month>\d\d)-(?P<day>\d\d)(?![\w-]| \d\d\.)"
+)
 _LONGEST: Final = 1000  # characters of a text; no line on any screen has more
 # Width in pixels of a text before it is scaled down; a full line of the largest screen takes half. From some 100,000
 # on, SDL's scaling writes past the end of its memory.
@@ -89,7 +95,10 @@ def width(string: str, size: float, weight: Weight) -> float:
 @lru_cache(maxsize=2048)
 def reach(string: str, pixels: float, weight: Weight) -> float:
     """Return the width of a string as rendered, in pixels and fractions."""
-    string = _writable(string)
+    return _reach(_writable(string, weight), pixels, weight)
+
+
+def _reach(string: str, pixels: float, weight: Weight) -> float:
     font, factor = _font(pixels, weight), _oversampling(pixels)
     if not SIGN.search(string):
         return font.size(string)[0] / factor
@@ -127,7 +136,7 @@ def _covered(string: str, pixels: float, weight: Weight) -> tuple[npt.NDArray[np
 
     A pixel is the mean of the squares that lie in it, `_oversampling` down and as many across.
     """
-    string = _cut(_writable(string), pixels, weight)
+    string = _cut(_writable(string, weight), pixels, weight)
     font, factor = _font(pixels, weight), _oversampling(pixels)
     large = _large(string, pixels, weight)
     baseline = -(-font.get_ascent() // factor)
@@ -173,8 +182,8 @@ def span(string: str, pixels: float, weight: Weight, tabular: bool) -> float:
     """Return the width of a string in pixels; `tabular` gives every digit the same."""
     if not tabular:
         return reach(string, pixels, weight)
-    digit = digit_width(pixels, weight)
-    return sum(digit if part.isdecimal() else reach(part, pixels, weight) for part in _PARTS.findall(string))
+    digit, parts = digit_width(pixels, weight), _PARTS.findall(numbers(string))
+    return sum(digit if part.isdecimal() else reach(part, pixels, weight) for part in parts)
 
 
 @lru_cache(maxsize=4096)
@@ -184,7 +193,7 @@ def digits(string: str, pixels: float, weight: Weight, colour: Colour) -> list[t
     Each comes with its place across, and the row of its baseline.
     """
     found, x, digit = [], 0.0, digit_width(pixels, weight)
-    for part in _PARTS.findall(string):
+    for part in _PARTS.findall(numbers(string)):
         own = reach(part, pixels, weight)
         cell = digit if part.isdecimal() else own
         surface, baseline = render(part, pixels, weight, colour)
@@ -231,7 +240,7 @@ def _large(string: str, pixels: float, weight: Weight) -> npt.NDArray[np.uint8]:
 def _with_signs(string: str, pixels: float, weight: Weight) -> pygame.Surface:
     """Return the surface of a string with signs."""
     font, factor = _font(pixels, weight), _oversampling(pixels)
-    surface = pygame.Surface((-(-reach(string, pixels, weight) * factor // 1), font.get_height()), pygame.SRCALPHA)
+    surface = pygame.Surface((-(-_reach(string, pixels, weight) * factor // 1), font.get_height()), pygame.SRCALPHA)
     surface.fill((*_INK, 0))
     x = 0.0
     for number, part in enumerate(SIGN.split(string)):
@@ -251,17 +260,33 @@ def _with_signs(string: str, pixels: float, weight: Weight) -> pygame.Surface:
     return surface
 
 
-def _writable(string: str) -> str:
-    """Replace what no font has or no line can hold by question marks: a file's name can be any bytes, at any length."""
+@lru_cache(maxsize=2048)
+def numbers(words: str) -> str:
+    """Return words with numbers and dates as the language writes them; versions, paths and times stay."""
+    if texts.LANGUAGE == ENGLISH:
+        return words
+    marks = str.maketrans({",": texts.THOUSANDS_MARK, ".": texts.DECIMAL_MARK})
+    words = _NUMBER.sub(lambda found: found[0].translate(marks), words)
+    return _DATE.sub(lambda found: texts.DATE.format(**found.groupdict()), words)
+
+
+def _writable(string: str, weight: Weight) -> str:
+    """Return a string with numbers as the language writes them, but for code.
+
+    What no font has or no line can hold is replaced by question marks: a file's name can be any bytes, at any length.
+    """
+    string = string if weight == "code" else numbers(string)
     return CONTROLS.sub("?", string[:_LONGEST]).encode(errors="replace").decode()
 
 
 def _cut(string: str, pixels: float, weight: Weight) -> str:
     """Cut off the end of a string that is wider than any screen."""
     most = _WIDEST / _oversampling(pixels)
-    if reach(string, pixels, weight) <= most:
+    if _reach(string, pixels, weight) <= most:
         return string
-    return string[: bisect_right(range(len(string)), most, key=lambda count: reach(string[:count], pixels, weight)) - 1]
+    return string[
+        : bisect_right(range(len(string)), most, key=lambda count: _reach(string[:count], pixels, weight)) - 1
+    ]
 
 
 def open_letters(letters: str, size: float, weight: Weight, scale: float) -> None:
@@ -272,7 +297,7 @@ def open_letters(letters: str, size: float, weight: Weight, scale: float) -> Non
 
 
 def forget() -> None:
-    """Clear the cache of rendered strings, after a change of the window's size."""
-    caches = _opened, grown, reach, extent, digit_width, render, _covered, fitting, span, digits, line
+    """Clear the cache of rendered strings, after a change of the window's size or of the language."""
+    caches = numbers, _opened, grown, reach, extent, digit_width, render, _covered, fitting, span, digits, line
     for cache in caches:
         cache.cache_clear()

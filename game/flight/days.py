@@ -78,20 +78,20 @@ class Days:
         self.attempts: Mapping[str, Attempt] = self._read()
 
     def _read(self) -> dict[str, Attempt]:
-        found: dict[str, Attempt] = {}
         try:
             attempts, damaged = read_lines(Attempt, self._path, _LARGEST)
         except FileNotFoundError:
-            return found
+            return {}
         except OSError as error:
             self.problem = texts.FLIGHTS_UNREADABLE.format(path=self._path, reason=error.strerror or error)
-            return found
+            return {}
+        if damaged:
+            self.problem = texts.DAYS_DAMAGED.format(count=damaged, path=self._path)
+        found: dict[str, Attempt] = {}
         for attempt in attempts:
             before = found.get(attempt.day)
             if before is None or before.outcome == Outcome.FLYING.name:  # a later attempt is practice
                 found[attempt.day] = attempt
-        if damaged:
-            self.problem = texts.DAYS_DAMAGED.format(count=damaged, path=self._path)
         return found
 
     def note(self, attempt: Attempt) -> None:
@@ -113,21 +113,19 @@ class Days:
             self._flown = [entry for entry in self._records.entries() if entry.course == DAILY]
         noon, kept = datetime(day.year, day.month, day.day, 12).timestamp(), self._records.kept()
         near = [entry for entry in self._flown if abs(entry.when - noon) < _AROUND and entry.file in kept]
-        for entry in sorted(near, key=lambda entry: (not entry.landed, -entry.score))[:_MOST_READ]:
-            try:
-                record = self._records.read(entry.file)
-            except ValueError:  # the logbook says what is wrong with it
-                continue
-            if record.recording.seed == day.toordinal():
-                return record
-        return None
+        best = sorted(near, key=lambda entry: (not entry.landed, -entry.score))[:_MOST_READ]
+        records = (self._record(entry.file) for entry in best)
+        return next((record for record in records if record and record.recording.seed == day.toordinal()), None)
 
     def first_flight(self, day: date) -> Record | None:
         """Return the flight of a day's first attempt; None if there is none, or it cannot be read any more."""
         attempt = self.attempts.get(day.isoformat())
-        if attempt is None or attempt.file not in self._records.kept():
+        return self._record(attempt.file) if attempt else None
+
+    def _record(self, file: str) -> Record | None:
+        if file not in self._records.kept():
             return None
         try:
-            return self._records.read(attempt.file)
-        except ValueError:
+            return self._records.read(file)
+        except ValueError:  # the logbook says what is wrong with it
             return None

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import lru_cache
 from itertools import islice
 from typing import Final
 
@@ -19,14 +20,13 @@ from ai.lander.ground import Ground
 from engine import DT
 from engine.integrate import integrate_velocity
 from game.flight.networks import Policy, decision_steps
-from game.flight.surface import surface_height
 
-# Metres above the ground at which to stop: the touchdown itself is not predicted.
-_CLEAR: Final = 0.3
+_CLEAR: Final = 0.3  # metres above the ground at which to stop: the touchdown itself is not predicted
 _DECISIONS: Final = 2  # decisions of the network per frame
 _STRIDE: Final = 10  # physics steps between positions of the path without thrust, computed at once
 _STRIDES: Final = 12  # positions per frame, so that a path is complete after a few
 _SECONDS: Final = 9.0
+_REACH, _STEP = 30.0, 0.02  # metres to both sides for which the ground's height is kept, and between two heights
 
 
 class Drift:
@@ -82,7 +82,8 @@ class Forecast:
                 self.path, self._places = np.array(self._places), []
                 continue
             ahead.glide(self._policy.act(ahead.observe_for(self._policy), held=ahead.actions))
-        self._leave_behind(env.position[0])
+        if len(self.path):  # the part that the flight has already passed is dropped
+            self.path = self.path[int(np.hypot(*(self.path - env.position[0]).T).argmin()) :]
 
     def _arrived(self) -> bool:
         """Whether the prediction is almost down, or has left the area or run out of time."""
@@ -91,12 +92,6 @@ class Forecast:
         if abs(x) > limits.half_width or y > limits.ceiling or ahead.time[0] > limits.time:
             return True
         return bool(y < surface_height(ahead, x) + ahead.params.stand + _CLEAR)
-
-    def _leave_behind(self, position: Doubles) -> None:
-        """Drop the part of the path that the flight has already passed."""
-        if len(self.path):
-            nearest = int(np.hypot(*(self.path - position).T).argmin())
-            self.path = self.path[nearest:]
 
 
 def coast_path(env: LanderEnv) -> Doubles:
@@ -142,3 +137,26 @@ def _down_to_ground(ground: Ground, places: list[Doubles]) -> Doubles:
     above, below = max(float(clear[last - 1]), 0.0), float(clear[last])
     touch = way[last - 1] + above / (above - below) * (way[last] - way[last - 1])
     return np.concatenate([way[:last], touch[None]])
+
+
+def surface_height(env: LanderEnv, x: float) -> float:
+    """Return the height in metres of the surface at x: a pad, a hill or the plain; for drawing, many times a frame."""
+    ground, heights = _Latest.seen
+    if ground is not env.ground:
+        ground, heights = _Latest.seen = env.ground, _profile(env.ground)
+    if env.conditions.moves:  # one pad on a plain
+        x -= float(env.pad_shift[0])
+    return heights[min(max(round((x + _REACH) / _STEP), 0), len(heights) - 1)]
+
+
+class _Latest:
+    """The ground that was asked about last, and its heights: to look it up by value takes longer than the rest."""
+
+    seen: tuple[Ground | None, list[float]] = None, []
+
+
+@lru_cache(maxsize=8)
+def _profile(ground: Ground) -> list[float]:
+    """Return the ground's height at even steps."""
+    heights: list[float] = ground.height(np.arange(-_REACH, _REACH, _STEP)).tolist()
+    return heights

@@ -1,4 +1,4 @@
-"""A friend's flight: how it comes into the game."""
+"""Flights between friends: how one gets into the clipboard, and out of it or a file into the game."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from ai.flights.recording import SharedFlight
 from game.core import texts
 from game.core.scene import Push, Scene, push
 from game.flight import sharing
-from game.ui.clipboard import pasted
+from game.flight.flight_file import Record
+from game.ui.clipboard import give, pasted
 from game.ui.context import Context
 
 _CONTROL = pygame.KMOD_CTRL | pygame.KMOD_META
@@ -35,6 +36,11 @@ def arrival(event: pygame.event.Event, scene: Scene, context: Context) -> Push |
     elif event.type == pygame.KEYDOWN and event.key == pygame.K_v and getattr(event, "mod", 0) & _CONTROL:
         return None if scene.typing else paste(context)
     return None
+
+
+def copy(context: Context, record: Record) -> None:
+    """Copy a flight as a code."""
+    give(context, sharing.code(record), texts.CODE_COPIED)
 
 
 def paste(context: Context) -> Push | None:

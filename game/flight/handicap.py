@@ -13,33 +13,21 @@ from ai.lander.pilots import LaggyPilot, NoisyPilot, Pilot
 OWN: Final = "own"
 
 
-class Keys:
-    """Pilot that flies the action of the keys."""
+class _Keys:
+    """Pilot that flies the action of the keys; without the main engine if it only `steers`."""
 
-    def __init__(self) -> None:
-        self.held = 0
+    def __init__(self, *, steers: bool) -> None:
+        self.held, self._steers = 0, steers
 
     def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:  # noqa: ARG002
-        """Return the action (1,) that the keys ask for."""
-        return np.array([self.held])
-
-
-class SteersOnly:
-    """Sensor pilot: another pilot without the main engine."""
-
-    def __init__(self, pilot: Pilot) -> None:
-        self.pilot = pilot
-
-    def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:
-        """Return actions (n,) for observations (n, 9)."""
-        return self.pilot.act(observation, held=held) % 3
+        return np.array([self.held % 3 if self._steers else self.held])
 
 
 HANDS: Final[dict[str, Callable[[Pilot, np.random.Generator], Pilot]]] = {
     OWN: lambda keys, _: keys,
     "laggy": LaggyPilot,
     "noisy": NoisyPilot,
-    "sensor": lambda keys, _: SteersOnly(keys),
+    "sensor": lambda keys, _: keys,
 }
 
 
@@ -50,7 +38,7 @@ class Handicap:
     """
 
     def __init__(self, name: str, seed: int, every: int) -> None:
-        self._keys = Keys()
+        self._keys = _Keys(steers=name == "sensor")
         self._pilot = HANDS[name](self._keys, np.random.default_rng([seed, len(name)]))
         self._every = 1 if name == OWN else every
         self._step = self._action = 0

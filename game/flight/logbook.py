@@ -5,9 +5,9 @@ Only `read` raises for a bad disk or a damaged file; otherwise `problem` says wh
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from contextlib import suppress
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from datetime import datetime
 from itertools import groupby
 from pathlib import Path
@@ -122,10 +122,10 @@ class Records:
         """Restore a deleted file. False if that failed."""
         return self._attempt(lambda: self._trash.restore(name))
 
-    def _attempt(self, deed: Callable[[], object]) -> bool:
+    def _attempt(self, change: Callable[[], object]) -> bool:
         self.problem = ""
         try:
-            deed()
+            change()
         except LibraryError as error:
             self.problem = str(error)
         return not self.problem
@@ -134,12 +134,7 @@ class Records:
         """Return a sentence why a flight can't be replayed; empty if its file exists."""
         if entry.file in self.kept():
             return ""
-        if entry.file in self.thrown():
-            return texts.FLIGHT_THROWN
-        if not entry.file:
-            return texts.FLIGHT_NEVER_KEPT
-        older = sorted(self.kept() | {entry.file})[:-RECENT]  # a name begins with its date
-        return texts.FLIGHT_TOO_OLD if entry.file in older else texts.FLIGHT_MISSING
+        return texts.FLIGHT_THROWN if entry.file in self.thrown() else texts.FLIGHT_GONE
 
     def _write(self, record: Record) -> Entry:
         """Write a flight's file under an unused name; return its line."""
@@ -185,42 +180,16 @@ def best(entries: Iterable[Entry], most: int = BEST) -> list[Entry]:
     Landings under other rules are ranked separately, like another mission, and so are those from the ladder.
     """
 
-    def challenge(entry: Entry) -> tuple[str, int, int, bool]:
+    def kind(entry: Entry) -> tuple[str, int, int, bool]:
         return entry.course, entry.pads, entry.rules, entry.on_ladder
 
-    own = (entry for entry in entries if entry.landed and entry.alone and not entry.practice)
-    landings = sorted((entry for entry in own if entry.file), key=challenge)
-    return [entry for _, group in groupby(landings, challenge) for entry in sorted(group, key=rank)[:most]]
+    own = (entry for entry in entries if entry.landed and entry.alone and not entry.practice and entry.file)
+    return [entry for _, each in groupby(sorted(own, key=kind), kind) for entry in sorted(each, key=rank)[:most]]
 
 
 def rank(entry: Entry) -> tuple[float, ...]:
     """Return the sort key of a landing, lower is better: fuel and time in a mission, points in a free flight."""
     return (-entry.medal, entry.fuel, entry.seconds) if entry.course else (-entry.score, entry.fuel)
-
-
-@dataclass(frozen=True)
-class Totals:
-    """Totals of all flights; `streak` is the longest row of landings by the person alone."""
-
-    flights: int = 0
-    landings: int = 0
-    seconds: float = 0.0
-    streak: int = 0
-
-
-def totals(entries: Sequence[Entry]) -> Totals:
-    """Return the totals of the logbook."""
-    streak = longest = 0
-    for entry in entries:
-        if entry.alone:
-            streak = streak + 1 if entry.landed else 0
-            longest = max(longest, streak)
-    return Totals(
-        len(entries),
-        sum(entry.landed for entry in entries),
-        sum(entry.seconds for entry in entries),
-        longest,
-    )
 
 
 def best_descent(entries: Iterable[Entry]) -> tuple[int, int]:

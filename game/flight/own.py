@@ -12,7 +12,7 @@ from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.pilots import Pilot
 from ai.pilots.own import MeasuredPilot, OwnPilot
 from ai.pilots.shelf import Measured, Shelf
-from ai.training.tasks import FlightSums, flown
+from ai.training.tasks import Evaluation, flown
 from game.flight import networks
 from game.flight.flight_file import Entry
 
@@ -85,14 +85,13 @@ def _measured(shelf: Shelf, name: str, pilot: Pilot) -> Generator[list[Any], Non
     env = LanderEnv(STARTS, _SEED)
     env.reset()
     trial = flown(pilot, env)
-    sums: FlightSums | None = None
-    while sums is None:
+    score: Evaluation | None = None
+    while score is None:
         try:
             next(trial)
             yield [float((env.outcome != Outcome.FLYING).mean())]
         except StopIteration as done:
-            sums = done.value
-    score = sums.evaluation()
+            score = Evaluation.of(done.value)
     told = Measured(name, score.success, score.mean_time or 0.0, score.mean_fuel or 0.0, round(time.time(), 3))
     shelf.keep(told)
     yield [told]

@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
-from typing import Final
+from collections.abc import Callable, Iterator, Mapping
+from typing import TYPE_CHECKING, Final
 
 import pygame
 
 from game.core.source import Source
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
+from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import FAINT, INK, LABEL, LINE, MUTE, NET, Colour
 
+if TYPE_CHECKING:
+    from game.ui.panel import Column
+
+Shown = tuple[Source, int | None, Mapping[int, str]]  # a function, its lit line, and what stands beside lines
 _LEADING: Final = 16.0
 _NUMBER: Final = 34.0  # room for the line's number
 _INDENT: Final = 6  # characters by which the rest of a long line is moved to the right
@@ -95,3 +100,18 @@ def _coloured(text: str, lit: bool) -> Iterator[tuple[str, Colour, int]]:
         yield part[0], INK if lit else _CODE, part.start()
     if mark:
         yield mark + comment, MUTE, len(code)
+
+
+def add_listing(column: Column, height: float, shown: Callable[[], Shown], beside: float = 0.0) -> None:
+    """Add a listing to a column, painted when what `shown` returns has changed; `beside` as `notes_width` is."""
+    cache = PaintCache()
+
+    def draw(canvas: Canvas, box: pygame.FRect) -> None:
+        source, current, notes = shown()
+        area, room = (0, 0, *box.size), min(beside, box.width / 3) if notes else 0.0
+        cache.draw(
+            canvas, box, (source, current, tuple(notes.items())),
+            lambda sheet: draw_listing(sheet, area, source, current, notes, notes_width=room),
+        )  # fmt: skip
+
+    column.picture(height, draw)

@@ -97,8 +97,7 @@ class Explained:
 def _draw(canvas: Canvas, area: Explanation) -> None:
     """Draw the tooltip beside its area, or below it at the head of the screen and above it at the foot."""
     what = wrapped(canvas, area.what, LABEL, _WIDTH)
-    now = wrapped(canvas, area.now(), LABEL, _WIDTH)
-    rows = [TooltipRow(line, "") for line in now if line]
+    rows = [row for line in area.now().split("\n") for row in _rows(canvas, line)]
     box, view = area.box, canvas.view
     within = view.inflate(-2 * _MARGIN, -2 * _MARGIN)
     place: Point = (box.right, box.centery)
@@ -111,3 +110,11 @@ def _draw(canvas: Canvas, area: Explanation) -> None:
         within.width, place = box.left - 6 - within.left, (box.left, box.centery)
     with canvas.unnoted():
         draw_tooltip(canvas, place, within, what, rows)
+
+
+def _rows(canvas: Canvas, line: str) -> list[TooltipRow]:
+    """Return the rows of a line: a word and its figure, if a tab parts them, or words on as many lines as they need."""
+    word, tab, figure = line.partition("\t")
+    if tab:
+        return [TooltipRow(word, figure)]
+    return [TooltipRow(each, "") for each in wrapped(canvas, line, LABEL, _WIDTH) if each]

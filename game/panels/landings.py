@@ -12,7 +12,7 @@ from ai.lander.pilots import COAST
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, INK, MUTE, NET, SMALL
-from game.panels.action_rows import NAME, ROW
+from game.panels.q_values import FIRST, NAME, ROW
 
 if TYPE_CHECKING:
     from ai.copilot.copilot import SharedDecision
@@ -97,7 +97,7 @@ def draw_landings(canvas: Canvas, landings: Landings, left: float, top: float, w
     """Draw a row for each action: its name, and whether the network still lands; `top` is the first baseline."""
     canvas.text(texts.LANDINGS_HEADING, (left, top), size=SMALL, colour=MUTE, room=width)
     for action, after in enumerate(landings.after):
-        y, flown = top + 28 + ROW * action, action == landings.flown
+        y, flown = top + FIRST + ROW * action, action == landings.flown
         colour = INK if flown else MUTE
         canvas.text(texts.said(ACTION_NAMES[action]), (left, y + 4), size=SMALL, colour=colour, room=NAME - 20)
         if flown:

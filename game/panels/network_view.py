@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Generator, Sequence
+from copy import copy
 from typing import Final
 
 import numpy.typing as npt
@@ -19,7 +20,7 @@ from game.core import texts
 from game.drawing import typeface
 from game.drawing.canvas import Canvas, Point
 from game.drawing.tokens import LABEL, SMALL
-from game.panels.network_painting import ADDS, LARGE, MARGIN, TAKES, NetworkPainting, Sheets, all_of
+from game.panels.network_painting import ADDS, LARGE, MARGIN, TAKES, Sheets, paint
 from game.panels.network_plan import Column, Edge, NetworkPlan, Show
 from game.ui import plotting
 from game.ui.tooltip import TooltipRow, draw_tooltip
@@ -126,14 +127,15 @@ class NetworkView:
     def name(self, number: int, place: int) -> str:
         """Return the name of a unit, given its column and its place in it."""
         unit = int(self.columns[number].units[place])
-        names = self._names(number)
+        names = self.names(number)
         return names[unit] if unit < len(names) else texts.NETWORK_VIEW_UNIT.format(layer=number, unit=unit + 1)
 
-    def _unit(self, number: int) -> float:
+    def unit_of(self, number: int) -> float:
         """Return the divisor for a column's displayed values; outputs are shown in points of reward."""
         return self.output_scale if number == len(self.columns) - 1 else 1.0
 
-    def _names(self, number: int) -> tuple[str, ...]:
+    def names(self, number: int) -> tuple[str, ...]:
+        """Return the names of a column's units, as far as they have any."""
         return self.inputs if number == 0 else self.outputs if number == len(self.columns) - 1 else ()
 
     def update(self, at_once: bool = False) -> None:
@@ -149,6 +151,10 @@ class NetworkView:
             self._painting = self._paint(self._canvas)
             self._due = self._stale = False
             self._rested = 0
+        self._go_on_painting()
+
+    def _go_on_painting(self) -> None:
+        """Paint a part of the new sheets, which replace the old ones once they are whole."""
         if self._painting:
             try:
                 next(self._painting)
@@ -163,22 +169,24 @@ class NetworkView:
     # Where things are, in points
 
     @property
-    def _large(self) -> bool:
+    def large(self) -> bool:
+        """Whether there is room for values beside the names."""
         return self.box.height >= LARGE
 
     @property
     def _foot(self) -> float:
         """Height for the legend and the unit counts, in points."""
-        return 36.0 if self._large else 18.0
+        return 36.0 if self.large else 18.0
 
     @property
-    def _name_size(self) -> float:
-        return SMALL if self._large else LABEL
+    def name_size(self) -> float:
+        """Size of the names."""
+        return SMALL if self.large else LABEL
 
     @property
     def _sides(self) -> tuple[float, float]:
         """Width for the names on the left and on the right, in points."""
-        size = self._name_size
+        size = self.name_size
         left, right = (
             max((typeface.width(name, size, "regular") + 10 for name in names), default=4.0)
             for names in (self.inputs, self.outputs)
@@ -208,9 +216,11 @@ class NetworkView:
     def draw(self, canvas: Canvas) -> None:
         """Draw the network, and the pulses and the read-out over it."""
         if self._sheets is None or self._sheets[0].scale != canvas.scale:
-            self._spare = self._painting = None
-            self._canvas, self._sheets = canvas, all_of(self._paint(canvas))
+            self._spare, self._canvas, self._painting = None, canvas, self._paint(canvas)
+            while self._painting:
+                self._go_on_painting()
         corner = (canvas.px(self.box.x - MARGIN), canvas.px(self.box.y - MARGIN))
+        assert self._sheets is not None
         light, signs = self._sheets
         canvas.surface.blit(light.surface, corner, special_flags=pygame.BLEND_RGB_ADD)
         canvas.surface.blit(signs.surface, corner)
@@ -234,17 +244,7 @@ class NetworkView:
     def _paint(self, canvas: Canvas) -> Generator[None, None, Sheets]:
         """Return the painting of the network as it is now onto new sheets."""
         self.redraws += 1
-        last = len(self.columns) - 1
-        return NetworkPainting(
-            self.plan, self.edges, self._show, self.hovered,
-            centres=[[self._on_sheet(centre) for centre in column] for column in self.centres],
-            names=[self._names(number) for number in range(last + 1)],
-            output_scale=self.output_scale, size=self.box.size, radius=self.radius,
-            name_size=self._name_size, large=self._large,
-        ).paint(*self._blank(canvas))  # fmt: skip
-
-    def _on_sheet(self, point: Point) -> Point:
-        return point[0] - self.box.x + MARGIN, point[1] - self.box.y + MARGIN
+        return paint(copy(self), *self._blank(canvas))
 
     def _draw_pulses(self, canvas: Canvas) -> None:
         """Draw pulses that run backwards along the edges with the largest gradients."""
@@ -260,7 +260,7 @@ class NetworkView:
 
     def _draw_tooltip(self, canvas: Canvas, number: int, place: int) -> None:
         column = self.columns[number]
-        unit, last = self._unit(number), number == len(self.columns) - 1
+        unit, last = self.unit_of(number), number == len(self.columns) - 1
         words = texts.NETWORK_VIEW_POINTS if last and self.outputs else texts.NETWORK_VIEW_VALUE
         rows = [TooltipRow(words, plotting.compact(float(column.values[place]) / unit))]
         if column.bias is not None:

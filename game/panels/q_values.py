@@ -14,13 +14,19 @@ from ai.agent.decision import Decision
 from ai.lander.environment import ACTION_NAMES
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import INK, MUTE, NET, SMALL
-from game.panels.action_rows import AXIS, NAME, ROW, ActionRow, ActionRows
+from game.drawing.paint import mix
+from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL, TEXT
 
 # Points of reward from one end of the scale to the other, for every network and every moment. Over whole flights of
-# both shipped networks 82% (modern) and 93% (classic) of the actions that are not the best lie within it.
+# both shipped networks 82 % (modern) and 93 % (classic) of the actions that are not the best lie within it.
 SPAN: Final = 5.0
-HEIGHT: Final = 174.0  # from the first baseline to the last
+NAME: Final = 96.0  # room for names, left of the bars
+ROW: Final = 23.0
+FIRST: Final = 28.0  # the first row, below the first baseline
+_AXIS: Final = FIRST + len(ACTION_NAMES) * ROW + 6.0  # the last baseline, below the first
+HEIGHT: Final = _AXIS + 2.0
+_FIGURE: Final = 52.0  # room for figures, right of the bars
+_BAR: Final = 3.0
 _DIMMED: Final = (0.5, 0.12)  # words and bar of an action that the co-pilot does not let pass
 
 
@@ -74,26 +80,49 @@ def draw_q_values(canvas: Canvas, values: QValues, left: float, top: float, widt
 
     `top` is the first baseline; the last is `HEIGHT` below it.
     """
-    rows, points = ActionRows(canvas, left, top, width), signed(values.expected)
-    rows.draw_heading(texts.Q_EXPECTED, points, texts.Q_UNIT)
-    box = (left, top - 14, width, 20)
-    canvas.explain(box, texts.EXPLAIN_EXPECTED, lambda: texts.EXPLAIN_EXPECTED_NOW.format(points=points))
+    x, track, right, points = left + NAME, width - NAME - _FIGURE, left + width, signed(values.expected)
+    canvas.text(texts.Q_EXPECTED, (left, top), size=SMALL, colour=MUTE, room=width - _FIGURE - 72)
+    canvas.text(points, (x + track, top), size=TEXT, align="right", tabular=True)
+    canvas.explain((left, top - 14, width, 20), texts.EXPLAIN_EXPECTED,
+                   lambda: texts.EXPLAIN_EXPECTED_NOW.format(points=points))  # fmt: skip
     for action in range(len(ACTION_NAMES)):
-        rows.draw_row(action, _row(values, action), _DIMMED)
-        canvas.explain(rows.box(action), texts.EXPLAIN_VALUE, partial(value_words, values, action))
-    canvas.explain((left, top + AXIS - 16, width, 22), texts.EXPLAIN_ADVANTAGE.format(span=SPAN))
-    rows.draw_scale(f"−{SPAN:g}", "0")
-    rows.draw_scale_names(texts.Q_ADVANTAGE, texts.Q_UNIT)
+        y = top + FIRST + ROW * action
+        _draw_row(canvas, values, action, (left, y), width)
+        canvas.explain((left, y - ROW / 2, width, ROW), texts.EXPLAIN_VALUE, partial(value_words, values, action))
+    y = top + _AXIS
+    canvas.explain((left, y - 16, width, 22), texts.EXPLAIN_ADVANTAGE.format(span=SPAN))
+    canvas.line((x, y - 13), (x + track, y - 13), LINE)
+    for place in (x, x + track / 2, x + track):
+        canvas.line((place, y - 16), (place, y - 12), MUTE)
+    for place, figure in ((x, f"−{SPAN:g}"), (x + track, "0")):
+        canvas.text(figure, (place, y), size=LABEL, colour=MUTE, align="centre")
+    canvas.text(texts.Q_ADVANTAGE, (left, y), size=LABEL, colour=MUTE, room=NAME - 6)
+    for baseline in (top, y):
+        canvas.text(texts.Q_UNIT, (right, baseline), size=LABEL, colour=MUTE, align="right", room=_FIGURE - 8)
     if values.allowed is not None and values.allowed < SPAN:
-        x, y = rows.draw_limit(values.fraction(values.allowed))
-        canvas.explain((x - 8, y - 18, 16, 14), texts.EXPLAIN_COPILOT_ALLOWED)
+        limit, first = x + values.fraction(values.allowed) * track, top + FIRST
+        canvas.line((limit, first - 9), (limit, first + 5 * ROW + 9), MUTE)
+        canvas.marker("triangle_down", (limit, first - 11), 6, INK, 0.8)
+        canvas.explain((limit - 8, first - 18, 16, 14), texts.EXPLAIN_COPILOT_ALLOWED)
 
 
-def _row(values: QValues, action: int) -> ActionRow:
-    loss = values.loss(action)
+def _draw_row(canvas: Canvas, values: QValues, action: int, place: tuple[float, float], width: float) -> None:
+    """Draw an action: its name, its bar, and how far it is behind the best."""
+    (left, y), loss, flown = place, values.loss(action), action == values.flown
+    x, track, allowed = left + NAME, width - NAME - _FIGURE, values.feasible[action]
+    colour, alpha = INK if flown else MUTE, 1.0 if allowed or flown else _DIMMED[0]
+    canvas.text(texts.said(ACTION_NAMES[action]), (left, y + 4), size=SMALL, colour=colour, alpha=alpha, room=NAME - 20)
+    tone = NET if flown else mix(FAINT, NET, 0.45 if allowed else _DIMMED[1])
+    canvas.bar((x, y - 1, track, _BAR), values.fraction(loss), tone)
+    if flown:
+        canvas.marker("triangle", (x - 8, y), 6, NET)
+    if loss > SPAN:  # it lies beyond the left end of the scale
+        canvas.line((x + 5, y - 4), (x, y), MUTE, 1.5)
+        canvas.line((x, y), (x + 5, y + 4), MUTE, 1.5)
+    if action == values.asked:
+        canvas.dot((x + values.fraction(loss) * track, y), 4, HUMAN)
     figure = texts.Q_BEST if loss == 0 else behind(loss)
-    flown, asked = action == values.flown, action == values.asked
-    return ActionRow(values.fraction(loss), figure, flown, asked, values.feasible[action], beyond=loss > SPAN)
+    canvas.text(figure, (left + width, y + 4), size=SMALL, colour=colour, align="right", tabular=True, alpha=alpha)
 
 
 def draw_actions(canvas: Canvas, flown: int, left: float, top: float) -> None:

@@ -59,9 +59,9 @@ class RewardBar:
     A mark stands at the sum. Hovering a part explains it.
     """
 
-    def __init__(self, box: pygame.typing.RectLike, label: str = texts.REWARD_BAR_LABEL) -> None:
+    def __init__(self, box: pygame.typing.RectLike, label: str = "") -> None:
         self.box = pygame.FRect(box)
-        self.label = label
+        self.label = label or texts.REWARD_BAR_LABEL
         self.names: tuple[str, ...] = ()
         self._values = self._shown = np.zeros(0)
         self._lines = plotting.grid(-1.0, 1.0)

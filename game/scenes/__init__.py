@@ -11,7 +11,7 @@ from game.ui.context import Context
 
 # The name of each scene that another may lead to: the module in this package, and the class in that.
 ROUTES: Final = {
-    "menu": "menus.menu.MenuScene", "flights": "menus.flights.FlightsScene", "play": "play.scene.PlayScene",
+    "menu": "menus.menu.MenuScene", "flights": "menus.menu.FlightsScene", "play": "play.scene.PlayScene",
     "tutorial": "play.scene.tutorial", "descent": "play.scene.descent", "race": "play.scene.race",
     "fly_on": "play.scene.fly_on", "missions": "play.missions.MissionsScene", "days": "play.daily.DaysScene",
     "watch": "watch.scene.WatchScene", "pilots": "watch.pilots.PilotsScene",
@@ -23,8 +23,9 @@ ROUTES: Final = {
     "logbook": "logbook.scene.LogbookScene", "replay": "logbook.replay.ReplayScene",
     "settings": "menus.settings.SettingsScene", "bindings": "menus.keys.BindingsScene",
     "choices": "play.choices.ChoicesScene", "pause": "play.pause.PauseScene",
-    "flight_pause": "play.pause.FlightPauseScene", "learn": "learn.LearnScene", "chapter": "chapter.ChapterScene",
-    "lesson": "lesson.LessonScene", "error_screen": "error_screen.ErrorScene", "study": "train.study.StudyScene",
+    "flight_pause": "play.pause.FlightPauseScene", "learn": "learn.list.LearnScene",
+    "chapter": "learn.scene.ChapterScene", "lesson": "lesson.scene.LessonScene",
+    "error_screen": "error_screen.ErrorScene", "study": "train.study.StudyScene",
 }  # fmt: skip
 
 

@@ -29,8 +29,8 @@ def _load(context: Context) -> None:
 def load(context: Context) -> None:
     """Load and read it at once."""
     from game.digits.kept import read_ahead
-    from game.learn.path import PATH, chapter_type
     from game.scenes import ROUTES
+    from game.scenes.learn.path import PATH, chapter_type
 
     for place in ROUTES.values():
         import_module(f"game.scenes.{place.rpartition('.')[0]}")

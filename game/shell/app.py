@@ -169,6 +169,10 @@ class App:
             self.window.full_screen = self.context.settings.full_screen
             self._follow_window()
         self._look()
+        if texts.choose(self.context.settings.language):
+            typeface.forget()
+            for scene in self.scenes.stack:
+                scene.reword()
         self.context.sound.follow(self.context.settings)
         self.settings_writer.save(self.context.settings)
 

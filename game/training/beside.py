@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import count
 
 from ai.training.history import History
-from game.core import texts
 
 
 @dataclass(frozen=True)
@@ -24,14 +23,6 @@ def put_beside(runs: list[EarlierRun], name: str, run: History) -> None:
     runs[:] = [each for each in runs if each.name != name]
     taken = {each.style for each in runs}
     runs.insert(0, EarlierRun(name, run, next(style for style in count(1) if style not in taken)))
-
-
-def rename_beside(runs: list[EarlierRun], style: int, name: str) -> str:
-    """Rename the earlier run of a line style; return why that cannot be, or ""."""
-    if not name or any(each.name == name and each.style != style for each in runs):
-        return texts.COMPARE_NAME_TAKEN if name else texts.COMPARE_NAME_EMPTY
-    runs[:] = [replace(each, name=name) if each.style == style else each for each in runs]
-    return ""
 
 
 def take_away(runs: list[EarlierRun], style: int) -> None:

@@ -7,13 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from ai.digits.checkpoints import TRAINING_FILE, read_summary
 from ai.digits.classifier import DIGITS_FILE, NETWORK
-from ai.files import brief
+from ai.digits.training import read_summary
+from ai.run import TRAINING_FILE
 from game.core import texts
 from game.core.collection import Collection, ItemKind
-from game.core.names import LONGEST_NAME
-from game.training.run import TrainingRun
 from game.training.workers import DIGITS
 
 PATIENCE: Final = DIGITS.patience  # seconds for a worker's turn
@@ -64,21 +62,7 @@ class DigitModels(Collection[SavedDigitModel]):
     """Collection of a player's own digit networks in `folder`."""
 
     def __init__(self, folder: Path) -> None:
-        super().__init__(folder, ItemKind(PARTS, _read_model, texts.RUN_UNNAMED))
-
-
-def figures_of(run: TrainingRun) -> tuple[str, float, float | None]:
-    """Return the preset, the training time in seconds and the accuracy of a run without a name, as far as known."""
-    history = run.history
-    seconds = float(history["seconds"][-1]) if len(history) else 0.0
-    preset, part = "", history.validations[-1].success if history.validations else None
-    if not run.alive:
-        with suppress(OSError, ValueError):
-            summary = read_summary(run.collection.unsaved)
-            preset, seconds = brief(summary.preset, LONGEST_NAME), summary.seconds
-            known = summary.held_out if summary.test is None else summary.test
-            part = part if known is None else known
-    return preset, seconds, part
+        super().__init__(folder, ItemKind(PARTS, _read_model, lambda: texts.RUN_UNNAMED))
 
 
 def runs_dir(user_dir: Path) -> Path:

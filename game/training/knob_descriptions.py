@@ -65,8 +65,13 @@ class KnobDescription:
         return config.changed(**{self.field: value})
 
 
-def knob_descriptions(of: type[Configuration] = Config) -> list[KnobDescription]:
+def knob_descriptions(of: type[Configuration] = Config) -> tuple[KnobDescription, ...]:
     """Return every knob of a configuration class, in the order of its fields."""
+    return _described(of, texts.LANGUAGE)  # type: ignore[arg-type]
+
+
+@cache
+def _described(of: type[Configuration], language: str) -> tuple[KnobDescription, ...]:  # noqa: ARG001
     made = []
     for item in fields(of):
         if item.name == WEIGHTS:
@@ -76,7 +81,7 @@ def knob_descriptions(of: type[Configuration] = Config) -> list[KnobDescription]
             made.append(KnobDescription(item.name, "", label(item.name), texts.said(described["help"]),
                              described["group"], described["live"], _kind(item), stops,
                              texts.KNOB_ADVICE.get(item.name, ()) if of is Config else ()))  # fmt: skip
-    return made
+    return tuple(made)
 
 
 def label(name: str) -> str:
@@ -95,17 +100,13 @@ def figure(value: Any) -> str:
     if isinstance(value, float):
         written = f"{value:.6g}"
         return f"{value:.7f}".rstrip("0") if "e-" in written else written.replace("-", "−")
-    return f"{value:,}".replace(",", "\u2009").replace("-", "−")
+    return f"{value:,}".replace(",", "\u00a0").replace("-", "−")
 
 
 def told(changes: Mapping[str, Any]) -> str:
     """Format changes for the player, given values by the names of knobs."""
-    return ", ".join(f"{_labels().get(name, name)} {figure(value)}" for name, value in changes.items())
-
-
-@cache
-def _labels() -> dict[str, str]:
-    return {knob.name: knob.label for knob in knob_descriptions()}
+    labels = {knob.name: knob.label for knob in knob_descriptions()}
+    return ", ".join(f"{labels.get(name, name)} {figure(value)}" for name, value in changes.items())
 
 
 def _kind(item: Field[Any]) -> KnobKind:

@@ -9,8 +9,8 @@ from typing import Annotated, Any, Final
 
 from ai.agent.storage import LAST
 from ai.files import Share, Within, brief, inside, read_as, read_json
+from ai.run import TRAINING_FILE
 from ai.training.config import LANDER
-from ai.training.run import TRAINING_FILE
 from game.core import texts
 from game.core.collection import Collection, ItemKind, leads_nowhere, there
 from game.core.names import LONGEST_NAME, reason
@@ -100,7 +100,7 @@ def read_run(folder: Path, name: str = "") -> SavedRun:
     return SavedRun(name, folder, saved, flyable=True, problem=problem)
 
 
-RUNS: Final = ItemKind(_CLAIMS, read_run, texts.RUN_RESCUED)
+RUNS: Final = ItemKind(_CLAIMS, read_run, lambda: texts.RUN_RESCUED)
 
 
 class Library(Collection[SavedRun]):

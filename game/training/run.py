@@ -13,24 +13,10 @@ from ai.explain.digit_lesson import DigitLesson
 from ai.files import CONFIG, state_folder
 from ai.nn import ModelFormatError
 from ai.training.config import InForce
-from ai.training.edits import EditCommand, NetworkEdits
+from ai.training.edits import NetworkEdits
 from ai.training.history import Checkpoint, DigitPoint, History, Point, SettingChange, Validation
 from ai.training.lander_session import TAUGHT
-from ai.training.messages import (
-    AddDemonstrations,
-    AutosaveTo,
-    ChangeSetting,
-    Explain,
-    Finish,
-    NetworkState,
-    Refused,
-    RestoreBest,
-    RestoreCheckpoint,
-    RunStarted,
-    Save,
-    Saved,
-    SwarmState,
-)
+from ai.training.messages import NetworkState, Refused, RunStarted, Saved, SwarmState
 from game.core import texts
 from game.core.collection import Collection
 from game.core.names import LibraryError
@@ -184,7 +170,7 @@ class TrainingRun(OneAfterAnother):
             self._launch = None
         elif self.alive and self.steps and not self.stopping:
             self.stopping = True
-            self._send(Finish())
+            self._send("finish")
             self.resume()
         elif self._worker:
             self._worker.stop()
@@ -195,11 +181,11 @@ class TrainingRun(OneAfterAnother):
         Returns a note for the player, or ""; for a run that goes on, the note comes from `poll`.
         """
         if self.waiting:
-            raise LibraryError(texts.DIGIT_RUN_NOTHING)
+            raise LibraryError(texts.TRAIN_NOTHING)
         if self.alive:
             folder = self.collection.new_folder(name)
             self._saving.append(folder)
-            self._send(Save(folder))
+            self._send("save", folder)
             return ""
         self.collection.keep_rescued(name)
         return texts.TRAIN_SAVED.format(name=name)
@@ -298,35 +284,32 @@ class TrainingRun(OneAfterAnother):
         put_beside(self.earlier, name, history)
         return ""
 
-    # Requests: to the run, and where both can do it, to the experiment
+    # Requests: to the run, and where both can do it, to the experiment; `poll` brings the answers
 
     def change(self, name: str, value: Any) -> None:
         """Change a live setting; one in which the experiment differs, of the run alone."""
-        self._send(ChangeSetting(name, value), both=name not in self.differing)
+        self._send("change", name, value, both=name not in self.differing)
 
     def teach(self, demonstrations: Path) -> None:
-        """Learn from a file of demonstrations as well; `poll` reports it."""
-        self._send(AddDemonstrations(demonstrations), both=True)
+        """Learn from a file of demonstrations as well."""
+        self._send("teach", demonstrations, both=True)
 
     def revert(self, checkpoint: Checkpoint) -> None:
         """Revert the network to the checkpoint of a moment."""
-        self._send(RestoreCheckpoint(checkpoint.decisions), both=True)
+        self._send("restore", checkpoint.decisions, both=True)
 
     def go_back(self) -> None:
         """Revert a digit network to its best."""
         if not self.stopping:
-            self._send(RestoreBest())
+            self._send("restore_best")
 
     def explain(self, slot: int, decisions: int | None = None) -> None:
-        """Ask for the lesson of a lander's latest memory, now or at a time in the past; `poll` puts it in `lesson`.
+        """Ask for the `lesson` of a lander's latest memory, now or at a time in the past, or of an image of digits."""
+        self._send("explain", slot, decisions)
 
-        Of a run of digits, `slot` is an image of its next batch.
-        """
-        self._send(Explain(slot, decisions))
-
-    def edit(self, command: EditCommand) -> None:
-        """Edit the run's network by hand, or take an edit back; its `edits` say how it stands then."""
-        self._send(command)
+    def edit(self, name: str, *arguments: Any) -> None:
+        """Edit the run's network by hand, or take an edit back, by a command of `ai.training.lander_session`."""
+        self._send(name, *arguments)
 
     # The experiment
 
@@ -373,7 +356,7 @@ class TrainingRun(OneAfterAnother):
         self._leaving = None
         with suppress(LibraryError):  # then it replaces what is there
             self.collection.discard_rescued()
-        self._send(AutosaveTo(self.collection.unsaved))
+        self._send("autosave_to", self.collection.unsaved)
 
     def _keep_in_step(self) -> None:
         """Allow both runs as many turns, a few more than the slower one has taken."""

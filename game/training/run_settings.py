@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, Final
 
 from ai.files.knobs import Knobs
-from ai.training.config import PRESETS, InForce, idle
+from ai.training.config import PRESETS, Config, InForce, idle
 from ai.training.experiments import SABOTAGES, sabotaged
 from game.core import texts
 from game.training.knob_descriptions import Configuration, KnobDescription, figure, knob_descriptions, label
@@ -25,23 +25,28 @@ class RunKind:
     """Choices for one kind of run: knobs, presets and sabotages.
 
     Attributes:
-        knob_descriptions: every knob.
+        of: the class of configurations.
         presets: configurations by name.
-        words: label of each preset, and a sentence about it, by its name.
-        sabotages: the same for each part that can be taken away from a preset.
+        words: returns the label of each preset, and a sentence about it, by its name.
+        sabotages: names of the parts that can be taken away from a preset.
         idle: returns which settings of a configuration have no effect in a new run, each with the one that causes it.
         seed_page: the page of knobs that shows the seed.
         first: names of the few knobs to begin with; without them, all are shown.
 
     """
 
-    knob_descriptions: tuple[KnobDescription, ...]
+    of: type[Configuration]
     presets: Mapping[str, Configuration]
-    words: Mapping[str, tuple[str, str]]
+    words: Callable[[], Mapping[str, tuple[str, str]]]
     seed_page: str
-    sabotages: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    sabotages: tuple[str, ...] = ()
     idle: Callable[[Any], Mapping[str, str]] = Knobs.unused
     first: tuple[str, ...] = ()
+
+    @property
+    def knob_descriptions(self) -> tuple[KnobDescription, ...]:
+        """Every knob."""
+        return knob_descriptions(self.of)
 
     def config_of(self, named: Named) -> Configuration:
         """Return the configuration of a preset or a sabotage."""
@@ -62,20 +67,20 @@ class RunKind:
     def word(self, named: Named) -> str:
         """Return the label of a preset or a sabotage."""
         base, sabotage = named
-        return self.sabotages[sabotage][0] if sabotage else self.words.get(base, (base.capitalize(), ""))[0]
+        return texts.SABOTAGES[sabotage][0] if sabotage else self.words().get(base, (base.capitalize(), ""))[0]
 
     def sentence(self, named: Named) -> str:
         """Return the sentence about a preset or a sabotage."""
         base, sabotage = named
-        return self.sabotages[sabotage][1] if sabotage else self.words.get(base, ("", ""))[1]
+        return texts.SABOTAGES[sabotage][1] if sabotage else self.words().get(base, ("", ""))[1]
 
 
 LANDER: Final = RunKind(
-    tuple(knob_descriptions()),
+    Config,
     PRESETS,
-    texts.PRESETS,
+    lambda: texts.PRESETS,
     "lander",
-    {name: texts.SABOTAGES[name] for name in SABOTAGES},
+    tuple(SABOTAGES),
     idle,
     ("learning_rate", "epsilon_end", "discount"),
 )

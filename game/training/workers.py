@@ -111,7 +111,7 @@ class OneAfterAnother:
         if both and self.twin:
             self.twin._ask(order)
 
-    def _send(self, command: Any, *, both: bool = False) -> None:
+    def _send(self, *command: Any, both: bool = False) -> None:
         self._ask(lambda worker: worker.send(command), both=both)
 
     def pause(self) -> None:

@@ -20,10 +20,10 @@ from game.drawing.tokens import FAINT, INK, LABEL, LINE, MUTE, NIGHT0, SMALL, TE
 from game.ui import plotting
 from game.ui.curves import Axes, PaintedRuns, paint_run, trace_run
 from game.ui.plotting import Limits, Numbers
-from game.ui.series import RUN_STYLES, SavedSeries, Series, Tick, draw_legend, paint_ticks
+from game.ui.series import RUN_STYLES, SavedSeries, Series, Tick, paint_ticks
 from game.ui.tooltip import TooltipRow, draw_tooltip
 
-__all__ = ["RUN_STYLES", "Chart", "Series", "Tick", "draw_legend"]
+__all__ = ["RUN_STYLES", "Chart", "Series", "Tick"]
 
 Painted = tuple[Canvas, list[Numbers]]  # a sheet, and each run's value in every pixel column
 
@@ -56,12 +56,13 @@ class Chart:
         *,
         limits: Limits | None = None,
         read: Callable[[float], str] = plotting.compact,
-        read_x: Callable[[float], str] = texts.CHART_SECONDS.format,
+        read_x: Callable[[float], str] | None = None,
         log: bool = False,
-        empty: str = texts.CHART_EMPTY,
+        empty: str = "",
     ) -> None:
         self.box = pygame.FRect(box)
-        self.label, self.read_x, self._empty = label, read_x, empty
+        self.label, self._empty = label, empty or texts.CHART_EMPTY
+        self.read_x = read_x or texts.CHART_SECONDS.format
         self._value: Callable[[float], float] = (lambda height: 10.0**height) if log else float
         self._make_grid = plotting.decades if log else plotting.grid
         self._log, self._read = log, read
@@ -77,7 +78,7 @@ class Chart:
         self.pointed = False  # whether the mouse is over this one
         self._marker: tuple[float, str] | None = None
         self.caption = self.painted_caption = ""  # below the chart: as set, and as the sheet was painted
-        self.painted_latest = ""
+        self.painted_latest: tuple[str, ...] = ()  # of each run, as the sheet was painted
         self._painted: Painted | None = None  # until the numbers or the window change
         self._behind = PaintedRuns()
         self._stale = True
@@ -108,7 +109,10 @@ class Chart:
     @property
     def latest(self) -> str:
         """The latest value of the current run, as it is written; a dash before any."""
-        value = self.runs[0].last() if self.runs else None
+        return self._latest(self.runs[0]) if self.runs else "–"
+
+    def _latest(self, run: SavedSeries) -> str:
+        value = run.last()
         return "–" if value is None else self.read(value)
 
     @property
@@ -223,7 +227,7 @@ class Chart:
 
     def _paint(self, canvas: Canvas) -> Painted:
         self.redraws += 1
-        self.painted_caption, self.painted_latest = self.caption, self.latest
+        self.painted_caption, self.painted_latest = self.caption, tuple(map(self._latest, self.runs))
         sheet = canvas.sheet(self.box.width + 2 * _MARGIN, self.box.height + 2 * _MARGIN)
         box = pygame.FRect(_MARGIN, _MARGIN, *self.box.size)
         plot = pygame.FRect(box.x, box.y + _HEADER, *self.plot.size)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Final, Generic, TypeVar
 
@@ -35,7 +35,7 @@ class ListLayout:
     Attributes:
         box: the list.
         columns: how far from the list's right end each cell after the first ends.
-        headings: heading of each column, the first included.
+        headings: returns the heading of each column, the first included.
         pitch: height of a row.
         verbs: left end and top of the first button for the chosen item.
         foot: top of the button that goes back.
@@ -47,7 +47,7 @@ class ListLayout:
 
     box: pygame.Rect
     columns: tuple[float, ...]
-    headings: Sequence[str]
+    headings: Callable[[], Sequence[str]]
     pitch: float
     verbs: tuple[float, float]
     foot: float
@@ -183,7 +183,7 @@ class ListScene(FormScene, ABC, Generic[Item]):
 
     def _draw_headings(self, canvas: Canvas) -> None:
         box, right, y = self._layout.box, self._list.right, self._layout.box.top - self._layout.rise
-        name, *others = self._layout.headings
+        name, *others = self._layout.headings()
         canvas.text(name, (box.left, y), size=LABEL, weight="medium", colour=MUTE)
         for label, column in zip(others, self._layout.columns, strict=True):
             canvas.text(label, (right - column, y), size=LABEL, weight="medium", colour=MUTE, align="right")

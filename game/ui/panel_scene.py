@@ -66,6 +66,10 @@ class PanelScene(FormScene, ABC):
         self.panel.scroll(scrolled)
         self.lay_out()
 
+    def reword(self) -> None:
+        """Describe the rows in the other language."""
+        self.build()
+
     def room(self, canvas: Canvas) -> pygame.FRect:
         """Return the room of the panel, above the hints, in points."""
         view, (left, width) = canvas.view, self._between(canvas)

@@ -12,10 +12,9 @@ import numpy as np
 import numpy.typing as npt
 import pygame
 
-from game.drawing.canvas import Canvas, Point
-from game.drawing.tokens import FAINT, HUMAN, MUTE, NET, SMALL, Colour
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import FAINT, HUMAN, NET, Colour
 from game.ui.plotting import Limits, Numbers
-from game.ui.tooltip import draw_swatch
 
 _TICK_SPACING: Final = 4.0  # points
 
@@ -115,15 +114,6 @@ class SavedSeries:
     def last(self) -> float | None:
         """Return the latest finite value."""
         return float(self.y[self._finite[-1]]) if len(self._finite) else None
-
-
-def draw_legend(canvas: Canvas, series: Sequence[Series], position: Point) -> float:
-    """Draw the names of runs on one baseline, each with a piece of its line; return the right end in points."""
-    x, y = position
-    for each in series:
-        draw_swatch(canvas, (x, y - 4), each.colour, each.dash)
-        x = canvas.text(each.name, (x + 27, y), size=SMALL, colour=MUTE).right + 20
-    return x - 20
 
 
 def paint_ticks(sheet: Canvas, plot: pygame.FRect, ticks: Sequence[Tick], x_range: Limits) -> None:

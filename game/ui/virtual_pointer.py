@@ -42,11 +42,11 @@ class VirtualPointer(Widget):
         tell: Callable[[pygame.event.Event], object],
         *,
         hold: str = "",
-        leave: str = texts.POINTER_LEAVE,
+        leave: str = "",
         pace: float = 6.0,
     ) -> None:
         super().__init__(manager, box, texts.POINTER)
-        self._hear, self._hold, self._leave, self._pace = tell, hold, leave, pace
+        self._hear, self._hold, self._leave, self._pace = tell, hold, leave or texts.POINTER_LEAVE, pace
         self.place = pygame.Vector2(self.box.center)
         self._held = HeldDirections()
         self._pressed_by: int | None = None  # the key or gamepad button that holds the mouse button down

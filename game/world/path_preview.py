@@ -7,8 +7,8 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, NET
 from game.flight.flight import Flight
 from game.flight.forecast import Drift, Forecast
+from game.flight.foresight import SixFutures
 from game.flight.networks import Policy
-from game.flight.six_futures import SixFutures
 from game.world.camera import View
 from game.world.paths import draw_dotted, draw_faint
 

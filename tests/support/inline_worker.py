@@ -9,8 +9,8 @@ from typing import Any
 
 from game.core.worker import Worker, WorkerState
 from game.core.worker_process import Function, MessageQueue
-from game.learn import pay, runs
 from game.scenes.digits import fixing
+from game.scenes.learn import pay, runs
 from game.training import run as training_run
 
 TURNS = 40  # taken for each poll: some 10 ms of a small training

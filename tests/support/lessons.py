@@ -11,8 +11,6 @@ from ai.explain.agent_lesson import Lesson
 from ai.explain.digit_lesson import DigitLesson, explain_digit
 from ai.training.config import PRESETS, Config
 from ai.training.lander_session import live
-from ai.training.messages import Explain
-from game.lesson.frame import PICTURE
 from tests.support.driver import Driver
 from tests.support.written import words_written
 
@@ -35,7 +33,7 @@ def lesson_from(config: Config, turns: int = 60, slot: int = 0) -> Lesson:
     run = live(config, 3)
     for _ in range(turns + 1):
         next(run)
-    answer = run.send(Explain(slot))
+    answer = run.send(("explain", slot))
     run.close()
     (lesson,) = [message for message in answer if isinstance(message, Lesson)]
     return lesson
@@ -54,18 +52,11 @@ def digit_lesson_of(name: str) -> DigitLesson:
 
 def shown(driver: Driver, frame: int) -> list[str]:
     """Go to a frame and return what is written on the screen there."""
-    driver.top.show(frame)
     import pytest  # which benchmarks do without
 
     with pytest.MonkeyPatch.context() as patch:
         words = words_written(patch)
+        driver.top.show(frame)
         driver.app.canvas.attach(driver.app.window.surface)
-        for part in driver.top.parts:
-            part.frame.changed()
         driver.frames(2)
     return words
-
-
-def in_view(place: tuple[float, float]) -> tuple[float, float]:
-    """Return a place of the picture of a frame in points of the view."""
-    return place[0] + PICTURE.x, place[1] + PICTURE.y

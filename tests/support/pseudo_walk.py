@@ -32,20 +32,18 @@ from game.core.scene import Scene
 from game.core.settings import Settings
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
-from game.learn import pay
-from game.learn.daring import DaringChapter
-from game.learn.memory import MemoryChapter
-from game.learn.target import TargetChapter
 from game.scenes import scene_of
-from game.scenes.chapter import ChapterScene
 from game.scenes.digits.inside import DigitInsideScene
 from game.scenes.error_screen import ErrorScene
-from game.scenes.lesson import LessonScene
-from game.scenes.menus.dialogs import QuestionDialog
+from game.scenes.learn import pay
+from game.scenes.learn.duels import DaringChapter, TargetChapter
+from game.scenes.learn.memory import MemoryChapter
+from game.scenes.learn.scene import ChapterScene
+from game.scenes.lesson.scene import LessonScene
 from game.scenes.play.scene import PlayScene
 from game.scenes.train.base import INSIDE
 from game.shell.app import App
-from game.training.beside import put_beside, rename_beside
+from game.training.beside import put_beside
 from game.training.run import TrainingRun
 from game.ui.context import Context
 from game.ui.widgets import Choice
@@ -67,19 +65,16 @@ Happens = Callable[[Driver], object]
 
 def trained(driver: Driver) -> None:
     """Train landers for a moment."""
-    if isinstance(driver.top, QuestionDialog):  # about the run of the visit before
-        driver.key(pygame.K_ESCAPE)
-    run = driver.top.lander_run
+    run = driver.top.run
     learn(driver, run, LANDERS, lambda: len(run.history) >= 2)
 
 
 def rewound(driver: Driver) -> None:
     """Train landers, with earlier runs beside them, and go back to the middle of the run."""
     trained(driver)
-    run, rewind = driver.top.lander_run, driver.top.rewind
+    run, rewind = driver.top.run, driver.top.rewind
     for _ in range(5):
-        put_beside(run.earlier, run.name, run.history.copy())
-        rename_beside(run.earlier, run.earlier[0].style, texts.TRAIN_TAUGHT_NAME.format(preset=len(run.earlier)))
+        put_beside(run.earlier, texts.TRAIN_TAUGHT_NAME.format(preset=len(run.earlier)), run.history.copy())
     driver.frames(20)
     rewind.seek(run.history["decisions"][-1] / 2)
     driver.frames(5)
@@ -107,17 +102,14 @@ def edited_and_back(driver: Driver) -> None:
 
 def taught_to_read(driver: Driver) -> None:
     """Train a network to read for a moment."""
-    run = driver.top.digit_run
+    run = driver.top.run
     learn(driver, run, DIGITS, lambda: run.confusion and len(run.history))
 
 
 def listed(driver: Driver) -> None:
-    """Open the list of sabotages, without the run of an earlier visit."""
-    if isinstance(driver.top, QuestionDialog):
-        driver.press_on(texts.TRAIN_LEFT_DISCARD)
-        driver.skip(310)  # until the note on it has gone
+    """Open the list of sabotages."""
     driver.top.knobs.set_config(LANDERS, 3)
-    driver.top.pages.open()
+    driver.top.laboratory.open()
     driver.frames(2)
 
 
@@ -131,7 +123,7 @@ def experimented(driver: Driver) -> None:
     """Guess, and fly two runs side by side for a moment."""
     asked(driver)
     driver.press_on(texts.LAB_GUESSES["later"])
-    driver.wait(lambda: driver.top.lander_run.twin and len(driver.top.lander_run.twin.history) >= 2)
+    driver.wait(lambda: driver.top.run.twin and len(driver.top.run.twin.history) >= 2)
     driver.press_on(texts.TRAIN_PAUSE)
     driver.frames(5)
 

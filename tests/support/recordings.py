@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ai.training.config import PRESETS, Config
-from ai.training.history import History, Point, SettingChange
+from ai.training.history import Checkpoint, History, Point, SettingChange
 
 _MADE_WITH = PRESETS | {"modern": Config()}  # recorded before modern learned as it does now
 FILE = Path(__file__).parents[1] / "ai" / "training" / "broken_runs.npz"
@@ -30,33 +30,46 @@ class Recorded:
 
 
 @cache
-def _file() -> tuple[dict[str, Any], dict[str, np.ndarray]]:
+def _file() -> tuple[list[str], dict[str, tuple[dict[str, Any], np.ndarray]]]:
+    """Names of the columns; every case with its table, by the name that it has today."""
     with np.load(FILE, allow_pickle=False) as arrays:
         told = json.loads(str(arrays["described"]))
-        return told, {name: arrays[name].T.astype(float) for name in told["cases"]}
+        return told["columns"], {
+            " ".join(map(Config.name_now, name.split())): (case, arrays[name].T.astype(float))
+            for name, case in told["cases"].items()
+        }
 
 
 def names() -> list[str]:
     """The names of all recordings."""
-    return list(_file()[0]["cases"])
+    return list(_file()[1])
+
+
+def turns(name: str) -> list[tuple[int, str, Any]]:
+    """When which knob was turned to what."""
+    return [tuple(turn) for turn in _file()[1][name][0]["turns"]]
 
 
 def growing(name: str) -> Iterator[Recorded]:
     """A recording as it grew, point by point; the history is the same object each time."""
-    told, tables = _file()
-    case = told["cases"][name]
+    columns, cases = _file()
+    case, table = cases[name]
     config = Config.from_json(_MADE_WITH[case["preset"]].to_json() | Config.renamed(case["changes"]))
-    turns, history = [tuple(turn) for turn in case["turns"]], History()
+    left, history, checkpoint_at = turns(name), History(), 0.0
     history.reward_scale = config.reward_scale
-    for row in tables[name]:
-        point = dict(zip(told["columns"], row.tolist(), strict=True))
+    for row in table:
+        point = dict(zip(columns, row.tolist(), strict=True))
         shares = [None if np.isnan(share) else share for share in (point.pop("dead_share"), point.pop("clipped_share"))]
-        while turns and point["decisions"] > turns[0][0]:
-            at, knob, value = turns.pop(0)
+        while left and point["decisions"] > left[0][0]:
+            at, knob, value = left.pop(0)
             turned = config.turned(knob, value)
             history.append(SettingChange(at, knob, attrgetter(knob)(config), attrgetter(knob)(turned)))
             config = turned
-        history.append(Point(**point, steps_per_second=0.0, landed=point["success"]))
+        if point["decisions"] >= checkpoint_at:
+            at, success = (int(point["decisions"]), point["success"]) if checkpoint_at else (0, 0.0)
+            history.append(Checkpoint(point["seconds"], at, success, np.zeros(3, np.float32)))
+            checkpoint_at = max(point["decisions"] + 10_240, 2_500.0) if checkpoint_at else 2_500.0
+        history.append(Point(**point))
         yield Recorded(history, config, *shares)
 
 

@@ -17,11 +17,11 @@ from ai.digits.training import DigitTraining
 from ai.nn import FullyConnectedLayer, ModelFormatError, NeuralNetwork
 from ai.nn.costs import CostFunctions
 from ai.training import demonstrations
-from ai.training.checkpoints import AGENTS, DIGITS, resume_digit_run, resume_run
 from ai.training.config import PRESETS
 from ai.training.demonstrations import Demonstration
 from ai.training.history import Checkpoint, History, Point, SettingChange, Validation
 from ai.training.loop import Training
+from ai.training.run import resume, save
 from game.core.settings import Settings, SettingsFile
 from game.flight import flight_file
 from game.flight.flight import Recording, StickHolder
@@ -76,11 +76,11 @@ def _training(version: int) -> Training:
 def _run(folder: Path, version: int) -> None:
     training, history = _training(version), History()
     training.best = training.task.evaluate(training.agent, 1, 0)
-    history.append(Point(*[float(version)] * 10))
+    history.append(Point(*[float(version)] * 9))
     history.append(Checkpoint(0.0, 0, 0.0, training.agent.network.values.copy(), None))
     history.append(Validation(0, 0.5, 1.0, best=True))
     history.append(SettingChange(0, "discount", 0.9, 0.99))
-    AGENTS.save(training, folder / "models" / "run", state=False)
+    save(training, folder / "models" / "run", state=False)
     history.write(folder / "models" / "run")
 
 
@@ -89,7 +89,7 @@ def _read_run(folder: Path) -> Any:
     for listed in Library(folder).runs():
         f"{listed.name} {listed.decisions:,} {listed.seconds:.0f} {listed.success or 0:.0%}"
     History.read(folder / "models" / "run")
-    training = resume_run(folder / "models" / "run")
+    training = resume(Training, folder / "models" / "run")
     training.advance()
     if training.best is not None:
         training.best.better_than(training.best)
@@ -101,12 +101,12 @@ def _digits(folder: Path, version: int) -> None:
     training = DigitTraining(config, 0, _data())
     training.advance()
     training.seconds = float(version)
-    DIGITS.save(training, folder / "run")
+    save(training, folder / "run")
 
 
 def _read_digits(folder: Path) -> Any:
     DigitClassifier.load(folder / "run").predict(np.zeros((28, 28)))
-    training = resume_digit_run(folder / "run", data=_data())
+    training = resume(DigitTraining, folder / "run", data=_data())
     if not training.done:
         with np.errstate(all="ignore"):
             training.advance()
@@ -120,7 +120,9 @@ def _demonstrations(folder: Path, version: int) -> None:
 
 def _read_demonstrations(folder: Path) -> Any:
     found = demonstrations.read(folder / "demonstrations.json")
-    demonstrations.relive([each for each in found if len(each.actions) < 10], PRESETS["modern"])
+    for each in found:
+        if len(each.actions) < 10:
+            demonstrations.relive(each, PRESETS["modern"])
     return found[0].seed if found else None
 
 

@@ -16,21 +16,20 @@ from game.core.scene import Push, Scene
 from game.flight import sharing
 from game.flight.days import Days
 from game.flight.flight_file import Record
-from game.learn.path import FIRST, PATH
-from game.scenes.chapter import ChapterScene
 from game.scenes.digits.dream import DreamScene
 from game.scenes.digits.inside import DigitInsideScene
 from game.scenes.digits.quiz import QuizScene
 from game.scenes.digits.scene import DigitsScene
 from game.scenes.digits.why_not import WhyNotScene
-from game.scenes.learn import LearnScene
-from game.scenes.lesson import LessonScene
+from game.scenes.learn.list import LearnScene
+from game.scenes.learn.path import FIRST, PATH
+from game.scenes.learn.scene import ChapterScene
+from game.scenes.lesson.scene import LessonScene
 from game.scenes.logbook.replay import ReplayScene
 from game.scenes.logbook.scene import LogbookScene
 from game.scenes.menus.dialogs import ListDialog, NameDialog, QuestionDialog
-from game.scenes.menus.flights import FlightsScene
 from game.scenes.menus.keys import BindingsScene
-from game.scenes.menus.menu import MenuScene
+from game.scenes.menus.menu import FlightsScene, MenuScene
 from game.scenes.menus.settings import SettingsScene
 from game.scenes.physics.exhibits import EXHIBITS, Exhibit
 from game.scenes.physics.scene import PhysicsScene

@@ -21,13 +21,13 @@ from game.core.scene import Scene
 from game.flight.days import Attempt, Days
 from game.flight.flight import Flight
 from game.flight.logbook import Records
-from game.learn.path import PATH
-from game.scenes.chapter import ChapterScene
 from game.scenes.digits.dream import DreamScene
 from game.scenes.digits.inside import DigitInsideScene
 from game.scenes.digits.quiz import QuizScene
 from game.scenes.digits.why_not import WhyNotScene
-from game.scenes.lesson import LessonScene
+from game.scenes.learn.path import PATH
+from game.scenes.learn.scene import ChapterScene
+from game.scenes.lesson.scene import LessonScene
 from game.scenes.logbook.replay import ReplayScene
 from game.scenes.menus.dialogs import ListDialog, NameDialog, QuestionDialog
 from game.scenes.physics.exhibits import EXHIBITS

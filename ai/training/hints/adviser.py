@@ -76,12 +76,11 @@ class Adviser:
         self._since = {name: self._since.get(name, now) for name in holding}
         if self.shown is not None and now - self._shown_since < STAY:
             return self.shown
-        ripe = [
-            rule
-            for name, rule in holding.items()
+        ripe = (
+            rule for name, rule in holding.items()
             if now - self._since[name] >= HOLD and now >= self._rests.get(name, 0.0)
-        ]
-        self._show(ripe[0] if ripe else None, run)
+        )  # fmt: skip
+        self._show(next(ripe, None), run)
         return self.shown
 
     def _show(self, rule: HintRule | None, run: RecentCurves) -> None:

@@ -26,13 +26,19 @@ _PARTS: Final = ("distance", "speed", "alignment")  # of the reward, that say ho
 
 
 class HintRule(NamedTuple):
-    """Rule for one fault; `back_to` is the moment to go back to, in decisions.
+    """Rule for one fault.
 
-    One `of_settings` needs no curves: it holds as soon as a setting is changed.
+    Attributes:
+        about: the charts that it is about.
+        remedy: values to try.
+        back_to: the moment to go back to, in decisions.
+        of_settings: whether it needs no curves: then it holds as soon as a setting is changed.
+
     """
 
     name: str
     holds: Callable[[RecentCurves], bool]
+    about: tuple[str, ...] = ("success", "mean_return")
     remedy: Callable[[RecentCurves], Mapping[str, Any]] = lambda _: {}
     back_to: Callable[[RecentCurves], int | None] = lambda _: None
     of_settings: bool = False
@@ -43,7 +49,7 @@ class HintRule(NamedTuple):
 
 def _damaged(run: RecentCurves) -> bool:
     """Whether steps were far too long at some time, and the network still shows the damage."""
-    if run.damaged_at() is None or run.last("landed") > 0.5:
+    if run.damaged_at() is None or run.last("success") > 0.5:
         return False
     return any(sign(run) for sign in (_loss_explodes, _q_runs_away, _dead_units, _collapsed, _crashes, _hovers))
 
@@ -73,16 +79,13 @@ def _target_stands(run: RecentCurves) -> bool:
 
 def _short_sight(run: RecentCurves) -> bool:
     """Whether the discount makes a reward a second later, after fifteen decisions, count for little."""
-    return run.is_late() and run.config.discount < 0.96 and run.last("landed") < 0.6
+    return run.is_late() and run.config.discount < 0.96 and run.last("success") < 0.6
 
 
 def _no_guide(run: RecentCurves) -> bool:
     """Whether no part of the reward tells a lander on its way that it comes closer."""
-    return (
-        run.is_late()
-        and run.last("landed") < 0.6
-        and not any(getattr(run.config.reward_weights, part) for part in _PARTS)
-    )
+    weights = run.config.reward_weights
+    return run.is_late() and run.last("success") < 0.6 and not any(getattr(weights, part) for part in _PARTS)
 
 
 def _dead_units(run: RecentCurves) -> bool:
@@ -98,11 +101,11 @@ def _collapsed(run: RecentCurves) -> bool:
 
 
 def _crashes(run: RecentCurves) -> bool:
-    return run.is_late() and run.last("crashed") + run.last("out_of_bounds") >= 0.85 and run.last("landed") <= 0.1
+    return run.is_late() and run.last("crashed") + run.last("out_of_bounds") >= 0.85 and run.last("success") <= 0.1
 
 
 def _hovers(run: RecentCurves) -> bool:
-    return run.is_late() and run.last("timed_out") >= 0.5 and run.last("landed") <= 0.3
+    return run.is_late() and run.last("timed_out") >= 0.5 and run.last("success") <= 0.3
 
 
 def _plateau(run: RecentCurves) -> bool:
@@ -117,7 +120,7 @@ def _small_memory(run: RecentCurves) -> bool:
 def _overfed(run: RecentCurves) -> bool:
     """Whether each memory is learned from some hundred times: 64 times by `classic`, 8 times by `modern`."""
     config = run.config
-    return config.gradient_steps * config.batch_size > 500 * config.num_envs and not run.last("landed") >= 0.6
+    return config.gradient_steps * config.batch_size > 500 * config.num_envs and not run.last("success") >= 0.6
 
 
 def _clipped(run: RecentCurves) -> bool:
@@ -152,26 +155,20 @@ def _as_before(run: RecentCurves) -> Mapping[str, Any]:
     return {each.name: each.before for each in run.blamed() if each.name != EDITED}
 
 
-def _before_turn(run: RecentCurves, name: str) -> int | None:
-    """Where the run was before what is to blame was changed, if its name begins so: what came of it would stay."""
-    turned = [each.decisions for each in run.blamed() if each.name.startswith(name)]
-    checkpoint = run.history.checkpoint_at(min(turned)) if turned else None
-    return checkpoint.decisions if checkpoint else None
+def _before(name: str) -> Callable[[RecentCurves], int | None]:
+    """Return what finds the moment before a change that is to blame, if its name begins so: its traces would stay."""
 
+    def back_to(run: RecentCurves) -> int | None:
+        turned = [each.decisions for each in run.blamed() if each.name.startswith(name)]
+        checkpoint = run.history.checkpoint_at(min(turned)) if turned else None
+        return checkpoint.decisions if checkpoint else None
 
-def _before_other_pay(run: RecentCurves) -> int | None:
-    return _before_turn(run, "reward_weights.")
-
-
-def _before_edit(run: RecentCurves) -> int | None:
-    return _before_turn(run, EDITED)
+    return back_to
 
 
 def _for_crashes(run: RecentCurves) -> Mapping[str, Any]:
-    config = run.config
-    if config.optimizer == "sgd" and config.learning_rate < 0.02:
-        return {"optimizer": "adam"}
-    return {}
+    slow = run.config.optimizer == "sgd" and run.config.learning_rate < 0.02
+    return {"optimizer": "adam"} if slow else {}
 
 
 def _less_random(run: RecentCurves) -> Mapping[str, Any]:
@@ -198,30 +195,26 @@ def _fewer_steps(run: RecentCurves) -> Mapping[str, Any]:
     return {"gradient_steps": enough} if config.gradient_steps > 16 and enough else {"num_envs": 256}
 
 
+_LEARNING: Final = ("success", "mean_return", "loss")
 # The most severe first.
 RULES: Final = (
-    HintRule(
-        "rate_too_high",
-        lambda run: rate_too_high(run.config, int(run.last("decisions", 1))),
-        _sane_rates,
-        _before_damage,
-        of_settings=True,
-    ),
-    HintRule("damaged", _damaged, back_to=_before_damage),
-    HintRule("changed", lambda run: bool(_as_before(run)), _as_before, _before_other_pay),
-    HintRule("edited", lambda run: any(each.name == EDITED for each in run.blamed()), back_to=_before_edit),
-    HintRule("loss_explodes", _loss_explodes),
-    HintRule("q_runs_away", _q_runs_away),
-    HintRule("dead_units", _dead_units),
+    HintRule("rate_too_high", lambda run: rate_too_high(run.config, int(run.last("decisions", 1))), _LEARNING,
+             _sane_rates, _before_damage, of_settings=True),
+    HintRule("damaged", _damaged, _LEARNING, back_to=_before_damage),
+    HintRule("changed", lambda run: bool(_as_before(run)), remedy=_as_before, back_to=_before("reward_weights.")),
+    HintRule("edited", lambda run: any(each.name == EDITED for each in run.blamed()), back_to=_before(EDITED)),
+    HintRule("loss_explodes", _loss_explodes, ("loss",)),
+    HintRule("q_runs_away", _q_runs_away, ("mean_return", "loss")),
+    HintRule("dead_units", _dead_units, _LEARNING),
     HintRule("collapsed", _collapsed, back_to=RecentCurves.best_moment),
-    HintRule("target_stands", _target_stands, _nearer_target, of_settings=True),
+    HintRule("target_stands", _target_stands, _LEARNING, _nearer_target, of_settings=True),
     HintRule("short_sight", _short_sight),
     HintRule("no_guide", _no_guide),
-    HintRule("crashes", lambda run: _crashes(run) and run.best() < 0.6, _for_crashes),  # "still": it never landed
+    HintRule("crashes", lambda run: _crashes(run) and run.best() < 0.6, remedy=_for_crashes),  # "still": never landed
     HintRule("hovers", _hovers),
-    HintRule("small_memory", _small_memory, _more_memory, of_settings=True),
-    HintRule("overfed", _overfed, _fewer_steps, of_settings=True),
-    HintRule("random", lambda run: run.is_late() and run.last("epsilon") > 0.3, _less_random),
-    HintRule("clipped", _clipped),
+    HintRule("small_memory", _small_memory, _LEARNING, _more_memory, of_settings=True),
+    HintRule("overfed", _overfed, _LEARNING, _fewer_steps, of_settings=True),
+    HintRule("random", lambda run: run.is_late() and run.last("epsilon") > 0.3, ("epsilon", "success"), _less_random),
+    HintRule("clipped", _clipped, ("loss",)),
     HintRule("plateau", _plateau),
-)
+)  # fmt: skip

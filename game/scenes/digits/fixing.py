@@ -8,10 +8,11 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
-from ai.digits.checkpoints import TRAINING_FILE, read_summary
 from ai.digits.fix import Fixed, FixStep, fix
 from ai.digits.preprocessing import Image
+from ai.digits.training import read_summary
 from ai.files import CONFIG
+from ai.run import TRAINING_FILE
 from game.core import texts
 from game.core.worker import Worker, WorkerState
 from game.training.digit_models import PATIENCE, models_by_name

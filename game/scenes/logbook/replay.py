@@ -27,9 +27,9 @@ from game.export.export import Export
 from game.flight import networks, sharing
 from game.flight.flight import StickHolder
 from game.flight.flight_file import Record
+from game.flight.foresight import SixFutures
 from game.flight.outcomes import ending_word
 from game.flight.replay import FlightReplay, flown_elsewhere
-from game.flight.six_futures import SixFutures
 from game.input.controls import Command
 from game.panels import readouts
 from game.panels.explained import Explained
@@ -95,21 +95,17 @@ class ReplayScene(FormScene):
         self._look()
 
     def enter(self) -> None:
-        """Show the moment where it was left, stopped."""
         self.playback.stopped = True
         self._scenery.calm = self.context.settings.reduced_motion
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Explain, or pass the event to the actions and the widgets."""
         return None if self.explained.handle_event(event) else super().handle_event(event)
 
     def close(self) -> None:
-        """Cancel an unfinished film export, and tell the player."""
         if self.export:
             self._stop_export()
 
     def actions(self) -> Table:
-        """Stop, step and seek; take over; go back."""
         stop, step, *speeds = self.playback.actions(
             texts.HINT_STEP, stop=self._stop_or_go, gamepad=Command.CONFIRM, resting=self.ended
         )
@@ -131,14 +127,12 @@ class ReplayScene(FormScene):
         return [*table, Action(pygame.K_t, self._show_futures, texts.REPLAY_FUTURES), self.explained.action()]
 
     def hint_rows(self, canvas: Canvas) -> list[HintRow]:
-        """Return the hints on the right of the seconds, in two rows."""
         right, top = canvas.view.right - MARGIN, canvas.view.top
         room, hints = right - VIEW_SIZE[0] / 2 - _FIGURE, self.hints
         rows = ((hints[:_FIRST_HINTS], 38), (hints[_FIRST_HINTS:], 60))
         return [HintRow(row, (right, top + y), from_right=True, room=room) for row, y in rows if row]
 
     def update(self) -> Transition | None:
-        """Advance by as many steps as the chosen speed makes due, and simulate a little further ahead."""
         self.flight_replay.scout(1 if self.flight_replay.touching else _SCOUT)
         self._look_ahead()
         self._reward_bar.reached = self.flight_replay.reached
@@ -307,7 +301,6 @@ class ReplayScene(FormScene):
     # The picture
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the moment that is shown, and the strip of time."""
         self.draw_world(canvas, alpha)
         self._draw_words(canvas)
 

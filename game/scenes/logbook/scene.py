@@ -15,11 +15,10 @@ from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, MUTE, SMALL, TITLE
 from game.flight import sharing
 from game.flight.becoming import KINDS, curves, kind_of, said, tells
 from game.flight.flight_file import Entry, Record
-from game.flight.friend import paste
-from game.flight.logbook import Records, best, totals
+from game.flight.friend import copy, paste
+from game.flight.logbook import Records, best
 from game.flight.outcomes import ending_word
 from game.ui.actions import Action, Table
-from game.ui.clipboard import give
 from game.ui.listing import Row
 from game.ui.panel_scene import PanelScene
 
@@ -29,15 +28,15 @@ if TYPE_CHECKING:
     from game.ui.panel import Column, Panel
 
 _LEAST: Final = 320.0  # points of a column
-_COLUMNS: Final = (284.0, 160.0, 84.0, 0.0)  # from the right end of the list: where course, end, points and pilot end
-_PITCH, _AROUND = 28.0, 150.0  # points of a row of the list, and above and below the list
+_COLUMNS: Final = (150.0, 0.0)  # from the right end of the list: where course and result end
+_PITCH: Final = 30.0  # points of a row of the list
 _CHART: Final = 130.0  # points of the chart's height
 _BAND: Final = 0.16  # opacity
 _LATEST: Final = 60  # flights on the chart
 
 
 class LogbookScene(PanelScene):
-    """Flights in a list, newest first; beside it, or below, what can be done with the chosen one, and the estimate.
+    """Flights in a list, newest first; beside it, or below, what can be done with the chosen one; then the estimate.
 
     Attributes:
         items: what is listed.
@@ -49,38 +48,31 @@ class LogbookScene(PanelScene):
         super().__init__(context)
         self._records = Records(context.user_dir)
         self._filter, self._last_thrown = 0, ""
+        self._more = False  # whether the estimate is shown
         self.chosen: Entry | None = None
-        self._read()
+        self.enter()
         told = [entry for entry in self._entries if tells(entry)] or self._entries
-        self._kind = KINDS.index(kind_of(told[-1])) if told else 0  # of the last flight that tells something
-        self.build()
+        self._kind = kind_of(told[-1]) if told else KINDS[0]  # of the last flight that tells something
 
     def enter(self) -> None:
-        """Read again what there is, which the scene above may have changed."""
-        self._read()
-        self.build()
-
-    def _read(self) -> None:
-        """Read the flights from disk."""
+        """Read the flights from disk, which the scene above may have changed."""
         self._entries = self._records.entries()
         self._kept, self._thrown = self._records.kept(), self._records.thrown()
-        self._curves = curves(self._entries)
-
-    # Rows
+        self.build()
 
     def describe(self, panel: Panel) -> None:
         """Add the list, and the chosen flight."""
         panel.title(texts.LOGBOOK_TITLE)
-        panel.aside(self._records.problem or self._sums)
-        panel.gap(4)
+        if self._records.problem:
+            panel.aside(self._records.problem)
         left, self._beside = panel.beside((3, 2), _LEAST, 48.0)
         left.choice("", texts.LOGBOOK_FILTERS, self._filter, self._show, size=SMALL)
         self.items: list[Entry] = self._shown
         index = self.items.index(self.chosen) if self.chosen in self.items else 0
         self.chosen = self.items[index] if self.items else None
         self._list = left.listing(
-            [self._row(entry) for entry in self.items], lambda _: self._watch(), texts.LOGBOOK_EMPTY, around=_AROUND,
-            index=index, on_choose=self._choose, columns=_COLUMNS, pitch=_PITCH, size=SMALL + 1,
+            [self._row(entry) for entry in self.items], lambda _: self._watch(), texts.LOGBOOK_EMPTY, index=index,
+            on_choose=self._choose, columns=_COLUMNS, pitch=_PITCH, size=SMALL + 1,
         )  # fmt: skip
         left.button(texts.CODE_PASTE, partial(paste, self.context))
         self.form.focus(self._list)
@@ -90,40 +82,37 @@ class LogbookScene(PanelScene):
     def _shown(self) -> list[Entry]:
         """The flights that pass the filter, newest first, or the best flights by their score."""
         newest = self._entries[::-1]
-        return [
-            newest,
-            [entry for entry in newest if entry.landed],
-            [entry for entry in best(self._entries) if not entry.outdated],
-        ][self._filter]
-
-    @property
-    def _sums(self) -> str:
-        sums = totals(self._entries)
-        return texts.LOGBOOK_TOTALS.format(
-            flights=sums.flights, landings=sums.landings, minutes=round(sums.seconds / 60), streak=sums.streak
-        )
+        if self._filter == 1:
+            return [entry for entry in newest if entry.landed]
+        return [entry for entry in best(newest) if not entry.outdated] if self._filter else newest
 
     def _describe_chosen(self, column: Column) -> None:
-        """Add what can be done with the chosen flight, why it does not count, and the estimate."""
+        """Add what can be done with the chosen flight, why it does not count, and the estimate for whoever asks."""
         entry = self.chosen
         if entry and self._replayable:
             column.button(texts.LOGBOOK_WATCH, self._watch, size=TITLE, colour=INK)
-            more = ((texts.LOGBOOK_RACE, self._race), (texts.CODE_COPY, self._copy))
-            column.words([*more, (texts.LOGBOOK_THROW_AWAY, self._throw_away)])
+            column.words([
+                (texts.LOGBOOK_RACE, self._race), (texts.LOGBOOK_COPY, self._copy),
+                (texts.LOGBOOK_THROW_AWAY, self._throw_away),
+            ])  # fmt: skip
         elif entry and entry.file in self._thrown:
             column.button(texts.LOGBOOK_BRING_BACK, self._bring_back, size=TITLE, colour=INK)
         if entry:
-            for words in filter(None, (why_in_brackets(entry), self._records.why_gone(entry))):
+            for words in filter(None, (who_and_when(entry), why_in_brackets(entry), self._records.why_gone(entry))):
                 column.aside(words)
         column.gap(14)
-        column.caption(texts.BECOMING_TITLE)
-        column.choice("", [texts.BECOMING_KINDS[kind] for kind in KINDS], self._kind, self._show_kind, size=SMALL)
-        column.aside(lambda: said(self._curves[KINDS[self._kind]][-1]))
-        column.picture(_CHART, self._draw_estimate)
+        column.button(texts.CHOICES_LESS if self._more else texts.CHOICES_MORE, self._switch_more)
+        if self._more:
+            column.caption(texts.BECOMING_TITLE)
+            self._curves = curves(self._entries)
+            kinds = [texts.BECOMING_KINDS[kind] for kind in KINDS]
+            column.choice("", kinds, KINDS.index(self._kind), self._show_kind, size=SMALL)
+            column.aside(lambda: said(self._curves[self._kind][-1]))
+            column.picture(_CHART, self._draw_estimate)
 
     def _row(self, entry: Entry) -> Row:
-        when, course, end, *more = entry_row(entry)
-        return when, course, texts.LOGBOOK_ROW_THROWN if entry.file in self._thrown else end, *more
+        when, course, result = entry_row(entry)
+        return when, course, texts.LOGBOOK_ROW_THROWN if entry.file in self._thrown else result
 
     def actions(self) -> Table:
         """Move, choose, go back; the Delete key throws a flight away, and Z brings it back."""
@@ -138,10 +127,14 @@ class LogbookScene(PanelScene):
         self.form.focus(self.form.widgets[0])
 
     def _show_kind(self, number: int) -> None:
-        self._kind = number
+        self._kind = KINDS[number]
+
+    def _switch_more(self) -> None:
+        self._more = not self._more
+        self._choose(self._list.index)
 
     def _choose(self, number: int) -> None:
-        self.chosen = self.items[number]
+        self.chosen = self.items[number] if self.items else None
         self._beside.clear()
         self._describe_chosen(self._beside)
 
@@ -160,17 +153,14 @@ class LogbookScene(PanelScene):
             return None
 
     def _watch(self) -> Transition | None:
-        record = self._record()
-        return push("replay", record) if record else None
+        return push("replay", record) if (record := self._record()) else None
 
     def _race(self) -> Transition | None:
-        record = self._record()
-        return push("race", record) if record else None
+        return push("race", record) if (record := self._record()) else None
 
     def _copy(self) -> None:
         if record := self._record():
-            code = sharing.code(record)
-            give(self.context, code, texts.CODE_COPIED)
+            copy(self.context, record)
 
     def _throw_away(self) -> None:
         if self.chosen and self._replayable:
@@ -191,18 +181,17 @@ class LogbookScene(PanelScene):
         self.enter()
         self.form.focus(self._list)
 
-    # The picture
-
     def _draw_estimate(self, canvas: Canvas, box: pygame.FRect) -> None:
         """Draw of how many flights in ten the player would land, flight after flight; nothing before that is known."""
-        *_, latest = curve = self._curves[KINDS[self._kind]][1:][-_LATEST:] or self._curves[KINDS[self._kind]]
-        if not latest.known:
+        curve = self._curves[self._kind]
+        if not curve[-1].known:
             return
         area = pygame.FRect(box.left, box.top + 12, box.width - 28, box.height - 24)
         for share in (0.0, 0.5, 1.0):
             y = area.bottom - area.height * share
             canvas.line((area.left, y), (area.right, y), FAINT, alpha=0.7)
             canvas.text(str(round(10 * share)), (area.right + 10, y + 4), size=LABEL, colour=MUTE)
+        curve = curve[1:][-_LATEST:]
         step = area.width / max(20, len(curve))
 
         def place(number: float, share: float) -> Point:
@@ -214,8 +203,13 @@ class LogbookScene(PanelScene):
         points = [place(number + 0.5, estimate.mean) for number, estimate in enumerate(curve)]
         for start, end in pairwise(points):
             canvas.line(start, end, HUMAN, 1.5)
-        for point in points[-1:]:
-            canvas.dot(point, 4, HUMAN)
+        canvas.dot(points[-1], 4, HUMAN)
+
+
+def who_and_when(entry: Entry) -> str:
+    """Return when a flight ended, and who flew it."""
+    by = {1.0: texts.LOGBOOK_YOU, 0.0: texts.LOGBOOK_NETWORK}.get(entry.human, texts.LOGBOOK_SHARED)
+    return f"{time.strftime('%H:%M', time.localtime(entry.when))}, {by}"
 
 
 def why_in_brackets(entry: Entry) -> str:
@@ -225,9 +219,8 @@ def why_in_brackets(entry: Entry) -> str:
 
 
 def entry_row(entry: Entry) -> Row:
-    """Return a flight as a row of the logbook: when, what, how it ended, points, and who flew."""
-    when = time.strftime("%Y-%m-%d %H:%M", time.localtime(entry.when))
+    """Return a flight as a row of the logbook: the day, what, and its points or how it ended."""
     points = (texts.LOGBOOK_UNCOUNTED if entry.bar else "{points}").format(points=entry.score)
-    by = {1.0: texts.LOGBOOK_YOU, 0.0: texts.LOGBOOK_NETWORK}.get(entry.human, texts.LOGBOOK_SHARED)
     course = sharing.course_name(entry.course, entry.leg, entry.spawn, entry.pads)
-    return when, course, ending_word(entry.outcome, intact=entry.intact), points if entry.landed else "–", by
+    result = points if entry.landed else ending_word(entry.outcome, intact=entry.intact)
+    return time.strftime("%Y-%m-%d", time.localtime(entry.when)), course, result

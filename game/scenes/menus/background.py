@@ -57,7 +57,6 @@ class MenuBackground:
         Thread(target=self._load_network, name=LOADER, daemon=True).start()
 
     def enter(self) -> None:
-        """Follow a change of the settings."""
         self.still = self._context.settings.reduced_motion
         if self.still:
             self._begin()
@@ -75,7 +74,6 @@ class MenuBackground:
         self.pilot = policy or ScriptedPilot()
 
     def update(self) -> None:
-        """Advance by 1/60 s."""
         if self.still:
             return
         self._step += 1
@@ -93,7 +91,6 @@ class MenuBackground:
         self.stage.follow(np.ones(1, bool), np.array([self.over and not was_over]))
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
-        """Fill the view."""
         time = 0.0 if self.still else (self._step + alpha) * STEP
         view = self._camera.view(canvas.scale).filling(canvas)
         landscape(canvas.surface.get_size(), self.still).draw(canvas, self._camera, time, earth=_EARTH)

@@ -42,7 +42,6 @@ class Dialog(PanelScene):
         self.build()
 
     def describe(self, panel: Panel) -> None:
-        """Add the question, and what there is to choose from."""
         panel.text(self._question)
         if self.more:
             panel.gap(4)
@@ -67,12 +66,10 @@ class Dialog(PanelScene):
         return self.panel.box.inflate(2 * _MARGIN, 1.5 * _MARGIN)
 
     def hint_rows(self, canvas: Canvas) -> Sequence[HintRow]:
-        """Return the hints below the box."""
         box = self.box
         return hint_lines(self.hints, canvas, (box.left + _MARGIN, box.bottom + _FOOT), canvas.view.right - box.left)
 
     def draw_behind(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the scene below, dimmed, and the box."""
         self._behind.draw(canvas)
         canvas.panel(self.box, 1.0)
         canvas.outline(self.box, 8, FAINT)

@@ -43,14 +43,13 @@ class BindingCell(RowWidget):
     ) -> None:
         super().__init__(manager, (0, 0, 1, 1), texts.BINDINGS[meaning.name])
         self._controls, self._bindings, self._meaning, self._on_change = controls, bindings, meaning, on_change
+        self._for_pads = bindings is controls.buttons
 
     def press(self) -> None:
         """Wait for a key or a button; for a button only if there is a pad."""
-        if self._for_pads and not self._controls.pads:
-            self._on_change(texts.BINDINGS_NO_PAD)
-            return
-        self.typing = self._controls.listening = True
-        self._on_change("")
+        waits = bool(self._controls.pads) or not self._for_pads
+        self.typing = self._controls.listening = waits
+        self._on_change("" if waits else texts.BINDINGS_NO_PAD)
 
     def stop(self) -> None:
         """Stop waiting for a key."""
@@ -68,12 +67,12 @@ class BindingCell(RowWidget):
 
     def take(self, event: pygame.event.Event) -> bool:
         """Bind the next key or button; events of the other device are ignored."""
+        key = event.key if event.type == pygame.KEYDOWN else None
+        button = event.button if event.type == pygame.CONTROLLERBUTTONDOWN else getattr(event, "trigger", None)
         if not self.typing:
-            if event.type == pygame.KEYDOWN and event.key == pygame.K_DELETE:
+            if key == pygame.K_DELETE:
                 self.reset()
-                return True
-            return False
-        key, button = _pressed(event)
+            return key == pygame.K_DELETE
         if key == pygame.K_ESCAPE or button == pygame.CONTROLLER_BUTTON_START:
             self.cancel()
         elif (code := button if self._for_pads else key) is not None:
@@ -85,22 +84,18 @@ class BindingCell(RowWidget):
         what = self._word(code)
         if not self._bindings.may(self._meaning, code):
             self._on_change(texts.BINDINGS_FIXED.format(key=what))
-            return
-        if poor := self._bindings.bereft(self._meaning, code):
+        elif poor := self._bindings.bereft(self._meaning, code):
             self._on_change(texts.BINDINGS_ONLY.format(key=what, other=texts.BINDINGS[poor.name]))
-            return
-        self.stop()
-        self._change(lambda: self._bindings.bind(self._meaning, code))
+        else:
+            self.stop()
+            self._change(lambda: self._bindings.bind(self._meaning, code))
 
     def _change(self, change: Callable[[], object]) -> None:
         """Change bindings, and say what each command has now, and all that it has lost."""
         before = dict(self._bindings.table)
         change()
-        after = self._bindings.table
-        changed = [
-            self._meaning,
-            *(each for each in after if each is not self._meaning and after[each] != before[each]),
-        ]
+        after, mine = self._bindings.table, self._meaning
+        changed = [mine, *(each for each in after if each is not mine and after[each] != before[each])]
         self._on_change("  ".join(self._told(each, before[each], after[each]) for each in changed))
 
     def _told(self, meaning: Meaning, before: tuple[int, ...], after: tuple[int, ...]) -> str:
@@ -108,10 +103,6 @@ class BindingCell(RowWidget):
         words = texts.BINDINGS_LOST if lost else texts.BINDINGS_HAS
         keys = texts.BINDINGS_AND.join(map(self._word, after)) or texts.BINDINGS_NONE
         return words.format(what=texts.BINDINGS[meaning.name], keys=keys, lost=texts.BINDINGS_OR.join(lost))
-
-    @property
-    def _for_pads(self) -> bool:
-        return self._bindings is self._controls.buttons
 
     def _word(self, code: int) -> str:
         return self._controls.gamepad_sign(code) if self._for_pads else key_name(code)
@@ -154,33 +145,31 @@ class BindingsScene(PanelScene):
 
     def describe(self, panel: Panel) -> None:
         """Add the two halves' names, what came of the last change, and the table of one half."""
+        controls = self._controls
         panel.title(texts.BINDINGS_TITLE)
         panel.gap(4)
         panel.choice("", texts.BINDINGS_HALVES, self._half, self._show, size=18.0)
-        panel.add(self._write_said)
+        panel.text(lambda: self.said, size=TEXT, colour=HUMAN)
         panel.gap(4)
-        name, keys, buttons = panel.beside((1.1, 1, 1), _LEAST, 24.0)
-        name.caption(" ")
-        keys.caption(texts.KEYS_KEYBOARD)
-        buttons.caption(texts.KEYS_PAD)
-        everything = self._controls.keys.table
-        for meaning in FLYING if self._half == 0 else [each for each in everything if each not in FLYING]:
+        for column, words in zip(
+            panel.beside((1.1, 1, 1), _LEAST, 24.0), (" ", texts.KEYS_KEYBOARD, texts.KEYS_PAD), strict=True
+        ):
+            column.caption(words)
+        for meaning in FLYING if self._half == 0 else [each for each in controls.keys.table if each not in FLYING]:
             panel.line()
             name, *cells = panel.beside((1.1, 1, 1), _LEAST, 24.0)
             name.gap(BindingCell.pad)
             name.text(texts.BINDINGS[meaning.name])
-            for cell, bindings in zip(cells, (self._controls.keys, self._controls.buttons), strict=True):
-                cell.widget(BindingCell(self.form.manager, self._controls, bindings, meaning, self._changed))
+            for cell, bindings in zip(cells, (controls.keys, controls.buttons), strict=True):
+                cell.widget(BindingCell(self.form.manager, controls, bindings, meaning, self._changed))
         panel.line()
         panel.gap(8)
         panel.button(texts.BINDINGS_ALL, self._reset_all)
 
     def exit(self) -> None:
-        """Stop waiting for a key; every change is saved already."""
         self._controls.listening = False
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Pass the event to the cells."""
         if event.type == pygame.CONTROLLERDEVICEREMOVED:
             for widget in self.form.widgets:
                 if isinstance(widget, BindingCell):
@@ -194,17 +183,8 @@ class BindingsScene(PanelScene):
             return super().actions()
         if self._controls.listening:
             return [Action(Command.PAUSE, cell.cancel, texts.HINT_LEAVE_KEY)]
-        return [
-            self.form.confirms(texts.HINT_CHANGE),
-            Action(Command.RETRY, cell.reset, texts.HINT_AS_IT_WAS),
-            self.form.goes_back(texts.HINT_BACK),
-        ]
-
-    def _write_said(self, cursor: Cursor) -> None:
-        """Write what came of the last change, in room for a line that is left free for it."""
-        words = cursor.in_style(TEXT, HUMAN)
-        words.text(self.said)
-        cursor.y = words.y
+        default = Action(Command.RETRY, cell.reset, texts.HINT_AS_IT_WAS)
+        return [self.form.confirms(texts.HINT_CHANGE), default, self.form.goes_back(texts.HINT_BACK)]
 
     def _show(self, half: int) -> None:
         self._half = half
@@ -220,10 +200,3 @@ class BindingsScene(PanelScene):
         self._controls.keys.reset()
         self._controls.buttons.reset()
         self._changed(texts.BINDINGS_ALL_RESET)
-
-
-def _pressed(event: pygame.event.Event) -> tuple[int | None, int | None]:
-    """Return the key, or the pad's button or trigger, that an event presses."""
-    key = event.key if event.type == pygame.KEYDOWN else None
-    button = event.button if event.type == pygame.CONTROLLERBUTTONDOWN else getattr(event, "trigger", None)
-    return key, button

@@ -1,16 +1,21 @@
-"""Main menu: a title and six words, with the moon behind them."""
+"""Main menu, a title and six words; and the page of Play, what can be flown. Behind both is the moon."""
 
 from __future__ import annotations
 
 from dataclasses import replace
+from datetime import date
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
+from ai.lander.missions import MISSIONS
 from game.core import texts
-from game.core.scene import Quit, Transition, push
+from game.core.scene import Pop, Quit, Transition, push
+from game.core.settings import TOP_RUNG
 from game.drawing.cursor import LEADING
 from game.drawing.prose import lines
-from game.drawing.tokens import MUTE, STEP, TEXT, VIEW_SIZE
+from game.drawing.tokens import INK, MUTE, STEP, TEXT, VIEW_SIZE
+from game.flight.days import Days
+from game.flight.logbook import Records, best_descent
 from game.input.controls import Command
 from game.scenes.menus.background import MenuBackground
 from game.ui.actions import Action, Table
@@ -21,6 +26,7 @@ if TYPE_CHECKING:
     from game.drawing.cursor import Cursor
     from game.ui.context import Context
     from game.ui.panel import Panel
+    from game.ui.widget import OnPress
 
 _WORD: Final = 22.0
 # Size of the title: at most this, and these shares of the window's width and height.
@@ -31,18 +37,41 @@ _PAD, _ABOVE, _BETWEEN = 4.0, 28.0, 20.0  # points around a word, above the titl
 
 # Entries: the route of a screen and its key in `texts.MENU`; the last one closes the game.
 ROWS: Final = ("play", "watch", "train", "digits", "learn", "settings", "quit")
+# What can be flown, by its key in `texts.FLIGHTS`, and the routes.
+FLIGHTS: Final = {"free": "play", "day": "days", "missions": "missions", "descent": "descent", "logbook": "logbook"}
 
 
-class MenuScene(PanelScene):
+class _OverMoon(PanelScene):
+    """Words with the moon behind them, where a lander is flown down again and again."""
+
+    def __init__(self, context: Context, on_back: OnPress, background: MenuBackground | None = None) -> None:
+        super().__init__(context, on_back)
+        self._background = background or MenuBackground(context)
+        self._prepare()
+        self.build()
+
+    def _prepare(self) -> None:
+        """Read what the words say."""
+
+    def enter(self) -> None:
+        self._background.enter()
+        self._prepare()
+
+    def update(self) -> Transition | None:
+        self._background.update()
+        return super().update()
+
+    def draw_behind(self, canvas: Canvas, alpha: float) -> None:
+        self._background.draw(canvas.whole, alpha)
+
+
+class MenuScene(_OverMoon):
     """Main menu, the first screen."""
 
     def __init__(self, context: Context) -> None:
         super().__init__(context, self._back)
-        self._background = MenuBackground(context)
-        self.build()
 
     def describe(self, panel: Panel) -> None:
-        """Add the title, what the word in focus leads to, and the words."""
         panel.add(self._write_title)
         panel.add(self._write_line)
         for name in ROWS:
@@ -59,26 +88,10 @@ class MenuScene(PanelScene):
         """How high the window is, from 0, very low, to 1."""
         return min(max((self.context.reading().view.height - _LOW) / (VIEW_SIZE[1] - _LOW), 0.0), 1.0)
 
-    def enter(self) -> None:
-        """Follow a change of the settings; the focus stays where it was."""
-        self._background.enter()
-
-    def update(self) -> Transition | None:
-        """Animate the words and the background."""
-        self._background.update()
-        return super().update()
-
-    def draw_behind(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the moon."""
-        self._background.draw(canvas.whole, alpha)
-
     def actions(self) -> Table:
         """Move, choose, switch to the full screen; Escape leads to Quit."""
-        return [
-            self.form.moves,
-            self.form.confirms(texts.HINT_CHOOSE),
-            Action(Command.FULLSCREEN, self.context.toggle_full_screen, texts.HINT_FULL_SCREEN),
-        ]
+        full_screen = Action(Command.FULLSCREEN, self.context.toggle_full_screen, texts.HINT_FULL_SCREEN)
+        return [self.form.moves, self.form.confirms(texts.HINT_CHOOSE), full_screen]
 
     def _write_title(self, cursor: Cursor) -> None:
         view = self.context.reading().view
@@ -95,8 +108,7 @@ class MenuScene(PanelScene):
         if self.form.focused:
             replace(cursor, width=width, colour=MUTE).text(told[self.form.widgets.index(self.form.focused)])
         longest = max(len(lines(each, TEXT, cursor.weight, width, cursor.scale)) for each in told)
-        cursor.gap(longest * LEADING * TEXT)
-        cursor.gap(STEP + _BETWEEN * self._roominess)
+        cursor.gap(longest * LEADING * TEXT + STEP + _BETWEEN * self._roominess)
 
     def _open(self, name: str) -> Transition:
         if name == "quit":
@@ -112,3 +124,47 @@ class MenuScene(PanelScene):
             return Quit()
         self.form.focus(last)
         return None
+
+
+class FlightsScene(_OverMoon):
+    """The page of Play: what can be flown, and what was, each with how far one is."""
+
+    most = 360.0
+
+    def __init__(self, context: Context, background: MenuBackground | None = None, today: date | None = None) -> None:
+        self._today = today or date.today()
+        super().__init__(context, Pop, background)
+
+    def _prepare(self) -> None:
+        """Read how far the player is."""
+        context, rung = self.context, self.context.settings.rung
+        records, days = Records(context.user_dir), Days(context.user_dir)
+        entries = records.entries()
+        gold = {entry.course for entry in entries if entry.medal == 3 and not entry.outdated and entry.alone}
+        attempt = days.attempts.get(self._today.isoformat())
+        best = best_descent(entries)[0]
+        self._figures = {
+            "free": texts.FLIGHTS_RUNG.format(number=max(0, rung) + 1) if rung < TOP_RUNG else texts.FLIGHTS_ANYWHERE,
+            "day": texts.FLIGHTS_FLOWN if attempt else texts.DAYS_NOT_FLOWN,
+            "missions": texts.FLIGHTS_GOLD.format(gold=len(gold & MISSIONS.keys()), count=len(MISSIONS)),
+            "descent": texts.DESCENT_LEGS.format(count=best) if best else "",
+            "logbook": texts.FLIGHTS_COUNT.format(count=len(entries)) if entries else "",
+        }
+        if problem := records.problem or days.problem:
+            context.note(problem)
+
+    def describe(self, panel: Panel) -> None:
+        panel.title(texts.FLIGHTS_TITLE)
+        panel.gap(12)
+        for name, route in FLIGHTS.items():
+            label, line = texts.FLIGHTS[name]
+            panel.button(
+                label, partial(push, route), line, figure=partial(self._figure, name), size=_WORD, weight="light",
+                colour=INK,
+            )  # fmt: skip
+
+    def _figure(self, name: str) -> str:
+        return self._figures[name]
+
+    def actions(self) -> Table:
+        return [self.form.moves, *super().actions()]

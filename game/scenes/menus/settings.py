@@ -8,29 +8,34 @@ from functools import partial
 from typing import TYPE_CHECKING, Final
 
 from game.audio.instruments import GROUPS, altitude_key
-from game.core import texts
+from game.core import catalogue, texts
 from game.core.names import LibraryError
 from game.core.scene import Push, Transition, push
 from game.core.settings import PACES
-from game.drawing.tokens import INK, TEXT_SIZES
+from game.drawing.cursor import Cursor
+from game.drawing.tokens import FAINT, FIGURE, INK, NIGHT1, SMALL, TEXT_SIZES
 from game.flight.progress import Progress
 from game.input.controls import Command, Held
-from game.scenes.menus.colours import HEIGHT, draw_scene
 from game.scenes.menus.dialogs import QuestionDialog
 from game.ui.actions import Table
 from game.ui.panel_scene import PanelScene
+from game.world import lander
 
 if TYPE_CHECKING:
-    from game.drawing.cursor import Cursor
+    import pygame
+
+    from game.drawing.canvas import Canvas
     from game.ui.context import Context
     from game.ui.panel import Column, Panel
-    from game.ui.rows import SliderRow, ToggleRow
+    from game.ui.rows import ToggleRow
 
 GROUPS_OF_SETTINGS: Final = ("picture", "sound", "controls", "flights")
 _VOLUMES: Final = ("master", *GROUPS)
 # Sample sound played when a volume is changed, besides the slider's click and sounds that play anyway.
 _SAMPLES: Final = {"effects": "touchdown", "altitude": altitude_key(9)}
 _LEAST: Final = 380.0  # points of a column
+_SCENE: Final = 190.0  # points of the height of the scene in the player's colours
+_METRE: Final = 26.0  # points in it
 
 
 class SettingsScene(PanelScene):
@@ -50,6 +55,11 @@ class SettingsScene(PanelScene):
     def enter(self) -> None:
         """Name the keys anew, for the player may have changed them."""
         self.build()
+
+    def build(self) -> None:
+        """Describe the rows anew."""
+        self._switches: dict[str, ToggleRow] = {}
+        super().build()
 
     def describe(self, panel: Panel) -> None:
         """Add the names of the groups, and the settings of one."""
@@ -74,98 +84,78 @@ class SettingsScene(PanelScene):
         return super().update()
 
     def actions(self) -> Table:
-        """Change a setting, or go back."""
         return [self.form.changes, self.form.goes_back(texts.HINT_BACK)]
 
     def _show(self, number: int) -> None:
-        """Show another group."""
         self.group = GROUPS_OF_SETTINGS[number]
         self.build()
 
     # The groups
 
     def _describe_picture(self, left: Column, right: Column) -> None:
-        settings = self.context.settings
-        self._toggle(left, "full_screen")
-        sizes = list(TEXT_SIZES)
-        index = sizes.index(settings.text_size) if settings.text_size in sizes else 0
+        sizes, chosen = list(TEXT_SIZES), self.context.settings.text_size
+        self._toggles(left, "full_screen")
         left.choice(
-            texts.TEXT_SIZE, [texts.TEXT_SIZES[name] for name in sizes], index,
+            texts.TEXT_SIZE, [texts.TEXT_SIZES[name] for name in sizes], sizes.index(chosen) if chosen in sizes else 0,
             lambda number: self._set("text_size", sizes[number]),
         )  # fmt: skip
-        self._toggle(left, "reduced_motion")
-        self._toggle(left, "show_hints")
-        self._toggle(right, "colour_safe")
+        names = catalogue.languages(catalogue.LOCALE)
+        codes = list(names)
+        spoken, choose = codes.index(texts.LANGUAGE), lambda number: self._set("language", codes[number])
+        left.choice(texts.LANGUAGE_CHOICE, list(names.values()), spoken, choose)
+        self._toggles(left, "reduced_motion", "show_hints")
+        self._toggles(right, "colour_safe")
         right.gap(6)
-        right.picture(HEIGHT, draw_scene)
+        right.picture(_SCENE, _draw_scene)
 
     def _describe_sound(self, left: Column, right: Column) -> None:
-        sound = self.context.sound
-        self._toggle(left, "muted")
-        if sound.problem:
-            left.add(self._write_problem)
+        self._toggles(left, "muted")
+        if self.context.sound.problem:
+            left.text(texts.SOUND_PROBLEM)
         for number, group in enumerate(_VOLUMES):
-            self._volume(left if number < 3 else right, group)
+            (left if number < 3 else right).slider(
+                texts.SOUND_GROUPS[group], getattr(self.context.settings, f"{group}_volume"), (0.0, 1.0),
+                partial(self._set_volume, group), step=0.1, figure=_loudness,
+                aside=texts.SOUND_ALTITUDE if group == "altitude" else "",
+            )  # fmt: skip
 
     def _describe_controls(self, left: Column, right: Column) -> None:
         left.button(texts.BINDINGS_OPEN, lambda: push("bindings"), texts.BINDINGS_LINE, colour=INK)
-        self._toggle(left, "analogue")
+        self._toggles(left, "analogue")
         left.aside(lambda: texts.ASSISTS_FINE.format(key=self.context.controls.word(Held.FINE)))
-        self._toggle(right, "toggle_thrust")
-        self._toggle(right, "one_switch")
+        self._toggles(right, "toggle_thrust", "one_switch")
 
     def _describe_flights(self, left: Column, right: Column) -> None:
-        self._toggle(left, "wider_pads")
-        self._toggle(left, "untimed")
-        left.slider(texts.PACE, self.context.settings.pace, PACES,
-                    lambda pace: self._set("pace", round(pace, 2)), step=0.1, figure=_percent)  # fmt: skip
+        settings = self.context.settings
+        self._toggles(left, "wider_pads", "untimed")
+        left.slider(texts.PACE, settings.pace, PACES, lambda pace: self._set("pace", round(pace, 2)), step=0.1,
+                    figure=_percent)  # fmt: skip
         left.gap(6)
         left.aside(texts.ASSISTS_COUNTED)
-        flown = texts.TUTORIAL_FLOWN if self.context.settings.first_flown else ""
+        flown = texts.TUTORIAL_FLOWN if settings.first_flown else ""
         right.button(texts.TUTORIAL_OPEN, partial(push, "tutorial"), figure=flown, colour=INK)
         right.button(texts.PROGRESS_RESET, self._ask_to_reset, colour=INK)
         if self._progress.restorable:
             right.button(texts.PROGRESS_RESTORE, self._restore, colour=INK)
 
-    def _write_problem(self, cursor: Cursor) -> None:
-        """Write why nothing is heard, beside a mark."""
-        if canvas := cursor.canvas:
-            canvas.marker("triangle", (cursor.left + 6, cursor.y + 10), 9, canvas.palette.warn)
-        words = replace(cursor, left=cursor.left + 20, width=cursor.width - 20)
-        words.text(texts.SOUND_PROBLEM)
-        cursor.y = words.y
-
-    # Settings
-
-    def build(self) -> None:
-        """Describe the rows anew."""
-        self._switches: dict[str, ToggleRow] = {}
-        super().build()
-
-    def _toggle(self, column: Column, name: str) -> None:
-        label, aside = texts.SETTINGS[name]
-        controls = self.context.controls
+    def _toggles(self, column: Column, *names: str) -> None:
+        """Add switches, the words on which may name a key."""
         keys = {"full_screen": Command.FULLSCREEN, "muted": Command.MUTE}
-        if name in keys:
-            aside = aside.format(key=(*controls.key_names(keys[name]), texts.BINDINGS_NONE)[0])
-        value = getattr(self.context.settings, name)
-        self._switches[name] = column.toggle(label, value, lambda on: self._set(name, on), aside)
+        for name in names:
+            label, aside = texts.SETTINGS[name]
+            if name in keys:
+                aside = aside.format(key=(*self.context.controls.key_names(keys[name]), texts.BINDINGS_NONE)[0])
+            value = getattr(self.context.settings, name)
+            self._switches[name] = column.toggle(label, value, partial(self._set, name), aside)
 
     def _set(self, name: str, value: object) -> None:
         setattr(self.context.settings, name, value)
         self.context.apply_settings()
 
-    def _volume(self, column: Column, group: str) -> SliderRow:
-        context, name = self.context, f"{group}_volume"
-
-        def change(value: float) -> None:
-            self._set(name, value)
-            if group in _SAMPLES:
-                context.sound.play(_SAMPLES[group])
-
-        aside = texts.SOUND_ALTITUDE if group == "altitude" else ""
-        label, value = texts.SOUND_GROUPS[group], getattr(context.settings, name)
-        return column.slider(label, value, (0.0, 1.0), change, step=0.1, figure=_loudness, aside=aside)
+    def _set_volume(self, group: str, value: float) -> None:
+        self._set(f"{group}_volume", value)
+        if group in _SAMPLES:
+            self.context.sound.play(_SAMPLES[group])
 
     # Progress
 
@@ -176,9 +166,7 @@ class SettingsScene(PanelScene):
             texts.PROGRESS_FLIGHTS.format(count=told.flights), texts.PROGRESS_MEDALS.format(count=told.medals),
             texts.PROGRESS_CHAPTERS.format(count=told.chapters), texts.PROGRESS_STAYS,
         ])  # fmt: skip
-        answers: list[tuple[str, Callable[[], None]]] = [
-            (texts.PROGRESS_NO, lambda: None), (texts.PROGRESS_YES, self._reset),
-        ]  # fmt: skip
+        answers = [(texts.PROGRESS_NO, lambda: None), (texts.PROGRESS_YES, self._reset)]
         return Push(QuestionDialog(self, texts.PROGRESS_QUESTION, more, answers))
 
     def _reset(self) -> None:
@@ -197,6 +185,29 @@ class SettingsScene(PanelScene):
         else:
             self.context.apply_settings()
             self.context.note(done)
+
+
+def _draw_scene(canvas: Canvas, box: pygame.FRect) -> None:
+    """Draw a small scene in the player's colours: a lander over its pad, a speed within limits and one beyond them."""
+    good, warn = canvas.palette.good, canvas.palette.warn
+    canvas.rounded(box, 8, NIGHT1, 0.55)
+    ground, middle, half = box.bottom - 34, box.left + 0.76 * box.width, 2.6 * _METRE
+    canvas.line((box.left + 24, ground), (box.right - 24, ground), FAINT)
+    canvas.line((middle - half, ground), (middle + half, ground), INK, 3)
+    for side in (-half, half):
+        canvas.glow((middle + side, ground - 3), 22, good, 0.7)
+        canvas.dot((middle + side, ground - 3), 3, good)
+    place = canvas.pixels((middle - 8, ground - 2.6 * _METRE))
+    canvas.surface.blit(*lander.turned(lander.LANDER, _METRE * canvas.scale, 0.12, place))
+    for number, (figure, share) in enumerate((("0.8", 0.32), ("2.6", 0.9))):
+        within = number == 0
+        column = Cursor(box.left + 28 + number * 0.26 * box.width, box.top + 26, 0.22 * box.width, canvas.scale, canvas)
+        canvas.marker("check" if within else "triangle", (column.left + 5, column.y + 9), 10, good if within else warn)
+        label = replace(column, left=column.left + 16).in_style(SMALL)
+        label.text(texts.SWATCH_GOOD if within else texts.SWATCH_WARN)
+        figures = replace(column, y=label.y).in_style(FIGURE, good if within else warn, "light")
+        figures.text(f"{figure} {texts.SWATCH_UNIT}")
+        canvas.bar((column.left, figures.y + 2, column.width - 20, 3), share, good if within else warn)
 
 
 def _percent(share: float) -> str:

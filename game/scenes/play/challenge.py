@@ -58,13 +58,13 @@ class Challenge:
         total: points of the chain of flights that it is, for the logbook.
         ahead: the ground of the flight that comes next, to be painted while this one is flown; None if unknown.
         stake: question before another start, and what would be lost, while that is more than the present flight.
-        copy_hint: hint of the key that copies what a friend is told.
+        copy_hint: hint of the key that copies what a friend is told; empty for the usual words.
         next_hint: hint of the key for what comes next; empty where it does nothing.
         again_hint, new_hint: what the card calls another try, and another start; empty for the usual words.
 
     """
 
-    name = title = line = goal = opening = bar = next_hint = again_hint = new_hint = ""
+    name = title = line = goal = opening = bar = copy_hint = next_hint = again_hint = new_hint = ""
     free = alone = eases = guides = elsewhere = shadows = through = False
     fixed = kept = compares = True
     hands = "own"
@@ -72,7 +72,6 @@ class Challenge:
     total = 0
     ahead: Ground | None = None
     stake: tuple[str, str] | None = None
-    copy_hint = texts.CODE_HINT_COPY
     _help: Settings | None = None
 
     # Before a flight
@@ -178,10 +177,9 @@ class Duel(Challenge):
     """Duel: one start after another against a rival."""
 
     fixed = False
-    title = texts.DUEL
 
     def __init__(self, rival: Policy, name: str) -> None:
-        self._rival, self._name = rival, name
+        self._rival, self._name, self.title = rival, name, texts.DUEL
         self.line, self.opening = texts.DUEL_RIVAL.format(name=name), texts.DUEL_BEGIN.format(name=name)
 
     def ghost(self, seed: int, network: Policy | None) -> Ghost:
@@ -191,10 +189,8 @@ class Duel(Challenge):
 class Race(Challenge):
     """Race: the start of a recorded flight, against its ghost."""
 
-    title = texts.RACE
-
     def __init__(self, record: Record, name: str) -> None:
-        self._recording, self._name = record.recording, name
+        self._recording, self._name, self.title = record.recording, name, texts.RACE
         self.elsewhere = flown_elsewhere(record.recording)
         self.line, self.opening = texts.DUEL_RIVAL.format(name=name), texts.DUEL_BEGIN.format(name=name)
 
@@ -211,9 +207,9 @@ class ContinuedFlight(Challenge):
     """Fly on from a moment of a recorded flight, whose own continuation flies beside as a ghost."""
 
     bar = "flown_on"
-    title, opening = texts.FLY_ON, texts.FLY_ON_BEGIN
 
     def __init__(self, flight_replay: FlightReplay, name: str) -> None:
+        self.title, self.opening = texts.FLY_ON, texts.FLY_ON_BEGIN
         self._recording, self._step, self._name = flight_replay.record.recording, flight_replay.at, name
         self._moment = flight_replay.flight.env.snapshot()
         self.elsewhere = flown_elsewhere(self._recording)
@@ -245,19 +241,19 @@ class FlownMission(Challenge):
     `following` makes the mission that comes next, where there is one and the way to it is known.
     """
 
-    title = texts.MISSION
     eases = True
 
     def __init__(
         self,
         mission: Mission,
         rival: Record | None = None,
-        rival_name: str = texts.MISSION_RIVAL,
+        rival_name: str = "",
         following: Callable[[], Challenge] | None = None,
     ) -> None:
         self.mission, self.name, self.elsewhere = mission, mission.name, mission.elsewhere
         self._following = following
-        self._rival, self._rival_name = rival.recording if rival else None, rival_name
+        self._rival, self._rival_name = rival.recording if rival else None, rival_name or texts.MISSION_RIVAL
+        self.title = texts.MISSION
         self.line, self.opening = texts.MISSIONS[mission.name]
         self.goal = texts.MISSION_GOAL.format(fuel=mission.gold[0], seconds=mission.gold[1])
         self.new_hint = texts.MISSION_NEXT if following else ""

@@ -15,8 +15,8 @@ from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
 from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL
 from game.flight.flight import Flight, StickHolder
+from game.flight.foresight import HELD, SixFutures
 from game.flight.networks import QPolicy
-from game.flight.six_futures import HELD, SixFutures
 from game.panels.landings import Landing, Landings, RecentLandings, draw_landings
 from game.panels.q_values import HEIGHT, QValues, decision_words, draw_q_values
 from game.panels.readouts import draw_share

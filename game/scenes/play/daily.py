@@ -6,6 +6,7 @@ Also the page of the days: today's start, past days, and how their first attempt
 from __future__ import annotations
 
 from datetime import date, timedelta
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 from ai.flights.verification import DAILY
@@ -13,11 +14,11 @@ from ai.lander.environment import Outcome
 from game.core import texts
 from game.core.scene import Transition, push
 from game.drawing.tokens import INK, TITLE
-from game.flight import sharing
 from game.flight.credit import Credit
 from game.flight.days import Attempt, Days
 from game.flight.flight import Flight
 from game.flight.flight_file import Entry, Record
+from game.flight.friend import copy
 from game.flight.networks import Policy
 from game.flight.replay import ReplayedFlight
 from game.scenes.play.challenge import Challenge
@@ -50,10 +51,9 @@ class DailyStart(Challenge):
 
     name = DAILY
     alone = eases = True
-    title = texts.DAILY
-    copy_hint = texts.DAILY_HINT_COPY
 
     def __init__(self, day: date, days: Days, *, past: bool = False) -> None:
+        self.title, self.copy_hint = texts.DAILY, texts.DAILY_HINT_COPY
         self.seed, self.line = day.toordinal(), day.isoformat()
         self._day, self._days, self._past = day, days, past
         self._begun = False
@@ -151,7 +151,7 @@ class DaysScene(PanelScene):
         if attempt:
             column.button(texts.DAYS_COPY, self._copy_line)
         if self._flown:
-            column.button(texts.CODE_COPY, self._copy_code)
+            column.button(texts.CODE_COPY, partial(copy, self.context, self._flown))
             column.button(texts.LOGBOOK_WATCH, self._watch)
 
     def actions(self) -> Table:
@@ -182,11 +182,6 @@ class DaysScene(PanelScene):
     def _copy_line(self) -> None:
         if attempt := self._attempt(self.chosen):
             give(self.context, attempt.line, texts.CODE_LINE_COPIED.format(line=attempt.line))
-
-    def _copy_code(self) -> None:
-        assert self._flown
-        code = sharing.code(self._flown)
-        give(self.context, code, texts.CODE_COPIED)
 
     def _watch(self) -> Transition:
         return push("replay", self._flown)

@@ -57,11 +57,10 @@ class Descent(Challenge):
     """
 
     name = DESCENT
-    title = texts.DESCENT_TITLE
     fixed = compares = False
-    again_hint, new_hint = texts.DESCENT_AGAIN, texts.DESCENT_NEW
 
     def __init__(self) -> None:
+        self.title, self.again_hint, self.new_hint = texts.DESCENT_TITLE, texts.DESCENT_AGAIN, texts.DESCENT_NEW
         self.best, self._seed = (0, 0), -1
         self._flown: list[Recording] = []
         self._before: list[Recording] = []  # an earlier run over the same ground

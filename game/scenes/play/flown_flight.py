@@ -21,12 +21,11 @@ from game.flight.credit import Credit, eased
 from game.flight.demonstrations import add_demonstration
 from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Entry, Record
+from game.flight.foresight import LastChance, SixFutures
 from game.flight.handicap import OWN
-from game.flight.last_chance import LastChance
 from game.flight.logbook import Records
 from game.flight.networks import Network, Policy
 from game.flight.outcomes import OutcomeCard, outcome_card
-from game.flight.six_futures import SixFutures
 from game.panels.landings import Landings
 from game.panels.readouts import GAUGES, PILOT, READOUTS, at_touch, draw_flight, flight_readouts
 from game.scenes.play.challenge import Challenge

@@ -217,7 +217,8 @@ class PlayScene(Scene):
             elsewhere = self._asking(self._begin_elsewhere)
             first, other = again or first, Action(Command.NEXT, elsewhere, new or texts.HINT_NEW)
         offer = [Action(Command.HANDOVER, self._accept_help, texts.HELP_HINT)] if self._offered else []
-        copy = [Action(pygame.K_k, self._copy, challenge.copy_hint, Command.STEP)] if self.flown.record else []
+        hint = challenge.copy_hint or texts.CODE_HINT_COPY
+        copy = [Action(pygame.K_k, self._copy, hint, Command.STEP)] if self.flown.record else []
         return [Action(Command.CONFIRM, self._go_on, first), other, *offer, *copy]
 
     def hint_rows(self, canvas: Canvas) -> list[HintRow]:

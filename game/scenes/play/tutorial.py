@@ -107,9 +107,9 @@ class Tutorial(Challenge):
     """
 
     kept = False
-    title, next_hint = texts.TUTORIAL_TITLE, texts.TUTORIAL_SKIP
 
     def __init__(self) -> None:
+        self.title, self.next_hint = texts.TUTORIAL_TITLE, texts.TUTORIAL_SKIP
         self._lessons = list(LESSONS)
         self.flown = False
         self._begin_lesson(0)

@@ -22,7 +22,7 @@ from game.panels.readouts import LITTLE_FUEL, LITTLE_TIME
 
 if TYPE_CHECKING:
     from ai.copilot.copilot import CoPilot, SharedDecision
-    from game.flight.last_chance import LastChance
+    from game.flight.foresight import LastChance
 
 Why = tuple[str, str, str]  # a title, and two lines
 _SOON: Final = 3.0  # seconds ahead that a failure is announced

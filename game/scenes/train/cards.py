@@ -6,11 +6,11 @@ from functools import cache
 from typing import Final
 
 from ai.files import read_json
-from ai.training.experiments import MEASURED
+from ai.training.experiments import MEASURED, SABOTAGES
 from game.core import texts
 from game.core.assets import ASSETS_DIR
 
-CARDS: Final = ("no_replay", "no_exploration", "no_shaping", "short_sight", "rate_times_100", "no_normalisation")
+CARDS: Final = tuple(SABOTAGES)
 FILE: Final = ASSETS_DIR / "sabotages.json"
 
 

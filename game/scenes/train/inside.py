@@ -11,8 +11,7 @@ from ai.agent.network import build_network
 from ai.explain.inspection import NetworkHealth
 from ai.lander.environment import ACTION_NAMES, NUM_ACTIONS, NUM_FEATURES
 from ai.nn import NeuralNetwork
-from ai.training.config import Config
-from ai.training.history import PARTS, History
+from ai.training.history import PARTS
 from ai.training.messages import NetworkState
 from game.core import texts
 from game.drawing.canvas import Canvas
@@ -41,11 +40,12 @@ class Inside:
 
     """
 
-    def __init__(self, lander_run: TrainingRun) -> None:
+    def __init__(self, run: TrainingRun) -> None:
         self.opened = False
+        self._run = run
         self.view = NetworkView((0, 0, 400, 300), texts.INPUTS, tuple(map(texts.said, ACTION_NAMES)))
         self.reward_bar = RewardBar((0, 0, 400, 80))
-        self.editing = NetworkEditing(self.view, lander_run)
+        self.editing = NetworkEditing(self.view, run)
         self.clear()
 
     def clear(self) -> None:
@@ -67,36 +67,37 @@ class Inside:
         top = display.top + 20
         self.view.place((paid.left, top, paid.width, max(paid.top - top - 16, 60)))
 
-    def take(self, network_state: NetworkState, config: Config) -> None:
-        """Show the network that a run reports, and see how healthy it is."""
-        if self.show(network_state, config) and self.network is not None:
-            self.health.look(self.network, network_state.observation, config.gradient_clip)
+    def examine(self, state: NetworkState) -> None:
+        """Show the network that the run reports, and see how healthy it is."""
+        self.show(state)
+        if self.shown is state and self.network is not None:
+            self.health.look(self.network, state.observation, self._run.config.gradient_clip)
 
-    def show(self, network_state: NetworkState, config: Config) -> bool:
-        """Show a network, perhaps of an earlier moment; return whether it fits the run."""
-        if self.network is None or self.network.values.shape != network_state.values.shape:
-            self.network = build_network(NUM_FEATURES, NUM_ACTIONS, config, np.random.default_rng(0))
-        network = self.network
-        if network.values.shape != network_state.values.shape:
-            return False  # it belongs to a run that has just been replaced
-        self.shown = network_state
-        network.values = network_state.values
-        network.gradients[:] = network_state.gradients
+    def show(self, state: NetworkState | None, row: int = -1) -> None:
+        """Show a network, perhaps of an earlier moment, and what was paid at that row of the history."""
+        if len(self._run.history):
+            self.reward_bar.set(PARTS, self._run.history.parts[row])
+        if state is None or state is self.shown:
+            return
+        config, network = self._run.config, self.network
+        if network is None or network.values.shape != state.values.shape:
+            network = build_network(NUM_FEATURES, NUM_ACTIONS, config, np.random.default_rng(0))
+        if network.values.shape != state.values.shape:
+            return  # it belongs to a run that has just been replaced
+        self.network, self.shown = network, state
+        network.values = state.values
+        network.gradients[:] = state.gradients
         self.view.output_scale = config.reward_scale
-        self.view.set(network, network_state.observation)
+        self.view.set(network, state.observation)
         self.editing.look(network)
-        return True
-
-    def pay(self, history: History, row: int = -1) -> None:
-        """Show the reward of the latest flights, part by part, or of those before another point of the history."""
-        self.reward_bar.set(PARTS, history.parts[row])
 
     def follow(self, event: pygame.event.Event) -> None:
         """Follow the mouse or the virtual pointer; an event's position is in points."""
         if event.type == pygame.MOUSEMOTION:
             self.view.hover(event.pos if self.opened else None)
             self.reward_bar.hover(event.pos if self.opened else None)
-        self.editing.follow(event, opened=self.opened)
+        if self.opened:
+            self.editing.follow(event)
 
     def update(self, at_once: bool) -> None:
         """Advance by 1/60 s."""
@@ -108,7 +109,7 @@ class Inside:
     def describe(self, column: Column) -> None:
         """Add what the lines show, and what can be done to the network."""
         column.text(texts.NETWORK_VIEW_TITLE, size=TITLE)
-        column.choice("", texts.NETWORK_VIEW_SHOWS, SHOWN.index(self.view.show), self._show, SMALL)
+        column.choice("", texts.NETWORK_VIEW_SHOWS, SHOWN.index(self.view.show), self._choose, SMALL)
         column.aside(lambda: texts.NETWORK_VIEW_LINES[self.view.show])
         self.editing.describe(column, opened=True)
 
@@ -118,5 +119,5 @@ class Inside:
         self.editing.draw(canvas)
         self.reward_bar.draw(canvas)
 
-    def _show(self, index: int) -> None:
+    def _choose(self, index: int) -> None:
         self.view.show = SHOWN[index]

@@ -1,4 +1,4 @@
-"""Knobs: rows of the panel of settings, each a label, a control (slider, switch or words) and a figure.
+"""Knobs: rows of the panel of settings, each a label, a control (slider or words) and a figure.
 
 A blue knob changes a run while it goes on. A grey, hollow knob takes a new run. An amber dot marks a value that the
 player has changed; R, the gamepad's X, or a click on the name restores the preset's value, a tick on the track.
@@ -14,62 +14,24 @@ import numpy as np
 import pygame
 
 from game.core import texts
-from game.core.scene import Transition
-from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, MUTE, NET, PANEL, SMALL, Colour
 from game.input.controls import Command, translate
 from game.training.knob_descriptions import KnobDescription, figure
-from game.ui.entry import Entry, draw_line
 from game.ui.rows import RowWidget
-from game.ui.text_line import digits
 from game.ui.widget import PointsManager, mix
-from game.ui.widgets import draw_switch
-from game.ui.words import TextButtonRow
 
-_TRACK: Final = (150.0, 62.0)  # from the label to the track, from the track to the right end
+_LABELS, _FIGURES = 150.0, 62.0  # points from the label to the track, and from the track to the right end
 _HEIGHT: Final = 20.0
 _GAP: Final = 14.0  # between words
 _DIM: Final = mix(FAINT, MUTE, 0.45)  # of a knob that has no effect
 _NOTE: Final = LABEL - 1.5  # size of text over a track
 _CLEAR: Final = 9.0  # from the middle of the handle to that text
-_LONGEST_SEED: Final = 9  # digits
-_NOWHERE: Final = (0, 0, 1, 1)
 
 
-class _Row(RowWidget):
-    """Row with a label, painted into its own box."""
-
-    pad = 4.0
-    idle = ""
-    changed = False
-
-    @property
-    def track(self) -> tuple[float, float]:
-        """Left and right end of the track, in points."""
-        return self.box.left + min(_TRACK[0], 0.5 * self.box.width), self.box.right - _TRACK[1]
-
-    def write(self, cursor: Cursor) -> None:
-        """Draw the dot of a change, the label and the rest."""
-        cursor.take(_HEIGHT)
-        if (canvas := cursor.canvas) is None:
-            return
-        box = self.box
-        if self.changed:
-            canvas.dot((box.left - 11, box.centery), 2.5, HUMAN)
-        colour = mix(_DIM if self.idle else mix(MUTE, INK, 0.7), INK, self.warmth)
-        room = self.track[0] - box.left - 10
-        canvas.text(self.label, (box.left, box.centery + 4.5), size=SMALL, colour=colour, room=room)
-        canvas.cover(canvas.rect(*box))
-        self.put(canvas)
-
-    def put(self, canvas: Canvas) -> None:
-        """Draw the control and the figure."""
-
-
-class Knob(_Row):
-    """Base of all knobs. The panel owns the value: `turn`, given the knob's name, asks for another; `display` shows it.
+class Knob(RowWidget):
+    """Base of both kinds. The panel owns the value: `turn`, given the knob's name, asks for another.
 
     `enter` is called by Enter, or a gamepad's A, on a slider, which has nothing to press.
 
@@ -82,6 +44,8 @@ class Knob(_Row):
 
     """
 
+    pad = 4.0
+
     def __init__(
         self,
         manager: PointsManager,
@@ -89,12 +53,12 @@ class Knob(_Row):
         turn: Callable[[str, Any], None],
         enter: Callable[[], None] = lambda: None,
     ) -> None:
-        super().__init__(manager, _NOWHERE, description.label)
+        super().__init__(manager, (0, 0, 1, 1), description.label)
         self.description, self.help = description, description.help
-        self.value: Any = None
-        self.home: Any = None
-        self.waits = False
+        self.value = self.home = None
+        self.waits = self.changed = False
         self.now: float | None = None
+        self.idle = ""
         self._turn, self._enter = turn, enter
         self._named = False  # the mouse was pressed on the name
 
@@ -115,6 +79,11 @@ class Knob(_Row):
     def colour(self) -> Colour:
         """Colour of the knob: blue, grey if it takes a new run, amber if it waits, dim if it has no effect."""
         return HUMAN if self.waits else _DIM if self.idle else NET if self.live else MUTE
+
+    @property
+    def track(self) -> tuple[float, float]:
+        """Left and right end of the track, in points."""
+        return _left(self.box), self.box.right - _FIGURES
 
     def turn(self, value: Any) -> None:
         """Request another value from the panel."""
@@ -141,11 +110,22 @@ class Knob(_Row):
             return True
         return super().process_event(event)
 
-    def written(self, canvas: Canvas, words: str, colour: Colour | None = None) -> None:
-        """Write a figure at the right end."""
-        place = (self.box.right, self.box.centery + 4.5)
-        canvas.text(words, place, size=SMALL, colour=colour or self.colour, align="right", tabular=True,
-                    room=_TRACK[1] - 8)  # fmt: skip
+    def write(self, cursor: Cursor) -> None:
+        """Draw the dot of a change, the label, the control and the figure."""
+        top, canvas = cursor.y, cursor.canvas
+        cursor.take(_HEIGHT)
+        if canvas:
+            if self.changed:
+                canvas.dot((cursor.left - 11, top + _HEIGHT / 2), 2.5, HUMAN)
+            colour = mix(_DIM if self.idle else mix(MUTE, INK, 0.7), INK, self.warmth)
+            room = self.track[0] - cursor.left - 10
+            canvas.text(self.label, (cursor.left, top + _HEIGHT / 2 + 4.5), size=SMALL, colour=colour, room=room)
+            canvas.cover(canvas.rect(*self.box))
+        self.put(cursor, top + _HEIGHT / 2)
+
+    def put(self, cursor: Cursor, middle: float) -> None:
+        """Draw the control and the figure around a height, and go on below if they need more room."""
+        raise NotImplementedError
 
 
 class SliderKnob(Knob):
@@ -178,25 +158,27 @@ class SliderKnob(Knob):
         places, fraction = self._places(), (x - left) / (right - left)
         self.turn(places[min(places, key=lambda place: abs(place - fraction))])
 
-    def put(self, canvas: Canvas) -> None:
+    def put(self, cursor: Cursor, middle: float) -> None:
         """Draw track, tick, handle and figure."""
-        left, right = self.track
-        middle, width = self.box.centery, right - left
-        fraction, home = self._at(self.value), left + self._at(self.home) * width
+        if (canvas := cursor.canvas) is None:
+            return
+        (left, right), colour = self.track, self.colour
+        width = right - left
+        handle, home = (left + self._at(value) * width for value in (self.value, self.home))
         canvas.line((home, middle - 5), (home, middle + 5), MUTE, 1, 0.8)
-        canvas.bar((left, middle - 1, width, 2), fraction, self.colour)
-        handle, radius = (left + fraction * width, middle), 5 + self.warmth
-        whole = self.live and not self.idle
-        canvas.dot(handle, radius, INK if whole else mix(_DIM if self.idle else MUTE, INK, self.warmth))
+        canvas.bar((left, middle - 1, width, 2), self._at(self.value), colour)
+        radius, whole = 5 + self.warmth, self.live and not self.idle
+        canvas.dot((handle, middle), radius, INK if whole else mix(_DIM if self.idle else MUTE, INK, self.warmth))
         if not whole:
-            canvas.dot(handle, radius - 1.6, PANEL)
+            canvas.dot((handle, middle), radius - 1.6, PANEL)
         if self.now is not None:
             x = left + self._at(self.now) * width
             canvas.line((x, middle - 1), (x, middle + 6), INK, 2)
-            self._put_beside(canvas, texts.KNOB_NOW.format(value=figure(self.now)), x, handle[0])
+            self._put_beside(canvas, texts.KNOB_NOW.format(value=figure(self.now)), x, handle)
         elif self.idle:
-            self._put_beside(canvas, texts.KNOB_IDLE, handle[0], handle[0])
-        self.written(canvas, figure(self.value))
+            self._put_beside(canvas, texts.KNOB_IDLE, handle, handle)
+        canvas.text(figure(self.value), (cursor.right, middle + 4.5), size=SMALL, colour=colour, align="right",
+                    tabular=True, room=_FIGURES - 8)  # fmt: skip
 
     def _put_beside(self, canvas: Canvas, words: str, x: float, handle: float) -> None:
         """Write text over the track, around x as far as there is room, clear of the handle."""
@@ -206,57 +188,28 @@ class SliderKnob(Knob):
         if start - _CLEAR < handle < start + width + _CLEAR:
             before, after = handle - _CLEAR - width, handle + _CLEAR
             start = before if before >= left and (x <= handle or after + width > right) else after
-        if start < left or start + width > right:
-            return  # a short track, as in a narrow window
-        canvas.text(words, (start, self.box.centery - 4), size=_NOTE, colour=mix(MUTE, INK, self.warmth))
-
-
-class SwitchKnob(Knob):
-    """A setting that is on or off."""
-
-    _slid: float | None = None
-
-    def press(self) -> None:
-        """Change to the other state."""
-        self.turn(not self.value)
-
-    def shift(self, direction: int) -> bool:
-        """Left is off, right is on."""
-        self.turn(direction > 0)
-        return True
-
-    def ease(self, at_once: bool) -> None:
-        """Let the switch slide."""
-        super().ease(at_once)
-        target = float(self.value)
-        self._slid = target if at_once or self._slid is None else self._slid + 0.3 * (target - self._slid)
-
-    def put(self, canvas: Canvas) -> None:
-        """Draw the switch and its state."""
-        left, middle = self.track[0], self.box.centery
-        slid = float(self.value) if self._slid is None else self._slid
-        draw_switch(canvas, (left, middle - 7, 26, 14), slid, self.colour)
-        if not self.live:
-            canvas.dot((left + 7 + 12 * slid, middle), 2.6, mix(FAINT, self.colour, slid))
-        self.written(canvas, texts.KNOB_SWITCH[bool(self.value)], self.colour if self.value else MUTE)
+        if left <= start <= right - width:  # a narrow window has short tracks
+            canvas.text(words, (start, self.box.centery - 4), size=_NOTE, colour=mix(MUTE, INK, self.warmth))
 
 
 class WordsKnob(Knob):
-    """A choice among a few words."""
+    """A choice among a few words, on as many lines as they need."""
+
+    _places: tuple[pygame.FRect, ...] = ()
 
     @property
     def values(self) -> tuple[Any, ...]:
         """The values to choose from; one that has no word of its own gets one made for it."""
         return tuple(dict.fromkeys((*self.description.stops, self.home, self.value)))
 
-    @property
-    def row(self) -> TextButtonRow:
-        """The words as they stand."""
-        return TextButtonRow([figure(each) for each in self.values], self.track[0], self.box.right, SMALL, _GAP)
-
     def press(self) -> None:
         """Take the word under the mouse; without one, the next."""
-        self.turn(self.values[self.row.pressed(self.mouse_x, self.values.index(self.value))])
+        chosen: int | None = (self.values.index(self.value) + 1) % len(self.values)
+        if not self.ringed:
+            mouse = self.ui_manager.get_mouse_position()
+            chosen = next((n for n, place in enumerate(self._places) if place.collidepoint(mouse)), None)
+        if chosen is not None:
+            self.turn(self.values[chosen])
 
     def shift(self, direction: int) -> bool:
         """Take the word to the left or right."""
@@ -265,71 +218,31 @@ class WordsKnob(Knob):
             self.turn(self.values[place])
         return True
 
-    def put(self, canvas: Canvas) -> None:
-        """Draw the words."""
-        ink = self.colour if self.live or self.waits or self.idle else INK
-        self.row.paint(
-            canvas,
-            self.box.centery + 4.5,
-            self.values.index(self.value),
-            ink=ink,
-            line=self.colour,
-            drop=5.5,
-            thickness=2.0 if self.live else 1.0,
-        )
+    def put(self, cursor: Cursor, middle: float) -> None:
+        """Draw the words, with a line under the chosen one."""
+        small, left = cursor.in_style(SMALL), _left(cursor)
+        x, y, places = left, middle, []
+        for value in self.values:
+            word, chosen = figure(value), value == self.value
+            wide = small.measured(word)
+            if x > left and x + wide > cursor.right:
+                x, y = left, y + _HEIGHT
+            if canvas := cursor.canvas:
+                canvas.text(word, (x, y + 4.5), size=SMALL, colour=self.colour if chosen else MUTE)
+                if chosen:
+                    canvas.line((x, y + 10), (x + wide, y + 10), self.colour, 2.0 if self.live else 1.0)
+            places.append(pygame.FRect(x - _GAP / 2, y - _HEIGHT / 2, wide + _GAP, _HEIGHT))
+            x += wide + _GAP
+        self._places = tuple(places)
+        cursor.y = y + _HEIGHT / 2
 
 
-KINDS: Final[dict[str, type[Knob]]] = {"slider": SliderKnob, "switch": SwitchKnob, "words": WordsKnob}
+KINDS: Final[dict[str, type[Knob]]] = {"slider": SliderKnob, "switch": WordsKnob, "words": WordsKnob}
 
 
-class SeedKnob(_Row, Entry):
-    """The random seed: typed, or stepped with the arrows. It takes a new run, as a run begins with it."""
-
-    live = False
-
-    def __init__(self, manager: PointsManager, label: str, turn: Callable[[int], None]) -> None:
-        super().__init__(manager, _NOWHERE, label, "0", self._accept, limit=_LONGEST_SEED, fits=digits, size=SMALL)
-        self.help = texts.KNOB_SEED
-        self._turn, self.value, self.waits = turn, 0, False
-
-    def display(self, value: int, *, waits: bool) -> None:
-        """Show what the panel says."""
-        self.value, self.waits = value, waits
-        if not self.typing:
-            self.line.set(str(value))
-
-    def shift(self, direction: int) -> bool:
-        """Raise or lower the seed by one."""
-        self._turn(min(max(self.value + direction, 0), 10**_LONGEST_SEED - 1))
-        return True
-
-    def _accept(self, text: str) -> Transition | None:
-        self._turn(int(text))
-        return None
-
-    def ease(self, at_once: bool) -> None:
-        """Take what was typed once the focus is elsewhere."""
-        super().ease(at_once)
-        self.commit()
-
-    def commit(self) -> None:
-        """Take what was typed, unless it is still being typed."""
-        if not self.typing and self.line.text != str(self.value):
-            self._turn(int(self.line.text or self.value))
-
-    @property
-    def start(self) -> tuple[float, float]:
-        """Left end of the number, which is aligned to the right end of the row."""
-        return self.box.right - typeface.width(self.line.shown, SMALL, "regular"), self.box.centery + 4.5
-
-    def put(self, canvas: Canvas) -> None:
-        """Draw the number."""
-        x, baseline = self.start
-        if self.typing:
-            draw_line(canvas, self.line, (x, baseline), self.box.width, SMALL, typing=True)
-            canvas.line((min(x, self.box.right - 20), baseline + 5.5), (self.box.right, baseline + 5.5), HUMAN, 1)
-        else:
-            canvas.text(self.line.text, (x, baseline), size=SMALL, colour=HUMAN if self.waits else MUTE)
+def _left(row: pygame.Rect | Cursor) -> float:
+    """Return where the control of a row begins, in points."""
+    return row.left + min(_LABELS, 0.5 * row.width)
 
 
 @lru_cache(maxsize=1024)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Final
+from typing import Final, NamedTuple
 
 import pygame
 
@@ -17,8 +16,7 @@ _CHARTS: Final = (0.31, 0.5)  # share of the display for one row of charts, and 
 _COLUMNS: Final = 2
 
 
-@dataclass(frozen=True)
-class Layout:
+class Layout(NamedTuple):
     """Boxes in points.
 
     Attributes:
@@ -34,30 +32,23 @@ class Layout:
     charts: tuple[pygame.FRect, ...]
     panel: pygame.FRect
 
-    @property
-    def beside(self) -> bool:
-        """Whether the panel stands beside the display."""
-        return self.panel.left > self.display.left
-
 
 def layout(view: pygame.FRect, charts: int) -> Layout:
     """Lay a window out in points, with so many charts."""
+    display, panel = pygame.FRect(0, 0, *view.size), pygame.FRect(0, 0, *view.size)
     if view.width >= _WIDE and view.width > view.height:
-        side = min(max(0.33 * view.width, _SIDE[0]), _SIDE[1])
-        display = pygame.FRect(0, 0, view.width - side, view.height)
-        panel = pygame.FRect(display.right, 0, side, view.height)
+        panel.width = min(max(0.33 * view.width, _SIDE[0]), _SIDE[1])
+        display.width = panel.left = view.width - panel.width
     else:
-        display = pygame.FRect(0, 0, view.width, round((1 - _BELOW) * view.height))
-        panel = pygame.FRect(0, display.bottom, view.width, view.height - display.bottom)
+        display.height = panel.top = round((1 - _BELOW) * view.height)
+        panel.height = view.height - display.height
     rows = -(-charts // _COLUMNS)
     share = _CHARTS[rows > 1] * display.height / rows
     height = min(max(share - CAPTION, _CHART[0]), _CHART[1])
     top = display.bottom - rows * (height + CAPTION) - 8
     width = (display.width - 2 * _MARGIN - (_COLUMNS - 1) * _MARGIN) / _COLUMNS
     boxes = tuple(
-        pygame.FRect(display.left + _MARGIN + column * (width + _MARGIN), top + row * (height + CAPTION), width, height)
-        for row in range(rows)
-        for column in range(_COLUMNS)
-    )[:charts]
-    swarm = pygame.FRect(display.left, display.top, display.width, max(top - 14 - display.top, 1.0))
-    return Layout(display, swarm, boxes, panel)
+        pygame.FRect(_MARGIN + column * (width + _MARGIN), top + row * (height + CAPTION), width, height)
+        for row, column in (divmod(number, _COLUMNS) for number in range(charts))
+    )
+    return Layout(display, pygame.FRect(0, 0, display.width, max(top - 14, 1.0)), boxes, panel)

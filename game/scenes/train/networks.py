@@ -1,9 +1,11 @@
-"""Networks scene: saved runs and shipped networks, with the actions on each."""
+"""Networks scene: saved runs and shipped networks in a list; beside it the chosen one, and what can be done with it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Final
 
@@ -12,40 +14,36 @@ import pygame
 from game.core import texts
 from game.core.names import LONGEST_NAME, LibraryError, fitting
 from game.core.scene import Pop, Transition, push
-from game.drawing.canvas import Canvas
-from game.drawing.tokens import MARGIN, TITLE, VIEW_SIZE
+from game.drawing.cursor import LEADING, Cursor
+from game.drawing.tokens import HUMAN, LABEL, MUTE, NET, SMALL, TITLE
 from game.flight import networks
 from game.flight.study_runs import studies
 from game.input.controls import Command
-from game.scenes.train.run_page import draw_run, row, suggestion
 from game.training.library import Library, SavedRun, read_run
 from game.ui.actions import Action, Table
 from game.ui.context import Context
-from game.ui.entry import Entry
-from game.ui.list_scene import VERB_LINE, VERB_SIZE, ListLayout, ListScene
 from game.ui.listing import Row
-from game.ui.widget import OnPress, Widget
-from game.ui.widgets import TextButton
+from game.ui.panel import Column, Panel
+from game.ui.panel_scene import PanelScene
+from game.ui.widget import OnPress
 
-_LEFT: Final = 824  # of what is said of the chosen run
-_LAYOUT: Final = ListLayout(
-    box=pygame.Rect(MARGIN, 168, 672, 408),
-    columns=(232.0, 112.0, 0.0),
-    headings=texts.RUNS_COLUMNS,
-    pitch=34,
-    verbs=(_LEFT, 340),
-    foot=608,
-)
-_WIDTH: Final = VIEW_SIZE[0] - MARGIN - _LEFT
+_LEAST: Final = 300.0  # points of a column
+_CELLS: Final = (196.0, 96.0, 0.0)  # from the right end of the list: where landed, decisions and date end
+_BAR: Final = 15.0  # points at the right of a list for its scroll bar
+_PITCH, _AROUND = 30.0, 190.0  # points of a row of the list, and of all around the list
 
 
-class NetworksScene(ListScene[SavedRun]):
-    """A list on the left; the chosen run, its figures and its verbs on the right.
+class NetworksScene(PanelScene):
+    """A list; beside it, or below, the chosen run, its figures and what can be done with it.
 
     Args:
         choose: called with the name of the chosen network; the scene then closes. Without it, a run can be
             watched, flown with and trained further from here.
         train: function that resumes training from a run's folder; by default, a Train scene of its own.
+
+    Attributes:
+        items: what is listed.
+        chosen: the chosen run; None if there is none.
 
     """
 
@@ -57,14 +55,22 @@ class NetworksScene(ListScene[SavedRun]):
         choose: Callable[[str], None] | None = None,
         train: Callable[[Path], Transition] | None = None,
     ) -> None:
-        title = texts.RUNS_CHOOSE_TITLE if choose else texts.RUNS_TITLE
-        super().__init__(context, title, _LAYOUT, self._back, empty=texts.RUNS_NOTHING)
-        self._choose, self._train = choose, train or _train_on
-        self._entry: Entry | None = None
+        super().__init__(context, self._back)
+        self._choose, self._train = choose, train or (lambda folder: push("train", resume=folder))
         self._library = Library(context.user_dir)
-        known = networks.folders(context.models_dir, context.user_dir)
-        flies = known.get(context.settings.model, known.get(networks.DEFAULT))
-        self._reload(flies if self._choose else None)
+        self._naming = False
+        self.chosen: SavedRun | None = None
+        self._names: dict[Path, str] = {}
+        self._read()
+        if choose:
+            known = networks.folders(context.models_dir, context.user_dir)
+            self._reload(known.get(context.settings.model, known.get(networks.DEFAULT)))
+        else:
+            self._reload()
+
+    def enter(self) -> None:
+        """Read again what there is, which the scene above may have changed."""
+        self._reload()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Leave it to the actions and the widgets; a folder can be dropped here."""
@@ -74,33 +80,24 @@ class NetworksScene(ListScene[SavedRun]):
 
     def actions(self) -> Table:
         """Move, choose, go back; Delete and F2 do what they do elsewhere. While a name is typed, keep or leave it."""
-        if self._entry:
+        if self._naming:
             confirm = texts.HINT_KEEP_NAME if self.form.typing else texts.HINT_CHOOSE
             return [self.form.confirms(confirm), Action(Command.BACK, self._end_naming, texts.HINT_LEAVE_NAME)]
         own = [Action(pygame.K_DELETE, self._delete), Action(pygame.K_F2, self._begin_naming)] if self._is_own else []
-        return [*super().actions(), *own]
+        return [self.form.moves, *super().actions(), *own]
 
     # What there is
 
     @property
     def _is_own(self) -> bool:
         """Whether the chosen run is the player's, and not the game's."""
-        return self.chosen is not None and self._owns(self.chosen)
-
-    def _owns(self, run: SavedRun) -> bool:
-        return run.folder.parent == self._library.folder
+        return self.chosen is not None and self.chosen.folder.parent == self._library.folder
 
     def _is_shipped(self, run: SavedRun) -> bool:
         return run.folder.is_relative_to(self.context.models_dir)
 
-    def _identity(self, run: SavedRun) -> Path:
-        return run.folder
-
-    def _row(self, run: SavedRun) -> Row:
-        return row(run, own=not self._is_shipped(run))
-
-    def _reload(self, wanted: Path | None = None) -> None:
-        """Reload from disk, and choose a run, by default the one chosen before or now in its place in the list."""
+    def _read(self) -> None:
+        """Read from disk what there is."""
         context = self.context
         own = self._library.runs()
         known = networks.folders(context.models_dir, context.user_dir)
@@ -108,65 +105,101 @@ class NetworksScene(ListScene[SavedRun]):
         # What a study has found stays as it is: to train it further, there is the command.
         shipped = [replace(run, resumable=run.resumable and self._is_shipped(run)) for run in others]
         self._names = {folder: name for name, folder in known.items()}
-        self._line = self._library.problem or (
-            texts.RUNS_PLACE.format(folder=self._library.folder) if own else texts.RUNS_NONE
-        )
-        self._has_studies = bool(studies(context.user_dir))
-        self._entry = None
-        self._show([*own, *shipped], wanted or (self.chosen and self.chosen.folder), self._list.index)
+        self.items = [*own, *shipped]
+        kept = texts.RUNS_PLACE.format(folder=self._library.folder) if own else texts.RUNS_NONE
+        self.line = self._library.problem or kept
 
-    def _make_verbs(self) -> list[Widget]:
-        """Return the entry of a name, if it is being typed, and buttons for what can be done with the chosen run."""
-        if self._entry:
-            words: list[tuple[str, OnPress]] = [
-                (texts.RUN_KEEP_NAME, self._entry_done),
-                (texts.RUN_LEAVE_NAME, self._end_naming),
-            ]
-            return [self._entry, *self._buttons(words)]
-        rows: list[tuple[str, OnPress]] = []
-        if run := self.chosen:
-            if run.flyable and self._choose:
-                rows.append((texts.RUN_CHOOSE, self._take))
-            elif run.flyable:
-                rows += [(texts.RUN_WATCH, self._watch), (texts.RUN_FLY, self._fly)]
-            if run.resumable and not self._choose:
-                rows.append((texts.RUN_TRAIN, lambda: self._train(run.folder)))
-            if self._is_own:
-                rows += [
-                    (texts.RUN_RENAME, self._begin_naming),
-                    (texts.RUN_EXPORT, self._export),
-                    (texts.RUN_DELETE, self._delete),
-                ]
-        return self._buttons(rows)
+    def _reload(self, wanted: Path | None = None) -> None:
+        """Read again, and choose a run: by default the one chosen before, or what is in its place now."""
+        before = next((n for n, run in enumerate(self.items) if run == self.chosen), 0)
+        wanted = wanted or (self.chosen.folder if self.chosen else None)
+        self._read()
+        place = next((n for n, run in enumerate(self.items) if run.folder == wanted), min(before, len(self.items) - 1))
+        self.chosen = self.items[place] if self.items else None
+        self._end_naming()
 
-    def _below_list(self) -> list[Widget]:
-        """Return the button that goes back, and the one that brings back the run deleted last."""
-        foot = super()._below_list()
-        if self._has_studies and not self._choose:
-            box = (_LAYOUT.box.right - 240, _LAYOUT.foot, 240, VERB_LINE)
-            foot.append(TextButton(self.form.manager, box, texts.STUDY_OPEN, lambda: push("study"), size=VERB_SIZE))
+    # Rows
+
+    def describe(self, panel: Panel) -> None:
+        """Add the list, and the chosen run."""
+        panel.title(texts.RUNS_CHOOSE_TITLE if self._choose else texts.RUNS_TITLE)
+        panel.aside(self.line)
+        panel.gap(4)
+        left, self._beside = panel.beside((3, 2), _LEAST, 48.0)
+        left.add(partial(write_headings, texts.RUNS_COLUMNS, _CELLS))
+        self._list = left.listing(
+            [row(run, own=not self._is_shipped(run)) for run in self.items], lambda _: self._press_row(),
+            texts.RUNS_NOTHING, around=_AROUND, columns=_CELLS, pitch=_PITCH, on_choose=self._choose_row,
+            index=self.items.index(self.chosen) if self.chosen else 0,
+        )  # fmt: skip
+        more: list[tuple[str, OnPress]] = []
         if deleted := self._library.last_deleted:
-            box = (MARGIN + 120, _LAYOUT.foot, 300 if self._has_studies else 520, VERB_LINE)
-            label = texts.RUN_RESTORE.format(name=deleted)
-            foot.append(TextButton(self.form.manager, box, label, self._restore, size=18))
-        return foot
+            more.append((texts.RUN_RESTORE.format(name=deleted), self._restore))
+        if not self._choose and studies(self.context.user_dir):
+            more.append((texts.STUDY_OPEN, lambda: push("study")))
+        left.words([*more, (texts.BACK, self._back)])
+        self._describe_chosen(self._beside)
 
-    # What can be done
+    def _describe_chosen(self, column: Column) -> None:
+        """Add the chosen run: its name, its figures, and what can be done with it."""
+        run = self.chosen
+        if run is None:
+            return
+        if self._naming:
+            text = suggestion(self._library, run) if self.context.controls.gamepad_in_use else run.name
+            column.caption(texts.RUN_NAME)
+            self._entry = column.entry(text, self._rename, self._end_naming, LONGEST_NAME, fitting)
+            column.words([(texts.RUN_KEEP_NAME, self._entry_done), (texts.RUN_LEAVE_NAME, self._end_naming)])
+            return
+        column.text(run.name, size=TITLE)
+        if run.problem:
+            column.text(run.problem, size=SMALL, colour=HUMAN)
+        else:
+            column.aside(_made(run))
+            for label, figure in zip(texts.RUN_FIGURES, _figures(run), strict=True):
+                column.pair(label, figure, MUTE)
+        saved = time.strftime("%Y-%m-%d %H:%M", time.localtime(run.saved))
+        column.aside(texts.RUN_SHIPPED if self._is_shipped(run) else texts.RUN_SAVED.format(when=saved))
+        if self._names.get(run.folder) == (self.context.settings.model or networks.DEFAULT):
+            column.text(texts.RUN_FLIES, size=SMALL, colour=NET)
+        column.gap(8)
+        for word, press in self.verbs:
+            column.button(word, press).pad = 4.0
 
-    def _choose_row(self) -> None:
-        self._entry = None
-        self._offer()
+    @property
+    def verbs(self) -> list[tuple[str, OnPress]]:
+        """What can be done with the chosen run, in words and deeds."""
+        run, verbs = self.chosen, list[tuple[str, OnPress]]()
+        if run is None:
+            return verbs
+        if run.flyable and self._choose:
+            verbs.append((texts.RUN_CHOOSE, self._take))
+        elif run.flyable:
+            verbs += [(texts.RUN_WATCH, lambda: self._fly("watch")), (texts.RUN_FLY, lambda: self._fly("play"))]
+        if run.resumable and not self._choose:
+            verbs.append((texts.RUN_TRAIN, lambda: self._train(run.folder)))
+        if self._is_own:
+            verbs += [(texts.RUN_RENAME, self._begin_naming), (texts.RUN_EXPORT, self._export),
+                      (texts.RUN_DELETE, self._delete)]  # fmt: skip
+        return verbs
+
+    def _choose_row(self, number: int) -> None:
+        self.chosen, self._naming = self.items[number], False
+        self._beside.clear()
+        self._describe_chosen(self._beside)
 
     def _press_row(self) -> Transition | None:
         """Choose the network where one is asked for; elsewhere, move the focus to the actions."""
         if self._choose:
             return self._take()
-        if self._verbs:
-            self.form.focus(self._verbs[0])
+        if verbs := self.verbs:
+            self.form.focus(next(each for each in self.form.widgets if each.label == verbs[0][0]))
         return None
 
+    # What can be done
+
     def _back(self) -> Transition | None:
-        if not self._entry:
+        if not self._naming:
             return Pop()
         self._end_naming()
         return None
@@ -177,33 +210,22 @@ class NetworksScene(ListScene[SavedRun]):
         self._choose(self._names[self.chosen.folder])
         return Pop()
 
+    def _fly(self, route: str) -> Transition:
+        self._make_pilot()
+        return push(route)
+
     def _make_pilot(self) -> None:
         assert self.chosen is not None
         self.context.settings.model = self._names[self.chosen.folder]
         self.context.apply_settings()
 
-    def _watch(self) -> Transition:
-        self._make_pilot()
-        return push("watch")
-
-    def _fly(self) -> Transition:
-        self._make_pilot()
-        return push("play")
-
     def _begin_naming(self) -> None:
-        run, context = self.chosen, self.context
-        assert run is not None
-        text = suggestion(self._library, run) if context.controls.gamepad_in_use else run.name
-        self._entry = Entry(
-            self.form.manager, (_LEFT, 140, _WIDTH, 34), texts.RUN_NAME, text, self._rename,
-            on_cancel=self._end_naming, limit=LONGEST_NAME, fits=fitting, size=TITLE,
-        )  # fmt: skip
-        self._offer()
+        self._naming = True
+        self.build()
         self.form.focus(self._entry)
         self._entry.begin()
 
     def _entry_done(self) -> None:
-        assert self._entry is not None
         self._rename(self._entry.text.strip())
 
     def _rename(self, name: str) -> None:
@@ -214,19 +236,17 @@ class NetworksScene(ListScene[SavedRun]):
             renamed = self._library.rename(run.name, name)
         except LibraryError as error:
             context.note(str(error))
-            if self._entry:
-                self.form.focus(self._entry)
-                self._entry.begin()
+            self.form.focus(self._entry)
+            self._entry.begin()
             return
         flies = context.settings.model == self._names[run.folder]
         self._reload(renamed)
-        self.form.focus(self._list)
         if flies:
             self._make_pilot()
 
     def _end_naming(self) -> None:
-        self._entry = None
-        self._offer()
+        self._naming = False
+        self.build()
         self.form.focus(self._list)
 
     def _export(self) -> None:
@@ -242,30 +262,35 @@ class NetworksScene(ListScene[SavedRun]):
             self._library.delete(run.name)
             return texts.RUN_DELETED.format(name=run.name)
 
-        self._report(_result(delete))
+        self.context.note(_result(delete))
+        self._reload()
 
     def _restore(self) -> None:
         def restore() -> str:
-            run = self._library.undo_delete()
-            self._reload(run)
-            return texts.RUN_RESTORED.format(name=run.name) if run else ""
+            folder = self._library.undo_delete()
+            self._reload(folder)
+            return texts.RUN_RESTORED.format(name=folder.name) if folder else ""
 
         self.context.note(_result(restore))
-        self.form.focus(self._list)
 
     def _import(self, path: Path) -> None:
         def copy() -> str:
-            run = self._library.import_folder(path)
-            self._reload(run)
-            return texts.RUN_IMPORTED.format(name=run.name)
+            folder = self._library.import_folder(path)
+            self._reload(folder)
+            return texts.RUN_IMPORTED.format(name=folder.name)
 
         self.context.note(_result(copy))
 
-    def _draw_chosen(self, canvas: Canvas) -> None:
-        """Draw the chosen run's name and figures."""
-        if run := self.chosen:
-            flies = self._names.get(run.folder) == (self.context.settings.model or networks.DEFAULT)
-            draw_run(canvas, run, _LEFT, _WIDTH, own=not self._is_shipped(run), named=not self._entry, flies=flies)
+
+def write_headings(words: Sequence[str], columns: Sequence[float], cursor: Cursor) -> None:
+    """Write the headings of a list: the first on the left, the others over the ends of their columns."""
+    small = cursor.in_style(LABEL, MUTE, "medium")
+    if canvas := cursor.canvas:
+        ends = [cursor.right - column - _BAR for column in columns]
+        canvas.text(words[0], (cursor.left, small.baseline), size=LABEL, colour=MUTE, weight="medium")
+        for word, end in zip(words[1:], ends, strict=True):
+            canvas.text(word, (end, small.baseline), size=LABEL, colour=MUTE, weight="medium", align="right")
+    cursor.gap(LEADING * LABEL)
 
 
 def _result(deed: Callable[[], str]) -> str:
@@ -276,5 +301,29 @@ def _result(deed: Callable[[], str]) -> str:
         return str(error)
 
 
-def _train_on(folder: Path) -> Transition:
-    return push("train", resume=folder)
+def row(run: SavedRun, own: bool) -> Row:
+    """Return the row of a run: name, landing rate, decisions learnt from, and date saved."""
+    saved = time.strftime("%Y-%m-%d", time.localtime(run.saved)) if own else texts.RUNS_SHIPPED
+    landed, decisions, _ = ("–", "–", "") if run.problem else _figures(run)
+    return run.name, landed, decisions, saved
+
+
+def suggestion(library: Library, run: SavedRun) -> str:
+    """Suggest a name from a run's figures, for players without a keyboard."""
+    if run.problem:
+        return library.free_name(run.name)
+    landed, decisions, _ = (figure.replace(" ", "").removesuffix("%") for figure in _figures(run))
+    return library.free_name(texts.RUN_SUGGESTION.format(preset=run.preset, decisions=decisions, percent=landed))
+
+
+def _made(run: SavedRun) -> str:
+    settings = texts.RUN_SETTINGS if run.changes else texts.RUN_AS_IS
+    return texts.RUN_SEED.format(settings=settings.format(preset=run.preset, count=run.changes), seed=run.seed)
+
+
+def _figures(run: SavedRun) -> tuple[str, str, str]:
+    """Return the share that landed, the decisions and the time of a run, each with its unit."""
+    landed = "–" if run.success is None else f"{100 * run.success:.1f} %"
+    count = f"{run.decisions / 1e6:.1f} M" if run.decisions >= 1_000_000 else f"{run.decisions / 1e3:.0f} k"
+    took = f"{run.seconds:.0f} s" if run.seconds < 120 else f"{run.seconds / 60:.0f} min"
+    return landed, count if run.decisions >= 1000 else str(run.decisions), took

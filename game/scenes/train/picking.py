@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -19,16 +18,14 @@ _CLEAR: Final = 0.04  # share of a link at either end that belongs to its units
 _DASH: Final = 7.0
 
 
-@dataclass(frozen=True)
-class Unit:
+class Unit(NamedTuple):
     """Unit of a network; stage 0 are the inputs."""
 
     stage: int
     unit: int
 
 
-@dataclass(frozen=True)
-class Link:
+class Link(NamedTuple):
     """Link of a network, from a unit of stage `layer` to one of the next."""
 
     layer: int
@@ -50,8 +47,8 @@ def part_at(view: NetworkView, point: Point) -> Part | None:
         return Unit(found[0], int(view.columns[found[0]].units[found[1]]))
     best, least = None, _NEAR
     for edge in view.edges:
-        away = _distance(point, view.centres[edge.column][edge.start], view.centres[edge.column + 1][edge.end])
-        away -= edge.size  # of two that cross, the stronger one is meant
+        start, end = view.centres[edge.column][edge.start], view.centres[edge.column + 1][edge.end]
+        away = _distance(point, start, end) - edge.size  # of two that cross, the stronger one is meant
         if away < least:
             best, least = edge, away
     if best is None:
@@ -70,15 +67,15 @@ def name_of(view: NetworkView, part: Part) -> str:
 
 def draw_marks(canvas: Canvas, view: NetworkView, edits: NetworkEdits, picked: Part | None) -> None:
     """Draw silenced units hollow, edited links in amber, cut ones dashed, and a ring around the picked unit."""
-    for layer, start, end in edits.weights:
-        _draw_link(canvas, view, Link(layer, start, end), 1.0)
-    if isinstance(picked, Link):
-        _draw_link(canvas, view, picked, 2.0)
-    for stage, unit in edits.silenced:
-        if centre := _centre(view, Unit(stage, unit)):
+    for weight in edits.weights:
+        _draw_link(canvas, view, Link(*weight), 1.0)
+    for place in edits.silenced:
+        if centre := _centre(view, Unit(*place)):
             canvas.dot(centre, view.radius + 2, NIGHT0)
             canvas.marker("ring", centre, 2 * view.radius + 2, HUMAN)
-    if isinstance(picked, Unit) and (centre := _centre(view, picked)):
+    if isinstance(picked, Link):
+        _draw_link(canvas, view, picked, 2.0)
+    elif picked and (centre := _centre(view, picked)):
         canvas.marker("ring", centre, 2 * view.radius + 8, HUMAN)
 
 
@@ -86,14 +83,17 @@ def _draw_link(canvas: Canvas, view: NetworkView, link: Link, width: float) -> N
     start, end = (_centre(view, unit) for unit in link.ends)
     if start is None or end is None:
         return
-    if view.weight(link.layer, link.start, link.end):
+    if view.weight(*link):
         canvas.line(start, end, HUMAN, width)
         return
     count = max(1, round(math.dist(start, end) / _DASH / 2))
-    way = np.subtract(end, start) / count
     for number in range(count):
-        here = start + number * way
-        canvas.line((float(here[0]), float(here[1])), tuple((here + way / 2).tolist()), HUMAN, width, 0.7)
+        here, there = (_between(start, end, part / count) for part in (number, number + 0.5))
+        canvas.line(here, there, HUMAN, width, 0.7)
+
+
+def _between(start: Point, end: Point, share: float) -> Point:
+    return start[0] + share * (end[0] - start[0]), start[1] + share * (end[1] - start[1])
 
 
 def _place(view: NetworkView, unit: Unit) -> int | None:

@@ -7,18 +7,14 @@ from typing import Final
 import numpy as np
 
 from ai.environment import Doubles
-from ai.training.messages import NetworkState
+from ai.training.messages import NetworkState, SwarmState
 from game.core import texts
 from game.core.worker import WorkerState
-from game.drawing.canvas import Canvas
-from game.drawing.tokens import HUMAN, MUTE, SMALL
-from game.scenes.train.charts import TrainingCharts
-from game.scenes.train.inside import Inside
+from game.drawing.tokens import HUMAN, SMALL
 from game.training.run import TrainingRun
 from game.ui.panel import Column
 from game.ui.rows import SliderRow
 from game.ui.widget import PointsManager
-from game.world.swarm import LearningSwarm
 
 _STEPS: Final = 100  # presses of an arrow from the beginning of a run to its end
 
@@ -31,22 +27,19 @@ class Rewind:
 
     Attributes:
         moment: the moment that is shown, in decisions; None for now.
-        swarm: the landers of that moment.
-        swarm_kept: whether they were kept.
-        network_state: the network of that moment; None if none was kept.
+        swarm_state, network_state: the landers and the network of that moment; None if none were kept.
 
     """
 
-    def __init__(self, lander_run: TrainingRun) -> None:
-        self._run = lander_run
-        self.swarm = LearningSwarm()
+    def __init__(self, run: TrainingRun) -> None:
+        self._run = run
         self._timeline: SliderRow | None = None
         self.clear()
 
     def clear(self) -> None:
         """Show now."""
         self.moment: int | None = None
-        self.swarm_kept = False
+        self.swarm_state: SwarmState | None = None
         self.network_state: NetworkState | None = None
 
     # Where it goes
@@ -54,37 +47,28 @@ class Rewind:
     @property
     def row(self) -> int:
         """Number of the point of the history that is nearest to the moment; the last one for now."""
-        if self.moment is None:
-            return -1
-        return self._run.history.row_at(self.moment)
+        return -1 if self.moment is None else self._run.history.row_at(self.moment)
 
     @property
     def share(self) -> float:
         """Place of the moment in the run, from 0, the beginning, to 1, now."""
-        end = self._end
-        return 1.0 if self.moment is None or not end else self.moment / end
+        return 1.0 if self.moment is None or not self._end else self.moment / self._end
 
     @property
     def _end(self) -> float:
-        history = self._run.history
-        return float(history["decisions"][-1]) if len(history) else 0.0
+        return float(self._run.history["decisions"][-1]) if len(self._run.history) else 0.0
 
     def seek(self, decisions: float) -> None:
         """Show the kept moment nearest to one in decisions; from the last one on, show now."""
-        history, run = self._run.history, self._run
-        if not len(history) or decisions >= self._end:
-            self.clear()
+        run = self._run
+        self.clear()
+        if not len(run.history) or decisions >= self._end:
             return
-        began = run.swarms.begins
-        swarm_state = run.swarms.nearest(decisions) if began is not None and decisions >= began else None
-        if swarm_state is not None:
-            self.moment = swarm_state.decisions
-        else:
-            self.moment = int(history["decisions"][history.row_at(decisions)])
-        self.swarm_kept = swarm_state is not None
-        self.swarm.clear()
-        if swarm_state is not None:
-            self.swarm.take(swarm_state)
+        self.moment = int(run.history["decisions"][run.history.row_at(decisions)])
+        if run.swarms.begins is not None and decisions >= run.swarms.begins:
+            self.swarm_state = run.swarms.nearest(decisions)
+            assert self.swarm_state is not None
+            self.moment = self.swarm_state.decisions
         self.network_state = self._network_at(self.moment)
 
     def seek_share(self, share: float) -> None:
@@ -110,31 +94,14 @@ class Rewind:
 
     def _network_at(self, decisions: int) -> NetworkState | None:
         """Return the nearest network: one the run has sent, or before the first of those, that of a checkpoint."""
-        run = self._run
-        began = run.networks.begins
-        if began is not None and decisions >= began:
-            return run.networks.nearest(decisions)
-        checkpoint = run.history.checkpoint_at(decisions)
-        if checkpoint is None or not checkpoint.values.size:
+        run, checkpoint = self._run, self._run.history.checkpoint_at(decisions)
+        sent = run.networks.begins is not None and decisions >= run.networks.begins
+        if sent or checkpoint is None or not checkpoint.values.size:
             return run.networks.nearest(decisions)
         nothing = np.zeros_like(checkpoint.values)
         return NetworkState(checkpoint.values, nothing, np.empty(0, np.float32), checkpoint.decisions)
 
-    # The picture
-
-    def show_in(self, inside: Inside, charts: TrainingCharts) -> None:
-        """Put the panels at the moment that was chosen, or back to now; call it once a frame."""
-        run, moment = self._run, self.moment
-        if self._timeline is not None and not self._timeline.held:
-            self._timeline.value = self.share
-        if moment == charts.moment:
-            return
-        charts.moment, inside.editing.past = moment, moment is not None
-        network = run.network_state if moment is None else self.network_state
-        if network is not None and network is not inside.shown:
-            inside.show(network, run.config)
-        if len(run.history):
-            inside.pay(run.history, self.row)
+    # The words
 
     @property
     def words(self) -> str:
@@ -154,15 +121,14 @@ class Rewind:
             column.text(lambda: self.words, size=SMALL, colour=HUMAN)
             column.button(texts.REWIND_NOW, self.clear, colour=HUMAN)
 
+    def update(self) -> None:
+        """Let the timeline follow."""
+        if self._timeline is not None and not self._timeline.held:
+            self._timeline.value = self.share
+
     def seconds_at(self, share: float) -> str:
         """Write the time at a share of the run."""
         return texts.REWIND_MARK.format(seconds=share * float(self._run.history["seconds"][-1]))
-
-    def draw_swarm(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the landers of that moment, or say that they were not kept."""
-        self.swarm.draw(canvas, alpha, paused=True)
-        if not self.swarm_kept:
-            canvas.text(texts.REWIND_NO_LANDERS, self.swarm.box.center, size=SMALL, colour=MUTE, align="centre")
 
 
 class _Timeline(SliderRow):

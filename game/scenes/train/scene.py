@@ -3,38 +3,35 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Hashable
+from collections.abc import Hashable
 from functools import partial
 from pathlib import Path
 from typing import Final
 
 import pygame
 
-from ai.training.checkpoints import agent_of
 from ai.training.config import PRESETS, Config
 from ai.training.experiments import Experiment, differences
 from game.core import texts
-from game.core.names import LibraryError
 from game.core.scene import Pop, Push, Transition, push
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import LINE, NIGHT0, SMALL
+from game.drawing.tokens import LINE, MUTE, NIGHT0, SMALL
 from game.flight.demonstrations import FILE_NAME, count_demonstrations
 from game.input.controls import Command
-from game.lesson.door import LessonDoor
-from game.panels.explained import Explained
-from game.scenes.menus.dialogs import QuestionDialog
+from game.panels.lesson_door import LessonDoor
+from game.scenes.menus.dialogs import ListDialog
 from game.scenes.train.advice import Advice
-from game.scenes.train.base import CHARTS, INSIDE, KNOBS, MORE, TrainingScene
-from game.scenes.train.charts import BY_DECISIONS, FEW_CHARTS, SCORE, ChartCaptions, TrainingCharts
-from game.scenes.train.dialogs import TrainDialogs
+from game.scenes.train.base import CHARTS, INSIDE, KNOBS, TrainingScene
+from game.scenes.train.charts import BY_DECISIONS, SCORE, Beside, ChartCaptions, TrainingCharts
 from game.scenes.train.inside import Inside
 from game.scenes.train.knobs import KnobsPanel
-from game.scenes.train.laboratory import ExperimentPages, Laboratory
+from game.scenes.train.laboratory import Laboratory
 from game.scenes.train.layout import Layout
 from game.scenes.train.rewind import Rewind
 from game.scenes.train.split_view import SplitView
-from game.scenes.train.status import lander_status
+from game.scenes.train.status import TrainingStatus, lander_status
+from game.training.beside import take_away
 from game.training.library import Library
 from game.training.run import TrainingRun
 from game.training.workers import LANDERS, PACES
@@ -47,181 +44,175 @@ from game.ui.virtual_pointer import VirtualPointer
 from game.ui.widget import Widget
 from game.world.swarm import LearningSwarm
 
-_ALL_CHARTS: Final = 4
 _HEAD: Final = 130.0  # of the display, for the title above two swarms
 _BEHIND: Final = 0.72  # cover of the swarm behind an edited network
+_JUDGED: Final = 20  # frames after which an experiment is judged anew
 
 
 class TrainScene(TrainingScene):
     """Train scene: swarm, charts and knobs. With `resume`, a saved run continues at once.
 
     Attributes:
-        lander_run: the run, with the experiment beside it.
-        training_charts: the charts of both.
+        swarm, past_swarm: the landers now, and those of the moment that is shown instead.
         laboratory: the experiment that was chosen, and what came of it.
         split_view: the two swarms.
+        inside: the network.
+        rewind: the moment that is shown.
 
     """
 
     def __init__(self, context: Context, resume: Path | None = None) -> None:
-        self._resume = resume
         self.library = Library(context.user_dir)
-        self.lander_run = TrainingRun(LANDERS, self.library)
-        super().__init__(context, self.lander_run)
+        super().__init__(context, TrainingRun(LANDERS, self.library))
+        if resume:
+            self._start(Config(), 0, resume)
 
     def _build(self) -> None:
-        left = self.library.claim()  # the run left unnamed by the last visit
-        run = self.lander_run
-        self.swarm = LearningSwarm()
-        self.training_charts = TrainingCharts(more=self.opened(CHARTS))
-        self.captions = ChartCaptions()
-        self.explained = Explained()
+        run = self.run
+        self.swarm, self.past_swarm = LearningSwarm(), LearningSwarm()
+        self.charts, self.captions = TrainingCharts(), ChartCaptions()
         self.knobs = KnobsPanel(self.form, PRESETS["modern"], 0, run.change, self._begin)
-        self.laboratory = Laboratory(run, self._experiment, self._leave_split)
-        self.pages = ExperimentPages(self.laboratory, self.knobs)
-        self.split_view = SplitView(self.laboratory)
-        self.inside = Inside(run)
-        self.inside.opened = self.opened(INSIDE)
-        self._dialogs = TrainDialogs(self, run, self.library, self._ask, self._go_on)
-        self.rewind = Rewind(run)
+        self.laboratory = Laboratory(run, self.knobs, self._split, self._leave_split)
+        self.split_view, self.inside, self.rewind = SplitView(run), Inside(run), Rewind(run)
         self.lessons = LessonDoor(run, lambda: self.shown_swarm, lambda: self.moment, self.context.note)
-        self._advice = Advice(self.knobs.turn, self._go_back)
-        self._pace = len(PACES) - 1
-        if self._resume:
-            self._go_on(self._resume)
-        elif left:
-            self._question = self._dialogs.ask_what_becomes_of(left)
+        self._advice = Advice(run, self.knobs.turn)
+        self._pace, self._frame = len(PACES) - 1, 0
+        self._legend: list[RunRow] = []
+
+    def _show_opened(self) -> None:
+        super()._show_opened()
+        self.inside.opened = self.opened(INSIDE)
 
     # Rows
 
     @property
-    def charts_shown(self) -> int:
-        """Number of charts."""
-        return _ALL_CHARTS if self.opened(CHARTS) else FEW_CHARTS
+    def _key(self) -> Hashable:
+        earlier = tuple((each.name, each.style) for each in self.run.earlier)
+        opened = self.inside.opened and len(self.run.history) > 0
+        return (self.laboratory.page, self.run.twin is None, self.moment is None, self._advice.key, earlier, opened,
+                self.inside.editing.key)  # fmt: skip
 
     @property
-    def _key(self) -> Hashable:
-        beside = tuple((each.name, each.style) for each in self.split_view.beside)
-        return (
-            self.pages.page, self.laboratory.flies, self.moment is None, self._advice.key, beside,
-            self.inside.editing.key,
-            self.inside.opened and bool(len(self.lander_run.history)),
-        )  # fmt: skip
+    def _status(self) -> TrainingStatus:
+        status = lander_status(self.run, self.moment, self.rewind.row)
+        painted = "".join(self.charts.landed[:1])
+        if self.moment is None and painted.isdigit():  # one number for the title and its chart
+            status = status._replace(figure=painted)
+        return status
+
+    @property
+    def _unfinished(self) -> str:
+        left = self.left
+        if self.run.runs or left is None or not left.resumable:
+            return ""
+        words = texts.TRAIN_LEFT_YOUNG if left.success is None else texts.TRAIN_LEFT_FIGURES
+        return words.format(seconds=left.seconds, percent=100 * (left.success or 0.0))
 
     def _place(self, place: Layout) -> None:
         head = min(_HEAD, 0.4 * place.swarm.height)
-        for swarm in (self.swarm, self.rewind.swarm):
+        for swarm in (self.swarm, self.past_swarm):
             swarm.place(place.swarm)
             swarm.head = head
         halves = pygame.FRect(place.swarm.left, place.swarm.top + head, place.swarm.width, place.swarm.height - head)
         self.split_view.place(halves)
-        self.training_charts.place(place.charts)
         self.inside.place(place.display)
-        inside, charts = pygame.Rect(self.inside.view.box), self.training_charts.charts.box
-        boxes = [inside] if self.inside.opened else [pygame.Rect(place.swarm), charts]
-        for widget, box in zip(self._pointers_laid, boxes, strict=True):
-            widget.relative_rect = widget.rect = box
+        boxes = [self.inside.view.box]
         if not self.inside.opened:
-            self._scrubber.relative_rect = self._scrubber.rect = pygame.Rect(place.charts[0]).union(place.charts[1])
+            boxes = [place.swarm, pygame.FRect(self.charts.box), place.charts[0].union(place.charts[1])]
+        for widget, box in zip(self._laid_pointers, boxes, strict=True):
+            widget.relative_rect = widget.rect = pygame.Rect(box)
 
     def _pointers(self) -> list[Widget]:
-        """Return new widgets for the swarm and the charts, or the network."""
-        manager, nowhere = self.form.manager, (0, 0, 1, 1)
+        manager, nowhere, charts = self.form.manager, (0, 0, 1, 1), self.charts
         if self.inside.opened:
-            self._pointers_laid = [VirtualPointer(manager, nowhere, self.inside.follow, hold=texts.EDIT_PICK)]
-            return [*self._pointers_laid]
-        charts = self.training_charts.charts
-        self._pointers_laid = [
-            VirtualPointer(manager, nowhere, self.lessons.follow, hold=texts.LESSON_MARK),
-            VirtualPointer(manager, nowhere, charts.follow),
-        ]
-        self._scrubber = Scrubber(manager, charts, self._scrub, self._duel, charts.zoom_by)
-        return [*self._pointers_laid, self._scrubber]
+            self._laid_pointers: list[Widget] = [
+                VirtualPointer(manager, nowhere, self.inside.follow, hold=texts.EDIT_PICK)
+            ]
+        else:
+            self._laid_pointers = [
+                VirtualPointer(manager, nowhere, self.lessons.follow, hold=texts.LESSON_MARK),
+                VirtualPointer(manager, nowhere, charts.follow),
+                Scrubber(manager, charts, self._scrub, self._duel, charts.zoom_by),
+            ]
+        return self._laid_pointers
 
     def _scrub(self, place: float | int) -> None:
         if isinstance(place, int):
             self.rewind.shift(place)
         else:
-            self.rewind.seek(self.training_charts.decisions_at(place))
+            self.rewind.seek(self.charts.decisions_at(place))
 
     def _describe(self, column: Column) -> None:
+        self._legend = []
         self.rewind.describe(column, self.form.manager, timeline=self.inside.opened)
         if self.inside.opened:
             self.inside.describe(column)
             column.gap()
             column.button(texts.LESSON_WHY, self.lessons.open)
-            self.switch(column, INSIDE, texts.TRAIN_LOOK)
+            self.switch(column, INSIDE)
             return
         self.inside.editing.describe(column, opened=False)
-        if self.pages.page:
-            self.pages.describe(column)
+        if self.laboratory.page:
+            self.laboratory.describe(column)
             return
         super()._describe(column)
         self._describe_beside(column)
 
     def _describe_more(self, column: Column) -> None:
-        column.gap()
-        self.switch(column, MORE, texts.TRAIN_MORE)
-        if not self.opened(MORE):
-            return
-        self.switch(column, INSIDE, texts.TRAIN_LOOK)
-        self.switch(column, CHARTS, texts.TRAIN_MORE_CHARTS)
-        self.switch(column, KNOBS, texts.TRAIN_MORE_KNOBS)
-        column.button(texts.TRAIN_EXPERIMENTS, self.pages.open).pad = 3.0
+        for name in (INSIDE, CHARTS, KNOBS):
+            self.switch(column, name)
+        column.button(texts.TRAIN_EXPERIMENTS, self.laboratory.open).pad = 3.0
         column.button(texts.TRAIN_RUNS, self._open_runs).pad = 3.0
         column.gap(8)
         column.line()
         column.words([
             (texts.LESSON_WHY, self.lessons.open),
             (texts.TRAIN_DUEL, self._duel),
-            (texts.TRAIN_COMPARE, self._dialogs.add),
+            (texts.TRAIN_COMPARE, self._compare),
             (texts.TRAIN_TEACH, self._teach),
-            (texts.TRAIN_STEP, self.lander_run.step),
+            (texts.TRAIN_STEP, self.run.step),
             (texts.TRAIN_SAVE, self._save),
         ])  # fmt: skip
         column.choice("", texts.TRAIN_PACES, self._pace, self._set_pace)
 
     def _describe_beside(self, column: Column) -> None:
         """Add the names of the runs that are shown beside this one, and by what they are measured."""
-        self._legend: list[RunRow] = []
-        beside = self.split_view.beside
-        if not beside:
+        shown = self._beside
+        if not shown.runs:
             return
         column.line()
-        for name, style in ((self.split_view.name, 0), *((each.name, each.style) for each in beside)):
-            press = partial(self._dialogs.choose, style)
+        for name, style in ((shown.name or texts.TRAIN_THIS, 0), *((each.name, each.style) for each in shown.runs)):
+            press = partial(take_away, [] if self.run.twin else self.run.earlier, style)
             self._legend.append(column.widget(RunRow(self.form.manager, name, style, press)))
-        charts = self.training_charts
-        column.choice("", texts.TRAIN_AXES, charts.axis, charts.measure_by, SMALL)
+        if not self.run.twin:
+            column.aside(texts.COMPARE_REMOVE)
+        column.choice("", texts.TRAIN_AXES, self.charts.axis, self.charts.measure_by, SMALL)
+
+    @property
+    def _beside(self) -> Beside:
+        emphasised = next((each.style for each in self._legend if each.focused), None)
+        chosen = self.laboratory.chosen
+        return self.split_view.beside(chosen.name if chosen else texts.LAB_HEADING, emphasised)
 
     def _describe_hint(self, column: Column) -> bool:
         if self._advice.shown:
             self._advice.describe(column)
         return self._advice.shown
 
-    def open(self, name: str) -> None:
-        """Open a part, or close it; it stays so for this player."""
-        super().open(name)
-        self.inside.opened = self.opened(INSIDE)
-        self.training_charts.show(more=self.opened(CHARTS))
-
     def _set_pace(self, pace: int) -> None:
-        self._pace = pace
-        self.lander_run.set_pace(pace)
+        self._pace = min(max(pace, 0), len(PACES) - 1)
+        self.run.set_pace(self._pace)
 
     def _turn_pace(self, direction: int) -> None:
-        pace = min(max(self._pace + direction, 0), len(PACES) - 1)
-        self._set_pace(pace)
+        self._set_pace(self._pace + direction)
         self._laid = None  # the choice shows it
 
-    # Events
+    # Events and time
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Handle explanations, start, pause, step, knobs and the network."""
-        if self.explained.handle_event(event):
-            return None
+        """Handle the network, the charts and the landers, and all that every run has."""
         if not self.inside.opened:
-            self.training_charts.charts.follow(event)
+            self.charts.follow(event)
         self.inside.follow(event)
         outcome = super().handle_event(event)
         if not self.inside.opened and not self.form.used:
@@ -229,59 +220,63 @@ class TrainScene(TrainingScene):
         return outcome
 
     def actions(self) -> Table:
-        """Go back; step, start or pause, and change the pace, as the buttons say."""
-        return [
-            *super().actions(),
-            Action(Command.SLOWER, lambda: self._turn_pace(-1)),
-            Action(Command.FASTER, lambda: self._turn_pace(1)),
-            self.explained.action(),
-        ]
+        """Change the pace, and do all that every run has."""
+        *others, explain = super().actions()
+        pace = [Action(Command.SLOWER, lambda: self._turn_pace(-1)), Action(Command.FASTER, lambda: self._turn_pace(1))]
+        return [*others, *pace, explain]
 
     def update(self) -> Transition | None:
         """Receive the worker's messages, and animate the screen."""
-        run, split = self.lander_run, self.split_view
-        looked = self._listen()
-        self._follow_run()
-        self._advice.hush(bool(self.knobs.waiting) or split.shown)
-        if run.alive:
+        run, still = self.run, self._settings.reduced_motion
+        looked = self._listen_to_swarm()
+        self._advice.hush(bool(self.knobs.settings.waiting) or run.twin is not None)
+        if not run.alive:
+            self._advice.clear()
+        else:
             self.knobs.show_in_force(run.in_force)
-        still = self._settings.reduced_motion
-        self.rewind.show_in(self.inside, self.training_charts)
-        emphasised = next((each.style for each in getattr(self, "_legend", ()) if each.focused), None)
-        self.training_charts.look(
-            run.history, split.beside, split.name, self._caption,
-            paid_otherwise=split.paid_otherwise, emphasised=emphasised,
-        )  # fmt: skip
+        self._go_to(self.moment)
+        self.charts.look(run.history, self._beside, self._caption)
         self.swarm.update(still)
-        self.explained.update()
-        split.update(still, self.moment)
+        self.split_view.update(still, self.moment)
+        self._frame += 1
+        if self._frame % _JUDGED == 0:
+            self.laboratory.follow()
         self.inside.update(still)
         # Tasks that take a millisecond or two take turns, one per frame.
-        self.training_charts.charts.update(at_once=still, turn=not (looked or self.inside.busy))
+        self.charts.update(at_once=still, turn=not (looked or self.inside.busy))
         return self._finish_update() or self.lessons.update()
 
-    def _listen(self) -> bool:
+    def _listen_to_swarm(self) -> bool:
         """Receive the worker's messages; return whether one was about the network."""
-        run = self.lander_run
-        swarm_state, network_state, points = run.swarm_state, run.network_state, len(run.history)
-        for note in run.poll():
-            self.context.note(note)
+        run = self.run
+        swarm_state, network_state = run.swarm_state, run.network_state
+        self._listen()
         if run.swarm_state is not None and run.swarm_state is not swarm_state:
             self.swarm.take(run.swarm_state)
-        if len(run.history) != points and self.moment is None:
-            self.inside.pay(run.history)
         if run.network_state is None or run.network_state is network_state:
             return False
         if self.moment is None:
-            self.inside.take(run.network_state, run.config)
+            self.inside.examine(run.network_state)
         if run.alive and len(run.history):
-            health = self.inside.health
-            self._advice.follow(run.history, run.config, health.dead_share, health.clipped_share)
+            self._advice.follow(self.inside.health)
         return True
 
+    def _go_to(self, moment: int | None) -> None:
+        """Show everything as it was at a moment, or as it is now; call it once a frame."""
+        rewind = self.rewind
+        rewind.update()
+        if moment == self.charts.moment:
+            return
+        self.charts.go_to(moment)
+        self.inside.editing.past = moment is not None
+        self.inside.show(self.run.network_state if moment is None else rewind.network_state, rewind.row)
+        self.past_swarm.clear()
+        if rewind.swarm_state is not None:
+            self.past_swarm.take(rewind.swarm_state)
+
     def _caption(self, chart: str) -> str:
-        run = self.lander_run
-        if chart == SCORE and self.split_view.paid_otherwise:
+        run = self.run
+        if chart == SCORE and self._beside.paid_otherwise:
             return texts.LAB_PAID_OTHERWISE
         return self.captions.read(chart, run.history, run.config, self._advice.hint) if run.alive else ""
 
@@ -293,48 +288,24 @@ class TrainScene(TrainingScene):
     @property
     def shown_swarm(self) -> LearningSwarm:
         """The landers of the moment that is shown."""
-        return self.swarm if self.moment is None else self.rewind.swarm
+        return self.swarm if self.moment is None else self.past_swarm
 
     # The run
 
-    @property
-    def _learnt(self) -> bool:
-        return len(self.lander_run.history) > 0
-
     def _clear(self) -> None:
-        for part in (self.split_view, self.swarm, self.rewind, self._advice, self.training_charts, self.captions,
-                     self.inside):  # fmt: skip
+        for part in (self.split_view, self.swarm, self.rewind, self._advice, self.charts, self.captions, self.inside):
             part.clear()
 
-    def _clear_advice(self) -> None:
-        self._advice.clear()
-
-    def _begin(self, config: Config, seed: int) -> None:
-        """Start a run; one that has learnt and has no name is put among the player's networks."""
-        self._keep()
-        self._start(config, seed)
-
-    def _keep(self) -> None:
-        """Put what has no name yet among the player's networks: the run that goes on, or what the last visit left."""
-        run, runs = self.lander_run, self.lander_run.collection
-        try:
-            if run.alive and self._learnt:
-                run.save(runs.free_name(self._suggestion))  # the note comes once it is saved
-            elif run.runs == 0 and (left := runs.rescued()) is not None and left.success:  # it has landed
-                runs.keep_rescued(left.name)
-                self.context.note(texts.TRAIN_LEFT_KEPT.format(name=left.name))
-        except LibraryError as error:
-            self.context.note(str(error))
+    @property
+    def _worth_keeping(self) -> bool:
+        if self.run.alive:
+            return len(self.run.history) > 0
+        return self.run.runs == 0 and self.left is not None and bool(self.left.success)  # it has landed
 
     @property
     def _suggestion(self) -> str:
-        """Name for the run, after its settings."""
-        name = texts.TRAIN_TAUGHT_NAME if self.lander_run.demonstrations else texts.TRAIN_NAME
+        name = texts.TRAIN_TAUGHT_NAME if self.run.demonstrations else texts.TRAIN_NAME
         return name.format(preset=self.knobs.name)
-
-    def _go_on(self, folder: Path) -> None:
-        """Resume a saved run, with its own settings."""
-        self._start(Config(), 0, folder)
 
     def _teach(self) -> None:
         """Add the player's landings to the run's training as demonstrations, or start a run with them."""
@@ -342,83 +313,65 @@ class TrainScene(TrainingScene):
         if not count_demonstrations(folder):
             self.context.note(texts.TRAIN_NO_LESSONS)
             return
-        if not self.lander_run.alive:
+        if not self.run.alive:
             self._begin(self.knobs.config, self.knobs.seed)
-        self.lander_run.teach(folder / FILE_NAME)
-
-    def _save(self) -> Transition | None:
-        if not (self.lander_run.alive or self.lander_run.kept):
-            self.context.note(texts.TRAIN_NOTHING)
-            return None
-        return self._ask_name(self._suggestion)
+        self.run.teach(folder / FILE_NAME)
 
     def _open_runs(self) -> Transition:
         def go_on(folder: Path) -> Transition:
-            self._go_on(folder)
+            self._start(Config(), 0, folder)
             return Pop()
 
         return push("runs", train=go_on)
 
-    def _ask(self, question: Transition) -> None:
-        self._question = question
+    def _compare(self) -> Transition:
+        """Ask for a saved run whose curves shall be seen beside these."""
+        runs = self.library.runs()
 
-    def _go_back(self, decisions: int) -> None:
-        """Return the run to an earlier checkpoint."""
-        checkpoint = self.lander_run.history.checkpoint_at(decisions)
-        if checkpoint is not None:
-            self.lander_run.revert(checkpoint)
+        def put(number: int) -> None:
+            if note := self.run.compare(runs[number].name, runs[number].folder):
+                self.context.note(note)
+
+        return Push(ListDialog(self, texts.TRAIN_COMPARE_WITH, [(run.name,) for run in runs], put))
 
     def _duel(self) -> Transition | None:
         """Fly against the checkpoint of the moment that is shown."""
-        checkpoint = self.lander_run.history.checkpoint_at(math.inf if self.moment is None else self.moment)
+        checkpoint = self.run.history.checkpoint_at(math.inf if self.moment is None else self.moment)
         if checkpoint is None:
             self.context.note(texts.TRAIN_NO_CHECKPOINT)
             return None
         try:
-            rival = agent_of(self.lander_run.config, checkpoint)
+            rival = checkpoint.agent(self.run.config)
         except ValueError as error:
             self.context.note(str(error))
             return None
-        name = texts.TRAIN_CHECKPOINT.format(seconds=checkpoint.seconds)
-        return push("play", rival=rival, rival_name=name)
+        return push("play", rival=rival, rival_name=texts.TRAIN_CHECKPOINT.format(seconds=checkpoint.seconds))
 
     # An experiment
 
-    def _experiment(self, experiment: Experiment) -> Transition | None:
-        """Fly an experiment beside a healthy twin; ask first if the player's run would end for it."""
-        split = partial(self._split, experiment)
-        if not (self.lander_run.alive and self._learnt) or self.split_view.shown:
-            split()
-            return None
-        answers: list[tuple[str, Callable[[], None]]] = [
-            (texts.SPLIT_START, split),
-            (texts.SPLIT_SAVE, lambda: setattr(self, "_question", self._save())),
-        ]
-        return Push(QuestionDialog(self, texts.SPLIT_ASK, texts.SPLIT_ASK_MORE, answers))
-
     def _split(self, experiment: Experiment) -> None:
+        """Fly an experiment beside a healthy twin; the run that goes on is put among the player's networks."""
         config, seed = self.knobs.config, self.knobs.seed
         changed = experiment.applied(config)
-        self._was_running = False
-        if not self.lander_run.alive:
+        if self.run.twin is None:
             self._keep()
-        if note := self.lander_run.split(config, seed, changed, tuple(differences(config, changed)), self.knobs.name):
+        self._was_running = False
+        if note := self.run.split(config, seed, changed, tuple(differences(config, changed)), self.knobs.name):
             self.context.note(note)
         self._clear()
         self.knobs.set_config(config, seed)
         self.laboratory.follow()
-        self.training_charts.measure_by(BY_DECISIONS)
-        self.pages.open()
+        self.charts.measure_by(BY_DECISIONS)
+        self.laboratory.open()
 
     def _leave_split(self, experiment: bool) -> None:
         """End the split view; go on with the healthy run, or with the experiment."""
-        if experiment:
-            if note := self.lander_run.keep_twin():
-                self.context.note(note)
-        else:
-            self.lander_run.leave()
+        if not experiment:
+            self.run.leave()
+        elif note := self.run.keep_twin():
+            self.context.note(note)
         self._clear()
-        self.pages.page = "result" if self.laboratory.flies else ""
+        self.laboratory.page = "result" if self.run.twin else ""
 
     # The picture
 
@@ -427,8 +380,8 @@ class TrainScene(TrainingScene):
         return texts.HINT_BACK if self.moment is None else texts.REWIND_BACK
 
     def _back(self) -> Transition | None:
-        if self.pages.page:
-            self.pages.close()
+        if self.laboratory.page:
+            self.laboratory.close()
         elif self.inside.opened:
             self.open(INSIDE)
         elif self.moment is not None:
@@ -437,35 +390,26 @@ class TrainScene(TrainingScene):
             return super()._back()
         return None
 
-    def draw(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the display, the panel beside it and, over both, an explanation."""
-        super().draw(canvas, alpha)
-        self.explained.draw(canvas)
-
     def _draw_display(self, canvas: Canvas, alpha: float) -> None:
         """Draw the swarm and the charts, or the network."""
         assert self._layout is not None
-        display, swarm = self._layout.display, self._layout.swarm
-        paused = self.lander_run.state is WorkerState.PAUSED
+        display, box = self._layout.display, self._layout.swarm
+        split, paused = self.run.twin is not None, self.run.state is WorkerState.PAUSED
         if self.inside.opened:
-            edited = self.lander_run.edits.holds and self.moment is None  # then the swarm is seen behind the network
+            edited = self.run.edits.holds and self.moment is None  # then the swarm is seen behind the network
             if edited:
                 self.swarm.draw(canvas, alpha, paused=paused)
             canvas.fill(canvas.rect(*display), NIGHT0, _BEHIND if edited else 1.0)
             self.inside.draw(canvas)
             return
-        top = display.top if self.split_view.shown else swarm.bottom  # one swarm fills its box
+        top = display.top if split else box.bottom  # one swarm fills its box
         canvas.fill(canvas.rect(display.left, top, display.width, display.bottom - top), NIGHT0)
-        if self.split_view.shown:
-            self.split_view.draw(canvas, alpha)
-        elif self.moment is not None:
-            self.rewind.draw_swarm(canvas, alpha)
+        self.charts.draw(canvas)  # first, as the title and both halves say what they have painted
+        if split:
+            self.split_view.draw(canvas, alpha, self.charts.landed)
         else:
-            self.swarm.draw(canvas, alpha, paused=paused)
-        canvas.line((swarm.left, swarm.bottom), (swarm.right, swarm.bottom), LINE)
-        self.training_charts.draw(canvas)
-        status = lander_status(self.lander_run, self.moment, self.rewind.row)
-        painted = self.training_charts.landed
-        if self.moment is None and status.figure and painted.isdigit():  # one number for both
-            status = status._replace(figure=painted)
-        self.draw_title(canvas, texts.TRAIN_TITLE, status)
+            self.shown_swarm.draw(canvas, alpha, paused=paused or self.moment is not None)
+            if self.moment is not None and self.rewind.swarm_state is None:
+                canvas.text(texts.REWIND_NO_LANDERS, box.center, size=SMALL, colour=MUTE, align="centre")
+        canvas.line((box.left, box.bottom), (box.right, box.bottom), LINE)
+        self.draw_title(canvas)

@@ -15,8 +15,7 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import INK, LABEL, LINE, MUTE, SMALL
-from game.panels.action_rows import ROW, ActionRows
-from game.panels.q_values import HEIGHT, QValues, decision_words, draw_actions, draw_q_values, signed
+from game.panels.q_values import FIRST, HEIGHT, ROW, QValues, decision_words, draw_actions, draw_q_values, signed
 from game.panels.readouts import draw_centred_bars
 from game.world.policy_map import ACTION, COLOURS, SCORE, PolicyMap, score_colours
 
@@ -46,7 +45,7 @@ def draw_decision(canvas: Canvas, decision: Decision, policy_map: PolicyMap | No
     else:
         draw_q_values(canvas, values, left, top + _VALUES, width)
     if policy_map and policy_map.kind == ACTION:
-        _draw_swatches(canvas, ActionRows(canvas, left, top + _VALUES, width), by_rules=values is None)
+        _draw_swatches(canvas, top + _VALUES, by_rules=values is None)
     elif policy_map and policy_map.kind == SCORE:
         _draw_scale(canvas, policy_map.scale)
     for number, line in enumerate(decision_words(decision)):
@@ -57,13 +56,12 @@ def draw_decision(canvas: Canvas, decision: Decision, policy_map: PolicyMap | No
     _draw_inputs(canvas, decision.observation[0].tolist(), left, top + _INPUTS, width)
 
 
-def _draw_swatches(canvas: Canvas, rows: ActionRows, by_rules: bool) -> None:
+def _draw_swatches(canvas: Canvas, top: float, by_rules: bool) -> None:
     """Draw the colour of each action on the map before its name."""
     for action, colour in enumerate(COLOURS):
-        _, y, _, height = rows.box(action)
-        middle = rows.top + ROW * action - 4 if by_rules else y + height / 2
-        canvas.rounded((rows.left - 12, middle - _SWATCH[1] / 2, *_SWATCH), 2, colour)
-    box = (PANEL.left, rows.top - 10, _LEFT - 2, HEIGHT - 20)
+        middle = top + ROW * action + (-4 if by_rules else FIRST)
+        canvas.rounded((PANEL.left + _LEFT - 12, middle - _SWATCH[1] / 2, *_SWATCH), 2, colour)
+    box = (PANEL.left, top - 10, _LEFT - 2, HEIGHT - 20)
     canvas.explain(box, texts.EXPLAIN_MAP[ACTION - 1], lambda: texts.EXPLAIN_MAP_NOW)
 
 

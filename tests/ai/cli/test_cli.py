@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import ai.training.checkpoints
+import ai.training.loop
 import ai.training.run
 from ai.agent.agent import DeepQAgent
 from ai.agent.storage import write_agent
@@ -202,7 +202,7 @@ def test_a_disk_that_is_full_for_a_while_ends_no_training(tmp_path, capsys, monk
 
     def filling(training):
         progress = advance(training)
-        monkeypatch.setattr(ai.training.checkpoints, "write_agent", full if progress.decisions < 160 else save)
+        monkeypatch.setattr(ai.training.loop, "write_agent", full if progress.decisions < 160 else save)
         return progress
 
     save = write_agent
@@ -227,7 +227,7 @@ def test_numbers_that_run_away_on_a_bad_day_end_in_a_sentence(tmp_path, capsys, 
 
     monkeypatch.setattr(Training, "advance", diverging)
     if trouble == "full":
-        monkeypatch.setattr(ai.training.checkpoints, "write_agent", full)
+        monkeypatch.setattr(ai.training.loop, "write_agent", full)
     if trouble == "best":
         monkeypatch.setattr(LanderTask, "evaluate_every", 320)
     run = tmp_path / "run"

@@ -19,10 +19,10 @@ import pytest
 from ai.digits.config import DIGIT_PRESETS
 from ai.digits.training import DigitTraining
 from ai.lander.environment import LanderEnv
-from ai.training.checkpoints import AGENTS, DIGITS
+from ai.run import TRAINING_FILE
 from ai.training.config import PRESETS
 from ai.training.loop import Training
-from ai.training.run import TRAINING_FILE
+from ai.training.run import save
 from main import main
 
 ROOT = Path(__file__).parents[3]
@@ -159,11 +159,11 @@ def runs(tmp_path_factory):
     training = Training(SMALL, 3, validation_episodes=2)
     training.advance()
     training.evaluate()
-    AGENTS.save(training, folder / "lander", state=False)
+    save(training, folder / "lander", state=False)
     images, labels = np.zeros((200, 28, 28), np.float32), np.zeros(200, np.uint8)
     digits = DigitTraining(READER, data=(images, labels))
     digits.advance()
-    DIGITS.save(digits, folder / "digits")
+    save(digits, folder / "digits")
     return folder
 
 

@@ -9,7 +9,7 @@ import pytest
 
 import ai.digits.training
 from ai.digits.classifier import DigitClassifier
-from ai.digits.mnist import load_part
+from ai.digits.mnist import TRAIN, load_part
 from ai.digits.training import SPLIT_SEED, DigitTraining
 from ai.nn import (
     ActivationFunctions,
@@ -18,7 +18,7 @@ from ai.nn import (
     FullyConnectedLayer,
     NeuralNetwork,
 )
-from ai.training.checkpoints import resume_digit_run
+from ai.training.run import resume
 from main import main
 
 ROOT = Path(__file__).parents[3]
@@ -34,7 +34,7 @@ def data():
 @pytest.fixture
 def few(monkeypatch, data):
     """Let the commands learn from few images."""
-    monkeypatch.setattr(ai.digits.training, "load_part", lambda part: data)
+    monkeypatch.setattr(ai.digits.training, "load_part", lambda part: data if part == TRAIN else load_part(part))
 
 
 @pytest.mark.usefixtures("few")
@@ -90,7 +90,7 @@ def test_numbers_that_run_away_end_in_a_sentence_and_the_work_is_kept(tmp_path, 
     assert {"": "What was best until then is", "unmeasured": "has not been measured"}[trouble] in told
     assert run.exists()
     if not trouble:
-        assert resume_digit_run(run).classifier.network.values.max() < 1e30, "a wreck is nothing to go on from"
+        assert resume(DigitTraining, run).classifier.network.values.max() < 1e30, "a wreck is nothing to go on from"
 
 
 def write_diary(folder):

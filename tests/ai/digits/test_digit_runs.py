@@ -11,7 +11,7 @@ from ai.digits.mnist import load_part
 from ai.digits.training import DigitTraining
 from ai.files import state_folder
 from ai.nn import ModelFormatError
-from ai.training.checkpoints import DIGITS, resume_digit_run
+from ai.training.run import resume, save
 
 SMALL = DIGIT_PRESETS["classic"].changed(hidden=(16,), epochs=3, held_out=100, batch_size=50, ema_decay=0.9)
 
@@ -57,8 +57,8 @@ def test_a_resumed_run_goes_on_as_if_it_had_never_stopped(data, tmp_path):
     whole, first = DigitTraining(config, 5, data), DigitTraining(config, 5, data)
     for _ in range(13):
         first.advance()
-    DIGITS.save(first, tmp_path / "run")
-    second = resume_digit_run(tmp_path / "run", data=data)
+    save(first, tmp_path / "run")
+    second = resume(DigitTraining, tmp_path / "run", data=data)
     for training in (whole, second):
         while not training.done:
             training.advance()
@@ -70,17 +70,17 @@ def test_a_resumed_run_goes_on_as_if_it_had_never_stopped(data, tmp_path):
 def test_a_run_that_cannot_go_on_says_so(data, tmp_path):
     training = DigitTraining(SMALL, data=data)
     training.advance()
-    DIGITS.save(training, tmp_path / "run")
+    save(training, tmp_path / "run")
     (state,) = state_folder(tmp_path / "run").iterdir()
     state.write_bytes(b"nothing")
     with pytest.raises(ModelFormatError, match="without this folder"):
-        resume_digit_run(tmp_path / "run", data=data)
+        resume(DigitTraining, tmp_path / "run", data=data)
     state.unlink()
     with pytest.raises(ModelFormatError, match="nothing to go on with"):
-        resume_digit_run(tmp_path / "run", data=data)
+        resume(DigitTraining, tmp_path / "run", data=data)
     (tmp_path / "run" / "training.json").write_text("{}")
     with pytest.raises(ModelFormatError, match=r"training\.json"):
-        resume_digit_run(tmp_path / "run", data=data)
+        resume(DigitTraining, tmp_path / "run", data=data)
 
 
 def test_a_gradient_that_is_not_finite_ends_the_run(data):

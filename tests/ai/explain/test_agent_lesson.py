@@ -85,6 +85,7 @@ def test_the_step_is_the_one_that_is_taken_when_nobody_looks(case):
     for name, kept in step.optimizer_after.items():
         np.testing.assert_array_equal(kept, alone.optimizer.memory[name])
     assert step.learning_rate == alone.optimizer.learning_rate
+    np.testing.assert_allclose(lesson.predicted_after, alone.online.predict(lesson.state), rtol=1e-4, atol=1e-5)
     np.testing.assert_array_equal(step.values_before, agent.online.values)
     np.testing.assert_array_equal(step.values_before - step.taken, step.values_after)
 

@@ -9,7 +9,7 @@ from ai.digits.config import DIGIT_PRESETS
 from ai.digits.training import DigitTraining
 from ai.explain.digit_lesson import explain_digit
 from ai.training.digit_session import live_digits
-from ai.training.messages import Explain, Refused
+from ai.training.messages import Refused
 
 
 @pytest.fixture(scope="module")
@@ -75,8 +75,8 @@ def test_a_live_run_answers_and_refuses(data):
     session = live_digits(replace(DIGIT_PRESETS["classic"], batch_size=8, held_out=12), 1, data=data)
     for _ in range(4):
         next(session)
-    (lesson,) = session.send(Explain(3))
+    (lesson,) = session.send(("explain", 3))
     assert lesson.step.row == 3
-    (refused,) = session.send(Explain(8))
+    (refused,) = session.send(("explain", 8))
     assert isinstance(refused, Refused)
     assert "none of number 8" in refused.problem

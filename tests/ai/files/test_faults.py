@@ -49,11 +49,11 @@ from ai.nn import (
     NeuralNetwork,
 )
 from ai.nn.layer import MOST_LAYERS
-from ai.training.checkpoints import AGENTS, resume_run
 from ai.training.config import PRESETS, gym_config
 from ai.training.demonstrations import Demonstration
 from ai.training.history import History
 from ai.training.loop import Training
+from ai.training.run import resume, save
 from ai.training.tasks import LanderTask
 from main import main
 from tests.support.faults import damaged, killed, limited
@@ -84,8 +84,8 @@ def little_memory(megabytes: int = 100):
 def saved(tmp_path_factory):
     folder = tmp_path_factory.mktemp("saved") / "run"
     training = Training(SMALL, validation_episodes=1)
-    training.conclude()  # so that it has a score
-    AGENTS.save(training, folder, state=False)
+    training.evaluate()  # so that it has a score
+    save(training, folder, state=False)
     return folder
 
 
@@ -130,7 +130,7 @@ def test_what_is_no_ordinary_file_of_the_folder_is_named(saved, run, subtests):
         make(path)
         with subtests.test(name=name, damage=damage):
             with little_memory(), limited(20), pytest.raises(ModelFormatError) as caught:
-                resume_run(run)
+                resume(Training, run)
             assert any(path.name in problem or "last" in problem for problem in caught.value.problems)
         path.rmdir() if damage == "folder" else path.unlink()
         shutil.copy(saved / path.relative_to(run), path)
@@ -159,6 +159,7 @@ def packed(path, method, names=("steps",), array=3):
     return path.read_bytes()
 
 
+@pytest.mark.filterwarnings("ignore:Duplicate name")
 def test_archives_that_numpy_does_not_write_are_refused(tmp_path, subtests):
     path = tmp_path / "a.npz"
     whole, packer = packed(path, zipfile.ZIP_STORED), zipfile.ZIP_STORED
@@ -178,6 +179,7 @@ def test_archives_that_numpy_does_not_write_are_refused(tmp_path, subtests):
         (many, 10**6, "too many"),
         (many, 1000, "larger than"),
         (packed(path, packer, array=[None]), 1000, "steps holds more bytes"),
+        (packed(path, packer, ["a", "a"]), 1000, "two arrays of one name"),
     ):
         path.write_bytes(held)
         with subtests.test(said=said), pytest.raises((ValueError, OSError), match=said):
@@ -202,7 +204,7 @@ def fully(inputs, outputs):
 
 
 def convolution(shape, filters):
-    sizes = {"inputs": shape, "filters": filters, "kernel": 3, "stride": 1, "padding": 1}
+    sizes = {"inputs": shape, "filters": filters, "kernel": 3}
     return {"type": "ConvolutionLayer", **sizes, "arrays": {}}
 
 
@@ -213,7 +215,7 @@ def test_a_small_config_cannot_ask_for_a_huge_network(tmp_path, subtests):
         ([fully(3400, 3400)] * 2, "at most 12,000,000 parameters"),
         ([fully(1_000_000, 64)], "at most 12,000,000 parameters"),
         ([convolution([28, 28, 1], 1 << 20)], "values of an example"),
-        ([convolution([32, 32, 256], 256)] * 2, "multiplications"),
+        ([convolution([34, 34, 256], 256), convolution([32, 32, 256], 256)], "multiplications"),
         ([convolution([1024, 1024, 1], 1 << 20)], "values of an example"),
     ):
         edit(tmp_path / "model" / "config.json", layers=layers)
@@ -241,7 +243,7 @@ def test_what_a_run_says_of_itself_is_checked_before_there_is_room_for_it(run, s
         (run / name).write_text(changes if isinstance(changes, str) else json.dumps(json.loads(whole) | changes))
         with subtests.test(changes=str(changes)[:80]):
             with little_memory(), limited(20), pytest.raises(ModelFormatError, match=said) as caught:
-                resume_run(run)
+                resume(Training, run)
             assert len(str(caught.value)) < 1000
         (run / name).write_text(whole)
 
@@ -327,7 +329,7 @@ def test_a_file_never_starts_code(tmp_path, monkeypatch, capsys):
     monkeypatch.syspath_prepend(str(tmp_path))
     (tmp_path / "payload.py").write_text("from pathlib import Path\nPath('ran').touch()\n")
     training = Training(gym_config("CartPole-v1").changed(num_envs=2), validation_episodes=1)
-    AGENTS.save(training, "run", state=False)
+    save(training, "run", state=False)
     for folder in (Path("run"), Path("run", "last")):
         config = json.loads((folder / "config.json").read_text())["config"]
         edit(folder / "config.json", config=config | {"env": "payload:CartPole-v1"})
@@ -367,6 +369,11 @@ def _thesis(folder):
     (folder / "config.json").write_text("{}")
 
 
+def _within_linked(folder):
+    (folder / "training.json").rename(folder.parent / "mine.json")
+    (folder / "training.json").symlink_to(folder.parent / "mine.json")
+
+
 def _linked(folder):
     (folder / "target").rename(folder.parent / "elsewhere")
     (folder / "target").symlink_to(folder.parent / "elsewhere")
@@ -381,6 +388,7 @@ def test_training_replaces_only_what_is_its_own(saved, tmp_path, capsys, subtest
         ("digits", classic, lambda folder: None),
         ("notes", saved, lambda folder: _of_another(folder / "notes.txt")),
         ("notes within", saved, lambda folder: _of_another(folder / "online" / "notes.txt")),
+        ("a link within", saved, _within_linked),
         ("repository", saved, lambda folder: _of_another(folder / ".git" / "HEAD")),
         ("linked", saved, _linked),
     ):
@@ -403,7 +411,7 @@ def test_training_replaces_only_what_is_its_own(saved, tmp_path, capsys, subtest
 
 def test_what_systems_leave_in_a_folder_is_no_obstacle(run):
     (run / ".DS_Store").write_bytes(b"\0")
-    AGENTS.save(Training(SMALL, validation_episodes=1), run, state=False)
+    save(Training(SMALL, validation_episodes=1), run, state=False)
 
 
 def test_places_that_cannot_be_written_are_told_in_a_sentence(tmp_path, monkeypatch, capsys, subtests):
@@ -432,7 +440,7 @@ def test_what_is_put_into_a_run_meanwhile_is_kept_and_so_is_the_run(tmp_path, mo
     monkeypatch.setattr(Training, "advance", meddled)
     assert main(["train", "--decisions", "9", "--set", "num_envs=2", "--output", str(tmp_path / "run")]) == 0
     assert (tmp_path / "run" / "diary").read_text() == "dear"
-    assert resume_run(tmp_path / "run 2")
+    assert resume(Training, tmp_path / "run 2")
     assert "run 2" in capsys.readouterr().out
 
 

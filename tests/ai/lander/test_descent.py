@@ -110,6 +110,7 @@ def test_a_pilot_is_led_at_the_speed_at_which_it_comes_down_itself():
 def test_a_route_leads_on_from_its_nearest_point_and_ends_over_the_goal():
     route = Route([(0, 5), (4, 5), (4, 9)])
     assert route.length == 8
+    assert route.point([-1.0, 5.0, 99.0]).tolist() == [[0, 5], [4, 6], [4, 9]]
     assert route.nearest(np.array([1.0, 6.0])) == 1
     assert route.nearest(np.array([9.0, 7.0])) == 6
     (across, _), (up, _) = route.lead(np.array([[1.0, 6.0], [4.0, 8.9]]))[0].T

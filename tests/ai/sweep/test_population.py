@@ -6,7 +6,8 @@ import pytest
 from ai.sweep.population import explored, proposed
 from ai.sweep.space import Dimension
 from ai.sweep.study import FinishedTrial, SeedResult, Study
-from ai.training.checkpoints import AGENTS, resume_run
+from ai.training.loop import Training
+from ai.training.run import resume, save
 from tests.support.studies import networks_in, run_alone, tiny_plan
 
 
@@ -41,7 +42,7 @@ def test_a_copy_begins_with_the_networks_of_its_parent_and_goes_on_as_train_does
     result, runs = run_alone(study.plan, asked, study.runs_of(asked.parent.number))
     assert result.parent == asked.parent.number
     assert [point.at for point in result.seeds[0].curve] == [200, 400]
-    training = resume_run(study.run_folder(asked.parent, 0))
+    training = resume(Training, study.run_folder(asked.parent, 0))
     assert not training.lost, "it has its whole state"
     training.validation_episodes = study.plan.validation
     training.apply_live(training.config.changed(**asked.params))
@@ -49,7 +50,7 @@ def test_a_copy_begins_with_the_networks_of_its_parent_and_goes_on_as_train_does
         training.advance()
     from ai.sweep.study import write_files
 
-    AGENTS.save(training, tmp_path / "alone", final=True, state=False)
+    save(training, tmp_path / "alone", final=True, state=False)
     write_files(runs, tmp_path / "swept")
     assert networks_in(tmp_path / "alone") == networks_in(tmp_path / "swept" / "seed-0")
 

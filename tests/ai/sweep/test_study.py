@@ -19,8 +19,8 @@ from ai.sweep.report import told
 from ai.sweep.space import knob_space
 from ai.sweep.study import FinishedTrial, Study, StudyError, find, write_files
 from ai.sweep.trial import Asked, SeedRun, Trial
-from ai.training.checkpoints import DIGITS
 from ai.training.config import PRESETS
+from ai.training.run import save
 from main import main
 from tests.support.studies import TINY, finished_study, networks_in, run_alone, tiny_plan
 
@@ -175,8 +175,7 @@ def test_a_killed_trial_of_the_lander_goes_on_bit_for_bit(tmp_path):
 def test_a_trial_of_digits_goes_on_from_a_checkpoint_as_if_nothing_had_been(tmp_path, monkeypatch):
     drawn = np.random.default_rng(0)
     part = drawn.random((600, 28, 28), np.float32), drawn.integers(10, size=600).astype(np.uint8)
-    for module in ("training", "checkpoints"):
-        monkeypatch.setattr(f"ai.digits.{module}.load_part", lambda _: part)
+    monkeypatch.setattr("ai.digits.training.load_part", lambda _: part)
     config = DIGIT_PRESETS["classic"].changed(hidden=(8,), batch_size=50, epochs=2, augmentation=0.0, held_out=100)
     plan = digits_plan(config, 2)
     asked = Asked(0, {"learning_rate": 0.01})
@@ -251,7 +250,7 @@ def test_a_trial_of_digits_is_that_of_train_digits(tmp_path):
     training = DigitTraining(config.changed(learning_rate=0.01), 3)
     while not training.done:
         training.advance()
-    DIGITS.save(training, tmp_path / "alone", final=True)
+    save(training, tmp_path / "alone", final=True)
     write_files(runs, tmp_path / "swept")
     assert networks_in(tmp_path / "alone") == networks_in(tmp_path / "swept" / "seed-3")
     assert result.value == training.best

@@ -9,10 +9,10 @@ from ai.lander.environment import LanderEnv
 from ai.lander.ground import hilly
 from ai.lander.pilots import ScriptedPilot
 from ai.training.config import PRESETS
-from ai.training.demonstrations import MOST, Demonstration, demonstrate, read, relive, takeover, taught, teach, write
+from ai.training.demonstrations import MOST, Demonstration, demonstrate, read, relive, takeover, teach, write
 from ai.training.history import SettingChange
 from ai.training.lander_session import TAUGHT, live
-from ai.training.messages import AddDemonstrations, NetworkState, Refused, SwarmState
+from ai.training.messages import NetworkState, Refused, SwarmState
 
 MODERN = PRESETS["modern"]
 
@@ -24,7 +24,7 @@ def landings():
 
 def test_a_landing_is_remembered_as_if_the_agent_had_flown_it(landings):
     config = MODERN.changed(n_step=1)
-    (cells,) = relive(landings[:1], config)
+    cells = relive(landings[0], config)
     env = LanderEnv(1, landings[0].seed, "near", frame_skip=4, weights=config.reward_weights)
     observation, pilot, total = env.reset(), ScriptedPilot(), 0.0
     for row in range(len(cells.action)):
@@ -44,7 +44,7 @@ def test_only_what_follows_a_takeover_is_an_example(landings):
     begins = 4 * (len(whole.actions) // 8)
     part = Demonstration(whole.seed, whole.actions, "near", begins)
     config = MODERN.changed(n_step=1)
-    all_, some = relive([whole, part], config)
+    all_, some = relive(whole, config), relive(part, config)
     assert len(some.action) == len(all_.action) - begins // 4
     assert np.array_equal(some.state, all_.state[begins // 4 :])
     assert takeover([True, False, True, True]) == 2
@@ -62,29 +62,18 @@ def test_a_flight_among_hills_is_about_the_pad_it_landed_on():
         actions += [int(action[0])] * 4
     assert env.landed_on[0] == 1
     flown = tuple(actions[: env.steps[0]])
-    assert relive([Demonstration(3, flown, ground=8, pad=1)], MODERN)[0] is not None
-    assert relive([Demonstration(3, flown, ground=8, pad=0)], MODERN)[0] is None
-    assert relive([Demonstration(3, flown, ground=8, pad=9)], MODERN)[0] is None
+    assert relive(Demonstration(3, flown, ground=8, pad=1), MODERN) is not None
+    assert relive(Demonstration(3, flown, ground=8, pad=0), MODERN) is None
+    assert relive(Demonstration(3, flown, ground=8, pad=9), MODERN) is None
 
 
 def test_what_does_not_land_is_not_taught(landings):
-    agent = DeepQAgent(config=taught(MODERN))
+    agent = DeepQAgent(config=MODERN.changed(success_pass=True))
     fall = Demonstration(0, (0,) * 600)
-    assert relive([fall], MODERN) == [None]
+    assert relive(fall, MODERN) is None
     assert teach(agent, [*landings, fall]) == 3
     flown = sum(-(-len(landing.actions) // 4) for landing in landings)
     assert len(agent.replay) == len(agent.successes) == flown
-
-
-def test_flights_are_relived_together_as_alone(landings):
-    mixed = [landings[0], Demonstration(0, (0,) * 600), *landings[1:], Demonstration(7, (0, 3) * 90, ground=8)]
-    mixed[2] = replace(mixed[2], begins=41)
-    together = relive(mixed, MODERN)
-    alone = [relive([each], MODERN)[0] for each in mixed]
-    assert [cells is None for cells in together] == [False, True, False, False, True]
-    for one, other in zip(together, alone, strict=True):
-        for column, same in zip(one or (), other or (), strict=True):
-            assert np.array_equal(column, same)
 
 
 def test_demonstrations_are_kept_in_a_file(landings, tmp_path):
@@ -102,7 +91,7 @@ def test_a_live_run_learns_from_them_from_its_first_decision(landings, tmp_path)
     lonely, led = live(config), live(config)
     next(lonely)
     next(led)
-    answer = led.send(AddDemonstrations(path))
+    answer = led.send(("teach", path))
     assert [(told.name, told.after) for told in answer if isinstance(told, SettingChange)] == [
         ("success_pass", True),
         (TAUGHT, len(landings)),
@@ -111,7 +100,7 @@ def test_a_live_run_learns_from_them_from_its_first_decision(landings, tmp_path)
     assert not insights[0][-1:] or not insights[0][-1].gradients.any()  # still warming up
     assert insights[1][-1].gradients.any()
     write(path, [*landings, replace(landings[0], begins=30)])
-    assert [told.after for told in led.send(AddDemonstrations(path)) if isinstance(told, SettingChange)] == [
+    assert [told.after for told in led.send(("teach", path)) if isinstance(told, SettingChange)] == [
         1
     ]  # only the new one
     lonely.close()
@@ -125,7 +114,7 @@ def test_a_live_run_goes_on_where_there_is_nothing_to_learn_from(content, words,
         path.write_text(content)
     run = live(PRESETS["classic"])
     next(run)
-    (refused,) = run.send(AddDemonstrations(path))
+    (refused,) = run.send(("teach", path))
     assert isinstance(refused, Refused)
     assert words in refused.problem
     assert any(isinstance(message, SwarmState) for message in next(run))
@@ -148,7 +137,7 @@ def test_demonstrations_that_make_no_sense_are_refused_and_the_training_goes_on(
     path.write_bytes(content if isinstance(content, bytes) else content.encode())
     run = live(PRESETS["classic"])
     next(run)
-    (refused,) = run.send(AddDemonstrations(path))
+    (refused,) = run.send(("teach", path))
     assert isinstance(refused, Refused)
     assert "flights.json" in refused.problem
     assert len(refused.problem) < 400

@@ -11,10 +11,10 @@ from ai.digits.mnist import load_part
 from ai.digits.training import DigitTraining, confusion
 from ai.digits.validation import EXAMPLES, Confusion
 from ai.training import digit_session
-from ai.training.checkpoints import resume_digit_run
 from ai.training.digit_session import live_digits
 from ai.training.history import REVERTED, DigitPoint, SettingChange, Validation
-from ai.training.messages import ChangeSetting, Finish, Refused, RestoreBest, RunStarted, Save, Saved
+from ai.training.messages import Refused, RunStarted, Saved
+from ai.training.run import resume
 
 SMALL = DIGIT_PRESETS["classic"].changed(hidden=(16,), epochs=3, held_out=200, batch_size=50, ema_decay=0.9)
 
@@ -67,7 +67,7 @@ def test_a_run_that_is_closed_can_be_gone_on_with(data, tmp_path):
     for _ in range(9):
         next(run)
     run.close()
-    assert resume_digit_run(tmp_path / "run", data=data).step == 7
+    assert resume(DigitTraining, tmp_path / "run", data=data).step == 7
     again = live_digits(DIGIT_PRESETS["modern"], 0, resume=tmp_path / "run", data=data)
     assert [next(again), next(again)[0]] == [(), RunStarted(SMALL, 4, 7, "", 30)]
 
@@ -76,8 +76,8 @@ def test_a_run_that_is_asked_to_finish_is_kept_measured_and_can_be_gone_on_with(
     run = live_digits(SMALL, 4, keep=tmp_path / "run", data=data)
     for _ in range(9):
         next(run)
-    told = run.send(Finish()) + next(run)
-    told += run.send(Save(tmp_path / "asked meanwhile"))
+    told = run.send(("finish",)) + next(run)
+    told += run.send(("save", tmp_path / "asked meanwhile"))
     for turn in run:
         told += turn
     saved, kept = kinds(told, Saved)
@@ -85,16 +85,16 @@ def test_a_run_that_is_asked_to_finish_is_kept_measured_and_can_be_gone_on_with(
     assert kept.folder == tmp_path / "run"
     assert kept.test > 0.1
     assert not kinds(told, DigitPoint)
-    assert resume_digit_run(tmp_path / "run", data=data).step == 7
+    assert resume(DigitTraining, tmp_path / "run", data=data).step == 7
 
 
 def test_live_knobs_turn_and_others_are_refused(data):
     run = live_digits(SMALL, data=data)
     next(run), next(run)
-    assert run.send(ChangeSetting("learning_rate", 1e-4)) == (SettingChange(0, "learning_rate", 3e-3, 1e-4),)
-    (refused,) = run.send(ChangeSetting("hidden", (3,)))
+    assert run.send(("change", "learning_rate", 1e-4)) == (SettingChange(0, "learning_rate", 3e-3, 1e-4),)
+    (refused,) = run.send(("change", "hidden", (3,)))
     assert isinstance(refused, Refused)
-    assert isinstance(run.send(ChangeSetting("augmentation", 7.0))[0], Refused)
+    assert isinstance(run.send(("change", "augmentation", 7.0))[0], Refused)
     rates = [each.learning_rate for turn in run for each in kinds(turn, DigitPoint)]
     assert max(rates) <= 1e-4
 
@@ -120,9 +120,9 @@ RUINED = SMALL.changed(epochs=40, learning_rate=0.02, augmentation=0.0)
 def ruin(run):
     """Let a run learn for some epochs, with far too long steps from then on; return what it told."""
     told = [each for _ in range(160) for each in next(run)]
-    told += run.send(ChangeSetting("learning_rate", 1.0)) + run.send(ChangeSetting("final_learning_rate", 1.0))
+    told += run.send(("change", "learning_rate", 1.0)) + run.send(("change", "final_learning_rate", 1.0))
     told += [each for _ in range(40) for each in next(run)]
-    told += run.send(ChangeSetting("learning_rate", 0.02)) + run.send(ChangeSetting("final_learning_rate", 1e-6))
+    told += run.send(("change", "learning_rate", 0.02)) + run.send(("change", "final_learning_rate", 1e-6))
     return told + [each for _ in range(20) for each in next(run)]
 
 
@@ -138,7 +138,7 @@ def test_a_ruined_network_can_go_back_to_its_best(data):
     scores = [each.success for each in kinds(told, Validation)]
     best = max(scores)
     assert scores[-1] < best - 0.2, "rate to 1 and back leaves a ruin"
-    (went,) = run.send(RestoreBest())
+    (went,) = run.send(("restore_best",))
     assert (went.name, went.after) == (REVERTED, best)
     table = confusion(training.current(), training.held_images, training.held_labels)
     assert table.trace() / table.sum() == best
@@ -149,11 +149,11 @@ def test_a_ruined_network_can_go_back_to_its_best(data):
 def test_what_is_shown_in_the_end_is_the_network_that_is_kept(data, tmp_path):
     run = live_digits(RUINED, 4, keep=tmp_path / "run", data=data)
     ruin(run)
-    told = run.send(Finish())
+    told = run.send(("finish",))
     for turn in run:
         told += turn
     (kept,) = kinds(told, Saved)
-    training = resume_digit_run(tmp_path / "run", data=data)
+    training = resume(DigitTraining, tmp_path / "run", data=data)
     shown = kinds(told, Confusion)[-1].table
     best = DigitClassifier.load(tmp_path / "run")
     assert np.array_equal(shown, confusion(best, training.held_images, training.held_labels))

@@ -12,21 +12,10 @@ from ai.agent.agent import DeepQAgent
 from ai.explain.inspection import links
 from ai.nn import NeuralNetwork
 from ai.training.config import PRESETS, Config
-from ai.training.edits import (
-    EDITED,
-    MOST_WEIGHT,
-    Edit,
-    EditNetwork,
-    LearnOn,
-    NetworkEditor,
-    NetworkEdits,
-    SetWeight,
-    SilenceUnit,
-    UndoEdit,
-)
+from ai.training.edits import EDITED, MOST_WEIGHT, Edit, NetworkEditor, NetworkEdits
 from ai.training.history import History, Point, SettingChange
 from ai.training.lander_session import live
-from ai.training.messages import NetworkState, RestoreCheckpoint
+from ai.training.messages import NetworkState
 from tests.support.small import LANDERS
 
 SENSED = np.linspace(-1, 1, 18, dtype=np.float32).reshape(2, 9)
@@ -43,9 +32,9 @@ def both(agent: DeepQAgent) -> tuple[bytes, bytes]:
 
 
 EDITS: st.SearchStrategy[Edit] = st.one_of(
-    st.builds(SilenceUnit, st.integers(0, 2), st.integers(0, 3)),
+    st.builds(Edit, st.integers(0, 2), st.integers(0, 3)),
     st.builds(
-        SetWeight,
+        Edit,
         st.integers(0, 2),
         st.integers(0, 3),
         st.integers(0, 3),
@@ -81,7 +70,7 @@ def test_all_are_undone_at_once_bit_for_bit(edits: list[Edit]) -> None:
     editor, before, optimizer = NetworkEditor(agent), both(agent), agent.optimizer
     for edit in edits:
         editor.apply(edit)
-    editor.restore()
+    editor.undo(every=True)
     assert both(agent) == before
     assert agent.optimizer is optimizer, "it has not learnt meanwhile"
     assert editor.edits == NetworkEdits()
@@ -90,19 +79,19 @@ def test_all_are_undone_at_once_bit_for_bit(edits: list[Edit]) -> None:
 @pytest.mark.parametrize("options", [{}, {"dueling": True}, {"layer_normalisation": False, "activation": "tanh"}])
 def test_a_silenced_unit_makes_no_difference_any_more(options: dict[str, object]) -> None:
     agent = agent_of(**options)
-    NetworkEditor(agent).apply(SilenceUnit(0, 2))
+    NetworkEditor(agent).apply(Edit(0, 2))
     other = SENSED.copy()
     other[:, 2] = 9.0
     for network in (agent.online, agent.target):
         assert np.array_equal(network.predict(SENSED), network.predict(other))
-    NetworkEditor(agent).apply(SilenceUnit(2, 1))
+    NetworkEditor(agent).apply(Edit(2, 1))
     assert not links(agent.online)[2].weights[1].any()
 
 
 def test_a_weight_is_set_and_no_other_changes() -> None:
     agent = agent_of()
     before = [link.weights.copy() for link in links(agent.online)]
-    NetworkEditor(agent).apply(SetWeight(1, 4, 3, 0.75))
+    NetworkEditor(agent).apply(Edit(1, 4, 3, 0.75))
     before[1][4, 3] = 0.75
     for network in (agent.online, agent.target):
         assert links(network)[1].weights[4, 3] == np.float32(0.75)
@@ -112,15 +101,15 @@ def test_a_weight_is_set_and_no_other_changes() -> None:
 
 def test_what_cannot_be_edited_is_refused_and_nothing_changes(subtests: pytest.Subtests):
     for edit, said in [
-        (SilenceUnit(0, 9), "no unit 9"),
-        (SilenceUnit(0, -1), "no unit -1"),
-        (SilenceUnit(3, 0), "no outgoing weights"),
-        (SilenceUnit(7, 0), "no layer 7"),
-        (SetWeight(-1, 0, 0, 1.0), "no layer -1"),
-        (SetWeight(0, 0, 5, 1.0), "no weight 0, 5"),
-        (SetWeight(0, 0, 0, np.nan), "not nan"),
-        (SetWeight(0, 0, 0, np.inf), "not inf"),
-        (SetWeight(0, 0, 0, 101.0), "at most 100"),
+        (Edit(0, 9), "no unit 9"),
+        (Edit(0, -1), "no unit -1"),
+        (Edit(3, 0), "no outgoing weights"),
+        (Edit(7, 0), "no layer 7"),
+        (Edit(-1, 0, 0, 1.0), "no layer -1"),
+        (Edit(0, 0, 5, 1.0), "no weight 0, 5"),
+        (Edit(0, 0, 0, np.nan), "not nan"),
+        (Edit(0, 0, 0, np.inf), "not inf"),
+        (Edit(0, 0, 0, 101.0), "at most 100"),
     ]:
         with subtests.test(edit=edit, said=said):
             agent = agent_of()
@@ -134,8 +123,8 @@ def test_what_cannot_be_edited_is_refused_and_nothing_changes(subtests: pytest.S
 def test_a_weight_of_a_dueling_layer_is_refused_with_the_reason() -> None:
     editor = NetworkEditor(agent_of(dueling=True))
     with pytest.raises(ValueError, match="dueling"):
-        editor.apply(SetWeight(2, 0, 0, 0.0))
-    editor.apply(SetWeight(1, 0, 0, 0.0))
+        editor.apply(Edit(2, 0, 0, 0.0))
+    editor.apply(Edit(1, 0, 0, 0.0))
 
 
 def told_of(told: tuple[object, ...], kind: type) -> list[object]:
@@ -158,10 +147,10 @@ def test_a_live_run_is_edited_flies_on_without_learning_and_is_as_it_was() -> No
     next(run)
     for _ in range(60):
         next(run)
-    before = state(run.send(UndoEdit()))  # there is nothing to undo: it only says how things stand
-    told = run.send(EditNetwork(SilenceUnit(1, 3)))
+    before = state(run.send(("undo",)))  # there is nothing to undo: it only says how things stand
+    told = run.send(("edit", Edit(1, 3)))
     assert not weights_of(LANDERS, state(told))[1][3].any()
-    assert told_of(told, NetworkEdits) == [NetworkEdits(((1, 3),), (), 1, True, True)]
+    assert told_of(told, NetworkEdits) == [NetworkEdits(((1, 3, None),), 1, True, True)]
     [change] = told_of(told, SettingChange)
     assert isinstance(change, SettingChange)
     assert (change.name, change.before, change.after) == (EDITED, 0, 1)
@@ -171,12 +160,12 @@ def test_a_live_run_is_edited_flies_on_without_learning_and_is_as_it_was() -> No
     points = [message for message in flown if isinstance(message, Point)]
     assert points
     assert all(np.isnan(point.loss) for point in points)
-    told = run.send(UndoEdit(all=True))
+    told = run.send(("undo", True))
     assert state(told) == before
     assert told_of(told, NetworkEdits) == [NetworkEdits()]
     for _ in range(10):
         next(run)
-    assert state(run.send(UndoEdit())) != before, "it learns again"
+    assert state(run.send(("undo",))) != before, "it learns again"
     run.close()
 
 
@@ -184,16 +173,16 @@ def test_it_learns_on_from_an_edit_and_can_still_go_back() -> None:
     run = live(LANDERS, 3)
     for _ in range(60):
         next(run)
-    before = state(run.send(UndoEdit()))
-    edited = state(run.send(EditNetwork(SetWeight(0, 1, 2, 3.0))))
-    [edits] = told_of(run.send(LearnOn()), NetworkEdits)
+    before = state(run.send(("undo",)))
+    edited = state(run.send(("edit", Edit(0, 1, 2, 3.0))))
+    [edits] = told_of(run.send(("learn_on",)), NetworkEdits)
     assert edits == NetworkEdits(way_back=True)
     for _ in range(10):
         next(run)
-    assert state(run.send(UndoEdit())) not in (before, edited)
+    assert state(run.send(("undo",))) not in (before, edited)
     training = getgeneratorlocals(run)["session"].training
     optimizer = training.agent.optimizer
-    assert state(run.send(UndoEdit(all=True))) == before
+    assert state(run.send(("undo", True))) == before
     assert training.agent.optimizer is not optimizer, "what it remembers belongs to other weights"
     run.close()
 
@@ -203,11 +192,11 @@ def test_an_edit_that_is_dragged_is_one_step_and_one_change() -> None:
     next(run)
     history = History()
     for number in range(5):
-        for message in run.send(EditNetwork(SetWeight(0, 0, 0, 0.1 * number), amends=number > 0)):
+        for message in run.send(("edit", Edit(0, 0, 0, 0.1 * number), number > 0)):
             if isinstance(message, SettingChange):
                 history.append(message)
     assert [(each.name, each.after) for each in history.setting_changes] == [(EDITED, 1)]
-    [edits] = told_of(run.send(UndoEdit()), NetworkEdits)
+    [edits] = told_of(run.send(("undo",)), NetworkEdits)
     assert edits == NetworkEdits()
     run.close()
 
@@ -215,9 +204,9 @@ def test_an_edit_that_is_dragged_is_one_step_and_one_change() -> None:
 def test_a_checkpoint_replaces_an_edited_network_and_it_learns() -> None:
     run = live(LANDERS, 3)
     next(run)
-    run.send(EditNetwork(SilenceUnit(0, 0)))
-    run.send(RestoreCheckpoint(0))
-    [edits] = told_of(run.send(UndoEdit()), NetworkEdits)
+    run.send(("edit", Edit(0, 0)))
+    run.send(("restore", 0))
+    [edits] = told_of(run.send(("undo",)), NetworkEdits)
     assert edits == NetworkEdits()
     run.close()
 
@@ -226,8 +215,8 @@ def test_a_run_that_ends_while_it_is_edited_is_saved_as_it_was(tmp_path: Path) -
     run = live(LANDERS, 3, keep=tmp_path / "run")
     for _ in range(60):
         next(run)
-    before = state(run.send(UndoEdit()))
-    run.send(EditNetwork(SilenceUnit(0, 0)))
+    before = state(run.send(("undo",)))
+    run.send(("edit", Edit(0, 0)))
     next(run)
     run.close()
     assert NeuralNetwork.load(tmp_path / "run" / "last" / "online").values.tobytes() == before

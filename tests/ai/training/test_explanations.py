@@ -9,7 +9,7 @@ from ai.explain.agent_lesson import Lesson
 from ai.training.config import PRESETS
 from ai.training.history import Point
 from ai.training.lander_session import live
-from ai.training.messages import Explain, NetworkState, Refused
+from ai.training.messages import NetworkState, Refused
 
 CONFIG = replace(PRESETS["modern"], num_envs=6, batch_size=16, gradient_steps=1, learning_starts=48, n_step=4,
                  hidden=(16,), replay_size=5000, spawn="near")  # fmt: skip
@@ -21,7 +21,7 @@ def run(config=CONFIG, **options):
 
 
 def ask(session, slot, decisions=None):
-    (answer,) = session.send(Explain(slot, decisions))
+    (answer,) = session.send(("explain", slot, decisions))
     return answer
 
 

@@ -8,10 +8,10 @@ import pytest
 from ai.agent.agent import DeepQAgent
 from ai.agent.normalizer import Normalizer
 from ai.nn import ModelFormatError
-from ai.training.checkpoints import resume_run
 from ai.training.config import gym_config
 from ai.training.gym_task import PATIENCE, GymTask
 from ai.training.loop import Training
+from ai.training.run import resume
 from main import main
 
 LANDER = "ai.gym.lander:tranquility/Lander-v0"
@@ -103,7 +103,7 @@ class TestLearningOthersEnvironments:
         assert measured["mean_return"] > 100
         assert measured["mean_length"] == measured["mean_return"]
         assert 0 <= measured["success"] <= 1
-        resumed, best = resume_run(run), DeepQAgent.load(run)
+        resumed, best = resume(Training, run), DeepQAgent.load(run)
         assert resumed.agent.normalizer.to_json() == DeepQAgent.load(run / "last").normalizer.to_json()
         assert np.array_equal(resumed.best_agent().q_values(np.ones(4)), best.q_values(np.ones(4)))
         assert main(["train", "--resume", str(run), "--decisions", "6400"]) == 0

@@ -18,11 +18,9 @@ from ai.training.history import (
     Validation,
 )
 
-NUMBERS = list(COLUMNS[:10])
-
 
 def point(number):
-    return Point(**dict.fromkeys(NUMBERS, float(number)), landed=0.25, parts=tuple(range(len(PARTS))))
+    return Point(**dict.fromkeys(COLUMNS[:9], float(number)), crashed=0.25, parts=tuple(range(len(PARTS))))
 
 
 def checkpoint(number, scale=None):
@@ -45,7 +43,7 @@ def test_columns_are_what_was_told():
     history = full_history()
     assert len(history) == 10
     assert history["decisions"].tolist() == list(range(10))
-    assert history["landed"].tolist() == [0.25] * 10
+    assert history["crashed"].tolist() == [0.25] * 10
     assert history.parts.shape == (10, len(PARTS))
     assert history[PARTS[-1]].tolist() == [len(PARTS) - 1] * 10
     with pytest.raises(KeyError):
@@ -98,18 +96,19 @@ def same(one, other):
         assert second.values.dtype == np.float32
 
 
-@pytest.mark.parametrize("extra", [0, CAPACITY + 5, 3 * CAPACITY])
-def test_what_is_written_is_read_and_goes_on_alike(tmp_path, extra):
-    history = full_history()
-    for number in range(10, extra):
-        history.append(point(number))
-    history.write(tmp_path)
-    again = History.read(tmp_path)
-    same(history, again)
-    for number in range(extra, extra + CAPACITY):
-        history.append(point(number))
-        again.append(point(number))
-    same(history, again)
+def test_what_is_written_is_read_and_goes_on_alike(tmp_path, subtests):
+    for extra in (0, CAPACITY + 5, 3 * CAPACITY):
+        with subtests.test(extra=extra):
+            history = full_history()
+            for number in range(10, extra):
+                history.append(point(number))
+            history.write(tmp_path)
+            again = History.read(tmp_path)
+            same(history, again)
+            for number in range(extra, extra + CAPACITY):
+                history.append(point(number))
+                again.append(point(number))
+            same(history, again)
 
 
 def test_it_can_be_sent_to_another_process_and_copied():
@@ -128,60 +127,42 @@ def test_a_run_without_a_history_has_an_empty_one(tmp_path):
 
 
 def rewritten(folder, **changes):
+    """Change arrays, or what is said of them; None takes it away."""
     with np.load(folder / HISTORY_FILE) as arrays:
         kept = dict(arrays)
-    described = json.loads(str(kept["described"]))
-    for name, value in changes.items():
-        if name in kept:
-            kept[name] = value
-        else:
-            described[name] = value
-    kept["described"] = np.array(json.dumps(described))
-    np.savez(folder / HISTORY_FILE, **kept)
+    told = json.loads(str(kept["described"])) | {name: each for name, each in changes.items() if name not in kept}
+    kept["described"] = np.array(json.dumps({name: each for name, each in told.items() if each is not None}))
+    np.savez(folder / HISTORY_FILE, **kept | {name: each for name, each in changes.items() if name in kept})
 
 
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {"version": 99},
-        {"stride": 0},
-        {"told": 1},
-        {"stride": "x"},
+def test_nonsense_is_named(tmp_path, subtests):
+    moment = {"seconds": 1.0, "decisions": 3, "success": 0.5, "scale": None}
+    for changes in [
+        {"version": 99}, {"stride": 0}, {"told": 1}, {"stride": "x"},
         *({"reward_scale": scale} for scale in (-1.0, float("nan"), float("inf"), "much")),
-        {"points": np.zeros((3, 2))},
-        {"points": np.zeros((CAPACITY + 1, len(COLUMNS)))},
-        {"values": np.full((2, 7), np.nan, np.float32)},
-        {"values": np.zeros((1, 7), np.float32)},
-        {"alterations": [{"decisions": 3}]},
-        {"checkpoints": 5},
+        {"points": np.zeros((3, 2))}, {"points": np.zeros((CAPACITY + 1, len(COLUMNS)))},
+        {"values": np.full((2, 7), np.nan, np.float32)}, {"values": np.zeros((1, 7), np.float32)},
         {"validations": [[1, 2]]},
         {"validations": [{"decisions": 3, "success": "x", "mean_return": 1.0, "best": True}]},
-        {"checkpoints": [{"seconds": 1.0, "decisions": "many", "success": 0.5, "scale": None}] * 2},
-        {"checkpoints": [{"seconds": [], "decisions": 3, "success": 0.5, "scale": None}] * 2},
-        {"checkpoints": [{"seconds": 1.0, "decisions": 3, "success": 10**400, "scale": None}] * 2},
-        {"checkpoints": [{"seconds": 1.0, "decisions": 3, "success": 0.5, "scale": 7}] * 2},
+        {"checkpoints": 5},
+        *({"checkpoints": [moment | wrong] * 2}
+          for wrong in ({"decisions": "many"}, {"seconds": []}, {"success": 10**400}, {"scale": 7})),
+        {"alterations": [{"decisions": 3}]},
         {"alterations": [{"decisions": 3, "name": 5, "before": 1, "after": 2}]},
         {"alterations": [{"decisions": 3, "name": "care", "before": 1, "after": {}}]},
         {"described": np.array("[]")},
-    ],
-)
-def test_nonsense_is_named(tmp_path, changes):
-    full_history().write(tmp_path)
-    if "described" in changes:
-        with np.load(tmp_path / HISTORY_FILE) as arrays:
-            kept = dict(arrays) | changes
-        np.savez(tmp_path / HISTORY_FILE, **kept)
-    else:
-        rewritten(tmp_path, **changes)
-    with pytest.raises(ModelFormatError, match=HISTORY_FILE):
-        History.read(tmp_path)
+    ]:  # fmt: skip
+        with subtests.test(changes=changes):
+            full_history().write(tmp_path)
+            rewritten(tmp_path, **changes)
+            with pytest.raises(ModelFormatError, match=HISTORY_FILE):
+                History.read(tmp_path)
 
 
 def test_parts_of_a_reward_that_came_later_or_are_gone_do_no_harm(tmp_path):
     history = full_history()
     history.write(tmp_path)
-    columns = [*COLUMNS[:-1], "gone"]
-    rewritten(tmp_path, columns=columns)
+    rewritten(tmp_path, columns=[*COLUMNS[:-1], "gone"])
     again = History.read(tmp_path)
     assert np.array_equal(again["success"], history["success"])
     assert not again[PARTS[-1]].any()
@@ -192,11 +173,7 @@ def test_a_history_tells_in_which_unit_its_values_are_and_an_older_one_takes_it_
     history.reward_scale = 0.1
     history.write(tmp_path)
     assert History.read(tmp_path).reward_scale == 0.1
-    with np.load(tmp_path / HISTORY_FILE) as arrays:
-        older = dict(arrays)
-    described = json.loads(str(older["described"]))
-    del described["reward_scale"]
-    np.savez(tmp_path / HISTORY_FILE, **(older | {"described": np.array(json.dumps(described))}))
+    rewritten(tmp_path, reward_scale=None)
     assert History.read(tmp_path).reward_scale == 1.0
     (tmp_path / "config.json").write_text(json.dumps({"config": {"reward_scale": 0.01}}))
     read = History.read(tmp_path)

@@ -10,11 +10,10 @@ import pytest
 
 from ai.training.captions import caption
 from ai.training.config import PRESETS, Config
-from ai.training.edits import EditNetwork, LearnOn, SilenceUnit, UndoEdit
+from ai.training.edits import Edit
 from ai.training.hints import RULES, Adviser, RecentCurves
 from ai.training.history import Checkpoint, History, Point, SettingChange
 from ai.training.lander_session import live
-from ai.training.messages import ChangeSetting, RestoreCheckpoint
 from tests.support.recordings import recorded
 
 # As `benchmarks.remedies` has it.
@@ -101,7 +100,7 @@ def said(run: Watched, chart: str) -> str:
 
 
 def test_all_at_random_is_put_back_and_it_lands_again(run: Watched):
-    run.send(ChangeSetting("epsilon_end", 1.0))
+    run.send(("change", "epsilon_end", 1.0))
     assert hint_after(run) == "changed"
     assert run.adviser.shown
     assert dict(run.adviser.shown.remedy) == {"epsilon_end": 0.05}
@@ -109,19 +108,19 @@ def test_all_at_random_is_put_back_and_it_lands_again(run: Watched):
     assert run.landed < 0.3
     assert said(run, "epsilon") == "all"
     run.adviser.apply()
-    run.send(ChangeSetting("epsilon_end", 0.05))
+    run.send(("change", "epsilon_end", 0.05))
     assert hint_after(run, 24_000) == "", "it is on its way back"
     assert run.landed > 0.7
 
 
 def test_an_edited_network_goes_back_to_before_the_edit(run: Watched):
     for unit in range(NEAR.hidden[-1]):
-        run.send(EditNetwork(SilenceUnit(1, unit)))
+        run.send(("edit", Edit(1, unit)))
     assert hint_after(run) == "edited"
     assert said(run, "loss") == "held", "it has learnt, and does not now"
     assert run.adviser.shown
     assert run.adviser.shown.back_to is not None
-    run.send(RestoreCheckpoint(run.adviser.shown.back_to))
+    run.send(("restore", run.adviser.shown.back_to))
     run.adviser.apply(went_back=True)
     assert hint_after(run, 16_000) == ""
     assert run.landed > 0.7
@@ -129,11 +128,11 @@ def test_an_edited_network_goes_back_to_before_the_edit(run: Watched):
 
 
 def test_what_was_undone_is_not_blamed(run: Watched):
-    run.send(EditNetwork(SilenceUnit(1, 0)))
-    run.send(UndoEdit(all=True))
-    run.send(ChangeSetting("discount", 0.9))
-    run.send(ChangeSetting("discount", NEAR.discount))
-    run.send(LearnOn())
+    run.send(("edit", Edit(1, 0)))
+    run.send(("undo", True))
+    run.send(("change", "discount", 0.9))
+    run.send(("change", "discount", NEAR.discount))
+    run.send(("learn_on",))
     assert hint_after(run, 5_000) == ""
     assert RecentCurves(run.history, run.config).blamed() == []
 

@@ -11,7 +11,7 @@ from ai.digits.config import DIGIT_PRESETS
 from ai.training.config import PRESETS, Config, InForce, idle, in_force
 from ai.training.lander_session import live
 from ai.training.loop import Training
-from ai.training.messages import ChangeSetting, SwarmState
+from ai.training.messages import SwarmState
 
 TINY = Config(
     hidden=(8,), num_envs=16, learning_starts=32, batch_size=16, gradient_steps=1, replay_size=2000, spawn="near",
@@ -80,11 +80,11 @@ def test_what_a_run_says_is_in_force_is_what_it_learns_and_flies_with():
     training = getgeneratorlocals(run)["session"].training
     told += [next(run) for _ in range(80)]
     assert isinstance(told[0][-2], InForce) or any(isinstance(each, InForce) for each in told[0])
-    (said,) = [each for each in run.send(ChangeSetting("discount", 0.9)) if isinstance(each, InForce)]
+    (said,) = [each for each in run.send(("change", "discount", 0.9)) if isinstance(each, InForce)]
     assert said.values["learning_rate"] == training.agent.optimizer.learning_rate == TINY.final_learning_rate
     assert said.values["epsilon_start"] == training.epsilon
     assert said.idle["learning_rate"] == "final_learning_rate"
-    (said,) = [each for each in run.send(ChangeSetting("final_learning_rate", 0.01)) if isinstance(each, InForce)]
+    (said,) = [each for each in run.send(("change", "final_learning_rate", 0.01)) if isinstance(each, InForce)]
     assert said.values["learning_rate"] == 0.01, "at once, also while it rests"
     assert any(isinstance(each, SwarmState) for each in next(run))
     assert training.agent.optimizer.learning_rate == 0.01

@@ -60,5 +60,5 @@ def test_a_memory_of_the_latest_drops_the_rest_when_the_day_changes():
 def test_those_that_are_tested_take_no_random_actions():
     run = SmallRun(SMALL_RUN, 0, Plan(tested=(1.0, 8.0)))
     for _ in range(10):  # before it learns
-        best = run.agent.act(run._tests._observation)
+        best = run.agent.act(run.tests.observation)
         assert np.array_equal(run.advance().tested.main, best == 1)

@@ -8,10 +8,9 @@ import pytest
 from ai.files import move_state, remove_state, state_folder
 from ai.nn import ModelFormatError
 from ai.training import state as states
-from ai.training.checkpoints import AGENTS, resume_run
 from ai.training.config import ANYWHERE, PRESETS, Config, gym_config
 from ai.training.loop import Training
-from ai.training.run import Keeper
+from ai.training.run import Keeper, resume, save
 from ai.training.tasks import LanderTask
 
 SMALL = PRESETS["modern"].changed(
@@ -44,8 +43,8 @@ def on(training, turns):
 
 
 def gone_on(training, folder):
-    AGENTS.save(training, folder)
-    resumed = resume_run(folder, env=training.config.env)
+    save(training, folder)
+    resumed = resume(Training, folder, env=training.config.env)
     resumed.evaluate_every, resumed.validation_episodes = 0, 4
     return resumed
 
@@ -89,9 +88,9 @@ def test_stopped_and_gone_on_with_at_any_point_it_is_the_straight_run(tmp_path, 
 
 def test_the_measurement_at_an_end_changes_nothing_of_a_run_that_goes_on(tmp_path):
     straight, stopped = on(begun(SMALL), 60), on(begun(SMALL), 30)
-    AGENTS.save(stopped, tmp_path / "run", final=True)
+    save(stopped, tmp_path / "run", final=True)
     assert stopped.best is not None
-    resumed = resume_run(tmp_path / "run")
+    resumed = resume(Training, tmp_path / "run")
     assert resumed.best is None
     resumed.evaluate_every = 0
     assert differing(straight, on(resumed, 30)) == []
@@ -121,15 +120,15 @@ def test_transitions_lie_in_blocks_that_are_written_once_and_go_when_they_are_fo
     monkeypatch.setattr(states, "BLOCK", 64)
     training, held = begun(SMALL), {}
     for _ in range(12):
-        AGENTS.save(on(training, 10), tmp_path / "run")
+        save(on(training, 10), tmp_path / "run")
         blocks = {name: path.stat().st_ino for name, path in files(tmp_path / "run").items() if name.endswith(".npy")}
         assert all(held.get(name, number) == number for name, number in blocks.items()), "none is written again"
         assert len(blocks) <= SMALL.replay_size // 64 + 1
         held |= blocks
     assert len(held) == training.agent.replay.added // 64
     assert len(files(tmp_path / "run")) == len(blocks) + 1, "and one state"
-    AGENTS.save(training, tmp_path / "copy")
-    assert differing(training, resume_run(tmp_path / "copy")) == []
+    save(training, tmp_path / "copy")
+    assert differing(training, resume(Training, tmp_path / "copy")) == []
 
 
 def test_of_what_is_too_large_the_newest_is_kept_and_it_is_said(tmp_path, monkeypatch, subtests):
@@ -138,8 +137,8 @@ def test_of_what_is_too_large_the_newest_is_kept_and_it_is_said(tmp_path, monkey
         with subtests.test(prioritised=prioritised):
             monkeypatch.setattr(states, "MOST", most)
             training = on(begun(SMALL.changed(prioritised=prioritised)), 60)
-            AGENTS.save(training, tmp_path / "run")
-            resumed = resume_run(tmp_path / "run")
+            save(training, tmp_path / "run")
+            resumed = resume(Training, tmp_path / "run")
             assert "too large" in resumed.lost
             kept = resumed.agent.replay
             assert 0 < len(kept) < len(training.agent.replay)
@@ -159,7 +158,7 @@ def newest(buffer, count):
 
 def test_damage_is_named_with_the_way_out_wherever_it_is(tmp_path, monkeypatch):
     monkeypatch.setattr(states, "BLOCK", 64)
-    AGENTS.save(on(begun(SMALL.changed(prioritised=True)), 50), tmp_path / "run")
+    save(on(begun(SMALL.changed(prioritised=True)), 50), tmp_path / "run")
     rng, refused = np.random.default_rng(0), list[str]()
     for path in files(tmp_path / "run").values():
         whole = path.read_bytes()
@@ -172,18 +171,18 @@ def test_damage_is_named_with_the_way_out_wherever_it_is(tmp_path, monkeypatch):
                 damaged[at : at + 8] = rng.bytes(8)
             path.write_bytes(damaged)
             try:  # some numbers are as good as others
-                resume_run(tmp_path / "run")
+                resume(Training, tmp_path / "run")
             except ModelFormatError as error:
                 refused.append(str(error))
         path.unlink()
         if path.suffix == ".npy":
             with pytest.raises(ModelFormatError, match=path.name.split(".")[0]):
-                resume_run(tmp_path / "run")
+                resume(Training, tmp_path / "run")
         path.write_bytes(whole)
     assert len(refused) > 30
     assert [problem for problem in refused if "without this folder" not in problem] == []
     remove_state(tmp_path / "run")
-    assert "empty memory" in resume_run(tmp_path / "run").lost
+    assert "empty memory" in resume(Training, tmp_path / "run").lost
 
 
 def test_numbers_that_no_run_can_have_had_are_refused(tmp_path, subtests):
@@ -209,16 +208,16 @@ def test_numbers_that_no_run_can_have_had_are_refused(tmp_path, subtests):
             state = training.state()
             change(state)
             patch.setattr(training, "state", lambda state=state: state)
-            AGENTS.save(training, tmp_path / "run")
+            save(training, tmp_path / "run")
             with pytest.raises(ModelFormatError, match="without this folder"):
-                resume_run(tmp_path / "run")
+                resume(Training, tmp_path / "run")
 
 
 def test_a_process_that_is_killed_between_two_files_leaves_a_run_of_one_moment(tmp_path, monkeypatch):
     training = on(begun(SMALL), 20)
-    keeper = Keeper(training, AGENTS, tmp_path / "run")
+    keeper = Keeper(training, tmp_path / "run")
     assert keeper.save(tmp_path / "run").problem == ""
-    before = on(resume_run(tmp_path / "run"), 0)
+    before = on(resume(Training, tmp_path / "run"), 0)
 
     def killed(*_):
         raise OSError(5, "killed")
@@ -227,29 +226,29 @@ def test_a_process_that_is_killed_between_two_files_leaves_a_run_of_one_moment(t
         on(training, 5)
         with monkeypatch.context() as patch:
             if moment == "network":
-                patch.setattr("ai.training.checkpoints.write_agent", killed)
+                patch.setattr("ai.training.loop.write_agent", killed)
             else:
                 patch.setattr(states, "_archive", killed)
             assert keeper.save(tmp_path / "run").problem == "killed"
-        assert differing(before, resume_run(tmp_path / "run")) == []
+        assert differing(before, resume(Training, tmp_path / "run")) == []
     assert keeper.save(tmp_path / "run").problem == ""
-    assert differing(training, resume_run(tmp_path / "run")) == []
+    assert differing(training, resume(Training, tmp_path / "run")) == []
     keeper.end()
 
 
 def test_a_state_of_other_networks_is_that_of_another_run(tmp_path):
-    AGENTS.save(on(begun(SMALL), 20), tmp_path / "run")
+    save(on(begun(SMALL), 20), tmp_path / "run")
     other = on(Training(SMALL, 6, evaluate_every=0), 20)
-    AGENTS.save(other, tmp_path / "other")
+    save(other, tmp_path / "other")
     move_state(tmp_path / "other", tmp_path / "run")
-    assert "empty memory" in resume_run(tmp_path / "run").lost
+    assert "empty memory" in resume(Training, tmp_path / "run").lost
 
 
 def test_a_run_that_has_ended_for_good_leaves_no_state(tmp_path):
     training = on(begun(SMALL), 20)
-    AGENTS.save(training, tmp_path / "run")
+    save(training, tmp_path / "run")
     assert state_folder(tmp_path / "run").exists()
     training.evaluate()
     training.restore_best()  # it has diverged
-    AGENTS.save(training, tmp_path / "run")
+    save(training, tmp_path / "run")
     assert not state_folder(tmp_path / "run").exists()

@@ -8,10 +8,9 @@ import pytest
 from ai.agent.schedule import geometric, linear
 from ai.lander.environment import LIMITS, LanderEnv, Outcome
 from ai.lander.pilots import NoPilot, ScriptedPilot
-from ai.training.checkpoints import AGENTS
 from ai.training.config import PRESETS, Config
 from ai.training.loop import Training, run
-from ai.training.run import Limit
+from ai.training.run import Limit, save
 from ai.training.tasks import Evaluation, LanderTask, evaluate
 
 SMALL = PRESETS["modern"].changed(
@@ -144,7 +143,7 @@ def test_the_best_checkpoint_is_kept():
 def test_a_run_is_kept_with_what_it_is(tmp_path):
     training, _ = advanced()
     training.seconds = 12.0
-    AGENTS.save(training, tmp_path / "run", final=True, state=False)
+    save(training, tmp_path / "run", final=True, state=False)
     described = json.loads((tmp_path / "run" / "training.json").read_text())
     assert described["decisions"] == 240
     assert described["preset"] == "modern"

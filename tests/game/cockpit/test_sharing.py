@@ -4,9 +4,8 @@ import pytest
 from ai.copilot.copilot import Mode
 from ai.lander.environment import Outcome
 from game.flight.flight import DECISION_STEPS, Flight, StickHolder
-from game.flight.forecast import coast_path
+from game.flight.forecast import coast_path, surface_height
 from game.flight.handicap import HANDS, OWN, Handicap
-from game.flight.surface import surface_height
 from tests.support.reading import Weighs
 
 COAST, LEFT, RIGHT, MAIN = range(4)
@@ -75,14 +74,6 @@ def test_a_tap_of_one_step_is_heard_at_once_and_let_go_at_once():
     assert flight.env.actions[0] == LEFT
     flight.step(COAST)
     assert flight.env.actions[0] == MAIN
-
-
-def test_a_decision_lasts_four_steps_while_nothing_changes():
-    network = Wants()
-    flight = shared(network)
-    for _ in range(3 * DECISION_STEPS):
-        flight.step(LEFT)
-    assert network.asked == 3
 
 
 @pytest.mark.parametrize("pads", [1, 3])

@@ -12,14 +12,14 @@ import platformdirs
 import pytest
 
 from ai.agent.agent import DeepQAgent
-from ai.training.checkpoints import AGENTS, resume_run
 from ai.training.config import Config
 from ai.training.loop import Training
+from ai.training.run import resume, save
 from game.core import collection, texts
 from game.core.collection import UNSAVED
 from game.core.names import LONGEST_NAME, LibraryError, is_valid_name
 from game.flight import networks
-from game.scenes.train.run_page import row
+from game.scenes.train.networks import row
 from game.training.library import Library, read_run
 
 SMALL = Config(hidden=(8,), num_envs=4, learning_starts=16, replay_size=100, batch_size=16)
@@ -34,8 +34,8 @@ def trained(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("trained") / "run"
     training = Training(SMALL, seed=5, validation_episodes=4)
     training.advance()
-    training.conclude()
-    AGENTS.save(training, folder, state=False)
+    training.evaluate()
+    save(training, folder, state=False)
     return folder
 
 
@@ -321,7 +321,7 @@ def test_an_export_is_a_whole_run_and_replaces_nothing(library: Library, trained
     copies = [library.export("mine", tmp_path / "Documents" / "Tranquility") for _ in range(2)]
     assert [copy.name for copy in copies] == ["mine", "mine 2"]
     for copy in copies:
-        assert resume_run(copy).seed == 5
+        assert resume(Training, copy).seed == 5
     assert sorted(path.name for path in copies[0].parent.iterdir()) == ["mine", "mine 2"]
 
 

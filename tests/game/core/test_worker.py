@@ -13,12 +13,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ai.training.checkpoints import resume_run
 from ai.training.config import Config
 from ai.training.history import Checkpoint, History
 from ai.training.lander_session import live
 from ai.training.loop import Training
-from ai.training.messages import ChangeSetting, Refused, Save, Saved
+from ai.training.messages import Refused, Saved
+from ai.training.run import resume
 from game.core import texts, worker
 from game.core.assets import MODELS_DIR
 from game.core.worker import Worker, WorkerState
@@ -289,7 +289,7 @@ def test_a_run_killed_at_any_moment_can_be_loaded(start, tmp_path):
         polled(run, lambda _, moment=moment: time.monotonic() > moment)
         os.kill(run.process_id, signal.SIGKILL)
         over(run)
-        decisions.append(resume_run(keep).agent.decisions)
+        decisions.append(resume(Training, keep).agent.decisions)
         assert len(History.read(keep).checkpoints) > 0
     assert all(decisions)
 
@@ -303,7 +303,7 @@ def test_a_run_that_is_terminated_keeps_itself(start, tmp_path):
     over(run)
     assert run.state is WorkerState.FAILED
     assert run.problem == texts.WORKER_SIGNAL.format(signal="SIGTERM")
-    assert resume_run(tmp_path / "run").agent.decisions > 0
+    assert resume(Training, tmp_path / "run").agent.decisions > 0
 
 
 def test_stopping_lets_the_generator_close(start, tmp_path):
@@ -418,11 +418,11 @@ def test_the_program_can_be_imported_by_its_workers():
 @pytest.mark.slow
 def test_a_run_in_the_game_makes_the_same_network_as_one_without(start, tmp_path):
     run = start(live, TINY, 7, keep=tmp_path / "keep")
-    run.send(ChangeSetting("no such knob", 1))
+    run.send(("change", "no such knob", 1))
     told = polled(run, lambda told: sum(isinstance(each, Checkpoint) for each in told) == 2)
     assert any(isinstance(each, Refused) for each in told)
     run.pause()
-    run.send(Save(tmp_path / "named"))
+    run.send(("save", tmp_path / "named"))
     told += polled(run, lambda told: Saved(tmp_path / "named") in told)
     run.stop()
     over(run)
@@ -432,12 +432,12 @@ def test_a_run_in_the_game_makes_the_same_network_as_one_without(start, tmp_path
         while headless.agent.decisions < checkpoint.decisions:
             headless.advance()
         assert np.array_equal(headless.agent.network.values, checkpoint.values)
-    saved = resume_run(tmp_path / "named").agent
+    saved = resume(Training, tmp_path / "named").agent
     while headless.agent.decisions < saved.decisions:
         headless.advance()
     assert headless.agent.gradient_steps > 0
     assert np.array_equal(headless.agent.online.values, saved.online.values)
-    kept = resume_run(tmp_path / "keep").agent
+    kept = resume(Training, tmp_path / "keep").agent
     assert kept.decisions >= saved.decisions
 
 

@@ -12,7 +12,6 @@ from PIL import Image
 
 from game.core import texts
 from game.export import film as film_module
-from game.export.export import Export
 from game.export.film import film, frames
 from game.export.gif import GifWriter
 from game.flight.flight_file import Record
@@ -142,17 +141,6 @@ def test_a_name_that_no_system_takes_is_made_one_and_no_picture_takes_the_place_
             if file in ("", "a flight.json"):
                 assert path.stem[-1] > "2"
             scene._stop_export()
-
-
-@pytest.mark.parametrize("name", ["a\0b.gif", "\ud800.gif"])
-def test_an_export_under_an_impossible_name_can_be_closed_and_says_why(record: Record, name: str, tmp_path: Path):
-    export = Export(ReplayScene, record, tmp_path / name)
-    end = time.monotonic() + 60
-    while not export.over and time.monotonic() < end:
-        export.poll()
-        time.sleep(0.01)
-    assert export.problem
-    export.close()
 
 
 def test_a_film_is_made_while_the_replay_plays_and_can_be_stopped_and_leaving_ends_its_process(

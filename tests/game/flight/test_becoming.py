@@ -60,6 +60,8 @@ def test_the_logbook_opens_on_the_kind_flown_last_and_says_its_estimate(
             assert not Records(context.user_dir).problem
             driver = open_game(LogbookScene)
             driver.frames(3)
+            driver.press_on(texts.CHOICES_MORE)
+            driver.frames(3)
             choice = driver.choice(texts.BECOMING_KINDS[last])
             assert choice.options[choice.index] == texts.BECOMING_KINDS[last]
             assert texts.BECOMING_ESTIMATE.format(share=10, low=9, high=10) in written

@@ -28,7 +28,7 @@ def test_a_good_landing_is_kept_and_can_be_learnt_from(tmp_path: Path, pads: int
     assert kept == count_demonstrations(tmp_path) > 0
     for lesson in read(tmp_path / FILE_NAME):
         assert lesson.begins == network_until
-        (cells,) = relive([lesson], Config())
+        cells = relive(lesson, Config())
         assert cells is not None
         assert np.isfinite(cells.reward).all()
 

@@ -13,7 +13,7 @@ from game.flight import flight_file
 from game.flight.flight import Flight, Recording, StickHolder
 from game.flight.flight_file import Record
 from game.flight.logbook import describe
-from game.flight.replay import FlightReplay, ReplayedFlight
+from game.flight.replay import ReplayedFlight
 from game.input.analogue import pushed
 from tests.support.one_switch import one_switch
 
@@ -49,17 +49,6 @@ def test_an_analogue_flight_is_flown_again_bit_for_bit(pads: int, mission: str, 
     assert again.poses.now.tobytes() == flight.poses.now.tobytes()
     assert again.env.fuel == flight.env.fuel
     assert again.recording == flight.recording
-
-
-def test_an_analogue_replay_goes_to_any_moment():
-    flight_replay = FlightReplay(record_of(analogue(Flight(3), 200)))
-    seen = [flight_replay.flight.env.velocity[0].tolist()]
-    for _ in range(120):
-        flight_replay.step()
-        seen.append(flight_replay.flight.env.velocity[0].tolist())
-    for step in (95, 30, 100, 1, 120, 0, 61):
-        flight_replay.seek(step)
-        assert flight_replay.flight.env.velocity[0].tolist() == seen[step]
 
 
 def test_whole_thrust_leaves_no_trace_in_the_recording():

@@ -34,28 +34,6 @@ def place(env: LanderEnv, *start: float) -> None:
     env.place(np.ones(1, bool), np.array([start]))
 
 
-def flown(seed: int, hand_over_at: tuple[int, ...]) -> Flight:
-    flight = Flight(seed, ScriptedPilot())
-    for step in range(2000):
-        if flight.over:
-            break
-        if step in hand_over_at:
-            flight.hand_over()
-        flight.step(step // 7 % 6)
-    return flight
-
-
-def test_the_same_seed_and_inputs_are_the_same_flight_and_the_recording_flies_it_again():
-    first, second = (flown(5, (40, 90, 200)) for _ in range(2))
-    assert first.recording == second.recording
-    assert np.array_equal(first.poses.now, second.poses.now)
-    again = Flight(first.recording.seed, spawn=first.recording.spawn)
-    for action in first.recording.actions:
-        again.step(action)
-    assert np.array_equal(again.poses.now, first.poses.now)
-    assert again.outcome is first.outcome
-
-
 def test_a_network_decides_every_four_steps_and_at_once_when_it_takes_over():
     network = Counting()
     flight = Flight(1, network)

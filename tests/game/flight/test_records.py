@@ -16,8 +16,7 @@ from game.core import texts
 from game.flight import logbook as records
 from game.flight.flight import Flight, Recording, StickHolder
 from game.flight.flight_file import Entry, Record, from_text, to_text
-from game.flight.logbook import Records, best, longest_descent, totals
-from game.scenes.logbook.scene import entry_row
+from game.flight.logbook import Records, best, longest_descent
 from game.scenes.play.missions import _best_by_course
 from tests.support.descent import stand_on
 from tests.support.flights import NOON, fly_out, scripted
@@ -250,18 +249,7 @@ def test_the_latest_that_were_thrown_away_can_be_brought_back(kept: Records, mon
     for line in lines:
         assert kept.throw_away(line.file)
     assert kept.thrown() == {line.file for line in lines[2:]}
-    assert [kept.why_gone(line) for line in lines[1:3]] == [texts.FLIGHT_MISSING, texts.FLIGHT_THROWN]
-
-
-def test_why_a_flight_is_gone_is_told_as_it_is(kept: Records, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(records, "RECENT", 3)
-    monkeypatch.setattr(records, "SLACK", 0)
-    flight = fly(by_hand=True)
-    lines = [kept.keep(flight, NOON + second) for second in range(5)]
-    assert kept.why_gone(lines[0]) == texts.FLIGHT_TOO_OLD
-    (kept.folder / lines[4].file).unlink()
-    assert kept.why_gone(lines[4]) == texts.FLIGHT_MISSING
-    assert kept.why_gone(entry(file="")) == texts.FLIGHT_NEVER_KEPT
+    assert [kept.why_gone(line) for line in lines[1:3]] == [texts.FLIGHT_GONE, texts.FLIGHT_THROWN]
 
 
 def test_best_are_landings_by_hand_by_points_and_in_missions_by_fuel():
@@ -286,18 +274,10 @@ def test_a_flight_from_before_a_mission_was_changed_is_kept_and_counts_no_more(k
     before = kept.read("older.json").entry
     assert (before.outdated, line.outdated) == (True, False)
     assert best([replace(before, file="older.json"), line], most=1) == [replace(before, file="older.json"), line]
-    assert [(each.bar, entry_row(each)[-1]) for each in (before, line)] == [("outdated", "network"), ("", "network")]
+    assert [each.bar for each in (before, line)] == ["outdated", ""]
     assert _best_by_course([replace(before, fuel=0.0, medal=3, outcome="LANDED")]) == {}
     assert not entry(course="tank").outdated
     assert not entry().outdated
-
-
-def test_totals_are_of_what_was_flown():
-    assert totals([]) == records.Totals()
-    outcomes = ["CRASHED", "LANDED", "LANDED", "TIMED_OUT", "LANDED"]
-    lines = [entry(outcome) for outcome in outcomes]
-    lines.insert(2, entry(alone=False))  # the network's landing says nothing of the person
-    assert totals(lines) == records.Totals(6, 4, 60.0, 2)
 
 
 @given(st.lists(st.sampled_from(range(6)), min_size=1, max_size=300), st.integers(0, 2**40))

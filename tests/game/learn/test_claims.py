@@ -5,9 +5,8 @@ import numpy as np
 from ai.lander.environment import LIMITS, PARAMS
 from ai.lander.rewards import FEET_STEPS_PAID, RewardWeights
 from ai.training.small_run import SMALL_RUN, Plan, SmallRun
-from game.learn.daring import DARING, PAY
-from game.learn.memory import LATEST, MemoryChapter
-from game.learn.target import BOUND, NORMALISED, config_of
+from game.scenes.learn.duels import BOUND, DARING, NORMALISED, PAY, config_of
+from game.scenes.learn.memory import LATEST, MemoryChapter
 
 
 def test_no_flight_can_score_more_than_the_bound():

@@ -7,11 +7,10 @@ import pytest
 
 from game.core import texts
 from game.core.settings import Settings
-from game.learn.path import PATH, following
-from game.learn.progress import PAGES, Progress
-from game.scenes import chapter as chapter_scene
-from game.scenes.chapter import ChapterScene
-from game.scenes.learn import LearnScene
+from game.scenes.learn import scene as chapter_scene
+from game.scenes.learn.list import LearnScene
+from game.scenes.learn.path import PAGES, PATH, Progress, following
+from game.scenes.learn.scene import CODE, PREDICT, TRY, WHY, ChapterScene
 from game.scenes.menus.menu import MenuScene
 from game.ui.context import Context
 from tests.support.driver import Driver
@@ -20,6 +19,14 @@ from tests.support.written import words_written
 
 Open = Callable[..., Driver]
 KEYS = list(PATH)
+
+
+def written(driver: Driver, monkeypatch: pytest.MonkeyPatch) -> str:
+    """Return all that is written on the screen."""
+    with monkeypatch.context() as patch:
+        words = words_written(patch)
+        driver.frames(2)
+    return " ".join(words)
 
 
 def test_learn_is_a_word_of_the_menu_and_leads_to_physics(open_game: Open):
@@ -36,115 +43,101 @@ def test_the_list_leads_into_a_chapter_and_remembers_where_one_was(open_game: Op
     driver = open_game(LearnScene)
     driver.keys(pygame.K_DOWN, pygame.K_RETURN)
     driver.frames(20)
-    scene = driver.top
-    assert isinstance(scene, ChapterScene)
-    assert scene.key == KEYS[1]
-    assert PAGES[scene.page] == "predict"
+    assert isinstance(driver.top, ChapterScene)
+    assert (driver.top.key, driver.top.page) == (KEYS[1], PREDICT)
     driver.key(pygame.K_RETURN)  # the first answer is in focus
-    assert PAGES[scene.page] == "try"
+    assert driver.top.page == TRY
     assert driver.saved()["learnt"][KEYS[1]]["guess"] == 0
     assert driver.saved()["chapter"] == KEYS[1]
     driver.key(pygame.K_ESCAPE)
     driver.frames(20)
-    assert driver.top_name == "LearnScene"
+    assert isinstance(driver.top, LearnScene)
     assert driver.top.chosen == KEYS[1]
     driver.key(pygame.K_RETURN)
     driver.frames(20)
-    assert PAGES[driver.top.page] == "try"
+    assert driver.top.page == TRY
 
 
-@pytest.mark.parametrize("key", KEYS)
-def test_a_chapter_is_gone_through_by_keys_alone(open_game: Open, context: Context, key: str):
+def test_each_chapter_is_gone_through_by_keys_by_mouse_and_by_gamepad(
+    open_game: Open, context: Context, subtests: pytest.Subtests
+):
     settle(context)
+    for key in KEYS:
+        with subtests.test(key):
+            go_through(open_game, key)
+
+
+def go_through(open_game: Open, key: str) -> None:
     driver = open_game(ChapterScene, key)
     scene = driver.top
-    for page in range(1, len(PAGES)):
-        driver.frames(3)
-        driver.key(pygame.K_n)
-        assert scene.page == page
-    driver.frames(3)
-    driver.key(pygame.K_b)
-    assert PAGES[scene.page] == "why"
-    driver.frames(2)
-    driver.key(pygame.K_n)
-    driver.press_on(texts.LEARN_TO_CHAPTER if following(key) else texts.LEARN_TO_LIST)
-    driver.frames(20)
-    if after := following(key):
-        assert driver.top.key == after
-
-
-@pytest.mark.parametrize("key", KEYS)
-def test_a_chapter_is_gone_through_by_mouse_alone(open_game: Open, context: Context, key: str):
-    settle(context)
-    driver = open_game(ChapterScene, key)
-    scene = driver.top
-    for label in (texts.LEARN_ANSWERS[key][1], texts.LEARN_ON[1], texts.LEARN_ON[2]):
-        driver.frames(2)
-        box = driver.widget(label).box
-        driver.click((box.left + 10, box.centery))
-    assert PAGES[scene.page] == "code"
-    assert Progress(driver.app.context.settings).answer(key) == texts.LEARN_ANSWERS[key][1]
-    box = driver.widget(scene.chapter.words["door"]).box
-    driver.click((box.left + 10, box.centery))
-    driver.frames(30)
-    assert not isinstance(driver.top, ChapterScene)
-    assert driver.top_name != "ErrorScene"
-
-
-@pytest.mark.parametrize("key", KEYS)
-def test_a_chapter_is_gone_through_by_gamepad_alone(open_game: Open, context: Context, key: str):
-    settle(context)
-    driver = open_game(ChapterScene, key)
     driver.button(pygame.CONTROLLER_BUTTON_A)
-    assert PAGES[driver.top.page] == "try"
     for _ in range(2):
         driver.button(pygame.CONTROLLER_BUTTON_RIGHTSHOULDER)
-    assert PAGES[driver.top.page] == "code"
-    driver.button(pygame.CONTROLLER_BUTTON_LEFTSHOULDER)
-    assert PAGES[driver.top.page] == "why"
+    assert scene.page == CODE
+    for page in (WHY, TRY, PREDICT):
+        driver.frames(2)
+        driver.key(pygame.K_b)
+        assert scene.page == page
+    for label in (texts.LEARN_ANSWERS[key][1], texts.LEARN_ON[TRY], texts.LEARN_ON[WHY]):
+        driver.frames(2)
+        driver.click(driver.widget(label).box.center)
+    assert scene.page == CODE
+    assert Progress(driver.app.context.settings).answer(key) == texts.LEARN_ANSWERS[key][1]
+    assert (texts.LEARN_NEXT_CHAPTER in driver.hints()) == (following(key) is not None)
+    driver.press_on(scene.chapter.words["door"])
+    driver.frames(30)
+    assert driver.top_name not in ("ChapterScene", "ErrorScene")
+    driver = open_game(ChapterScene, key)
+    driver.top.turn_to(CODE)
+    driver.press_on(texts.LEARN_TO_CHAPTER if following(key) else texts.LEARN_TO_LIST)
+    driver.frames(20)
+    assert driver.top.key == (following(key) or key)
 
 
 def test_a_chapter_is_done_once_it_was_tried_and_its_why_read(open_game: Open, context: Context, monkeypatch):
     settle(context)
     driver = open_game(ChapterScene, "neuron")
     scene, progress = driver.top, Progress(driver.app.context.settings)
-    scene.turn_to(2)
+    scene.turn_to(WHY)
     assert not progress.done("neuron")
-    words = words_written(monkeypatch)
-    driver.frames(2)
-    assert any(texts.LEARN_TRY_FIRST.startswith(word) for word in words if word)
-    scene.turn_to(1)
+    assert texts.LEARN_TRY_FIRST in written(driver, monkeypatch)
+    scene.turn_to(TRY)
     driver.press_on(texts.LEARN_NEURON_HINT)
     driver.skip(650)
     assert scene.chapter.tried
-    Progress(driver.app.context.settings).note("neuron", guess=0)
-    driver.press_on(texts.LEARN_ON[1])
+    progress.note("neuron", guess=0)
+    driver.press_on(texts.LEARN_ON[TRY])
     assert progress.done("neuron")
     assert driver.saved()["learnt"]["neuron"]["done"] is True
-    assert driver.top.form.focused.label == texts.LEARN_ON[2], "on to the code, before the way out"
-    words.clear()
-    driver.frames(2)
-    said = " ".join(words)
-    answers = texts.LEARN_ANSWERS["neuron"]
-    for told in (texts.LEARN_GUESSED.format(guess=answers[0]), texts.LEARN_DIFFERS.format(answer=answers[2])):
+    assert driver.top.form.focused.label == texts.LEARN_ON[WHY], "on to the code, before the way out"
+    said, answers = written(driver, monkeypatch), texts.LEARN_ANSWERS["neuron"]
+    for told in (texts.LEARN_YOU_SAID, answers[0], texts.LEARN_CAME[False], answers[2]):
         assert told in said
+    progress.note("neuron", guess=2)
+    said = written(driver, monkeypatch)
+    scene.turn_to(WHY)
+    assert texts.LEARN_CAME[True] in written(driver, monkeypatch)
     driver.key(pygame.K_ESCAPE)
     driver.frames(20)
-    again = open_game(ChapterScene, "neuron")
-    assert PAGES[again.top.page] == "predict", "opened again, it asks for a guess again"
+    assert open_game(ChapterScene, "neuron").top.page == PREDICT, "opened again, it asks for a guess again"
 
 
-def test_a_try_that_ends_while_its_why_is_open_is_told_there(open_game: Open, context: Context):
+def test_a_try_that_ends_while_its_why_is_open_is_waited_for_and_told(open_game: Open, context: Context, monkeypatch):
     settle(context)
-    driver = open_game(ChapterScene, "plane")
-    scene, progress = driver.top, Progress(driver.app.context.settings)
-    scene.turn_to(1)
-    driver.skip(50)
-    scene.turn_to(2)
-    assert not progress.done("plane")
-    driver.skip(270)
-    assert scene.chapter.tried
-    assert progress.done("plane")
+    for key, begin, end in (("moment", texts.LEARN_MOMENT_GO, 500), ("pay", texts.LEARN_PAY_TRAIN, 0)):
+        driver = open_game(ChapterScene, key)
+        scene, progress = driver.top, Progress(driver.app.context.settings)
+        scene.turn_to(TRY)
+        driver.press_on(begin)
+        scene.turn_to(WHY)
+        assert texts.LEARN_STILL_RUNS in written(driver, monkeypatch), "not that it is to be tried first"
+        assert not progress.done(key)
+        driver.skip(end)
+        if end:
+            assert progress.done(key)
+            assert scene.chapter.why().split()[0] in written(driver, monkeypatch)
+        driver.app.close()
+        assert not scene.chapter.running or end, "leaving a chapter ends its run"
 
 
 def test_damaged_progress_counts_as_nothing_done_and_the_path_goes_on(open_game: Open, context: Context):
@@ -161,60 +154,22 @@ def test_damaged_progress_counts_as_nothing_done_and_the_path_goes_on(open_game:
     assert isinstance(driver.top, ChapterScene)
     driver.key(pygame.K_RETURN)
     assert progress.guess("neuron") == 0
+    beyond = Progress(Settings(learnt={"neuron": {"guess": 3}}))
+    assert beyond.answer("neuron") == "", "it has three answers"
+    for learnt in ([], 7, "x"):
+        assert Settings.from_dict({"learnt": learnt, "text_size": "large"}) == Settings(text_size="large")
 
 
-def test_a_guess_beyond_the_answers_is_no_answer():
-    settings = Settings(learnt={"neuron": {"guess": 3}})
-    assert Progress(settings).answer("neuron") == ""
-
-
-@pytest.mark.parametrize("learnt", [[], 7, "x"])
-def test_settings_with_another_kind_of_progress_still_load(learnt: object):
-    assert Settings.from_dict({"learnt": learnt, "text_size": "large"}) == Settings(text_size="large")
+def test_progress_of_before_still_counts():
+    saved = {"neuron": {"guess": 1, "page": 3, "done": True}, "moment": {"page": 2}}
+    progress = Progress(Settings.from_dict({"learnt": saved}))
+    assert [progress.state(key) for key in ("neuron", "moment", "own")] == [2, 1, 0]
+    assert (progress.guess("neuron"), PAGES[progress.page("moment")]) == (1, "why")
 
 
 def test_without_source_code_the_page_says_so(open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch):
     settle(context)
     monkeypatch.setattr(chapter_scene, "source_of", lambda _: None)
     driver = open_game(ChapterScene, "neuron")
-    driver.top.turn_to(3)
-    words = words_written(monkeypatch)
-    driver.frames(2)
-    assert texts.LEARN_NO_SOURCE in words
-
-
-def test_leaving_a_chapter_ends_its_run(open_game: Open, context: Context):
-    settle(context)
-    driver = open_game(LearnScene)
-    driver.app.show(lambda context: ChapterScene(context, "pay"))
-    driver.frames(20)
-    scene = driver.top
-    scene.turn_to(1)
-    driver.press_on(texts.LEARN_PAY_TRAIN)
-    driver.frames(5)
-    assert scene.chapter.running
-    driver.app.close()
-    assert not scene.chapter.running
-
-
-def test_the_last_page_of_the_path_names_no_next_chapter(open_game: Open, context: Context):
-    settle(context)
-    for key in (KEYS[-1], KEYS[0]):
-        scene = open_game(ChapterScene, key).top
-        scene.turn_to(3)
-        told = [getattr(action, "hint", "") for action in scene.actions()]
-        assert (texts.LEARN_NEXT_CHAPTER in told) == (key == KEYS[0])
-
-
-def test_a_page_read_too_early_says_that_the_run_still_learns(open_game: Open, context: Context, monkeypatch):
-    settle(context)
-    driver = open_game(ChapterScene, "pay")
-    driver.top.turn_to(1)
-    driver.press_on(texts.LEARN_PAY_TRAIN)
-    driver.top.turn_to(2)
-    words = words_written(monkeypatch)
-    driver.frames(2)
-    assert any(texts.LEARN_STILL_LEARNS.startswith(word) for word in words if len(word) > 5)
-    driver.top.chapter.close()
-    driver.frames(2)
-    assert any(texts.LEARN_TRY_FIRST.startswith(word) for word in words if len(word) > 5)
+    driver.top.turn_to(CODE)
+    assert texts.LEARN_NO_SOURCE in written(driver, monkeypatch)

@@ -1,11 +1,13 @@
 """The hint on the training screen, with a run that flew better before."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
+from ai.explain.inspection import NetworkHealth
 from ai.training.config import PRESETS
 from ai.training.hints import RULES, Hint
 from ai.training.history import Checkpoint, History
@@ -26,7 +28,7 @@ def collapsed() -> History:
     for number in range(400):
         success = 0.97 if number < 300 else 0.2
         run.append(replace(HEALTHY, seconds=number / 10, decisions=1000.0 * number, episodes=9.0 * number,
-                           success=success, landed=success))  # fmt: skip
+                           success=success))  # fmt: skip
     run.append(Checkpoint(20.0, 200_000, 0.97, np.zeros(3, np.float32)))
     run.append(Checkpoint(39.0, 390_000, 0.2, np.zeros(3, np.float32)))
     return run
@@ -43,10 +45,15 @@ def words_of(advice: Advice, context: Context) -> dict[str, Widget]:
     return {each.label: each for each in form.widgets}
 
 
+def advised(run: Any, turn: Any = lambda *_: None) -> Any:
+    advice: Any = Advice(run, turn)
+    return advice
+
+
 def test_while_something_else_waits_no_hint_asks(context: Context, monkeypatch: pytest.MonkeyPatch) -> None:
-    advice: Any = Advice(lambda *_: None, lambda _: None)
+    advice = advised(SimpleNamespace(history=History(), config=MODERN))
     monkeypatch.setattr(advice.adviser, "advise", lambda *_: Hint("overfed", {"num_envs": 256}))
-    advice.follow(History(), MODERN)
+    advice.follow(NetworkHealth())
     assert advice.shown
     advice.hush(True)
     assert not advice.shown
@@ -55,29 +62,28 @@ def test_while_something_else_waits_no_hint_asks(context: Context, monkeypatch: 
 
 
 def test_a_remedy_is_applied_and_undone_the_way_back_too(context: Context, collapsed: History) -> None:
-    config = MODERN.changed(schedule_decisions=600_000)  # its rate has not come down yet
     turned: list[tuple[str, float]] = []
     gone_to: list[int] = []
-    advice = Advice(lambda name, value: turned.append((name, value)), gone_to.append)
     growing = History()
+    run = SimpleNamespace(
+        history=growing,
+        config=MODERN.changed(schedule_decisions=600_000),  # its rate has not come down yet
+        revert=lambda checkpoint: gone_to.append(checkpoint.decisions),
+    )
+    advice = advised(run, lambda name, value: turned.append((name, value)))
     for checkpoint in collapsed.checkpoints:
         growing.append(checkpoint)
     for row in collapsed.points:
-        values = row.tolist()
-        growing.append(
-            replace(
-                HEALTHY, seconds=values[0], decisions=values[1], episodes=values[2], success=values[3], landed=values[3]
-            )
-        )
-        advice.follow(growing, config)
-    assert advice.adviser.shown is not None
-    assert advice.adviser.shown.name == "collapsed"
+        now = dict(zip(("seconds", "decisions", "episodes", "success"), row.tolist(), strict=False))
+        growing.append(replace(HEALTHY, **now))
+        advice.follow(NetworkHealth())
+    assert advice.hint == "collapsed"
     words_of(advice, context)[texts.HINT_APPLY].press()
     assert gone_to == [200_000]
     assert not turned
     assert advice.shown, "the way back is offered"
     assert "200,000" in advice.done, "and what was done is said"
     words_of(advice, context)[texts.HINT_UNDO].press()
-    assert gone_to == [200_000, 399_000]
+    assert gone_to == [200_000, 390_000]
     assert not turned
     assert not advice.shown

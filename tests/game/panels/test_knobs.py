@@ -9,7 +9,7 @@ import pytest
 from ai.training.config import PRESETS, in_force
 from game.core import texts
 from game.scenes.train.base import KNOBS
-from game.scenes.train.knob import Knob, SeedKnob, SliderKnob
+from game.scenes.train.knob import Knob, SliderKnob, WordsKnob
 from game.scenes.train.knobs import KnobsPanel
 from game.scenes.train.scene import TrainScene
 from game.training.knob_descriptions import knob_descriptions, pages
@@ -26,7 +26,7 @@ class Panel:
     def __init__(self, driver: Driver) -> None:
         self._driver = driver
         self.heard: list[Any] = []
-        settings = self.knobs._run_settings
+        settings: Any = self.knobs.settings
         settings._on_change = lambda name, value: self.heard.append((name, value))
         settings._on_restart = lambda *anew: self.heard.append(anew)
 
@@ -49,10 +49,6 @@ class Panel:
     def has(self, label: str) -> bool:
         self._driver.frames(1)
         return any(each.label == label for each in self._driver.form.widgets)
-
-    @property
-    def seed_knob(self) -> SeedKnob:
-        return self._driver.the(SeedKnob)
 
 
 @pytest.fixture
@@ -91,22 +87,13 @@ def test_a_press_on_the_name_brings_the_preset_back_and_never_drags(panel: tuple
     assert scene.heard == []
     game.click(at(knob, 0.9))
     assert knob.changed
-    assert scene.knobs.changed
+    assert scene.knobs.settings.changed
     game.click((knob.box.left + 40, knob.box.centery))
     assert scene.knobs.config == PRESETS["modern"]
-    assert not scene.knobs.changed
+    assert not scene.knobs.settings.changed
 
 
-def test_r_brings_a_changed_knob_back(panel: tuple[Driver, Panel]):
-    game, scene = panel
-    game.form.focus(scene.knob("n_step"))
-    game.keys(pygame.K_LEFT, pygame.K_LEFT)
-    assert scene.knobs.config.n_step == MODERN.n_step - 2
-    game.key(pygame.K_r)
-    assert scene.knobs.config.n_step == MODERN.n_step
-
-
-def test_arrows_go_from_stop_to_stop_even_from_between_them(panel: tuple[Driver, Panel]):
+def test_arrows_go_from_stop_to_stop_even_from_between_them_and_r_brings_the_preset_back(panel: tuple[Driver, Panel]):
     game, scene = panel
     scene.knobs.turn("learning_rate", 0.0008)
     game.form.focus(scene.knob("learning_rate"))
@@ -114,6 +101,8 @@ def test_arrows_go_from_stop_to_stop_even_from_between_them(panel: tuple[Driver,
     assert scene.knobs.config.learning_rate == 0.001
     game.keys(pygame.K_LEFT, pygame.K_LEFT)
     assert scene.knobs.config.learning_rate == 0.0005
+    game.key(pygame.K_r)
+    assert scene.knobs.config == MODERN
 
 
 def test_the_presets_own_value_is_a_stop_as_well(panel: tuple[Driver, Panel]):
@@ -143,19 +132,25 @@ def test_switches_and_words_for_keyboard_pad_and_mouse(panel: tuple[Driver, Pane
     game.key(pygame.K_RETURN)
     game.button(pygame.CONTROLLER_BUTTON_DPAD_LEFT)
     words = scene.knob("activation")
-    game.click((words.row.lefts[0] + 4, words.box.centery))
+    game.click(words._places[0].center)
     game.form.focus(words)
     game.button(pygame.CONTROLLER_BUTTON_DPAD_RIGHT)
     assert scene.heard == [("dueling", True), ("dueling", False), ("activation", "tanh"), ("activation", "sigmoid")]
 
 
-def test_sizes_that_no_word_stands_for_have_one_made(panel: tuple[Driver, Panel]):
+def test_words_without_room_go_on_below_and_sizes_that_have_none_get_one(panel: tuple[Driver, Panel]):
     game, scene = panel
     turn_to(game, "network")
     scene.knobs.set_config(MODERN.changed(hidden=(48,)), 0)
-    knob = scene.knob("hidden")
-    assert knob.row.words[knob.values.index((48,))] == "48"
-    game.frames(2)
+    assert (48,) in scene.knob("hidden").values
+    for size in ((1280, 720), (800, 600)):
+        game.resize(size)
+        game.frames(2)
+        for knob in (each for each in game.form.widgets if isinstance(each, WordsKnob)):
+            assert len(knob._places) == len(knob.values)
+            assert all(knob.box.left <= place.left and place.right <= knob.box.right + 8 for place in knob._places), (
+                size, knob.label, knob._places,
+            )  # fmt: skip
 
 
 def test_what_takes_a_new_run_waits_and_says_so(panel: tuple[Driver, Panel]):
@@ -165,7 +160,7 @@ def test_what_takes_a_new_run_waits_and_says_so(panel: tuple[Driver, Panel]):
     assert scene.heard == []
     assert scene.knobs.config.n_step == MODERN.n_step
     assert scene.knob("n_step").waits
-    assert scene.knobs.waiting == ["n_step"]
+    assert scene.knobs.settings.waiting == ["n_step"]
     scene.press(texts.KNOBS_APPLY)
     assert scene.heard == [(MODERN.changed(n_step=1), 0)]
     assert not scene.has(texts.KNOBS_APPLY)
@@ -181,7 +176,7 @@ def test_enter_leads_to_apply_and_undo_follows(panel: tuple[Driver, Panel]):
     game.key(pygame.K_RETURN)
     assert game.form.focused.label == texts.KNOBS_APPLY
     game.keys(pygame.K_RIGHT, pygame.K_RETURN)
-    assert scene.knobs.waiting == []
+    assert scene.knobs.settings.waiting == []
     assert scene.heard == []
 
 
@@ -191,9 +186,9 @@ def test_a_preset_is_a_word_and_a_sabotage_waits_under_its_own_name(panel: tuple
     assert (scene.knobs.config, scene.knobs.name) == (PRESETS["classic"], "Classic")
     scene.press("Modern")
     scene.knobs.set_running(True)
-    scene.knobs.load_sabotage("no_replay")
+    scene.knobs.load(sabotage="no_replay")
     assert scene.knobs.name == "Modern", "that is what still flies"
-    assert not scene.knobs.changed
+    assert not scene.knobs.settings.changed
     scene.press(texts.KNOBS_APPLY)
     assert scene.knobs.name == texts.SABOTAGES["no_replay"][0]
     scene.press("Modern")
@@ -211,41 +206,36 @@ def test_turned_knobs_survive_a_preset_by_undo(panel: tuple[Driver, Panel]):
     assert scene.knobs.name == "Modern"
 
 
-def test_the_seed_is_typed_or_stepped(panel: tuple[Driver, Panel]):
+def test_the_seed_is_a_knob_too_and_takes_a_new_run(panel: tuple[Driver, Panel]):
     game, scene = panel
     turn_to(game, "lander")
-    game.form.focus(scene.seed_knob)
-    game.key(pygame.K_RIGHT)
-    game.key(pygame.K_RETURN)
-    for letter in "4a2":
-        game.post(pygame.TEXTINPUT, text=letter)
-    game.key(pygame.K_RETURN)
-    assert (scene.knobs.seed, scene.heard) == (42, [("seed", 1), ("seed", 42)])
-
-
-@pytest.mark.parametrize("way_out", ["tab", "page", "nothing typed"])
-def test_a_seed_that_is_left_while_it_is_typed_counts(panel: tuple[Driver, Panel], way_out: str):
-    game, scene = panel
-    turn_to(game, "lander")
-    game.form.focus(scene.seed_knob)
-    game.key(pygame.K_RETURN)
-    if way_out == "nothing typed":
-        game.key(pygame.K_BACKSPACE)
-    else:
-        game.post(pygame.TEXTINPUT, text="5")
-    if way_out == "page":
-        turn_to(game, "target")
-    else:
-        game.key(pygame.K_TAB)
+    game.form.focus(scene.knob("seed"))
+    game.keys(pygame.K_RIGHT, pygame.K_RIGHT)
+    assert (scene.knobs.seed, scene.heard) == (2, [("seed", 1), ("seed", 2)])
+    scene.knobs.set_running(True)
+    game.key(pygame.K_LEFT)
+    assert (scene.knobs.seed, scene.knobs.settings.waiting) == (2, ["seed"])
+    scene.knobs.set_config(MODERN, 123_456)  # of a run that the command has begun
     game.frames(2)
-    assert scene.knobs.seed == (0 if way_out == "nothing typed" else 5)
+    game.key(pygame.K_LEFT)
+    assert scene.knobs.settings.draft_seed == 98
+
+
+def test_a_new_pay_says_that_the_memory_begins_anew(panel: tuple[Driver, Panel], monkeypatch: pytest.MonkeyPatch):
+    game, scene = panel
+    turn_to(game, "reward")
+    game.form.focus(scene.knob("reward_weights.time"))
+    for running in (False, True):
+        scene.knobs.set_running(running)
+        said = " ".join(words_drawn(game, monkeypatch))
+        assert (texts.KNOBS_NEW_PAY in said) == running
 
 
 def test_a_refused_value_is_explained_on_the_panel(panel: tuple[Driver, Panel], monkeypatch: pytest.MonkeyPatch):
     game, scene = panel
     scene.knobs.turn("discount", 2.0)
     assert scene.knobs.config == MODERN
-    problem = scene.knobs._run_settings.problem
+    problem = scene.knobs.settings.problem
     assert problem.split()[0] in " ".join(words_drawn(game, monkeypatch))
 
 

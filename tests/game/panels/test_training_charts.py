@@ -1,70 +1,138 @@
-"""The charts of runs whose networks count in different units."""
+"""The charts of runs: in points whatever a network counts in, and side by side on one axis."""
+
+from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
 
 from ai.training.config import PRESETS, Config
-from ai.training.history import COLUMNS, History, Point
+from ai.training.history import COLUMNS, DIGIT_COLUMNS, DigitPoint, History, Point, SettingChange, Validation
 from ai.training.lander_session import live
 from ai.training.messages import RunStarted
 from game.core import texts
 from game.core.worker import WorkerState
-from game.scenes.train.charts import TrainingCharts
-from game.training.beside import EarlierRun
+from game.scenes.train.charts import DIGIT_CHARTS, Beside, TrainingCharts, ticks_of
+from game.training.beside import EarlierRun, put_beside, take_away
 from game.training.library import Library
 from game.training.run import TrainingRun
 from game.training.workers import LANDERS
-from game.ui.chart import Chart, Series
+from game.ui.series import run_style
+from tests.ai.training.test_hints import HEALTHY
 
 NUMBERS = list(COLUMNS[:10])
 
 
-def run(config: Config, points: float) -> History:
+def run_of(config: Config, points: float) -> History:
     """A run whose network hopes for so many points of reward, as it tells of it."""
     history = History()
     history.reward_scale = config.reward_scale
     for second in range(20):
-        values = dict.fromkeys(NUMBERS, 1.0) | {
-            "seconds": float(second),
-            "mean_q": points * config.reward_scale,
-        }
+        values = dict.fromkeys(NUMBERS, 1.0) | {"seconds": float(second), "mean_q": points * config.reward_scale}
         history.append(Point(**values))
     return history
 
 
-def test_what_is_expected_is_drawn_in_points_whatever_networks_count_in(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    drawn: dict[str, list[Series]] = {}
-    monkeypatch.setattr(Chart, "set", lambda chart, series, *_: drawn.update({chart.label: series}))
-    modern, classic = (run(PRESETS[name], 80.0) for name in ("modern", "classic"))
+def long_run(seconds: float, decisions: float) -> History:
+    history = History()
+    for number in range(50):
+        share = number / 49
+        history.append(replace(HEALTHY, seconds=share * seconds, decisions=share * decisions))
+    return history
+
+
+def looked(charts: TrainingCharts, history: History, beside: Beside | None = None) -> TrainingCharts:
+    for _ in range(24):
+        charts.look(history, beside or Beside())
+    return charts
+
+
+def test_what_is_expected_is_drawn_and_said_in_points_whatever_networks_count_in() -> None:
+    modern, classic = (run_of(PRESETS[name], -80.0) for name in ("modern", "classic"))
     assert modern["mean_q"][0] != classic["mean_q"][0]
     for history in (modern, classic):
-        training_charts = TrainingCharts()
-        for _ in range(24):
-            training_charts.look(history, [])
-        earned, expected = drawn[texts.TRAIN_CHARTS["mean_return"]]
-        np.testing.assert_allclose(expected.y, 80.0, rtol=1e-6)
+        chart = looked(TrainingCharts(), history).charts[1]
+        earned, expected = chart.runs
+        np.testing.assert_allclose(expected.y, -80.0, rtol=1e-6)
         np.testing.assert_allclose(earned.y, 1.0)
+        assert chart.caption == texts.TRAIN_SCORES.format(1, -80).replace("-", "−")
 
 
-def test_what_is_said_of_both_scores_are_the_numbers_of_their_curves(monkeypatch: pytest.MonkeyPatch) -> None:
-    training_charts = TrainingCharts()
-    for _ in range(24):
-        training_charts.look(run(PRESETS["modern"], -80.0), [])
-    said = training_charts.charts.charts[1].caption
-    assert said == texts.TRAIN_SCORES.format(earned=1, expected=-80).replace("-", "−")
+def test_a_twin_that_is_paid_otherwise_is_not_compared_by_its_pay() -> None:
+    healthy, other = (run_of(PRESETS["modern"], 80.0) for _ in range(2))
+    charts = looked(
+        TrainingCharts(more=True), healthy, Beside([EarlierRun("other", other, 1)], "healthy", paid_otherwise=True)
+    )
+    compared = {chart.label: [run.series.name for run in chart.runs] for chart in charts.charts}
+    for name in ("success", "loss", "epsilon"):
+        assert compared[texts.TRAIN_CHARTS[name]] == ["healthy", "other"], name
+    assert "other" not in compared[texts.TRAIN_CHARTS["mean_return"]]
 
 
-def test_a_twin_that_is_paid_otherwise_is_not_compared_by_its_pay(monkeypatch: pytest.MonkeyPatch) -> None:
-    drawn: dict[str, int] = {}
-    monkeypatch.setattr(Chart, "set", lambda chart, series, *_: drawn.update({chart.label: len(series)}))
-    training_charts = TrainingCharts(more=True)
-    healthy, other = (run(PRESETS["modern"], 80.0) for _ in range(2))
-    for _ in range(24):
-        training_charts.look(healthy, [EarlierRun("other", other, 1)], paid_otherwise=True)
-    compared = {name for name in texts.TRAIN_CHARTS if drawn[texts.TRAIN_CHARTS[name]] == 2}
-    assert compared == {"success", "loss", "epsilon"}
+def test_a_run_of_digits_shows_new_digits_and_dashed_those_it_learns_from() -> None:
+    history = History(DIGIT_COLUMNS)
+    for second in range(1, 5):
+        history.append(DigitPoint(float(second), second, 1.0, 0.1 * second, 0.5, 0.01, 1.0))
+        history.append(Validation(second, 0.9, 0.9, best=True, seconds=float(second)))
+    history.append(SettingChange(2, "learning_rate", 0.1, 0.2, seconds=2.0))
+    loss, accuracy = looked(TrainingCharts(DIGIT_CHARTS), history).charts
+    assert loss.runs[0].y.tolist() == pytest.approx([0.1, 0.2, 0.3, 0.4])
+    assert [run.y.tolist() for run in accuracy.runs] == [[90.0] * 4, [50.0] * 4]
+    assert accuracy.caption == texts.DIGIT_RUN_BOTH.format(90.0, 50.0)
+    (tick,) = ticks_of(history)
+    assert (tick.x, tick.text) == (2.0, f"{texts.KNOBS['learning_rate']} 0.2")
+
+
+def test_a_run_keeps_its_style_as_others_come_and_go() -> None:
+    runs: list[EarlierRun] = []
+    for number in range(12):
+        put_beside(runs, f"run {number}", History())
+    styles = {each.name: each.style for each in runs}
+    assert len(set(styles.values())) == 12
+    assert 0 not in styles.values(), "that is the run that goes on"
+    take_away(runs, styles["run 3"])
+    assert {each.name: each.style for each in runs} == {name: each for name, each in styles.items() if name != "run 3"}
+    new, again = History(), History()
+    put_beside(runs, "new", new)
+    assert runs[0] == EarlierRun("new", new, styles["run 3"])
+    put_beside(runs, "run 7", again)
+    assert runs[0] == EarlierRun("run 7", again, styles["run 7"])
+    assert len(runs) == 12
+
+
+def test_lines_of_many_runs_differ_in_colour_or_dashes_and_neighbours_in_both() -> None:
+    styles = [run_style(number) for number in range(1, 25)]
+    assert len(set(styles)) == 24
+    for (colour, dash), (other, dashes) in pairwise(styles):
+        assert colour != other
+        assert dash != dashes
+    assert run_style(0)[1] == ()
+    assert run_style(25) == run_style(1)
+
+
+@pytest.mark.parametrize(("axis", "end", "reach"), [(0, 367.0, 12.0), (1, 4e6, 2e5)])
+def test_a_short_run_beside_a_long_one_is_measured_by_either_axis(axis: int, end: float, reach: float) -> None:
+    charts = TrainingCharts()
+    charts.measure_by(axis)
+    looked(charts, long_run(12.0, 200_000.0), Beside([EarlierRun("long", long_run(367.0, 4e6), 1)]))
+    for chart in charts.charts:
+        assert chart.x_range == pytest.approx((0.0, end))
+        assert chart.runs[0].x[-1] == pytest.approx(reach)
+        assert chart.read_x(end) == texts.TRAIN_AXIS[axis].format(end)
+
+
+@pytest.mark.parametrize(("axis", "place"), [(0, 50.0), (1, 500_000.0)])
+def test_a_place_on_the_axis_is_a_moment_of_the_run(axis: int, place: float) -> None:
+    charts, run = TrainingCharts(), long_run(100.0, 1e6)
+    charts.measure_by(axis)
+    looked(charts, run)
+    assert charts.decisions_at(place) == pytest.approx(500_000)
+    assert charts.decisions_at(2e6) == np.inf, "beyond its end is now"
+    charts.go_to(500_000)
+    looked(charts, run)
+    assert [chart.marker for chart in charts.charts] == pytest.approx([place] * 2)
+    charts.go_to(None)
+    assert charts.charts[0].marker is None
 
 
 @pytest.mark.parametrize("preset", ["modern", "classic"])
@@ -86,7 +154,7 @@ def test_a_run_says_in_which_unit_it_counts(preset: str, tmp_path, monkeypatch: 
             return tuple(message for message in told if isinstance(message, RunStarted))
 
     monkeypatch.setattr("game.training.run.Worker", Tells)
-    lander_run = TrainingRun(LANDERS, Library(tmp_path))
-    lander_run.begin(config, 0)
-    lander_run.poll()
-    assert lander_run.history.reward_scale == config.reward_scale
+    run = TrainingRun(LANDERS, Library(tmp_path))
+    run.begin(config, 0)
+    run.poll()
+    assert run.history.reward_scale == config.reward_scale

@@ -14,12 +14,11 @@ from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.flight import networks
 from game.flight.flight import Flight, StickHolder
-from game.flight.forecast import Forecast
-from game.scenes.play.challenge import FlownMission, Race
+from game.scenes.play.challenge import FlownMission
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
-from tests.support.flights import kept, play, scripted
+from tests.support.flights import play
 
 Open = Callable[..., Driver]
 ELSEWHERE = [name for name, mission in MISSIONS.items() if mission.elsewhere]
@@ -66,14 +65,6 @@ def test_handed_the_stick_it_lands_every_mission(name: str, anywhere: networks.P
     assert set(flight.recording.hands) == {StickHolder.NETWORK}
 
 
-def test_hands_off_the_copilot_lands_on_earth_too(anywhere: networks.Policy):
-    flight = Flight(0, anywhere, mission="earth")
-    flight.help(0.5, "tolerance")
-    while not flight.over:
-        flight.step(0)
-    assert flight.outcome is Outcome.LANDED
-
-
 def test_on_a_mission_elsewhere_it_is_named_and_flies_the_ghost(open_game: Open, written: list[str]):
     driver = open_game(PlayScene, 0, challenge=FlownMission(MISSIONS["earth"]))
     driver.frames(2)
@@ -94,12 +85,6 @@ def test_on_a_mission_elsewhere_it_is_named_and_flies_the_ghost(open_game: Open,
     assert play(driver).flight.outcome is Outcome.LANDED
 
 
-def test_a_race_against_a_flight_from_elsewhere_is_flown_with_it_too(open_game: Open, context: Context):
-    record = kept(context, scripted(0, mission="mars"), course="mars")
-    driver = open_game(PlayScene, 0, challenge=Race(record, "yesterday"))
-    assert play(driver).network.name == networks.ANYWHERE
-
-
 def test_under_another_gravity_it_flies_and_back_on_the_moon_it_does_not(open_game: Open):
     driver = open_game(PlayScene, 3)
     assert play(driver).network.name == "modern"
@@ -110,18 +95,6 @@ def test_under_another_gravity_it_flies_and_back_on_the_moon_it_does_not(open_ga
         assert play(driver).network.name == name
         assert play(driver).flight.network is play(driver).network.policy
         driver.frames(30)
-
-
-def test_its_path_ahead_is_that_of_its_flight(anywhere: networks.Policy):
-    flight = Flight(5, anywhere)
-    flight.set_gravity(2.0)
-    forecast = Forecast(anywhere, flight.env.ground)
-    while not len(forecast.path):
-        forecast.follow(flight.env)
-    flight.hand_over()
-    for _ in range(60):
-        flight.step(0)
-    assert forecast.path[15] == pytest.approx(flight.env.position[0], abs=1e-6)
 
 
 @pytest.mark.parametrize("damage", ["missing", "torn", "another"])

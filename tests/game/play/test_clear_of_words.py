@@ -12,7 +12,6 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import VIEW_SIZE
 from game.flight import networks
 from game.scenes.play.scene import PlayScene
-from game.scenes.watch.scene import WatchScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import play
@@ -134,27 +133,3 @@ def test_the_flight_keeps_off_the_panel(shared: Driver):
     shared.frames(2)
     assert not flown.thinks
     assert flown.clear.right == VIEW_SIZE[0]
-
-
-@pytest.mark.parametrize("count", [1, 16])
-def test_what_is_lost_in_a_swarm_lies_on_no_words_either(open_game: Open, monkeypatch, count: int):
-    driver = open_game(WatchScene, count, seed=2)
-    driver.frames(2)
-    watch, swarm = driver.top, driver.top.swarm
-    lost = np.zeros((count, 6))
-    lost[:, 1], lost[:, 3] = swarm.env.limits.ceiling - 0.1, 6.0  # through the top, behind the words at the head
-    for _ in range(3):
-        swarm.env.place(np.ones(count, bool), lost)
-        swarm.since_end[:] = 0
-        for _ in range(8):
-            watch.world.fly()
-    assert swarm.env.outcome[0] == Outcome.OUT_OF_BOUNDS
-    crafts: list[object] = []
-    monkeypatch.setattr(watch.world.stage, "draw_lander", lambda *args, **_: crafts.append(args))
-    places = drawn(monkeypatch, "marker")
-    canvas, view = driver.app.canvas, watch.camera.view(driver.app.canvas.scale)
-    watch.world.trails.draw(canvas, view, 0, 80.0)
-    watch.world._draw_shown(canvas, view, swarm.poses.at(1.0)[0])
-    assert not crafts
-    assert places
-    assert all(80 < y < READ_OUTS for _, y in places)

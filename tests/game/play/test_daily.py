@@ -17,7 +17,6 @@ from game.flight.days import FILE_NAME, Attempt, Days
 from game.flight.flight import Flight
 from game.flight.logbook import Records
 from game.scenes.logbook.replay import ReplayScene
-from game.scenes.menus.flights import FlightsScene
 from game.scenes.play.daily import DailyStart, DaysScene
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
@@ -193,23 +192,6 @@ def test_a_disk_that_cannot_be_written_is_told(open_game: Open, context: Context
     driver = open_game(lambda context: PlayScene(context, 0, challenge=DailyStart(TODAY, Days(context.user_dir))))
     crash(driver)
     assert texts.DAYS_NOT_KEPT.partition("{")[0] in driver.said
-
-
-def test_a_gamepad_alone_gets_there_flies_and_copies(open_game: Open, context: Context, clipboard: list[str]):
-    driver = open_game(FlightsScene)
-    driver.frames(2)
-    driver.button(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
-    driver.button(pygame.CONTROLLER_BUTTON_A)
-    assert isinstance(driver.top, DaysScene)
-    driver.button(pygame.CONTROLLER_BUTTON_A)
-    scene = play(driver)
-    driver.frames(3)
-    driver.button(pygame.CONTROLLER_BUTTON_DPAD_LEFT)
-    while not scene.flight.over:
-        driver.skip(10)
-    driver.skip(240)
-    driver.button(pygame.CONTROLLER_BUTTON_RIGHTSTICK)
-    assert clipboard[-1].startswith("Tranquility ")
 
 
 def test_card_list_and_line_agree_on_who_comes_down_softly_beside_the_pad(

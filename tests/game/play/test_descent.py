@@ -6,11 +6,9 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.flights.verification import landing_score
-from ai.lander.descent import LegStart, refill
-from ai.lander.environment import Outcome
+from ai.lander.descent import LegStart
 from game.core import texts
-from game.flight.flight import Flight, StickHolder
+from game.flight.flight import StickHolder
 from game.flight.logbook import Records, best_descent, longest_descent
 from game.flight.replay import FlightReplay
 from game.scenes.play.descent import Descent
@@ -115,14 +113,6 @@ def test_a_crash_ends_the_run_with_how_far_it_came_and_a_key_flies_the_same_grou
     assert play(game).flown.ghost.name == texts.MISSION_RIVAL  # so far it has not come before
 
 
-def test_another_key_begins_on_new_ground(game: Driver):
-    crash(game)
-    ground = play(game).flight.recording.seed
-    game.key(pygame.K_n)
-    assert play(game).flight.recording.seed != ground
-    assert descent(game).start == LegStart()
-
-
 def test_a_leg_that_the_network_has_flown_brings_fuel_but_no_points_and_the_run_counts_no_more(
     game: Driver, context: Context
 ):
@@ -140,19 +130,6 @@ def test_a_leg_that_the_network_has_flown_brings_fuel_but_no_points_and_the_run_
     assert best_descent(entries)[0] == 1
 
 
-def test_a_flat_spot_pays_three_times_and_brings_no_fuel():
-    run = Descent()
-    run.flight(3, None)
-    seed = next(seed for seed in range(20) if len(Flight(seed, leg=LegStart(3)).env.ground.pads) == 3)
-    flight = Flight(seed, leg=LegStart(3, 10.0))
-    stand_on(flight.env, 1)
-    for _ in range(60):
-        flight.step(0)
-    assert flight.outcome is Outcome.LANDED
-    assert landing_score(flight.env) > 200
-    assert refill(landing_score(flight.env), bare=True) == 0
-
-
 def test_escape_pauses_a_run_under_way_and_leaves_one_that_has_not_begun(game: Driver):
     land(game)
     game.key(pygame.K_ESCAPE)
@@ -166,16 +143,6 @@ def test_the_menu_leads_to_it_and_escape_back(open_game: Open):
     assert descent(driver).start.number == 1
     driver.keys(pygame.K_ESCAPE, pygame.K_ESCAPE)
     assert driver.top_name == "MenuScene"
-
-
-def test_without_a_network_it_is_flown_alone(open_game: Open, monkeypatch: pytest.MonkeyPatch):
-    from game.flight import networks
-
-    monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("none", None, "gone"))
-    driver = open_game(PlayScene, 3, challenge=Descent())
-    assert play(driver).flown.ghost is None
-    land(driver)
-    assert descent(driver).start.number == 2
 
 
 @pytest.mark.parametrize("key", [pygame.K_r, pygame.K_n])

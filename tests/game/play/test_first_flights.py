@@ -9,7 +9,7 @@ import pytest
 from ai.agent.agent import DeepQAgent
 from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.pilots import ScriptedPilot
-from ai.lander.spawns import LADDER, RUNGS, SPAWNS
+from ai.lander.spawns import LADDER
 from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.core.settings import TOP_RUNG, Settings
@@ -17,16 +17,14 @@ from game.flight import networks
 from game.flight.credit import Credit
 from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Entry
-from game.flight.logbook import Records, best, best_alone
 from game.flight.outcomes import outcome_card
-from game.flight.replay import FlightReplay
 from game.scenes.play.free import FreeFlight
 from game.scenes.play.help import HELP
 from game.scenes.play.scene import CRASHES, PlayScene
 from game.scenes.play.tutorial import Tutorial
 from game.ui.context import Context
 from tests.support.driver import Driver
-from tests.support.flights import challenge_of, fly_out, kept, play
+from tests.support.flights import challenge_of, fly_out, play
 from tests.support.player import DEVICES, Player
 from tests.support.reading import Weighs
 
@@ -54,16 +52,6 @@ def end(driver: Driver, state: tuple[float, ...]) -> None:
 
 
 # The ladder
-
-
-def test_the_ladder_widens_from_above_the_pad_to_starts_from_anywhere():
-    starts = [np.array([SPAWNS[name](np.random.default_rng(seed)) for seed in range(300)]) for _, name in LADDER.stages]
-    spreads = [np.abs(rows[:, 0]).max() for rows in starts]
-    assert spreads == sorted(spreads)
-    assert spreads[0] < 0.6
-    assert np.abs(starts[0][:, 4]).max() < 0.05
-    assert len(LADDER.stages) == TOP_RUNG + 1 == len(RUNGS) + 1
-    assert LADDER.stages[-1][1] == "random"
 
 
 def test_who_pushes_nothing_for_a_second_and_a_half_can_still_land_on_the_lowest_rungs():
@@ -182,21 +170,6 @@ def test_a_landing_that_the_network_flew_leads_no_rung_up_and_the_card_says_whic
     assert (settings.rung, card.climb) == (0, texts.LADDER_NOT_FLOWN)
 
 
-def test_flights_from_the_ladder_replay_but_do_not_measure_skill(context: Context):
-    flight = Flight(7, ScriptedPilot(), "rung_3")
-    flight.hand_over()
-    record = kept(context, fly_out(flight), alone=True)
-    replay = FlightReplay(record)
-    while not replay.complete:
-        replay.scout(200)
-    assert replay.faithful
-    assert record.recording.spawn == "rung_3"
-    [entry] = Records(context.user_dir).entries()
-    assert entry.on_ladder
-    assert best_alone([entry]) == 0
-    assert best([entry])
-
-
 # Help after three crashes
 
 
@@ -260,17 +233,6 @@ def test_a_flight_hangs_after_every_interruption_until_it_is_touched(open_game: 
     driver.frames(5)
     assert not play(driver).waiting
     assert len(play(driver).flight.recording.actions) > steps
-
-
-def test_a_key_held_meanwhile_must_be_let_go_first(open_game: Open, written: list[str]):
-    driver = open_game(PlayScene, 4)
-    driver.frames(2)
-    driver.post(pygame.KEYDOWN, key=pygame.K_UP, mod=0, unicode="", scancode=0)
-    driver.frames(10)
-    driver.post(pygame.WINDOWSIZECHANGED, x=1280, y=720)
-    driver.frames(10)
-    assert play(driver).waiting
-    assert texts.TUTORIAL_LET_GO in written
 
 
 # The rescue

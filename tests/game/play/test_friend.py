@@ -12,13 +12,13 @@ from game.flight.flight_file import Record
 from game.scenes.logbook.replay import ReplayScene
 from game.scenes.logbook.scene import LogbookScene
 from game.scenes.menus.menu import MenuScene
-from game.scenes.play.challenge import ContinuedFlight, FlownMission, Race
+from game.scenes.play.challenge import Race
 from game.scenes.play.scene import PlayScene
 from game.scenes.train.digits import DigitTrainingScene
 from game.scenes.train.networks import NetworksScene
 from game.ui.context import Context
 from tests.support.driver import Driver
-from tests.support.flights import kept, landed, play, scripted
+from tests.support.flights import kept, landed, play
 
 Open = Callable[..., Driver]
 
@@ -104,13 +104,6 @@ def test_what_is_no_flight_is_refused_in_a_sentence(open_game: Open, tmp_path, c
     assert why in driver.said
 
 
-def test_a_folder_and_a_file_that_is_gone_are_refused(open_game: Open, tmp_path):
-    driver = open_game()
-    for path in (tmp_path, tmp_path / "gone"):
-        driver.post(pygame.DROPFILE, file=str(path))
-        assert driver.said.startswith(f"{path.name}: ")
-
-
 def test_pasting_what_is_no_code_is_refused(open_game: Open, clipboard: list[str]):
     driver = open_game()
     paste(driver, "tranq2-000", clipboard)
@@ -180,28 +173,6 @@ def test_it_is_answered_and_the_answer_is_a_code_of_ones_own(open_game: Open, re
     assert answer.claim.outcome.name == scene.flight.outcome.name
 
 
-def test_it_is_taken_over_at_the_moment_that_is_shown(open_game: Open, record: Record):
-    driver = open_game()
-    driver.post(pygame.DROPTEXT, text=sharing.code(record))
-    driver.frames(60)
-    at = page(driver).flight_replay.at
-    driver.key(pygame.K_TAB)
-    driver.frames(2)
-    scene = play(driver)
-    assert isinstance(scene.challenge, ContinuedFlight)
-    assert len(scene.flight.recording.actions) == at > 0
-    assert scene.flown.ghost.name == texts.FRIEND_NAME
-
-
-def test_a_missions_flight_is_answered_as_that_mission(open_game: Open, context: Context):
-    record = kept(context, scripted(0, mission="fall"), course="fall")
-    driver = open_game()
-    driver.post(pygame.DROPTEXT, text=sharing.code(record))
-    driver.frames(2)
-    driver.press_on(texts.FRIEND_ANSWER)
-    assert isinstance(play(driver).challenge, FlownMission)
-
-
 def test_a_friends_code_is_sent_on_as_it_came(open_game: Open, record: Record, clipboard: list[str]):
     code = sharing.code(replace(record, entry=replace(record.entry, score=999)))
     driver = open_game()
@@ -221,7 +192,7 @@ def test_without_a_clipboard_the_code_is_written_to_a_file(
     monkeypatch.setattr(pygame.scrap, "get_text", broken)
     driver = open_game(LogbookScene)
     driver.frames(2)
-    driver.press_on(texts.CODE_COPY)
+    driver.press_on(texts.LOGBOOK_COPY)
     (path,) = (context.user_dir / "codes").iterdir()
     assert path.name in driver.said
     assert sharing.flight_in_file(path).recording == record.recording

@@ -8,7 +8,7 @@ from ai.lander.environment import PARAMS, LanderEnv, Outcome
 from ai.lander.pilots import ScriptedPilot
 from game.core.scene import Push
 from game.flight import networks
-from game.flight.flight import DECISION_STEPS, Flight, StickHolder
+from game.flight.flight import DECISION_STEPS, Flight
 from game.scenes.menus.menu import MenuScene
 from game.scenes.play.ghost import Ghost
 from game.scenes.play.scene import PlayScene
@@ -101,25 +101,6 @@ def test_your_flight_is_the_same_with_a_ghost_and_without(duel, open_game: Open)
     assert np.array_equal(alone.env.position, scene(with_ghost).flight.env.position)
 
 
-def test_the_ghost_waits_in_a_pause(duel):
-    driver = duel(ScriptedPilot())
-    press(driver, MAIN)
-    driver.frames(20)
-    driver.key(pygame.K_ESCAPE)
-    assert "PauseScene" in driver.top_name
-    before = int(ghost_below(driver).flight.env.steps[0])
-    driver.frames(10)
-    driver.key(pygame.K_ESCAPE)
-    assert ghost(driver).flight.env.steps[0] <= before + 3
-
-
-def ghost_below(driver: Driver) -> Ghost:
-    below = driver.app.scenes.stack[-2]
-    assert isinstance(below, PlayScene)
-    assert below.flown.ghost is not None
-    return below.flown.ghost
-
-
 def test_escape_leaves_before_the_start_and_after_the_end(duel):
     driver = duel(Idle())
     driver.key(pygame.K_ESCAPE)
@@ -140,20 +121,6 @@ def test_retry_and_a_new_start_are_for_both(duel, key: int, same: bool):
     assert scene(driver).waiting
     assert np.array_equal(mine.env.position, theirs.env.position)
     assert np.array_equal(mine.env.position, first) is same
-
-
-def test_hand_over_still_works_and_the_card_tells_of_both(duel):
-    driver = duel(Idle())
-    driver.key(pygame.K_TAB)
-    assert scene(driver).flight.hand is StickHolder.NETWORK
-    for _ in range(1500):
-        driver.skip()
-        if scene(driver).ending.shown >= 1:
-            break
-    assert scene(driver).flight.outcome is Outcome.LANDED
-    row = ghost(driver).row(scene(driver).flight.env)
-    assert (row.name, row.result) == ("checkpoint 14 s", "crashed")
-    assert row.figures["TIME"] == (f"{float(ghost(driver).flight.env.time[0]):.1f}", "s")
 
 
 def test_a_ghost_that_still_flies_has_no_figures_and_flies_on(duel):

@@ -110,14 +110,6 @@ def test_the_network_lands_where_its_page_says_so():
         assert abs(landed - mission.landed) <= 2, mission.name  # another processor may round otherwise
 
 
-@pytest.mark.parametrize("name", ["wind", "outage", "ferry"])
-def test_a_mission_is_flown_again_from_its_file_as_it_was(context: Context, name: str):
-    flight_replay = FlightReplay(kept(context, scripted(0, mission=name), course=name))
-    flight_replay.scout(10_000)
-    assert flight_replay.faithful
-    assert flight_replay.complete
-
-
 def rows(driver: Driver) -> dict[str, tuple[str, ...]]:
     """The list of missions, by name."""
     listed = driver.the(ListRow).rows
@@ -282,19 +274,6 @@ def book(open_game: Open, context: Context) -> Driver:
     return driver
 
 
-def test_the_ghost_of_a_race_flies_as_the_flight_did(book: Driver):
-    book.keys(pygame.K_DOWN)
-    word = next(widget for widget in book.form.widgets if widget.label == texts.LOGBOOK_RACE)
-    book.click(word.box.center)
-    ghost = play(book).flown.ghost
-    play(book).flown.waiting = False
-    book.skip(1200)
-    assert ghost.flight.outcome is Outcome.LANDED
-    book.key(pygame.K_r)
-    assert play(book).waiting
-    assert play(book).flown.ghost is not ghost
-
-
 def test_a_flight_is_flown_on_from_the_moment_that_is_shown(book: Driver):
     book.key(pygame.K_RETURN)
     book.frames(60)
@@ -313,12 +292,3 @@ def test_a_flight_is_flown_on_from_the_moment_that_is_shown(book: Driver):
     land(book)
     entry = Records(book.app.context.user_dir).entries()[-1]
     assert not entry.alone
-
-
-def test_a_flight_thrown_away_says_so_in_its_row_and_z_brings_it_back(book: Driver):
-    ending = book.the(ListRow).rows[0][2]
-    book.key(pygame.K_DELETE)
-    assert book.the(ListRow).rows[0][2] == texts.LOGBOOK_ROW_THROWN != ending
-    book.key(pygame.K_z)
-    assert book.the(ListRow).rows[0][2] == ending
-    assert Records(book.app.context.user_dir).kept()

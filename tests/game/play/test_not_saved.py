@@ -13,9 +13,8 @@ from ai.lander.moment import Moment
 from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.flight.flight import Flight
-from game.flight.last_chance import LastChance
+from game.flight.foresight import HELD, LastChance, SixFutures
 from game.flight.outcomes import outcome_card, qualities
-from game.flight.six_futures import HELD, SixFutures
 from game.scenes.play.challenge import FlownMission
 from game.scenes.play.scene import PlayScene
 from game.scenes.play.tutorial import Tutorial

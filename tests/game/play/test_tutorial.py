@@ -109,23 +109,6 @@ def test_only_the_very_first_flight_teaches(open_game: Open):
     assert play(driver).challenge.free
 
 
-def test_a_crash_begins_the_lesson_again_hanging_in_the_sky(open_game: Open, context: Context):
-    driver = pupil = Player(open_game(PlayScene, 0, challenge=Tutorial()), "keys")
-    lessons = learn(pupil)
-    assert [next(lessons) for _ in range(4)] == NAMES[:4]  # which is now to lean
-    first = play(driver).flight
-    for key in KEYS:
-        pupil.hold(key, down=False)
-    wait_for_another(driver)
-    assert first.outcome is Outcome.CRASHED
-    assert play(driver).waiting
-    assert tutorial(driver).lesson.name == "lean"
-    assert play(driver).flight.env.altitude[0] > 10
-    assert not Records(context.user_dir).entries()
-    driver.frames(120)
-    assert play(driver).flight.env.steps[0] == 0
-
-
 def test_a_crash_is_told_of_once_and_then_beside_the_next_craft(open_game: Open, monkeypatch: pytest.MonkeyPatch):
     driver = open_game(PlayScene, 0, challenge=Tutorial())
     for _ in range(2):
@@ -246,26 +229,6 @@ def test_without_a_network_nobody_is_asked_to_hand_over(open_game: Open, monkeyp
     monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("none", None, "it is gone"))
     pupil = Player(open_game(PlayScene, 0, challenge=Tutorial()), "keys")
     assert list(learn(pupil)) == [name for name in NAMES if name not in ("hand_over", "take_back")]
-
-
-def test_the_words_are_those_of_the_device_and_warn_of_what_is_urgent(open_game: Open):
-    driver = open_game(PlayScene, 0, challenge=Tutorial())
-    controls, challenge = driver.app.context.controls, tutorial(driver)
-
-    def words() -> str:
-        return challenge.sentence(play(driver).flight, controls)
-
-    assert words().startswith(controls.word(Held.MAIN))
-    by_key = words()
-    driver.button(pygame.CONTROLLER_BUTTON_DPAD_UP)
-    assert words().startswith(controls.word(Held.MAIN))
-    assert words() != by_key
-    driver.key(pygame.K_UP)
-    for _ in range(600):
-        if words() != by_key:
-            break
-        driver.frames(1)
-    assert words() == texts.TUTORIAL_TOO_FAST.format(main=controls.word(Held.MAIN))
 
 
 def test_a_device_with_one_sign_for_both_turns_names_it_once(open_game: Open):

@@ -18,7 +18,7 @@ from game.flight.flight_file import Entry
 from game.flight.logbook import Records
 from game.flight.replay import FlightReplay
 from game.scenes.logbook.replay import ReplayScene
-from game.scenes.logbook.scene import LogbookScene, entry_row
+from game.scenes.logbook.scene import LogbookScene, entry_row, who_and_when
 from game.scenes.play.challenge import FlownMission, against
 from game.scenes.play.choices import ChoicesScene
 from game.scenes.play.daily import DailyStart
@@ -107,7 +107,7 @@ def test_header_panel_hints_card_and_logbook_say_the_same(
     assert entry.alone == (False not in page.counts) == (not entry.bar)
     if entry.bar:
         assert any(texts.NOT_COUNTED[entry.bar] in word or texts.PRACTICE in word for word in page.words), page.words
-    assert entry_row(entry)[-1] == flew(flight.recording.hands)
+    assert who_and_when(entry).endswith(flew(flight.recording.hands))
     won = [medal for medal in (1, 2, 3) if any(word.endswith(texts.MEDALS[medal]) for word in page.words)]
     assert won == [entry.medal] * bool(entry.medal)
     best = [word for word in page.words if word == texts.SCORE_BEST.format(count=entry.score)]
@@ -294,5 +294,5 @@ def test_a_flight_that_is_no_landing_is_told_of_alike_everywhere(
     assert entry.alone == (not entry.bar)
     assert False not in page.counts or entry.bar
     assert entry_row(entry)[2] == title
-    assert entry_row(entry)[-1] == flew(play(reading.driver).flight.recording.hands)
+    assert who_and_when(entry).endswith(flew(play(reading.driver).flight.recording.hands))
     assert_book_agrees(reading, entry)

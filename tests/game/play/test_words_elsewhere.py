@@ -107,7 +107,7 @@ BUTTON = dict.fromkeys([WorkerState.RUNNING, WorkerState.STARTING], texts.TRAIN_
 def test_a_run_that_goes_on_rests_ended_or_failed_is_offered_what_fits(open_game: Open, monkeypatch, make):
     reading = Reading(open_game(make), monkeypatch)
     driver, scene = reading.driver, reading.driver.top
-    learner = scene.lander_run if make is TrainScene else scene.digit_run
+    learner = scene.run
     told: list[WorkerState | None] = [None]
     monkeypatch.setattr(TrainingRun, "state", property(lambda _: told[0]))
     for state in (*STATES, *reversed(STATES)):

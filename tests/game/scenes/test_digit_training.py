@@ -18,8 +18,8 @@ from ai.digits.filters import FilterMoment
 from ai.digits.training import DigitTraining
 from ai.digits.validation import Confusion
 from ai.files import state_folder
-from ai.training import checkpoints
 from ai.training.history import DigitPoint, Validation
+from ai.training.run import save
 from game.core import texts
 from game.core.names import LibraryError
 from game.core.worker import WorkerState
@@ -83,27 +83,27 @@ def test_presets_are_named_and_no_sabotage_is_offered():
 def test_start_pause_stop_and_go_on(beside: Driver, tmp_path: Path):
     scene = beside.top
     beside.key(pygame.K_RETURN)
-    wait(beside, lambda: scene.digit_run.confusion and len(scene.digit_run.history))
-    assert scene.digit_run.config == SMALL
-    assert scene.digit_run.confusion.table.sum() == 2_000
-    assert scene.matrix.confusion is scene.digit_run.confusion
+    wait(beside, lambda: scene.run.confusion and len(scene.run.history))
+    assert scene.run.config == SMALL
+    assert scene.run.confusion.table.sum() == 2_000
+    assert scene.matrix.confusion is scene.run.confusion
     beside.key(pygame.K_RETURN)
-    wait(beside, lambda: scene.digit_run.state is WorkerState.PAUSED)
+    wait(beside, lambda: scene.run.state is WorkerState.PAUSED)
     beside.frames(5)
     beside.click(beside.widget(texts.DIGIT_RUN_STOP).box.center)
-    wait(beside, lambda: not scene.digit_run.alive)
-    assert scene.digit_run.state is WorkerState.ENDED
-    assert not scene.digit_run.problem
-    assert 0 < scene.digit_run.test < 1, "what was stopped is measured"
+    wait(beside, lambda: not scene.run.alive)
+    assert scene.run.state is WorkerState.ENDED
+    assert not scene.run.problem
+    assert 0 < scene.run.test < 1, "what was stopped is measured"
     assert DigitClassifier.load(tmp_path / "user" / "digits" / "runs" / ".training").predict(np.zeros((1, 28, 28))).size
-    wait(beside, lambda: texts.DIGIT_RUN_GO_ON in [each.label for each in scene.form.widgets])
-    stood = scene.digit_run.history["step"][-1]
+    wait(beside, lambda: texts.TRAIN_GO_ON in [each.label for each in scene.form.widgets])
+    stood = scene.run.history["step"][-1]
     scene.knobs.set_config(DIGIT_PRESETS["modern"], 0)
-    beside.click(beside.widget(texts.DIGIT_RUN_GO_ON).box.center)
-    wait(beside, lambda: len(scene.digit_run.history) and scene.digit_run.history["step"][-1] > stood)
+    beside.click(beside.widget(texts.TRAIN_GO_ON).box.center)
+    wait(beside, lambda: len(scene.run.history) and scene.run.history["step"][-1] > stood)
     assert scene.knobs.config == SMALL, "it goes on with its own settings"
-    assert len(scene.digit_run.earlier) == 1
-    scene.digit_run.close()
+    assert len(scene.run.earlier) == 1
+    scene.run.close()
 
 
 def test_a_run_is_named_dreams_and_is_quizzed(train: Driver, tmp_path: Path, monkeypatch):
@@ -112,11 +112,11 @@ def test_a_run_is_named_dreams_and_is_quizzed(train: Driver, tmp_path: Path, mon
     scene = train.top
     for word in (texts.TRAIN_SAVE, texts.DIGIT_RUN_DREAM, texts.DIGIT_RUN_QUIZ):
         train.click(train.widget(word).box.center)
-    assert notes == [texts.DIGIT_RUN_NOTHING] * 3
+    assert notes == [texts.TRAIN_NOTHING] * 3
     train.key(pygame.K_TAB)
     scene.form.focus(scene.start_button)
     train.key(pygame.K_RETURN)
-    wait(train, lambda: len(scene.digit_run.history))
+    wait(train, lambda: len(scene.run.history))
     train.click(train.widget(texts.TRAIN_SAVE).box.center)
     assert train.top_name == "NameDialog"
     train.key(pygame.K_RETURN)
@@ -125,7 +125,7 @@ def test_a_run_is_named_dreams_and_is_quizzed(train: Driver, tmp_path: Path, mon
     wait(train, lambda: (kept / "config.json").exists() and len(notes) == 4)
     assert kept.name in notes[-1]
     train.click(train.widget(texts.DIGIT_RUN_STOP).box.center)
-    wait(train, lambda: not scene.digit_run.alive and scene.digit_run.kept)
+    wait(train, lambda: not scene.run.alive and scene.run.kept)
     train.click(train.widget(texts.DIGIT_RUN_DREAM).box.center)
     assert train.top_name == "DreamScene"
     train.key(pygame.K_ESCAPE)
@@ -133,50 +133,39 @@ def test_a_run_is_named_dreams_and_is_quizzed(train: Driver, tmp_path: Path, mon
     assert train.top_name == "QuizScene"
 
 
-@pytest.mark.parametrize(
-    "answer", [texts.DIGIT_RUN_LEFT_KEEP.format(name="Classic reader"), texts.TRAIN_LEFT_DISCARD, ""]
-)
-def test_a_nameless_run_is_asked_about_before_a_new_one(train: Driver, tmp_path: Path, answer: str):
-    scene, runs = train.top, tmp_path / "user" / "digits" / "runs"
-    checkpoints.DIGITS.save(DigitTraining(SMALL, 3), runs / ".training")
+def test_a_nameless_run_is_kept_when_a_new_one_begins(train: Driver, tmp_path: Path):
+    runs = tmp_path / "user" / "digits" / "runs"
+    save(DigitTraining(SMALL, 3), runs / ".training")
     train.key(pygame.K_RETURN)
-    assert train.top_name == "QuestionDialog"
-    if answer:
-        train.click(next(word for word in train.top.form.widgets if word.label == answer).box.center)
-    else:
-        train.key(pygame.K_ESCAPE)
-    assert train.top is scene
-    scene.digit_run.close()
-    assert (scene.digit_run.runs == 1) == bool(answer)
-    assert (runs / "Classic reader" / "config.json").exists() == answer.startswith("Keep")
-    assert len(list(runs.glob(".trash/*/config.json"))) == (answer == texts.TRAIN_LEFT_DISCARD)
-    assert answer or (runs / ".training" / "config.json").exists()
+    train.top.run.close()
+    assert train.top.run.runs == 1
+    assert (runs / "run" / "config.json").exists()
 
 
 def test_leaving_ends_the_process_and_keeps_the_run(train: Driver):
     scene = train.top
     train.key(pygame.K_RETURN)
-    wait(train, lambda: len(scene.digit_run.history))
+    wait(train, lambda: len(scene.run.history))
     notes: list[str] = []
     train.app.context.note = notes.append
     assert not train.key(pygame.K_ESCAPE)
     train.app.scenes.close()
-    assert scene.digit_run.state is WorkerState.ENDED
-    assert scene.digit_run.unfinished
+    assert scene.run.state is WorkerState.ENDED
+    assert scene.run.unfinished
     assert notes == [texts.TRAIN_KEPT]
 
 
 def test_a_process_that_dies_is_told_of_and_another_can_be_started(beside: Driver):
     scene = beside.top
     beside.key(pygame.K_RETURN)
-    wait(beside, lambda: scene.digit_run.state is WorkerState.RUNNING)
+    wait(beside, lambda: scene.run.state is WorkerState.RUNNING)
     for child in active_children():
         child.kill()
-    wait(beside, lambda: scene.digit_run.state is WorkerState.FAILED)
-    assert "killed" in scene.digit_run.problem
+    wait(beside, lambda: scene.run.state is WorkerState.FAILED)
+    assert "killed" in scene.run.problem
     beside.frames(20)
     beside.key(pygame.K_RETURN)
-    assert scene.digit_run.alive
+    assert scene.run.alive
 
 
 # What is kept
@@ -216,13 +205,13 @@ def test_two_games_teach_two_runs(tmp_path: Path):
 
 
 def test_a_run_is_named_although_the_next_one_was_asked_for_at_once(beside: Driver, tmp_path: Path):
-    digit_run, runs = beside.top.digit_run, tmp_path / "user" / "digits" / "runs"
+    digit_run, runs = beside.top.run, tmp_path / "user" / "digits" / "runs"
     beside.key(pygame.K_RETURN)
     wait(beside, lambda: len(digit_run.history))
     assert digit_run.save("first") == ""
     digit_run.begin(SMALL, 4)
     assert digit_run.waiting
-    with pytest.raises(LibraryError, match=re.escape(texts.DIGIT_RUN_NOTHING)):
+    with pytest.raises(LibraryError, match=re.escape(texts.TRAIN_NOTHING)):
         digit_run.save("second")
     wait(beside, lambda: len(digit_run.history))
     assert json.loads((runs / "first" / "training.json").read_text())["seed"] == 3
@@ -245,7 +234,7 @@ def test_a_name_that_cannot_be_had_is_refused(tmp_path: Path, name: str):
 def test_nothing_stands_for_what_is_misread_until_something_was_read(train: Driver):
     scene = train.top
     assert scene.matrix not in scene.form.widgets
-    scene.digit_run.confusion = confusion()
+    scene.run.confusion = confusion()
     train.frames(3)
     assert scene.matrix in scene.form.widgets
     train.write_in("largest")
@@ -255,13 +244,13 @@ def test_nothing_stands_for_what_is_misread_until_something_was_read(train: Driv
 
 def test_the_worst_cell_is_shown_until_another_is_chosen(train: Driver):
     scene = train.top
-    scene.digit_run.confusion = confusion()
+    scene.run.confusion = confusion()
     train.frames(2)
     assert scene.matrix.cell == (4, 9)
     box, pitch = scene.matrix.box, scene.matrix.pitch
     train.move((box.left + 1.5 * pitch, box.top + 7.5 * pitch))
     assert scene.matrix.cell == (7, 1)
-    scene.digit_run.confusion = confusion()
+    scene.run.confusion = confusion()
     train.frames(2)
     assert scene.matrix.cell == (7, 1)
     train.resize((960, 540))
@@ -280,7 +269,7 @@ def test_the_worst_cell_is_shown_until_another_is_chosen(train: Driver):
 
 def run_with_moments(driver: Driver) -> None:
     """Give the run a few seconds with filters that can be told apart."""
-    run = driver.top.digit_run
+    run = driver.top.run
     for second in range(1, 10):
         images = np.full((5, 4, 4), 0.01 * second, np.float16)
         run.filters.append(FilterMoment(float(second), 10 * second, images))
@@ -306,7 +295,7 @@ def test_filters_go_back_to_any_moment_of_the_run(beside: Driver, device: str, m
     scrubber = beside.the(Scrubber)
     if device == "mouse":
         chart = scene.charts.charts[0]
-        beside.click(chart.place(3.2, 0.5))
+        beside.click((chart.place(3.2, 0.5)[0], chart.plot.centery))
         assert film.moment.step == 30
     else:
         beside.form.focus(scrubber)
@@ -320,9 +309,9 @@ def test_filters_go_back_to_any_moment_of_the_run(beside: Driver, device: str, m
     beside.form.focus(scrubber)
     beside.keys(*[pygame.K_RIGHT] * 8)
     assert film.at is None, "at the end it follows the run again"
-    scene.digit_run.filters.append(FilterMoment(10.0, 100, np.ones((5, 4, 4), np.float16)))
+    scene.run.filters.append(FilterMoment(10.0, 100, np.ones((5, 4, 4), np.float16)))
     assert film.moment.step == 100
-    scene.digit_run.confusion = confusion()
+    scene.run.confusion = confusion()
     beside.choice(texts.DIGIT_RUN_VIEWS[0]).choose(0)
     beside.frames(3)
     assert scene.matrix in beside.form.widgets
@@ -331,13 +320,13 @@ def test_filters_go_back_to_any_moment_of_the_run(beside: Driver, device: str, m
 
 def test_a_live_run_shows_its_filters_and_the_next_run_its_own(train: Driver):
     train.key(pygame.K_RETURN)
-    wait(train, lambda: len(train.top.digit_run.filters) > 1)
+    wait(train, lambda: len(train.top.run.filters) > 1)
     train.choice(texts.DIGIT_RUN_VIEWS[1]).choose(1)
     train.frames(3)
     first = train.top.film.moment
     assert first.images.shape == (8, 28, 28)
     train.top.film.choose(-1)
     train.top.film.choose(0.0)
-    assert train.top.film.moment is train.top.digit_run.filters[0]
-    train.top.film.follow(TrainingRun(DIGITS, train.top.digit_run.collection))
+    assert train.top.film.moment is train.top.run.filters[0]
+    train.top.film.follow(TrainingRun(DIGITS, train.top.run.collection))
     assert train.top.film.moment is None

@@ -7,9 +7,8 @@ import pytest
 
 from game.core import texts
 from game.core.worker import WorkerState
-from game.scenes.lesson import LessonScene
+from game.scenes.lesson.scene import LessonScene
 from game.scenes.train.digits import DigitTrainingScene
-from game.ui.hints import HintRow
 from tests.support.driver import Driver
 from tests.support.lessons import digit_lesson_of
 from tests.support.small import DIGITS
@@ -24,7 +23,7 @@ def start(driver: Driver) -> None:
     """Start a run, and wait until it has learnt for a moment."""
     driver.form.focus(driver.top.start_button)
     driver.key(pygame.K_RETURN)
-    driver.wait(lambda: len(driver.top.digit_run.history))
+    driver.wait(lambda: len(driver.top.run.history))
 
 
 def open_lesson(driver: Driver) -> None:
@@ -41,11 +40,11 @@ def test_a_word_opens_the_lesson_of_the_first_image_and_the_run_goes_on_afterwar
     lesson = train.top.lesson
     assert lesson.step.row == 0
     assert lesson.config == DIGITS
-    assert scene.digit_run.state is WorkerState.PAUSED
+    assert scene.run.state is WorkerState.PAUSED
     train.frames(10)
     train.key(pygame.K_ESCAPE)
     assert train.top is scene
-    train.wait(lambda: scene.digit_run.history["step"][-1] > lesson.taken)
+    train.wait(lambda: scene.run.history["step"][-1] > lesson.taken)
     assert train.top is scene, "one lesson is opened once"
 
 
@@ -54,16 +53,7 @@ def test_the_mouse_alone_opens_a_lesson_and_goes_to_another_image(train: Driver)
     train.click(train.widget(texts.LESSON_WHY).box.center)
     train.wait(lambda: isinstance(train.top, LessonScene))
     train.frames(3)
-    canvas = train.app.canvas
-    (row,) = train.top.hint_rows(canvas)
-    assert isinstance(row, HintRow)
-    x, y = next(
-        (x, y)
-        for y in range(680, 716, 4)
-        for x in range(40, 1240, 6)
-        if (hint := row.at(canvas, (x, y))) and hint.meaning == texts.LESSON_ANOTHER_IMAGE
-    )
-    train.click((x, y))
+    train.click(train.hints()[texts.LESSON_ANOTHER_IMAGE])
     train.wait(lambda: train.top.lesson.step.row == 1)
 
 
@@ -73,7 +63,7 @@ def test_another_image_of_the_same_batch_keeps_the_frame_and_the_last_is_followe
 ) -> None:
     start(train)
     train.key(pygame.K_RETURN)
-    train.wait(lambda: train.top.digit_run.state is WorkerState.PAUSED)
+    train.wait(lambda: train.top.run.state is WorkerState.PAUSED)
     train.press_on(texts.LESSON_WHY)
     train.wait(lambda: isinstance(train.top, LessonScene))
     train.frames(3)
@@ -104,7 +94,7 @@ def test_a_run_that_has_ended_leaves_the_lesson_as_it_is(train: Driver) -> None:
     scene = train.top
     open_lesson(train)
     lesson = train.top.lesson
-    scene.digit_run.close()
+    scene.run.close()
     train.key(pygame.K_r)
     train.frames(5)
     assert train.top.lesson is lesson

@@ -4,7 +4,7 @@ import pygame
 
 from game.core import texts
 from game.core.worker import WorkerState
-from game.scenes.lesson import LessonScene
+from game.scenes.lesson.scene import LessonScene
 from game.scenes.train.scene import TrainScene
 from game.ui.scrubber import Scrubber
 from game.ui.virtual_pointer import VirtualPointer
@@ -20,9 +20,9 @@ def toggle(driver: Driver) -> None:
 
 def start(driver: Driver) -> None:
     toggle(driver)
-    driver.wait(lambda: len(driver.top.lander_run.history) >= 2)
+    driver.wait(lambda: len(driver.top.run.history) >= 2)
     toggle(driver)
-    driver.wait(lambda: driver.top.lander_run.state is WorkerState.PAUSED)
+    driver.wait(lambda: driver.top.run.state is WorkerState.PAUSED)
     driver.frames(30)
 
 
@@ -41,13 +41,13 @@ def test_a_word_opens_the_lesson_of_the_best_lander(train: Driver) -> None:
     train.press_on(texts.LESSON_WHY)
     train.wait(lambda: isinstance(train.top, LessonScene))
     assert train.top.lesson.flown.slot == 0
-    assert train.top.lesson.decisions == scene.lander_run.swarm_state.decisions
+    assert train.top.lesson.decisions == scene.run.swarm_state.decisions
     train.frames(3)
     train.key(pygame.K_ESCAPE)
     assert train.top is scene
     train.frames(5)
     assert train.top is scene, "one lesson is opened once"
-    assert scene.lander_run.state is WorkerState.PAUSED
+    assert scene.run.state is WorkerState.PAUSED
 
 
 def test_a_run_that_goes_on_waits_for_the_lesson_and_goes_on(train: Driver) -> None:
@@ -56,11 +56,11 @@ def test_a_run_that_goes_on_waits_for_the_lesson_and_goes_on(train: Driver) -> N
     scene = train.top
     train.press_on(texts.LESSON_WHY)
     train.wait(lambda: isinstance(train.top, LessonScene))
-    assert scene.lander_run.state is WorkerState.PAUSED
-    stood = scene.lander_run.swarm_state.decisions
+    assert scene.run.state is WorkerState.PAUSED
+    stood = scene.run.swarm_state.decisions
     train.frames(10)
     train.key(pygame.K_ESCAPE)
-    train.wait(lambda: scene.lander_run.swarm_state.decisions > stood)
+    train.wait(lambda: scene.run.swarm_state.decisions > stood)
 
 
 def test_a_click_chooses_a_lander_and_another_opens_its_lesson(train: Driver) -> None:
@@ -94,13 +94,13 @@ def test_a_lander_is_chosen_by_keys_alone(train: Driver) -> None:
 def test_the_moment_on_the_charts_is_explained_and_then_the_present_again(train: Driver) -> None:
     toggle(train)
     scene = train.top
-    train.wait(lambda: len(scene.lander_run.history.checkpoints) >= 3)
+    train.wait(lambda: len(scene.run.history.checkpoints) >= 3)
     toggle(train)
-    train.wait(lambda: scene.lander_run.state is WorkerState.PAUSED)
+    train.wait(lambda: scene.run.state is WorkerState.PAUSED)
     train.frames(30)
     scene.form.focus(next(each for each in scene.form.widgets if isinstance(each, Scrubber)))
     train.keys(*[pygame.K_LEFT] * 4)
-    moment, now = scene.moment, scene.lander_run.swarm_state.decisions
+    moment, now = scene.moment, scene.run.swarm_state.decisions
     assert moment is not None
     train.press_on(texts.LESSON_WHY)
     train.wait(lambda: isinstance(train.top, LessonScene))
@@ -111,7 +111,7 @@ def test_the_moment_on_the_charts_is_explained_and_then_the_present_again(train:
     train.frames(3)
     train.press_on(texts.LESSON_WHY)
     train.wait(lambda: isinstance(train.top, LessonScene))
-    assert train.top.lesson.decisions == scene.lander_run.swarm_state.decisions
+    assert train.top.lesson.decisions == scene.run.swarm_state.decisions
 
 
 def test_without_a_run_a_note_says_what_to_do(train: Driver) -> None:
@@ -124,7 +124,7 @@ def test_without_a_run_a_note_says_what_to_do(train: Driver) -> None:
 def test_a_run_that_has_not_begun_to_learn_says_so(train: Driver) -> None:
     train.top.knobs.set_config(LANDERS.changed(learning_starts=50_000, replay_size=60_000), 3)
     toggle(train)
-    train.wait(lambda: train.top.lander_run.swarm_state)
+    train.wait(lambda: train.top.run.swarm_state)
     train.press_on(texts.LESSON_WHY)
     train.frames(5)
     assert isinstance(train.top, TrainScene)

@@ -5,7 +5,7 @@ import pygame
 import pytest
 
 from ai.explain.inspection import links
-from ai.training.edits import NetworkEdits, UndoEdit
+from ai.training.edits import NetworkEdits
 from game.core import texts
 from game.core.worker import WorkerState
 from game.scenes.train.editing import NetworkEditing
@@ -21,11 +21,11 @@ from tests.support.small import LANDERS as SMALL
 def paused(driver: Driver) -> Driver:
     """A run that has begun to learn, paused, with its network large."""
     driver.key(pygame.K_RETURN)
-    driver.wait(lambda: len(driver.top.lander_run.history) >= 2)
+    driver.wait(lambda: len(driver.top.run.history) >= 2)
     driver.key(pygame.K_RETURN)
-    driver.wait(lambda: driver.top.lander_run.state is WorkerState.PAUSED)
+    driver.wait(lambda: driver.top.run.state is WorkerState.PAUSED)
     driver.press_on(texts.TRAIN_LOOK[0])
-    driver.top.lander_run.edit(UndoEdit())  # of nothing: the answer is the network as it is now
+    driver.top.run.edit("undo")  # of nothing: the answer is the network as it is now
     driver.frames(3)
     return driver
 
@@ -41,7 +41,7 @@ def editing(driver: Driver) -> NetworkEditing:
 
 
 def edits(driver: Driver) -> NetworkEdits:
-    found: NetworkEdits = driver.top.lander_run.edits
+    found: NetworkEdits = driver.top.run.edits
     return found
 
 
@@ -66,7 +66,7 @@ def test_a_unit_is_silenced_by_the_mouse_and_is_as_it_was_bit_for_bit(train: Dri
     train.frames(2)
     train.click(train.widget(texts.EDIT_SILENCE).box.center)
     train.frames(3)
-    assert edits(train) == NetworkEdits(((1, unit),), (), 1, True, True)
+    assert edits(train) == NetworkEdits(((1, unit, None),), 1, True, True)
     assert not links(train.top.inside.network)[1].weights[unit].any()
     assert texts.EDIT_SILENCE not in words(train), "that is done"
     train.click(train.widget(texts.EDIT_RESTORE).box.center)
@@ -76,33 +76,30 @@ def test_a_unit_is_silenced_by_the_mouse_and_is_as_it_was_bit_for_bit(train: Dri
     assert not {texts.EDIT_UNDO, texts.EDIT_RESTORE, texts.EDIT_LEARN_ON} & set(words(train))
 
 
-def test_a_link_is_pulled_turned_by_the_wheel_cut_and_undone_step_by_step(train: Driver) -> None:
-    x, y = on_a_link(train.top.inside.view)
+def test_a_link_is_changed_cut_and_undone_step_by_step(train: Driver) -> None:
     seen = [values(train)]
-    train.move((x, y))
-    train.post(pygame.MOUSEBUTTONDOWN, pos=train.to_window((x, y)), button=1)
+    train.click(on_a_link(train.top.inside.view))
     link = editing(train).picked
     assert isinstance(link, Link)
-    first = weight(train, link)
-    for pulled in (10, 20, 30):
-        train.move((x, y - pulled))
+    train.frames(2)
+    slider, first = train.the(Slider), weight(train, link)
+    left, right = slider._track
+    train.move((left + 0.6 * (right - left), slider.box.centery))
+    train.post(pygame.MOUSEBUTTONDOWN, pos=train.to_window((left + 0.6 * (right - left), slider.box.centery)), button=1)
+    for share in (0.7, 0.8, 0.9):
+        train.move((left + share * (right - left), slider.box.centery))
         train.frames(2)
-    train.post(pygame.MOUSEBUTTONUP, pos=train.to_window((x, y - 30)), button=1)
+    train.post(pygame.MOUSEBUTTONUP, pos=train.to_window((right, slider.box.centery)), button=1)
     train.frames(2)
     assert weight(train, link) > first
-    assert edits(train).steps == 1, "a pull is one step"
-    assert edits(train).weights == ((link.layer, link.start, link.end),)
-    pulled_to = weight(train, link)
-    train.post(pygame.MOUSEWHEEL, x=0, y=-2)
-    train.frames(2)
-    assert weight(train, link) < pulled_to
+    assert edits(train).steps == 1, "a drag is one step"
+    assert edits(train).weights == [tuple(link)]
     seen.append(values(train))
     train.press_on(texts.EDIT_CUT)
     train.frames(2)
     assert weight(train, link) == 0
     assert train.the(Slider).value == 0
-    steps = edits(train).steps
-    for _ in range(steps):
+    for _ in range(edits(train).steps):
         train.press_on(texts.EDIT_UNDO)
         train.frames(2)
         assert values(train) == seen.pop()
@@ -156,8 +153,8 @@ def test_it_learns_on_when_it_is_told_to_and_the_swarm_says_how_it_stands(train:
     train.press_on(texts.TRAIN_RESUME)
     train.frames(3)
     edited = values(train)
-    flown = scene.lander_run.swarm_state.decisions
-    train.wait(lambda: scene.lander_run.swarm_state.decisions > flown + 400)
+    flown = scene.run.swarm_state.decisions
+    train.wait(lambda: scene.run.swarm_state.decisions > flown + 400)
     assert values(train) == edited, "it flies, and does not learn"
     train.key(pygame.K_ESCAPE)
     train.frames(3)
@@ -166,13 +163,13 @@ def test_it_learns_on_when_it_is_told_to_and_the_swarm_says_how_it_stands(train:
     train.wait(lambda: values(train) != edited)
     assert edits(train) == NetworkEdits(way_back=True)
     assert texts.EDIT_RESTORE in words(train)
-    [change] = [each for each in scene.lander_run.history.setting_changes if each.name == "network"]
+    [change] = [each for each in scene.run.history.setting_changes if each.name == "network"]
     assert change.after == 1
 
 
 def test_an_earlier_moment_cannot_be_edited_nor_a_run_that_has_ended(train: Driver) -> None:
     scene = train.top
-    scene.rewind.seek(scene.lander_run.history["decisions"][-1] / 2)
+    scene.rewind.seek(scene.run.history["decisions"][-1] / 2)
     train.frames(2)
     train.click(scene.inside.view.centres[1][2])
     assert editing(train).picked is None
@@ -181,7 +178,7 @@ def test_an_earlier_moment_cannot_be_edited_nor_a_run_that_has_ended(train: Driv
     train.click(scene.inside.view.centres[1][2])
     train.frames(2)
     assert texts.EDIT_SILENCE in words(train)
-    scene.lander_run.close()
+    scene.run.close()
     train.frames(3)
     assert texts.EDIT_SILENCE not in words(train)
 
@@ -193,7 +190,6 @@ def test_what_cannot_be_edited_says_why(train: Driver) -> None:
     train.frames(2)
     assert isinstance(editing(train).picked, Link)
     assert texts.EDIT_CUT not in words(train)
-    train.post(pygame.MOUSEWHEEL, x=0, y=1)
     train.click(train.top.inside.view.centres[2][0])
     train.frames(2)
     assert texts.EDIT_SILENCE not in words(train), "an action's value leads nowhere"

@@ -24,9 +24,9 @@ POINTS = 8
 def train(train: Driver) -> Driver:
     """A run that has learnt for a while, and is paused."""
     train.key(pygame.K_RETURN)
-    train.wait(lambda: len(train.top.lander_run.history) >= POINTS)
+    train.wait(lambda: len(train.top.run.history) >= POINTS)
     train.key(pygame.K_RETURN)
-    train.wait(lambda: train.top.lander_run.state is WorkerState.PAUSED)
+    train.wait(lambda: train.top.run.state is WorkerState.PAUSED)
     train.top.open(CHARTS)
     train.frames(14)
     return train
@@ -38,8 +38,8 @@ def timeline(driver: Driver) -> Any:
 
 def halfway(driver: Driver, chart: int = 0) -> tuple[float, float]:
     """The place on a chart of the moment halfway through the run, by the clock."""
-    seconds = float(driver.top.lander_run.history["seconds"][-1])
-    shown = driver.top.training_charts.charts.charts[chart]
+    seconds = float(driver.top.run.history["seconds"][-1])
+    shown = driver.top.charts.charts[chart]
     return shown.place(seconds / 2, 0.0)[0], shown.plot.centery
 
 
@@ -49,11 +49,11 @@ def scrubber(driver: Driver) -> Scrubber:
 
 def assert_all_of_it_is_at(driver: Driver, moment: int) -> None:
     scene = driver.top
-    run, history = scene.lander_run, scene.lander_run.history
+    run, history = scene.run, scene.run.history
     assert scene.moment == moment
     # Everything is one of the messages of the run, the nearest that was kept.
-    assert scene.rewind.swarm.swarm_state is run.swarms.nearest(moment)
-    assert scene.rewind.swarm.swarm_state.decisions == moment
+    assert scene.past_swarm.swarm_state is scene.rewind.swarm_state is run.swarms.nearest(moment)
+    assert scene.rewind.swarm_state.decisions == moment
     assert scene.rewind.network_state is run.networks.nearest(moment)
     assert np.array_equal(scene.inside.network.values, scene.rewind.network_state.values)
     row = int(np.abs(history["decisions"] - moment).argmin())
@@ -63,7 +63,7 @@ def assert_all_of_it_is_at(driver: Driver, moment: int) -> None:
     line = lander_status(run, scene.moment, scene.rewind.row).line
     assert f"{moment:,}" in line
     seconds = float(np.interp(moment, history["decisions"], history["seconds"]))
-    assert scene.training_charts.charts.charts[0].marker == pytest.approx(seconds)
+    assert scene.charts.charts[0].marker == pytest.approx(seconds)
 
 
 @pytest.mark.parametrize("chart", [0, 3])
@@ -73,12 +73,12 @@ def test_a_click_on_any_chart_goes_to_that_moment_while_it_learns_on(train: Driv
     train.frames(2)
     moment = scene.moment
     assert moment is not None
-    assert 0.2 < moment / scene.lander_run.history["decisions"][-1] < 0.8
+    assert 0.2 < moment / scene.run.history["decisions"][-1] < 0.8
     assert_all_of_it_is_at(train, moment)
-    points = len(scene.lander_run.history)
+    points = len(scene.run.history)
     train.press_on(texts.TRAIN_RESUME)
-    train.wait(lambda: len(scene.lander_run.history) > points + 3)
-    assert scene.lander_run.state is WorkerState.RUNNING
+    train.wait(lambda: len(scene.run.history) > points + 3)
+    assert scene.run.state is WorkerState.RUNNING
     assert scene.moment == moment
     assert_all_of_it_is_at(train, moment)
 
@@ -142,8 +142,8 @@ def test_left_and_right_step_through_the_run_and_back_leads_to_now(
     train.frames(2)
     assert train.top is scene
     assert scene.moment is None
-    assert np.array_equal(scene.inside.network.values, scene.lander_run.network_state.values)
-    assert scene.training_charts.charts.charts[0].marker is None
+    assert np.array_equal(scene.inside.network.values, scene.run.network_state.values)
+    assert scene.charts.charts[0].marker is None
 
 
 def test_the_word_leads_back_to_now_and_goes_away(train: Driver) -> None:
@@ -169,8 +169,8 @@ def test_the_timeline_beside_the_network_is_dragged(train: Driver) -> None:
 
 
 def test_a_run_that_has_ended_is_rewound_too_and_the_next_begins_at_now(train: Driver) -> None:
-    scene, ended = train.top, train.top.lander_run.swarms.moments[-1]
-    scene.lander_run.close()
+    scene, ended = train.top, train.top.run.swarms.moments[-1]
+    scene.run.close()
     train.frames(5)
     train.click(halfway(train))
     train.frames(2)
@@ -180,30 +180,29 @@ def test_a_run_that_has_ended_is_rewound_too_and_the_next_begins_at_now(train: D
     train.press_on(texts.TRAIN_START)
     train.frames(2)
     assert scene.moment is None
-    assert scene.lander_run.swarms.moments[-1] < ended
+    assert scene.run.swarms.moments[-1] < ended
 
 
 def test_a_resumed_run_has_its_curves_and_the_networks_of_its_checkpoints(
     train: Driver, tmp_path: Path, open_game: Callable[..., Driver]
 ) -> None:
-    decisions = train.top.lander_run.history["decisions"][-1]
+    decisions = train.top.run.history["decisions"][-1]
     train.app.close()
     driver = open_game(TrainScene)
     driver.frames(2)
-    driver.key(pygame.K_RETURN)
+    driver.press_on(texts.TRAIN_GO_ON)
     scene = driver.top
-    driver.wait(lambda: scene.lander_run.history and scene.lander_run.history["decisions"][-1] > decisions + 500)
+    driver.wait(lambda: scene.run.history and scene.run.history["decisions"][-1] > decisions + 500)
     driver.frames(14)
     scene.rewind.seek(decisions / 2)
     driver.frames(2)
-    assert not scene.rewind.swarm_kept
-    assert scene.rewind.swarm.swarm_state is None
-    checkpoint = scene.lander_run.history.checkpoint_at(scene.moment)
+    assert scene.rewind.swarm_state is scene.past_swarm.swarm_state is None
+    checkpoint = scene.run.history.checkpoint_at(scene.moment)
     assert np.array_equal(scene.inside.network.values, checkpoint.values)
-    began = scene.lander_run.swarms.begins
+    began = scene.run.swarms.begins
     assert began is not None
     scene.rewind.seek(began + 100)
-    assert scene.rewind.swarm_kept
+    assert scene.rewind.swarm_state
 
 
 def test_without_a_run_there_is_nothing_to_rewind(open_game: Callable[..., Driver]) -> None:
@@ -225,10 +224,10 @@ def test_a_short_history_of_which_little_is_known_or_fits_is_rewound(
 ) -> None:
     driver = open_game(TrainScene)
     driver.frames(2)
-    history = driver.top.lander_run.history
+    history = driver.top.run.history
     for decisions in (300.0, 600.0):
         history.append(
-            Point(**(dict.fromkeys(list(COLUMNS[:10]), np.nan) | {"seconds": decisions / 100, "decisions": decisions}))
+            Point(**(dict.fromkeys(list(COLUMNS[:9]), np.nan) | {"seconds": decisions / 100, "decisions": decisions}))
         )
     if values is not None:  # a checkpoint of another network
         history.append(Checkpoint(1.0, 100, 0.0, values))
@@ -236,7 +235,7 @@ def test_a_short_history_of_which_little_is_known_or_fits_is_rewound(
     driver.top.rewind.seek(10.0)
     driver.frames(14)
     assert driver.top.moment == 300
-    assert not driver.top.rewind.swarm_kept
+    assert driver.top.rewind.swarm_state is None
     assert driver.top.inside.network is None or driver.top.inside.shown is None
     driver.top.open(INSIDE)
     driver.frames(3)
@@ -248,12 +247,12 @@ def test_a_short_history_of_which_little_is_known_or_fits_is_rewound(
 
 def test_the_charts_are_zoomed_by_wheel_and_keys(train: Driver) -> None:
     scene = train.top
-    zoom = scene.training_charts.charts.zoom
+    zoom = scene.charts.zoom
     train.move(halfway(train))
     train.post(pygame.MOUSEWHEEL, x=0, y=2)
     assert zoom.factor > 1
     train.frames(30)
-    for chart in scene.training_charts.charts.charts:
+    for chart in scene.charts.charts:
         assert chart.x_range[1] - chart.x_range[0] < zoom.end
     train.form.focus(scrubber(train))
     train.key(pygame.K_0)

@@ -18,7 +18,7 @@ from game.scenes.train.networks import NetworksScene
 from game.training.library import Library
 from game.ui.context import Context
 from game.ui.entry import Entry
-from game.ui.listing import Listing
+from game.ui.rows import ListRow
 from tests.support.driver import Driver
 
 Open = Callable[..., Driver]
@@ -89,7 +89,7 @@ def shown(driver: Driver) -> str:
 
 
 def verbs(driver: Driver) -> list[str]:
-    return [widget.label for widget in scene(driver)._verbs]
+    return [label for label, _ in scene(driver).verbs]
 
 
 def naming(driver: Driver) -> bool:
@@ -102,8 +102,8 @@ def click(driver: Driver, label: str) -> None:
 
 
 def click_row(driver: Driver, number: int) -> None:
-    box = driver.the(Listing).box
-    driver.click((box.left + 20, box.top + 34 * number + 17))
+    box = driver.the(ListRow).box
+    driver.click((box.left + 20, box.top + ListRow.pad + 30 * number + 15))
 
 
 def type_text(driver: Driver, text: str) -> None:
@@ -114,7 +114,7 @@ def type_text(driver: Driver, text: str) -> None:
 def test_the_latest_runs_come_first_and_the_games_own_last(open_runs, three: Library):
     driver = open_runs()
     assert [run.name for run in scene(driver).items] == ["a", "b", "c", "modern"]
-    assert driver.the(Listing).rows[0][:3] == ("a", "75.0 %", "5 k")
+    assert driver.the(ListRow).rows[0][:3] == ("a", "75.0 %", "5 k")
     assert "Go on training" in verbs(driver)
     driver.keys(DOWN, DOWN, DOWN)
     assert shown(driver) == "modern"
@@ -123,7 +123,7 @@ def test_the_latest_runs_come_first_and_the_games_own_last(open_runs, three: Lib
 
 def test_without_runs_a_sentence_says_how_to_make_one(open_runs):
     driver = open_runs()
-    assert scene(driver)._line == texts.RUNS_NONE
+    assert scene(driver).line == texts.RUNS_NONE
     assert shown(driver) == "modern"
 
 
@@ -205,7 +205,7 @@ def test_a_gamepad_deletes_brings_back_and_leaves(open_runs, three: Library):
         driver.button(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
     driver.button(pygame.CONTROLLER_BUTTON_A)
     assert [run.name for run in three.runs()] == ["b", "c"]
-    for _ in range(4):
+    for _ in range(3):
         driver.button(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
     assert scene(driver).form.focused.label == texts.RUN_RESTORE.format(name="a")
     driver.button(pygame.CONTROLLER_BUTTON_A)
@@ -236,7 +236,7 @@ def test_deleting_all_there_is_leaves_a_screen_that_works(open_runs, three: Libr
     driver = open_runs()
     driver.keys(*[pygame.K_DELETE] * 5)
     assert three.runs() == []
-    assert scene(driver)._line == texts.RUNS_NONE
+    assert scene(driver).line == texts.RUNS_NONE
 
 
 def test_export_says_where_to(open_runs, three: Library, tmp_path: Path):

@@ -27,7 +27,7 @@ def test_trials_stand_by_their_results_and_the_chosen_one_is_told(open_game, wri
     written.clear()
     driver.frames(20)
     assert driver.top.chosen.number == 2
-    assert "Trial 2   120" in written
+    assert "Trial 2 · 120" in written
     assert texts.STUDY_SHARE.format(share=71) in written
 
 

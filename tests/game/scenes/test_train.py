@@ -14,7 +14,6 @@ import pytest
 
 from ai.lander.pilots import ScriptedPilot
 from ai.lander.rewards import RewardWeights
-from ai.training.checkpoints import resume_run
 from ai.training.config import PRESETS
 from ai.training.demonstrations import demonstrate, write
 from ai.training.history import History
@@ -25,10 +24,9 @@ from game.core.scene import Push
 from game.core.worker import WorkerState
 from game.flight.demonstrations import FILE_NAME
 from game.panels.network_view import NetworkView
-from game.scenes.menus.dialogs import QuestionDialog
 from game.scenes.train.inside import SHOWN
 from game.scenes.train.scene import TrainScene
-from game.training.library import Library, SavedRun
+from game.training.library import Library
 from game.training.run import TrainingRun
 from game.ui import focus
 from game.ui.rows import EntryRow
@@ -43,7 +41,7 @@ KNOB_PAGE = texts.KNOB_PAGES["learning"]  # one of the pages of knobs
 
 def start(driver: Driver) -> None:
     driver.press_on(texts.TRAIN_START)
-    driver.wait(lambda: len(driver.top.lander_run.history) >= 2)
+    driver.wait(lambda: len(driver.top.run.history) >= 2)
 
 
 def save_as(driver: Driver, name: str) -> None:
@@ -55,22 +53,22 @@ def save_as(driver: Driver, name: str) -> None:
 def test_start_pause_step_and_go_on(beside: Driver) -> None:
     start(beside)
     scene = beside.top
-    assert scene.lander_run.state is WorkerState.RUNNING
+    assert scene.run.state is WorkerState.RUNNING
     assert len(scene.swarm.swarm_state.outcome) == 4
     beside.key(pygame.K_RETURN)
-    beside.wait(lambda: scene.lander_run.state is WorkerState.PAUSED)
+    beside.wait(lambda: scene.run.state is WorkerState.PAUSED)
     beside.frames(20)
     time.sleep(0.2)
     beside.frames(5)
-    stood = scene.lander_run.swarm_state.decisions
+    stood = scene.run.swarm_state.decisions
     time.sleep(0.3)
     beside.frames(5)
-    assert scene.lander_run.swarm_state.decisions == stood
+    assert scene.run.swarm_state.decisions == stood
     beside.key(pygame.K_PERIOD)
-    beside.wait(lambda: scene.lander_run.swarm_state.decisions > stood)
-    assert scene.lander_run.swarm_state.decisions == stood + 4
+    beside.wait(lambda: scene.run.swarm_state.decisions > stood)
+    assert scene.run.swarm_state.decisions == stood + 4
     beside.key(pygame.K_RETURN)
-    beside.wait(lambda: scene.lander_run.swarm_state.decisions > stood + 8)
+    beside.wait(lambda: scene.run.swarm_state.decisions > stood + 8)
 
 
 @pytest.mark.slow
@@ -78,8 +76,8 @@ def test_it_learns_as_it_would_without_a_window(beside: Driver) -> None:
     beside.unseen = True
     start(beside)
     scene = beside.top
-    beside.wait(lambda: len(scene.lander_run.history.checkpoints) >= 2)
-    checkpoint = scene.lander_run.history.checkpoints[1]
+    beside.wait(lambda: len(scene.run.history.checkpoints) >= 2)
+    checkpoint = scene.run.history.checkpoints[1]
     training = Training(SMALL, 3)
     while training.agent.decisions < checkpoint.decisions:
         training.advance()
@@ -100,66 +98,39 @@ def test_a_run_is_named_saved_and_found(train: Driver, tmp_path: Path) -> None:
     assert run.seed == 3
 
 
-def test_what_was_left_without_a_name_is_offered_again(train: Driver, open_game: Callable[..., Driver]) -> None:
-    start(train)
-    decisions = train.top.lander_run.history["decisions"][-1]
-    train.app.close()
-    driver = open_game(TrainScene)
-    driver.frames(2)
-    assert driver.top_name == "QuestionDialog"
-    driver.key(pygame.K_RETURN)
-    scene = driver.top
-    driver.wait(lambda: scene.lander_run.begun or scene.lander_run.swarm_state)
-    assert scene.lander_run.swarm_state.decisions >= decisions
-    assert scene.lander_run.config.num_envs == SMALL.num_envs
-
-
-def test_a_run_that_goes_on_is_called_by_its_own_settings(train: Driver, open_game: Callable[..., Driver]) -> None:
+def test_what_was_left_without_a_name_goes_on_under_its_own_settings(
+    train: Driver, open_game: Callable[..., Driver]
+) -> None:
     train.top.knobs.set_config(PRESETS["classic"].changed(hidden=(8,)), 3)
     start(train)
-    assert train.top.lander_run.name == "Classic 1"
+    assert train.top.run.name == "Classic 1"
+    decisions = train.top.run.history["decisions"][-1]
     train.app.close()
     driver = open_game(TrainScene)
     driver.frames(2)
-    driver.key(pygame.K_RETURN)
-    driver.wait(lambda: driver.top.lander_run.swarm_state)
+    run = driver.top.run
+    driver.press_on(texts.TRAIN_GO_ON)
+    driver.wait(lambda: run.begun or run.swarm_state)
     driver.frames(2)
-    assert driver.top.lander_run.name == "Classic 1"
+    assert run.swarm_state.decisions >= decisions
+    assert (run.config.hidden, run.name) == ((8,), "Classic 1")
+    assert texts.TRAIN_GO_ON not in [each.label for each in driver.form.widgets]
 
 
-def test_what_was_left_without_a_name_can_be_discarded(train: Driver, open_game: Callable[..., Driver]) -> None:
-    start(train)
-    train.app.close()
-    driver = open_game(TrainScene)
-    driver.frames(2)
-    driver.keys(pygame.K_RIGHT, pygame.K_RETURN)
-    assert driver.top_name == "TrainScene"
-    driver.frames(2)
-    assert driver.top_name == "TrainScene"
-    library = driver.top.library
-    assert library.rescued() is None
-    assert library.last_deleted
-
-
-def test_what_has_landed_and_was_left_without_a_name_outlives_a_start(
-    train: Driver, open_game: Callable[..., Driver], monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("share", [0.98, None])
+def test_start_keeps_what_was_left_if_it_lands_and_puts_anything_else_where_it_can_be_brought_back(
+    train: Driver, open_game: Callable[..., Driver], monkeypatch: pytest.MonkeyPatch, share: float | None
 ) -> None:
     start(train)
     train.app.close()
-    rescued = Library.rescued
-
-    def landed(library: Library) -> SavedRun | None:
-        left = rescued(library)
-        return left and replace(left, success=0.98)
-
-    monkeypatch.setattr(Library, "rescued", landed)
+    claim = Library.claim
+    monkeypatch.setattr(Library, "claim", lambda library: (left := claim(library)) and replace(left, success=share))
     driver = open_game(TrainScene)
     driver.frames(2)
-    driver.key(pygame.K_ESCAPE)
-    driver.frames(2)
-    name = landed(driver.top.library).name
+    library = driver.top.library
     start(driver)
-    assert [run.name for run in driver.top.library.runs()] == [name]
+    assert len(library.runs()) == (share is not None)
+    assert bool(library.last_deleted) == (share is None)
 
 
 def test_a_run_whose_place_a_changed_setting_takes_is_in_the_list(train: Driver) -> None:
@@ -168,7 +139,7 @@ def test_a_run_whose_place_a_changed_setting_takes_is_in_the_list(train: Driver)
     scene.knobs.turn("n_step", 3)
     train.frames(2)
     train.press_on(texts.KNOBS_APPLY)
-    train.wait(lambda: scene.library.runs() and scene.lander_run.config.n_step == 3)
+    train.wait(lambda: scene.library.runs() and scene.run.config.n_step == 3)
     (kept,) = scene.library.runs()
     assert not kept.problem
     assert kept.decisions > 0
@@ -183,8 +154,8 @@ def test_a_saved_run_goes_on_in_the_scene_that_is_there(train: Driver) -> None:
     train.frames(2)
     train.press_on(texts.RUN_TRAIN)
     assert train.top is scene
-    train.wait(lambda: scene.lander_run.swarm_state is not None)
-    assert scene.lander_run.state is WorkerState.RUNNING
+    train.wait(lambda: scene.run.swarm_state is not None)
+    assert scene.run.state is WorkerState.RUNNING
 
 
 def test_a_name_that_is_taken_is_told_and_can_be_changed(train: Driver) -> None:
@@ -206,12 +177,12 @@ def test_a_run_is_begun_that_learns_from_the_players_landings(train: Driver, tmp
     scene, notes = train.top, list[str]()
     train.app.context.note = notes.append
     train.press_on(texts.TRAIN_TEACH)
-    assert scene.lander_run.state is None, "nothing to learn from, nothing begun"
+    assert scene.run.state is None, "nothing to learn from, nothing begun"
     assert texts.TRAIN_NO_LESSONS in notes
     write(tmp_path / "user" / FILE_NAME, demonstrate(ScriptedPilot(), 2, seed=5, spawn="near"))
     train.key(pygame.K_RETURN)
-    train.wait(lambda: scene.lander_run.demonstrations == 2 and len(scene.lander_run.history))
-    assert scene.lander_run.config.success_pass
+    train.wait(lambda: scene.run.demonstrations == 2 and len(scene.run.history))
+    assert scene.run.config.success_pass
     assert scene.knobs.config.success_pass
     train.frames(1)
     assert texts.TRAIN_TAUGHT.format(count=2) in notes
@@ -227,11 +198,11 @@ def test_a_live_knob_turns_and_another_waits(train: Driver) -> None:
     start(train)
     scene = train.top
     scene.knobs.turn("discount", 0.9)
-    train.wait(lambda: scene.lander_run.config.discount == 0.9)
-    assert scene.lander_run.history.setting_changes[-1].name == "discount"
+    train.wait(lambda: scene.run.config.discount == 0.9)
+    assert scene.run.history.setting_changes[-1].name == "discount"
     scene.knobs.turn("n_step", 3)
-    assert scene.knobs.waiting == ["n_step"]
-    assert scene.lander_run.config.n_step == SMALL.n_step
+    assert scene.knobs.settings.waiting == ["n_step"]
+    assert scene.run.config.n_step == SMALL.n_step
 
 
 def test_flying_against_a_checkpoint_and_back(train: Driver) -> None:
@@ -241,17 +212,17 @@ def test_flying_against_a_checkpoint_and_back(train: Driver) -> None:
     train.key(pygame.K_LEFT)
     train.key(pygame.K_RETURN)
     assert train.top_name == "PlayScene"
-    train.wait(lambda: scene.lander_run.state is WorkerState.PAUSED)
+    train.wait(lambda: scene.run.state is WorkerState.PAUSED)
     train.frames(3)
     train.key(pygame.K_ESCAPE)
     assert train.top is scene
-    train.wait(lambda: scene.lander_run.state is WorkerState.RUNNING)
+    train.wait(lambda: scene.run.state is WorkerState.RUNNING)
 
 
 def test_the_network_is_looked_into_and_left(train: Driver) -> None:
     start(train)
     scene = train.top
-    train.wait(lambda: scene.lander_run.network_state is not None)
+    train.wait(lambda: scene.run.network_state is not None)
     train.click(train.widget(texts.TRAIN_LOOK[0]).box.center)
     train.frames(2)
     assert scene.inside.opened
@@ -316,9 +287,9 @@ def test_a_run_is_started_named_and_left_without_a_mouse(train: Driver, device: 
 
     scene = train.top
     press("confirm")
-    train.wait(lambda: len(scene.lander_run.history) >= 2)
+    train.wait(lambda: len(scene.run.history) >= 2)
     press("confirm")
-    train.wait(lambda: scene.lander_run.state is WorkerState.PAUSED)
+    train.wait(lambda: scene.run.state is WorkerState.PAUSED)
     press("up")
     assert scene.form.focused is not train.widget(texts.TRAIN_RESUME)
     scene.form.focus(train.widget(texts.TRAIN_SAVE))
@@ -336,11 +307,11 @@ def test_a_dead_worker_is_told_and_its_run_can_still_be_saved(beside: Driver, tm
     beside.unseen = True
     start(beside)
     scene = beside.top
-    beside.wait(lambda: scene.library.unsaved.is_dir() or scene.lander_run.state is WorkerState.FAILED, 60)
+    beside.wait(lambda: scene.library.unsaved.is_dir() or scene.run.state is WorkerState.FAILED, 60)
     for child in active_children():
         child.kill()
-    beside.wait(lambda: scene.lander_run.state is WorkerState.FAILED)
-    assert scene.lander_run.problem
+    beside.wait(lambda: scene.run.state is WorkerState.FAILED)
+    assert scene.run.problem
     beside.frames(20)
     save_as(beside, "saved all the same")
     (run,) = Library(tmp_path / "user").runs()
@@ -351,26 +322,10 @@ def test_numbers_that_run_away_are_told(train: Driver) -> None:
     wild = SMALL.changed(cost="mse", reward_scale=1.0, reward_weights=RewardWeights(terminal=1e30))
     train.top.knobs.set_config(wild, 0)
     train.key(pygame.K_RETURN)
-    train.wait(lambda: train.top.lander_run.state is WorkerState.FAILED, 60)
-    assert "learning step" in train.top.lander_run.problem
+    train.wait(lambda: train.top.run.state is WorkerState.FAILED, 60)
+    assert "learning step" in train.top.run.problem
     train.frames(20)
     assert train.top_name == "TrainScene"
-
-
-@pytest.mark.slow
-def test_killed_again_and_again_it_goes_on_and_what_was_saved_loads(beside: Driver) -> None:
-    scene = beside.top
-    for number in range(2):
-        start(beside)
-        save_as(beside, f"run {number}")
-        time.sleep(0.05 * number)
-        for child in active_children():
-            child.kill()
-        beside.wait(lambda: scene.lander_run.state is WorkerState.FAILED)
-        assert beside.top is scene
-    for run in scene.library.runs():
-        assert not run.problem
-        assert resume_run(run.folder).agent.decisions > 0
 
 
 def _kept() -> list[object]:
@@ -385,12 +340,10 @@ def test_visits_leave_no_process_no_thread_and_no_scene(game: Driver) -> None:
         scene = TrainScene(game.app.context)
         game.app.scenes.apply(Push(scene))
         game.frames(2)
-        if isinstance(game.top, QuestionDialog):  # about the run of the visit before
-            game.key(pygame.K_ESCAPE)
         scene.knobs.set_config(SMALL, 0)
         game.key(pygame.K_RETURN)
         if visit == 0:  # the others leave while it starts
-            game.wait(lambda scene=scene: scene.lander_run.swarm_state)  # type: ignore[misc]
+            game.wait(lambda scene=scene: scene.run.swarm_state)  # type: ignore[misc]
         game.key(pygame.K_ESCAPE)
         assert not active_children()
     del scene

@@ -19,6 +19,7 @@ from game.core.worker import WorkerState
 from game.scenes.train.base import KNOBS
 from game.scenes.train.cards import CARDS, FILE, measured
 from game.scenes.train.knob import Knob
+from game.scenes.train.laboratory import came_words, why
 from game.scenes.train.scene import TrainScene
 from game.training.knob_descriptions import knob_descriptions
 from game.training.library import Library
@@ -26,6 +27,7 @@ from game.training.run import AHEAD
 from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.small import LANDERS as SMALL
+from tests.support.written import words_written
 
 TIMES = texts.LAB_TIMES.format(factor=100.0)
 
@@ -42,7 +44,7 @@ def press_try(driver: Driver) -> None:
 
 def split(driver: Driver) -> None:
     press_try(driver)
-    driver.wait(lambda: driver.top.lander_run.twin and len(driver.top.lander_run.twin.history) >= 2)
+    driver.wait(lambda: driver.top.run.twin and len(driver.top.run.twin.history) >= 2)
 
 
 # Knobs
@@ -89,7 +91,7 @@ def test_every_numeric_knob_says_what_too_little_and_too_much_does_and_what_to_w
 def test_both_runs_begin_alike_and_stay_in_step(beside: Driver) -> None:
     beside.unseen = True
     split(beside)
-    run = beside.top.lander_run
+    run = beside.top.run
     assert run.config == SMALL
     assert run.twin.config == SMALL.changed(learning_rate=0.3, final_learning_rate=0.03)
     assert run.seed == run.twin.seed == 3
@@ -113,7 +115,7 @@ def alone(config: Config, history: History) -> np.ndarray:
 
 def test_a_worker_that_dies_leaves_the_other_flying(beside: Driver) -> None:
     split(beside)
-    run = beside.top.lander_run
+    run = beside.top.run
     os.kill(run.twin._worker.process_id, signal.SIGKILL)
     beside.wait(lambda: run.twin.state is WorkerState.FAILED)
     before = run.turns[0]
@@ -130,7 +132,7 @@ def test_a_worker_that_dies_leaves_the_other_flying(beside: Driver) -> None:
 
 def test_a_healthy_run_that_dies_is_reported_and_the_experiment_can_be_kept(beside: Driver, tmp_path: Path) -> None:
     split(beside)
-    run = beside.top.lander_run
+    run = beside.top.run
     os.kill(run._worker.process_id, signal.SIGKILL)
     beside.wait(lambda: run.state is WorkerState.FAILED)
     assert "SIGKILL" in run.problem
@@ -156,7 +158,7 @@ def test_only_the_healthy_run_is_kept_on_the_disk(train: Driver, tmp_path: Path)
 
 def test_pause_and_step_are_for_both(train: Driver) -> None:
     split(train)
-    run = train.top.lander_run
+    run = train.top.run
     train.press_on(texts.TRAIN_PAUSE)
     train.frames(3)
     assert run.twin.state is run.state is WorkerState.PAUSED
@@ -170,7 +172,7 @@ def test_pause_and_step_are_for_both(train: Driver) -> None:
 
 def test_a_turned_knob_is_turned_in_both_but_the_one_that_differs(train: Driver) -> None:
     split(train)
-    run = train.top.lander_run
+    run = train.top.run
     train.top.knobs.turn("discount", 0.9)
     train.top.knobs.turn("learning_rate", 0.001)
     train.wait(lambda: run.config.learning_rate == 0.001 and run.twin.config.discount == 0.9)
@@ -182,31 +184,20 @@ def test_a_turned_knob_is_turned_in_both_but_the_one_that_differs(train: Driver)
 def test_two_lines_in_every_chart_by_decisions(train: Driver) -> None:
     split(train)
     train.frames(60)
-    charts = train.top.training_charts
-    for chart in charts.charts.charts:
+    for chart in train.top.charts.charts:
         assert len(chart.runs) == 2
     train.press_on(texts.LAB_KNOBS)
     train.frames(1)
     assert train.choice(texts.TRAIN_AXES[1]).index == 1
 
 
-def test_the_player_is_asked_before_a_run_ends_for_an_experiment(train: Driver) -> None:
+def test_a_run_that_makes_room_for_an_experiment_is_in_the_list(train: Driver) -> None:
     scene = train.top
     train.press_on(texts.TRAIN_START)
-    train.wait(lambda: len(scene.lander_run.history) >= 2)
-    press_try(train)
-    assert train.top_name == "QuestionDialog"
-    train.key(pygame.K_ESCAPE)
-    assert not scene.lander_run.twin
-    train.press_on(TIMES)
-    train.press_on(texts.SPLIT_SAVE)
-    train.frames(2)
-    assert train.top_name == "NameDialog"
-    train.key(pygame.K_ESCAPE)
-    train.press_on(TIMES)
-    train.press_on(texts.SPLIT_START)
-    train.frames(2)
-    assert scene.lander_run.twin is not None
+    train.wait(lambda: len(scene.run.history) >= 2)
+    split(train)
+    (kept,) = scene.library.runs()
+    assert kept.decisions > 0
 
 
 # The guess
@@ -226,23 +217,23 @@ def test_the_lab_asks_for_a_guess_and_says_what_came(train: Driver, device: str)
     press(texts.TRAIN_EXPERIMENTS)
     train.frames(2)
     press(texts.SABOTAGES["no_replay"][0])
-    assert scene.pages.page == "guess"
-    assert not scene.lander_run.twin
+    assert scene.laboratory.page == "guess"
+    assert not scene.run.twin
     train.frames(2)
     press(texts.LAB_GUESSES["never"])
-    assert scene.pages.page == "result"
+    assert scene.laboratory.page == "result"
     assert laboratory.chosen.guess == "never"
-    assert scene.lander_run.twin.config == experiment_of(SMALL, "no_replay").applied(SMALL)
-    train.wait(lambda: len(scene.lander_run.twin.history) >= 2 and len(scene.lander_run.history) >= 2)
+    assert scene.run.twin.config == experiment_of(SMALL, "no_replay").applied(SMALL)
+    train.wait(lambda: len(scene.run.twin.history) >= 2 and len(scene.run.history) >= 2)
     train.frames(25)  # they are judged now and then
     assert laboratory.came is None
-    assert laboratory.so_far != texts.TRAIN_BEGINS
+    assert laboratory.said["came"] == texts.LAB_TOO_EARLY
     press(texts.LAB_KNOBS)
     assert knobs(train)
     press(texts.TRAIN_EXPERIMENTS)
     train.frames(2)
     press(texts.LAB_KEEP_RUN)
-    assert not scene.lander_run.twin
+    assert not scene.run.twin
     assert knobs(train)
 
 
@@ -254,17 +245,27 @@ def test_the_guess_can_be_skipped_or_the_sabotage_flown_alone(train: Driver) -> 
         train.press_on(answer)
         train.frames(1)
     assert scene.knobs.config.layer_normalisation is False, "flown alone, it is the run's own setting"
-    assert scene.lander_run.twin.config.discount == 0.8
+    assert scene.run.twin.config.discount == 0.8
     assert scene.laboratory.chosen.guess is None
 
 
-def test_why_a_part_matters_is_told_only_where_it_was_missed(train: Driver) -> None:
-    train.press_on(texts.TRAIN_EXPERIMENTS)
-    train.press_on(texts.SABOTAGES["no_replay"][0])
-    train.press_on(texts.LAB_SKIP)
-    laboratory, pages = train.top.laboratory, train.top.pages
-    for laboratory.came in (None, *VERDICTS):
-        assert bool(pages._told("why")) == (laboratory.came not in (None, "as_well"))
+def test_why_a_part_matters_is_told_only_where_it_was_missed() -> None:
+    for came in (None, *VERDICTS):
+        assert bool(why(came, "no_replay")) == (came not in (None, "as_well")), came
+        assert not why(came, "")
+    assert texts.LAB_NOT_AS_GUESSED in came_words("never", "later")
+    assert texts.LAB_AS_GUESSED in came_words("never", "never")
+
+
+def test_both_shares_are_those_of_the_painted_chart(train: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
+    split(train)
+    train.frames(30)
+    written = words_written(monkeypatch)
+    for _ in range(20):
+        written.clear()
+        train.frames(1)
+        shares = [each for each in written if each.endswith(texts.SPLIT_LANDED.format(percent=""))]
+        assert shares == [texts.SPLIT_LANDED.format(percent=share) for share in train.top.charts.landed]
 
 
 def test_captions_follow_the_run(train: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -272,7 +273,7 @@ def test_captions_follow_the_run(train: Driver, monkeypatch: pytest.MonkeyPatch)
     train.press_on(texts.TRAIN_MORE_CHARTS[0])
     train.press_on(texts.TRAIN_START)
     scene = train.top
-    painted = {chart.label: chart for chart in scene.training_charts.charts.charts}
+    painted = {chart.label: chart for chart in scene.charts.charts}
     success, epsilon = (painted[texts.TRAIN_CHARTS[name]] for name in ("success", "epsilon"))
     train.wait(lambda: success.painted_caption and epsilon.painted_caption)
     assert success.painted_caption == texts.CHART_CAPTIONS["success"]["unknown"]
@@ -285,7 +286,7 @@ def test_captions_follow_the_run(train: Driver, monkeypatch: pytest.MonkeyPatch)
 
 def test_an_earlier_moment_shows_both_swarms_of_it(train: Driver) -> None:
     split(train)
-    scene, run = train.top, train.top.lander_run
+    scene, run = train.top, train.top.run
     train.wait(lambda: min(len(run.swarms.moments), len(run.twin.swarms.moments)) >= 3)
     train.frames(2)
     scene.rewind.seek(float(run.swarms.moments[0]))
@@ -300,7 +301,7 @@ def test_an_earlier_moment_shows_both_swarms_of_it(train: Driver) -> None:
 
 
 def test_each_card_says_what_was_measured_of_it(train: Driver) -> None:
-    train.top.pages.open()
+    train.top.laboratory.open()
     train.frames(2)
     shown = [each.label for each in train.form.widgets]
     shares = read_json(FILE)["shares"]

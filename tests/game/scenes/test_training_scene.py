@@ -30,7 +30,7 @@ def written_in(driver: Driver, monkeypatch: pytest.MonkeyPatch) -> tuple[list[st
     """What is written in a frame, and which texts lie on one another."""
     with monkeypatch.context() as patch:
         notes = Written(patch.setattr)
-        for chart in (each for each in getattr(driver.top, "training_charts", driver.top).charts.charts):
+        for chart in (each for each in driver.top.charts.charts):
             chart.renew()
         driver.frames(1)
         found = notes.page(driver.top.laid_on(driver.app.canvas)).notes
@@ -62,7 +62,7 @@ def test_few_words_and_choices_come_first(
 def test_few_words_beside_a_run_that_lands(train: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
     train.top.open(MORE)
     train.press_on(texts.TRAIN_START)
-    train.wait(lambda: train.top.lander_run.measured and len(train.top.lander_run.history) >= 8)
+    train.wait(lambda: train.top.run.measured and len(train.top.run.history) >= 8)
     train.press_on(texts.TRAIN_PAUSE)
     train.frames(14)
     assert len(words_in(train, monkeypatch)) <= MOST_WORDS, words_in(train, monkeypatch)
@@ -79,7 +79,7 @@ def test_what_was_opened_stays_open(open_game: Callable[..., Driver]) -> None:
     assert again.top.inside.opened
     again.key(pygame.K_ESCAPE)
     again.frames(1)
-    assert len(again.top.training_charts.charts.charts) == 4
+    assert len(again.top.charts.charts) == 4
     assert again.widget(texts.TRAIN_EXPERIMENTS)
 
 
@@ -89,7 +89,7 @@ def test_no_text_lies_on_another_in_any_window(
     """Whatever is open, while a run goes on and a question waits; labels of landers are beside what they name."""
     driver, settings = train, train.app.context.settings
     driver.press_on(texts.TRAIN_START)
-    driver.wait(lambda: len(driver.top.lander_run.history) >= 6)
+    driver.wait(lambda: len(driver.top.run.history) >= 6)
     driver.press_on(texts.TRAIN_PAUSE)
     driver.top.knobs.turn("n_step", 3)
     names = [repr(word) for word in (texts.SWARM_BEST, texts.SWARM_LUCKIEST)]

@@ -308,8 +308,7 @@ ONLY_AT = {
         "tutorial", "mission, card",
     },
     at_first_sight_there_is_little_to_read_and_to_choose_from: FLOWING
-    - {"MissionsScene", "LogbookScene"}  # whose lists are long
-    | {"Play", "mission", "daily", "descent"},
+    | {"Play", "mission", "daily", "descent", "LogbookScene, with much to list", "MissionsScene, with much to list"},
     in_flight_there_is_one_sentence: IN_FLIGHT,
 }  # fmt: skip
 

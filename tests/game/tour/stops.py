@@ -55,9 +55,10 @@ def listed(context: Context) -> None:
     """Fill every list, the logbook also with an entry of which much is to be said."""
     stock(context)
     told = {"course": "ferry", "medal": 3, "gravity": 0.8, "outcome": "OUT_OF_BOUNDS", "human": 0.5}
-    entry = replace(Records(context.user_dir).entries()[0], **told)
+    usual = Records(context.user_dir).entries()[0]
+    entries = [replace(usual, **told), usual, replace(usual, spawn="rung_3"), replace(usual, course="descent", leg=2)]
     with (context.user_dir / LOGBOOK).open("a", encoding="utf-8") as file:
-        file.write(json.dumps(asdict(entry)) + "\n")
+        file.writelines(3 * [json.dumps(asdict(entry)) + "\n" for entry in entries])
 
 
 def in_flight(driver: Driver) -> None:

@@ -135,8 +135,8 @@ def test_a_preset_waits_whole_in_a_run(run_settings: RunSettings, heard: list[An
 
 def test_a_sabotage_of_live_knobs_alone_takes_effect_at_once(run_settings: RunSettings, heard: list[Any]):
     run_settings.set_running(True)
-    run_settings.load(("modern", "no_target"))
-    assert heard == [("tau", 1.0)]
+    run_settings.load(("modern", "short_sight"))
+    assert heard == [("discount", 0.8)]
     assert not run_settings.waiting
     assert not run_settings.changed
 
@@ -179,7 +179,7 @@ def test_a_configuration_from_elsewhere_is_named_after_what_is_nearest(run_setti
 
 def test_a_run_that_begins_with_what_was_chosen_keeps_its_name(run_settings: RunSettings):
     run_settings.turn("discount", 0.9)
-    run_settings.turn("n_step", 1)  # nearer to a sabotage than to modern
+    run_settings.turn("layer_normalisation", False)  # nearer to a sabotage than to modern
     run_settings.set_config(run_settings.config, run_settings.seed)
     assert run_settings.named == ("modern", "")
 

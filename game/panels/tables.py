@@ -1,0 +1,119 @@
+"""Rows of figures, each of which explains itself: tables and formulas."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Final
+
+from game.drawing.cursor import BASELINE, LEADING, Cursor
+from game.drawing.paint import mix
+from game.drawing.tokens import CAPTION, FAINT, INK, LINE, MUTE, NET, SMALL, STEP, TITLE, Colour
+
+_APART: Final = 18.0  # points between two columns of a table
+_PAD: Final = 4.0  # above and below a line of it
+
+
+@dataclass(frozen=True)
+class Line:
+    """Line of a table: a name and its figures, and for who asks, what they are and how they come about.
+
+    Attributes:
+        bars: for each figure, the length of a bar below it, 0 to 1; empty for none.
+
+    """
+
+    cells: Sequence[str]
+    what: str = ""
+    now: str = ""
+    lit: bool = False
+    bars: Sequence[float] = ()
+
+
+def table(head: Sequence[str], lines: Callable[[], Sequence[Line]]) -> Callable[[Cursor], None]:
+    """Return what writes a table: names on the left, figures in columns at the right; `head` may be empty."""
+
+    def write(cursor: Cursor) -> None:
+        small, label, shown = cursor.in_style(SMALL), cursor.in_style(CAPTION, MUTE), lines()
+        widths = [
+            max(label.measured(head[place]) if head else 0.0,
+                *(small.measured(line.cells[place], tabular=True) for line in shown)) + _APART
+            for place in range(1, len(shown[0].cells))
+        ]  # fmt: skip
+        if head:
+            _write_cells(label, head, widths)
+            cursor.y = label.y + _PAD
+        for line in shown:
+            _write_line(cursor, line, widths)
+
+    return write
+
+
+def _write_line(cursor: Cursor, line: Line, widths: Sequence[float]) -> None:
+    top = cursor.y
+    row = replace(cursor, y=top + _PAD, size=SMALL, colour=INK if line.lit else mix(MUTE, INK, 0.35))
+    _write_cells(row, line.cells, widths)
+    right = cursor.right
+    for width, share in zip(widths[::-1], line.bars[::-1], strict=False):
+        if cursor.canvas:
+            bar = (right - width + _APART, row.y + 1, width - _APART, 2.5)
+            cursor.canvas.bar(bar, max(share, 0.02), NET if line.lit else mix(FAINT, NET, 0.4))
+        right -= width
+    cursor.y = row.y + (STEP if line.bars else _PAD)
+    if cursor.canvas:
+        cursor.canvas.line((cursor.left, cursor.y), (cursor.right, cursor.y), LINE)
+        if line.what:
+            cursor.canvas.explain((cursor.left, top, cursor.width, cursor.y - top), line.what, partial(str, line.now))
+
+
+def _write_cells(row: Cursor, cells: Sequence[str], widths: Sequence[float]) -> None:
+    """Write a name, on as many lines as it needs, and its figures, each at the right end of its column."""
+    baseline, right = row.baseline, row.right
+    for cell, width in zip(cells[:0:-1], widths[::-1], strict=True):
+        if row.canvas:
+            row.canvas.text(cell, (right, baseline), size=row.size, colour=row.colour, align="right", tabular=True)
+        right -= width
+    name, top = replace(row, width=max(right - row.left, 40.0)), row.y
+    name.text(cells[0])
+    row.y = max(name.y, top + LEADING * row.size)
+
+
+def told(*pairs: tuple[str, str]) -> str:
+    """Return pairs of a word and a figure as the rows of an explanation."""
+    return "\n".join("\t".join(pair) for pair in pairs)
+
+
+@dataclass(frozen=True)
+class Part:
+    """Part of a formula: a figure over the word for it, or a sign without one."""
+
+    figure: str
+    word: str = ""
+    what: str = ""
+    now: str = ""
+    colour: Colour = INK
+
+
+def formula(parts: Callable[[], Sequence[Part]]) -> Callable[[Cursor], None]:
+    """Return what writes a formula, on as many lines as it needs."""
+
+    def write(cursor: Cursor) -> None:
+        figures, words = cursor.in_style(TITLE - 2), cursor.in_style(CAPTION, MUTE)
+        x, high = cursor.left, LEADING * (figures.size + words.size) + STEP
+        for part in parts():
+            wide = max(figures.measured(part.figure, tabular=True), words.measured(part.word) if part.word else 0.0)
+            if x > cursor.left and x + wide > cursor.right:
+                x = cursor.left
+                cursor.y += high
+            if canvas := cursor.canvas:
+                baseline = cursor.y + BASELINE * figures.size
+                canvas.text(part.figure, (x, baseline), size=figures.size, colour=part.colour if part.word else MUTE,
+                            tabular=True)  # fmt: skip
+                canvas.text(part.word, (x, baseline + LEADING * words.size), size=words.size, colour=MUTE)
+                if part.what:
+                    canvas.explain((x, cursor.y, wide, high - STEP), part.what, partial(str, part.now))
+            x += wide + (_APART if part.word else _APART / 1.5)
+        cursor.y += high
+
+    return write

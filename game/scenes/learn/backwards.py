@@ -1,0 +1,223 @@
+"""Chapter 4, backwards: a digit that was misread, and the error that flows back through the network's layers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from typing import Final
+
+import numpy as np
+import pygame
+
+from ai.digits.classifier import DIGITS, DigitClassifier
+from ai.digits.mnist import MnistError, bright
+from ai.explain.inspection import traces
+from ai.nn import SGD, Array, FullyConnectedLayer, ModelFormatError, NeuralNetwork
+from game.core import texts
+from game.core.scene import Route
+from game.digits.kept import classifier_in, mnist_test
+from game.digits.pictures import GREY, SIGNED, picture
+from game.drawing.canvas import Canvas
+from game.drawing.paint_cache import PaintCache
+from game.drawing.tokens import CAPTION, HUMAN, INK, MUTE, NET, SMALL
+from game.panels.figures import decimal, percent
+from game.scenes.learn.chapter import Chapter, Code
+from game.ui.context import Context
+from game.ui.panel import Column
+
+RATE: Final = 0.01
+SEARCHED: Final = 1000  # test images in which misread ones are looked for
+OTHERS: Final = slice(1000, 1500)  # test images that the step was not made for
+MOST_STEPS: Final = 9
+_MODEL: Final = "classic"
+# Left end, width, columns and rows of the pictures, as shares of the whole: the image, and the two layers of units.
+_BOXES: Final = ((0.0, 0.23, 28, 28), (0.28, 0.2, 10, 10), (0.53, 0.1, 5, 10))
+_ANSWERS: Final = 0.69  # left end of the answers
+_LINKS: Final = 24  # connections that are drawn from layer to layer: those most to blame
+
+
+class BackwardsChapter(Chapter):
+    """The shipped network of fully connected layers, a copy of it that learns, and one digit that it misreads.
+
+    Attributes:
+        problem: why there is nothing to show; empty if there is.
+        chosen: number of the test image.
+        label: the digit that it is.
+        reached: how many layers the error has reached: 0 none, 1 the answers, 4 the image.
+        steps: learning steps taken on this digit.
+        blames: derivative of the cost by the image, by each unit's answer, and by the ten answers.
+        links: for each layer, the weights that are most to blame.
+
+    """
+
+    key, answer, door, shape = "backwards", 1, Route("digits"), 0.42
+
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
+        self._cache, self.problem, self._digit = PaintCache(most=6), "", 0
+        try:
+            self._shipped = classifier_in(context.models_dir / "digits" / _MODEL)
+            self._pixels, self._labels = mnist_test(context.assets_dir)
+        except (ModelFormatError, MnistError) as error:
+            self.problem = str(error)
+            return
+        read = self._shipped.predict(bright(self._pixels[:SEARCHED])).argmax(axis=1)
+        self.misread = np.flatnonzero(read != self._labels[:SEARCHED]).tolist()
+        self.restart()
+
+    def restart(self) -> None:
+        self._digit, self.tried = 0, False
+        if not self.problem:
+            self._begin()
+
+    def _begin(self) -> None:
+        self.chosen = self.misread[self._digit % len(self.misread)]
+        self.classifier = DigitClassifier(self._shipped.network.copy())
+        self.label = int(self._labels[self.chosen])
+        self._image = bright(self._pixels[self.chosen : self.chosen + 1])
+        self._target = np.eye(DIGITS, dtype=np.float32)[[self.label]]
+        self.reached = self.steps = self.moved = 0
+        self._look()
+        self.before, self.read_as, self._right_before = self.odds[self.label], int(self.odds.argmax()), self._right()
+
+    @property
+    def network(self) -> NeuralNetwork:
+        """The network that learns."""
+        return self.classifier.network
+
+    def controls(self, column: Column) -> None:
+        if not self.problem:
+            label = texts.LEARN_BACKWARDS_BACK if self.reached < 4 else texts.LEARN_BACKWARDS_STEP
+            column.button(label, self.go_on)
+            column.button(texts.LEARN_BACKWARDS_OTHER, self.another)
+
+    def go_on(self) -> None:
+        """Send the error back one layer, or take a learning step once it has reached the image."""
+        self.changed = True
+        if self.reached < 4:
+            self.reached += 1
+        elif self.steps < MOST_STEPS:
+            before = self.network.values.copy()
+            self.network.train_batch(self.classifier.shaped(self._image), self._target, SGD(RATE))
+            self.moved = int((self.network.values != before).sum())
+            self.steps += 1
+            self.tried = True
+            self._look()
+
+    def another(self) -> None:
+        """Show the next digit that the shipped network misreads."""
+        self._digit += 1
+        self.changed = True
+        self._begin()
+
+    def _look(self) -> None:
+        """Read the digit, and send the error back through all layers, as a learning step does."""
+        network, shaped = self.network, self.classifier.shaped(self._image)
+        self.answers = network.forward_propagate(shaped)[0].copy()
+        self.odds = self.classifier.probabilities(self.answers[None])[0]
+        self.units = [*(stage[0] for stage in traces(network, shaped)[1:3]), self.answers]
+        error = network.cost.derivative(self.answers[None], self._target)
+        network.backward_propagate(error)
+        layers = [layer for layer in network.layers if isinstance(layer, FullyConnectedLayer)]
+        hidden = [layer.error[0].copy() for layer in layers[1:]]  # what each sent back to the units before it
+        # A pixel without ink sends nothing on: whatever its weights are, it has no part in the mistake.
+        pixels = np.where(shaped.ravel() > 0, network.input_gradient(shaped, error)[0], 0.0)
+        self.blames: list[Array] = [pixels, *hidden, error[0]]
+        self.links = [_steepest(layer.parameters[0].gradient) for layer in layers]
+
+    def _right(self) -> int:
+        """Return how many of 500 other digits it reads right."""
+        read = self.classifier.predict(bright(self._pixels[OTHERS])).argmax(axis=1)
+        return int((read == self._labels[OTHERS]).sum())
+
+    # What it tells
+
+    def unit(self, stage: int, unit: int) -> str:
+        """Return what a unit answered, and its share of the blame once that has come so far."""
+        answer = decimal(float(self.units[stage - 1][unit]), 2, "+")
+        name = texts.LEARN_BACKWARDS_UNITS[stage - 1].format(unit=unit + (stage < 3), answer=answer)
+        if self.reached < 4 - stage:
+            return name
+        blame = float(self.blames[stage][unit])
+        kind = "less" if blame > 0 else "more" if blame < 0 else "none"
+        return f"{name} {texts.LEARN_BACKWARDS_BLAME[kind].format(blame=decimal(blame, 3, '+'))}"
+
+    def why(self) -> str:
+        """Return what the steps have changed: this digit's reading, the weights, and the reading of others."""
+        return texts.LEARN_BACKWARDS_WHY.format(
+            label=self.label, read=self.read_as, before=percent(self.before), after=percent(self.odds[self.label]),
+            steps=self.steps, moved=self.moved, share=percent(self.moved / self.network.values.size),
+            count=self.network.values.size, right=self._right_before, now=self._right(),
+        ) if self.steps else texts.LEARN_BACKWARDS_AGAIN  # fmt: skip
+
+    def code(self) -> Sequence[Code]:
+        if self.problem:
+            return [Code(NeuralNetwork.backward_propagate)]
+        shapes = " ← ".join(str(blame.size) for blame in self.blames[1:])
+        weights = " x ".join(map(str, (self.blames[2].size, DIGITS)))
+        return [
+            Code(NeuralNetwork.backward_propagate, FullyConnectedLayer.backward_propagate,
+                 {FullyConnectedLayer.backward_propagate: shapes}),
+            Code(FullyConnectedLayer.input_error, np.dot, {np.dot: weights}),
+            Code(FullyConnectedLayer.fill_gradients, np.dot),
+        ]  # fmt: skip
+
+    def below(self, column: Column) -> None:
+        column.text(lambda: self.problem or texts.LEARN_BACKWARDS_COLOURS[self.reached > 0], size=SMALL, colour=MUTE)
+
+    def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
+        if self.problem:
+            return
+        for stage, links in enumerate(self.links):
+            for start, end, slope in links if self.reached >= 4 - stage else ():
+                line = _spot(box, stage, start).center, _spot(box, stage + 1, end).midleft
+                canvas.line(*line, NET if slope < 0 else canvas.palette.warn, 1, 0.35)
+        for stage, (_, _, columns, rows) in enumerate(_BOXES):
+            area = _spot(box, stage, 0).union(_spot(box, stage, columns * rows - 1))
+            blamed = self.reached >= 4 - stage
+            shows = (stage, blamed, self.steps, self.chosen)
+            self._cache.draw(canvas, area, shows, partial(self._paint, stage, blamed, columns))
+            canvas.text(texts.LEARN_BACKWARDS_STAGES[stage], (area.left, area.top - 10), size=CAPTION, colour=MUTE)
+            for unit in range(columns * rows if stage else 0):
+                spot = _spot(box, stage, unit)
+                canvas.explain(spot, self.unit(stage, unit))
+                if canvas.pointer and spot.collidepoint(canvas.pointer):
+                    canvas.outline(spot, 2, HUMAN, 1.5)
+        for digit in range(DIGITS):
+            self._draw_answer(canvas, _spot(box, len(_BOXES), digit), digit)
+
+    def _paint(self, stage: int, blamed: bool, columns: int, sheet: Canvas) -> None:
+        values = self.blames[stage] if blamed else self._image[0] if stage == 0 else np.abs(self.units[stage - 1])
+        shown = -values / max(float(np.abs(values).max()), 1e-9) if blamed else values
+        shades = SIGNED if blamed else GREY
+        sheet.surface.blit(picture(shown.reshape(-1, columns), sheet.size, shades), (0, 0))
+
+    def _draw_answer(self, canvas: Canvas, box: pygame.FRect, digit: int) -> None:
+        """Draw how likely a digit is said to be, and which way its answer should go."""
+        odds, blame, y = float(self.odds[digit]), float(self.blames[-1][digit]), box.centery
+        colour = canvas.palette.good if digit == self.label else INK
+        canvas.text(str(digit), (box.left + 6, y + 5), size=SMALL, colour=colour, weight="medium")
+        canvas.bar((box.left + 24, y - 2, 0.45 * box.width, 4), odds, NET)
+        canvas.text(percent(odds), (box.right - 26, y + 5), size=SMALL, colour=colour, align="right", tabular=True)
+        canvas.explain(box, self.unit(len(_BOXES), digit))
+        if self.reached:
+            size = 4 + 12 * abs(blame) / max(float(np.abs(self.blames[-1]).max()), 1e-9)
+            tint = NET if blame < 0 else canvas.palette.warn
+            canvas.marker("triangle" if blame < 0 else "triangle_down", (box.right - 10, y), size, tint)
+
+
+def _steepest(slopes: Array) -> list[tuple[int, int, float]]:
+    """Return the weights (inputs, outputs) that are most to blame: both their ends and their slopes."""
+    places = np.argsort(-np.abs(slopes), axis=None)[:_LINKS]
+    starts, ends = np.unravel_index(places, slopes.shape)
+    return list(zip(starts.tolist(), ends.tolist(), slopes[starts, ends].tolist(), strict=True))
+
+
+def _spot(box: pygame.FRect, stage: int, unit: int) -> pygame.FRect:
+    """Return where a unit of a stage stands in the picture: a pixel, a unit of a layer, an answer."""
+    if stage == len(_BOXES):
+        pitch, left = box.height / DIGITS, _ANSWERS * box.width
+        return pygame.FRect(box.left + left, box.top + unit * pitch, box.width - left, pitch)
+    left, width, columns, rows = _BOXES[stage]
+    cell, (row, column) = width * box.width / columns, divmod(unit, columns)
+    return pygame.FRect(box.left + left * box.width + column * cell, box.centery + (row - rows / 2) * cell, cell, cell)

@@ -1,0 +1,99 @@
+"""Chapter: one question of the path, with something real and small to touch; `scene` shows it, in four pages."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+import pygame
+
+from game.core import texts
+from game.core.scene import Route
+from game.core.source import Mark
+from game.drawing.canvas import Canvas
+from game.ui.context import Context
+from game.ui.panel import Column
+
+
+@dataclass(frozen=True)
+class Code:
+    """A function of ours to show as it runs.
+
+    Attributes:
+        function: the function whose source is shown.
+        current: what the line is found by that is lit; None for none.
+        notes: by what a line is found by, what stands beside it: numbers of the case at hand.
+
+    """
+
+    function: Callable[..., Any]
+    current: Mark | None = None
+    notes: Mapping[Mark, str] = field(default_factory=dict)
+
+
+class Chapter(ABC):
+    """One chapter: a model to touch, its picture, and what a try has shown.
+
+    Attributes:
+        key: key of its texts in `texts.LEARN` and `texts.LEARN_ANSWERS`.
+        answer: number of the answer that every try shows; None if that depends on the try.
+        door: where the same can be done freely.
+        shape: height of the picture, as a share of its width.
+        tried: whether the player has done what the chapter is about, so that `why` has something to tell.
+        changed: set when there are other controls than before; the scene describes them anew.
+
+    """
+
+    key: ClassVar[str]
+    answer: ClassVar[int | None] = None
+    door: ClassVar[Route]
+    shape: ClassVar[float] = 0.52
+
+    def __init__(self, context: Context) -> None:
+        self.context = context
+        self.tried = self.changed = False
+
+    @property
+    def words(self) -> dict[str, str]:
+        """The chapter's texts by name."""
+        return texts.LEARN[self.key]
+
+    @property
+    def running(self) -> bool:
+        """Whether a try goes on, and `why` must wait for its end."""
+        return False
+
+    @abstractmethod
+    def controls(self, column: Column) -> None:
+        """Add what can be changed and pressed on the second page."""
+
+    def below(self, column: Column) -> None:  # noqa: B027 - a picture may say it all
+        """Add what stands below the picture."""
+
+    @abstractmethod
+    def restart(self) -> None:
+        """Begin anew, as when the chapter was opened."""
+
+    def verdict(self) -> int | None:
+        """Return the number of the answer that the player's own try has shown; None if it does not decide that."""
+        return self.answer
+
+    @abstractmethod
+    def why(self) -> str:
+        """Return what the player's own try has shown, with its numbers; asked once it is `tried`."""
+
+    @abstractmethod
+    def code(self) -> Sequence[Code]:
+        """Return the functions to show, with the numbers of this moment; the same functions each time."""
+
+    @abstractmethod
+    def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
+        """Draw the picture in a box, in points, `alpha` of the way from the step before to this one."""
+
+    def update(self) -> None:  # noqa: B027 - nothing moves in some chapters
+        """Advance by 1/60 s; called on every page but the first, on which the picture stands still."""
+
+    def close(self) -> None:  # noqa: B027 - most hold nothing
+        """Release resources such as a process."""

@@ -1,0 +1,81 @@
+"""Learn scene: the list of the path's chapters, in any order, with what has been done."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Final
+
+from game.core import texts
+from game.core.scene import Transition, push
+from game.drawing.tokens import HUMAN, INK, MUTE, SMALL, TITLE
+from game.scenes.learn.path import FIRST, PATH, Progress
+from game.ui.actions import Table
+from game.ui.context import Context
+from game.ui.listing import Row
+from game.ui.panel import Panel
+from game.ui.panel_scene import PanelScene
+from game.ui.rows import ListRow
+
+_KEYS: Final = tuple(PATH)
+_LEAST, _AROUND = 300.0, 100.0  # points of a column, and above and below the list
+_PITCH, _NUMBERED = 34.0, 32.0  # of a row of the list, and of its number
+_COLUMNS: Final = (72.0, 0.0)  # from the right end of the list: where minutes and progress end
+
+
+class LearnScene(PanelScene):
+    """Learn scene: the chapters, and the chosen one's question beside them, or below them in a narrow window."""
+
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
+        self._progress = Progress(context.settings)
+        self._list: ListRow | None = None
+        self._choose_last()
+        self.build()
+
+    def _choose_last(self) -> None:
+        """Choose the chapter that was left, or the first that is not done."""
+        last = self.context.settings.chapter
+        self.chosen = last if last in PATH else next((key for key in PATH if not self._progress.done(key)), FIRST)
+
+    def enter(self) -> None:
+        self._choose_last()
+        self.build()
+
+    def actions(self) -> Table:
+        return [self.form.moves, *super().actions()]
+
+    def describe(self, panel: Panel) -> None:
+        panel.title(texts.LEARN_TITLE)
+        panel.aside(texts.LEARN_LINE.format(done=sum(map(self._progress.done, PATH)), count=len(PATH)))
+        panel.gap(8)
+        left, right = panel.beside((5, 4), _LEAST)
+        self._list = left.listing(
+            [self._row(key) for key in PATH], lambda _: self._open(), around=_AROUND, index=_KEYS.index(self.chosen),
+            first=self._list.first if self._list else 0, on_choose=self._choose, columns=_COLUMNS, pitch=_PITCH,
+            numbered=_NUMBERED,
+        )  # fmt: skip
+        right.title(lambda: texts.LEARN[self.chosen]["title"], TITLE + 4)
+        right.text(lambda: texts.LEARN[self.chosen]["question"])
+        right.gap(6)
+        right.text(lambda: texts.LEARN[self.chosen]["lead"], size=SMALL + 1, colour=MUTE)
+        right.text(self._guessed, size=SMALL + 1, colour=HUMAN)
+        right.gap(6)
+        self._verb = right.button(texts.LEARN_VERBS[self._progress.state(self.chosen)], self._open, size=TITLE,
+                                  colour=INK)  # fmt: skip
+        right.gap(24)
+        right.button(texts.LEARN_PHYSICS, partial(push, "physics"), texts.LEARN_PHYSICS_ASIDE)
+
+    def _row(self, key: str) -> Row:
+        minutes = texts.LEARN_MINUTES.format(count=PATH[key].minutes)
+        return texts.LEARN[key]["title"], minutes, texts.LEARN_STATES[self._progress.state(key)]
+
+    def _guessed(self) -> str:
+        guess = self._progress.answer(self.chosen)
+        return f"{texts.LEARN_YOU_SAID}: {guess}" if guess else ""
+
+    def _choose(self, index: int) -> None:
+        self.chosen = _KEYS[index]
+        self._verb.label = texts.LEARN_VERBS[self._progress.state(self.chosen)]
+
+    def _open(self) -> Transition:
+        return push("chapter", self.chosen)

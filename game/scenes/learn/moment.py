@@ -1,0 +1,387 @@
+"""Chapters 6 and 7: what a moment is worth, and six values, of which a network takes the highest."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+from itertools import pairwise
+from typing import Final, NamedTuple
+
+import numpy as np
+import pygame
+
+from ai.agent.agent import DeepQAgent
+from ai.agent.decision import Decision, in_points
+from ai.environment import Floats
+from ai.lander.environment import ACTION_NAMES, NUM_ACTIONS, LanderEnv, Outcome
+from ai.nn import NeuralNetwork
+from ai.training.config import Config
+from game.core import texts
+from game.core.scene import Route
+from game.core.source import Mark
+from game.drawing.canvas import Canvas
+from game.drawing.paint import mix
+from game.drawing.tokens import CAPTION, FAINT, HUMAN, INK, LINE, MUTE, NET, NIGHT1, SMALL
+from game.flight import networks
+from game.flight.flight import DECISION_STEPS
+from game.panels.figures import points
+from game.panels.tables import Part, formula
+from game.scenes.learn.chapter import Chapter, Code
+from game.scenes.learn.pictures import DrawnLander, draw_ground, inside, view_in
+from game.ui.context import Context
+from game.ui.panel import Column
+
+# Moments of flights of the shipped network: seed, kind of start, and decisions flown before.
+MOMENTS: Final = (
+    (1, "random", 0),
+    (4, "random", 60),
+    (9, "hard", 0),
+    (2, "random", 25),
+    (3, "hard", 50),
+    (8, "random", 5),
+)
+SCALE: Final = (-150.0, 200.0)  # points, of the line
+_MIDDLE, _METRES = (0.0, 9.4), 50.0  # metres: of the picture, and across it
+_ANSWERS: Final = (150.0, 80.0, 20.0)  # points of the answers, before that of less than 0
+_ASKED: Final = range(80, 121)  # decisions until the end, that are about the hundred of the question
+_ALIKE: Final = 5.0  # points by which what came of two actions may differ and be about the same
+_NAMES, _FIGURES = 112.0, 62.0  # points for an action's name, and for a figure
+
+
+class Came(NamedTuple):
+    """What came of one flight, in points.
+
+    Attributes:
+        guess, value: what the player and the network had foretold.
+        came, plain: the pay that came, with and without the discount.
+        decisions: decisions until the end.
+        landed: whether it landed.
+        decision: the network's at the moment.
+
+    """
+
+    guess: float
+    value: float
+    came: float
+    plain: float
+    decisions: int
+    landed: bool
+    decision: Decision
+
+
+class MomentChapter(Chapter):
+    """A frozen moment of a flight of the shipped network; it flies on, and is paid as it was in training.
+
+    Attributes:
+        agent: the network; None if it could not be read, and `problem` then says why.
+        guess: the player's, in points.
+        value: the network's value of the moment, in points.
+        came, plain: pay since the moment, with and without the discount.
+        judged: the moments that have been flown to their ends.
+
+    """
+
+    key, door, shape = "moment", Route("watch"), 0.52
+    sky: float = 0.72  # share of the picture's height for the flight
+
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
+        network = networks.chosen(context.models_dir, context.user_dir)
+        self.agent = network.policy if isinstance(network.policy, DeepQAgent) else None
+        self.problem = network.problem
+        self.judged: list[Came] = []
+        self.restart()
+
+    def restart(self) -> None:
+        self._number, self.tried = 0, False
+        self.judged.clear()
+        self._freeze()
+
+    def _freeze(self) -> None:
+        """Fly to the moment, and stop there."""
+        self.guess = self.came = self.plain = self.value = 0.0
+        self.flying, self._steps = False, 0
+        self.values: Floats = np.zeros(NUM_ACTIONS, np.float32)
+        if self.agent is None:
+            return
+        seed, spawn, decisions = MOMENTS[self._number]
+        self.env = LanderEnv(1, seed, spawn, frame_skip=1, weights=Config.of(self.agent).reward_weights)
+        self.env.reset()
+        for step in range(DECISION_STEPS * decisions):
+            if step % DECISION_STEPS == 0:
+                self._decide()
+            self.env.step(self.decision.action)
+        self._decide()
+        self._first = self.decision
+        assert self.decision.points is not None
+        self.values = self.decision.points[0].copy()
+        self.value = float(self.values.max())
+        self._lander, self._path = DrawnLander(self.env), [self.env.position[0].copy()]
+
+    def _decide(self) -> None:
+        assert self.agent is not None
+        self.decision: Decision = self.agent.decide(self.env.observe(), held=self.env.actions)
+
+    @property
+    def over(self) -> bool:
+        """Whether the flight from this moment has ended."""
+        return self.flying and self.env.outcome[0] != Outcome.FLYING
+
+    @property
+    def running(self) -> bool:
+        return self.flying and not self.over
+
+    @property
+    def words(self) -> dict[str, str]:
+        words = super().words
+        return {**words, "task": words["flown"]} if self.flying and "flown" in words else words
+
+    def controls(self, column: Column) -> None:
+        if self.flying:
+            column.button(texts.LEARN_MOMENT_NEXT, self.turn, colour=INK)
+        elif self.agent is not None:
+            column.slider(texts.LEARN_MOMENT_GUESS, self.guess, SCALE, self.set_guess, step=5,
+                          figure=lambda guess: points(guess, 0))  # fmt: skip
+            column.button(texts.LEARN_MOMENT_GO, self.go, colour=INK)
+
+    def set_guess(self, guess: float) -> None:
+        """Set the player's guess."""
+        self.guess = guess
+
+    def go(self) -> None:
+        """Let the network fly on."""
+        self.flying = self.changed = True
+
+    def turn(self) -> None:
+        """Go to the next moment."""
+        self._number = (self._number + 1) % len(MOMENTS)
+        self._freeze()
+        self.changed = True
+
+    def update(self) -> None:
+        if self.agent is None or not self.running:
+            return
+        if self._steps % DECISION_STEPS == 0 and self._steps:
+            self._decide()
+        pay = float(self.env.step(self.decision.action).reward[0])
+        self.came += self.agent.config.discount ** (self._steps // DECISION_STEPS) * pay
+        self.plain += pay
+        self._steps += 1
+        self._lander.follow()
+        if self._steps % DECISION_STEPS == 0:
+            self._path.append(self.env.position[0].copy())
+        if self.over:
+            landed = bool(self.env.outcome[0] == Outcome.LANDED)
+            self._end(Came(self.guess, self.value, self.came, self.plain, -(-self._steps // DECISION_STEPS), landed,
+                           self._first))  # fmt: skip
+
+    def _end(self, came: Came) -> None:
+        """Keep what came of the flight."""
+        self.judged.append(came)
+        self.tried = self.changed = True
+
+    # What it tells
+
+    def verdict(self) -> int | None:
+        """Return the answer next to what came of the last moment; None if it was not about a hundred decisions."""
+        last = self.judged[-1]
+        if last.decisions not in _ASKED:
+            return None
+        return len(_ANSWERS) if last.came < 0 else int(np.argmin(np.abs(np.array(_ANSWERS) - last.came)))
+
+    def why(self) -> str:
+        """Return the last moment's numbers, and how far off both judges were on average."""
+        assert self.agent is not None
+        last = self.judged[-1]
+        told = texts.LEARN_MOMENT_WHY.format(
+            guess=points(last.guess, 1), value=points(last.value, 1), came=points(last.came, 1),
+            plain=points(last.plain, 1), decisions=last.decisions,
+            last=f"{self.agent.config.discount ** (last.decisions - 1):.2f}",
+        )  # fmt: skip
+        if len(self.judged) == 1:
+            return told
+        said = [(each.guess, each.value) for each in self.judged]
+        yours, its = np.abs(np.array(said) - [[each.came] for each in self.judged]).mean(axis=0)
+        return f"{told} {texts.LEARN_MOMENT_MISSED.format(count=len(self.judged), yours=yours, its=its)}"
+
+    def code(self) -> Sequence[Code]:
+        if self.agent is None:
+            return [Code(DeepQAgent.q_values), Code(in_points), Code(DeepQAgent.targets)]
+        config, told = self.agent.config, self.judged[-1].decision if self.judged else self._first
+        assert told.values is not None
+        assert told.points is not None
+        best = f"{float(told.values.max()):.3f}"
+        scaled = f"{best} / {config.reward_scale:g} = {points(float(told.points.max()), 1)}"
+        asked = texts.LEARN_MOMENT_BEST.format(value=best)
+        return [
+            Code(DeepQAgent.q_values, NeuralNetwork.predict, {NeuralNetwork.predict: asked}),
+            Code(in_points, "points", {"points": scaled}),
+            Code(DeepQAgent.targets, "targets", {"discount": f"γ = {config.discount:g}, {config.n_step}"}),
+        ]
+
+    def below(self, column: Column) -> None:
+        if self.agent is None:
+            column.text(self.problem, colour=MUTE)
+        else:
+            column.add(formula(self._figures))
+
+    def _figures(self) -> list[Part]:
+        """Return the figures of the three judges."""
+        guess = Part(points(self.guess, 0), texts.LEARN_MOMENT_GUESS, colour=HUMAN)
+        if not self.flying:
+            return [guess]
+        came = texts.LEARN_MOMENT_CAME if self.over else texts.LEARN_MOMENT_SO_FAR
+        return [guess, Part(points(self.value, 1), texts.LEARN_MOMENT_VALUE, colour=NET),
+                Part(points(self.came, 1), came),
+                Part(points(self.plain, 1), texts.LEARN_MOMENT_PLAIN, colour=MUTE)]  # fmt: skip
+
+    # The picture
+
+    def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
+        if self.agent is None:
+            return
+        world = pygame.FRect(box.left, box.top, box.width, self.sky * box.height)
+        view = view_in(world, _MIDDLE, _METRES, canvas.scale)
+        with inside(canvas, world):
+            draw_ground(canvas, world, view)
+            for a, b in pairwise(view.points(self._path).tolist()):
+                canvas.line(a, b, mix(NIGHT1, NET, 0.6), 1.5)
+            self._lander.draw(canvas, view, alpha if self.running else 1.0)
+            if not self.flying:
+                start = self.env.position[0]
+                a, b = view.points([start, start + self.env.velocity[0]]).tolist()
+                canvas.line(a, b, HUMAN, 2)
+        number = texts.LEARN_MOMENT_NUMBER.format(number=self._number + 1, count=len(MOMENTS))
+        landed = "landed" if self.over and self.env.outcome[0] == Outcome.LANDED else "lost"
+        end = texts.LEARN_MOMENT_ENDS[landed if self.over else "flying" if self.flying else "still"]
+        canvas.text(number, (world.left, world.top + 14), size=SMALL, colour=MUTE)
+        canvas.text(end, (world.right, world.top + 14), size=SMALL, colour=MUTE, align="right")
+        self.draw_worth(canvas, pygame.FRect(box.left, world.bottom, box.width, box.bottom - world.bottom))
+
+    def draw_worth(self, canvas: Canvas, box: pygame.FRect) -> None:
+        """Draw the line of points, with the guess, the network's value and what came."""
+        y, (low, high) = box.bottom - 28, SCALE
+
+        def at(score: float) -> float:
+            return box.left + 16 + (box.width - 32) * min(max((score - low) / (high - low), 0.0), 1.0)
+
+        canvas.line((at(low), y), (at(high), y), LINE, 2)
+        for tick in range(int(low), int(high) + 1, 50):
+            canvas.line((at(tick), y - 4), (at(tick), y + 4), FAINT if tick else MUTE)
+            canvas.text(points(tick, 0) if tick else "0", (at(tick), y + 22), size=CAPTION, colour=MUTE, align="centre")
+        canvas.marker("triangle_down", (at(self.guess), y - 12), 11, HUMAN)
+        if self.flying:
+            canvas.line((at(self.value), y - 22), (at(self.value), y), NET)
+            canvas.marker("triangle", (at(self.value), y - 28), 11, NET)
+            canvas.glow((at(self.came), y), 20, INK, 0.3)
+            canvas.dot((at(self.came), y), 6, INK)
+
+
+class ChoiceChapter(MomentChapter):
+    """A frozen moment; the player chooses its first action, and the network flies on from there.
+
+    Attributes:
+        first: the action that was chosen; None before.
+        results: what came of each action that was tried from this moment.
+
+    """
+
+    key, shape, sky = "choice", 0.68, 0.52
+
+    def __init__(self, context: Context) -> None:
+        self.first: int | None = None
+        self.results: dict[int, Came] = {}
+        super().__init__(context)
+
+    def restart(self) -> None:
+        self.first, self.results = None, {}
+        super().restart()
+
+    def turn(self) -> None:
+        """Go to the next moment."""
+        self.first, self.results = None, {}
+        super().turn()
+
+    def controls(self, column: Column) -> None:
+        for action, name in enumerate(ACTION_NAMES if self.agent else ()):
+            colour = NET if action == self.best else INK
+            column.button(
+                texts.said(name).capitalize(), partial(self.begin_with, action), size=SMALL + 1, colour=colour
+            )
+        if self.agent:
+            column.button(texts.LEARN_MOMENT_NEXT, self.turn)
+
+    def begin_with(self, action: int) -> None:
+        """Go back to the moment, and let the flight begin with an action for one decision."""
+        self._freeze()
+        self.first = action
+        self.decision = replace(self.decision, action=np.array([action]))
+        self.go()
+
+    def _end(self, came: Came) -> None:
+        super()._end(came)
+        if self.first is not None:
+            self.results[self.first] = came
+        self.tried = len(self.results) > 1
+
+    @property
+    def best(self) -> int:
+        """The action with the highest value."""
+        return int(self.values.argmax())
+
+    @property
+    def worst(self) -> int:
+        """The action with the lowest value."""
+        return int(self.values.argmin())
+
+    def verdict(self) -> int | None:
+        """Return what came of the lowest value; None before it and the highest were flown, and where that was lost."""
+        if not {self.best, self.worst} <= set(self.results) or not self.results[self.best].landed:
+            return None
+        best, worst = self.results[self.best], self.results[self.worst]
+        return 0 if not worst.landed else 1 if best.came - worst.came <= _ALIKE else 2
+
+    def why(self) -> str:
+        """Return the value of each action that was tried, and what came of it."""
+        told = " ".join(
+            texts.LEARN_CHOICE_WHY[came.landed].format(
+                action=texts.said(ACTION_NAMES[action]), value=points(float(self.values[action]), 1),
+                came=points(came.came, 1),
+            )
+            for action, came in self.results.items()
+        )  # fmt: skip
+        best = self.results.get(self.best)
+        surprises = best is not None and best.came < max(came.came for came in self.results.values())
+        return f"{told} {texts.LEARN_CHOICE_SURPRISE}" if surprises else told
+
+    def code(self) -> Sequence[Code]:
+        best: dict[Mark, str] = {NeuralNetwork.predict: texts.said(ACTION_NAMES[self.best])}
+        return [Code(DeepQAgent.q_values, NeuralNetwork.predict, best), Code(DeepQAgent.decide)]
+
+    def below(self, column: Column) -> None:
+        column.aside(texts.LEARN_CHOICE_LEGEND if self.agent else self.problem)
+
+    def draw_worth(self, canvas: Canvas, box: pygame.FRect) -> None:
+        """Draw the six values, and on the same scale what came of each."""
+        shown = [*self.values.tolist(), *(came.came for came in self.results.values())]
+        left, right, pitch = box.left + _NAMES + _FIGURES, box.right - _FIGURES, (box.height - 12) / NUM_ACTIONS
+        low, per_point = min(shown), (right - left - 24) / max(max(shown) - min(shown), 1e-9)
+        for action, value in enumerate(self.values.tolist()):
+            y, best, came = box.top + 12 + pitch * (action + 0.5), action == self.best, self.results.get(action)
+            colour = NET if best else INK if action == self.first else MUTE
+            x, name = left + 12 + per_point * (value - low), texts.said(ACTION_NAMES[action])
+            if best:
+                canvas.rounded((box.left, y - pitch / 2 + 1, box.width, pitch - 2), 6, NET, 0.1)
+            canvas.text(name, (box.left + 8, y + 4), size=SMALL, colour=colour, room=_NAMES - 8)
+            canvas.text(points(value, 1), (left - 12, y + 4), size=SMALL, colour=colour, align="right", tabular=True)
+            canvas.line((left, y), (right, y), LINE)
+            if came is not None:
+                end = left + 12 + per_point * (came.came - low)
+                canvas.line((x, y), (end, y), mix(NIGHT1, HUMAN, 0.5), 1.5)
+                canvas.dot((end, y), 4.5, HUMAN)
+                canvas.text(points(came.came, 1), (box.right - 8, y + 4), size=SMALL, colour=HUMAN, align="right",
+                            tabular=True)  # fmt: skip
+            if best:
+                canvas.glow((x, y), 18, NET, 0.6)
+            canvas.marker("triangle", (x, y), 11 if best else 9, NET if best else MUTE)

@@ -1,0 +1,167 @@
+"""Chapter 11, your own: train a network, let it fly, hand over to it, race it; what is done ticks itself."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Hashable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from functools import partial
+from typing import Final, NamedTuple
+
+import pygame
+
+from ai.agent.agent import DeepQAgent
+from ai.training.loop import Training
+from game.core import texts
+from game.core.scene import Route, Transition, push
+from game.drawing.canvas import Canvas
+from game.drawing.cursor import Cursor
+from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, SMALL, TITLE
+from game.flight import networks
+from game.flight.logbook import Records
+from game.panels.figures import percent
+from game.scenes.learn.chapter import Chapter, Code
+from game.scenes.learn.path import Progress
+from game.training.library import Library
+from game.ui.context import Context
+from game.ui.panel import Column
+
+# Where each step is done; a race is begun here.
+STEPS: Final = {"train": "train", "land": "runs", "choose": "runs", "hand": "play", "race": ""}
+_LOOK: Final = 60  # updates between two looks at the player's files
+_INDENT: Final = 32.0
+
+
+class Step(NamedTuple):
+    """One step of the list: whether it is done, and what is known of it."""
+
+    done: bool
+    told: str
+
+
+class OwnChapter(Chapter):
+    """A list of five steps with the player's own network, read from their files; nothing to fail.
+
+    Attributes:
+        steps: the steps by their names in `STEPS`.
+
+    """
+
+    key, answer, door, shape = "own", 0, Route("watch"), 0.0
+
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
+        self._library, self._records = Library(context.user_dir), Records(context.user_dir)
+        self.restart()
+
+    def restart(self) -> None:
+        self._wait = 0
+        self._seen: Hashable = None
+        self._look()
+
+    def controls(self, column: Column) -> None:
+        for name, route in STEPS.items():
+            column.button(texts.LEARN_OWN_DOORS[name], partial(push, route) if route else self.race)
+
+    def update(self) -> None:
+        self._wait = (self._wait + 1) % _LOOK
+        if self._wait == 0:
+            self._look()
+
+    def race(self) -> Transition | None:
+        """Race the latest of the player's networks that can be read."""
+        for run in self._runs:
+            policy = networks.load(run.name, run.folder).policy if run.flyable else None
+            if policy is not None:
+                Progress(self.context.settings).note(self.key, raced=int(time.time()) + 1)
+                self.context.apply_settings()
+                return push("play", rival=policy, rival_name=run.name)
+        self.context.note(texts.LEARN_OWN_NONE)
+        return None
+
+    # What has been done
+
+    def _look(self) -> None:
+        """Read the player's networks, choice and logbook, if any of them has changed."""
+        raced = self.context.settings.learnt.get(self.key)
+        raced_at = raced.get("raced") if isinstance(raced, dict) else None
+        seen = (tuple(self._dates()), self.context.settings.model, raced_at)
+        if seen != self._seen:
+            self._seen = seen
+            self._runs = [run for run in self._library.runs() if not run.problem or run.flyable]
+            self.steps = {name: Step(done, told) for name, (done, told) in self._found(raced_at)}
+            self.tried = self.steps["train"].done
+
+    def _dates(self) -> Iterator[float]:
+        """Yield what tells whether the player's files have changed: dates, and the logbook's size."""
+        for path in (self.context.user_dir / networks.PLAYERS, self._library.unsaved, self._records.logbook):
+            with suppress(OSError):
+                yield from path.stat()[6:9:2]
+
+    def _found(self, raced_at: object) -> Iterator[tuple[str, tuple[bool, str]]]:
+        """Yield each step by its name: whether it is done, and what is known of it."""
+        told, runs, rescued = texts.LEARN_OWN_TOLD, self._runs, self._library.rescued()
+        first = runs[0] if runs else rescued
+        key = "trained" if runs else "unnamed" if rescued else "untrained"
+        values = {"name": first.name, "decisions": f"{first.decisions:,}"} if first else {}
+        yield "train", (first is not None, told[key].format(**values))
+
+        measured = [run for run in (*runs, rescued) if run and run.success is not None]
+        best = max(measured, key=lambda run: run.success or 0.0, default=None)
+        key = "unmeasured" if best is None else "landed_unnamed" if best is rescued else "landed"
+        values = {"name": best.name, "share": percent(best.success or 0.0)} if best else {}
+        yield "land", (bool(best and best.success), told[key].format(**values))
+
+        mine = self.context.user_dir / networks.PLAYERS
+        folders = networks.folders(self.context.models_dir, self.context.user_dir)
+        own = {name for name, folder in folders.items() if folder.parent == mine}
+        name = self.context.settings.model
+        key = "chosen" if name in own else "shipped"
+        yield "choose", (name in own, told[key].format(name=name or networks.DEFAULT))
+
+        flown = self._records.entries()
+        shared = [entry for entry in flown if entry.network in own and entry.human < 1.0]
+        values = {"name": shared[-1].network, "share": percent(1.0 - shared[-1].human)} if shared else {}
+        yield "hand", (bool(shared), told["handed" if shared else "alone"].format(**values))
+
+        done = type(raced_at) is int and any(entry.when >= raced_at for entry in flown)
+        yield "race", (done, told["raced" if done else "unraced"])
+
+    # What it tells
+
+    def why(self) -> str:
+        """Return how long the player's network has trained, and how it flies."""
+        if not self._runs:
+            return self.steps["train"].told
+        run = self._runs[0]
+        told = texts.LEARN_OWN_WHY.format(name=run.name, seconds=run.seconds, decisions=f"{run.decisions:,}")
+        return f"{told} {self.steps['land'].told}"
+
+    def code(self) -> Sequence[Code]:
+        return [Code(Training.advance, DeepQAgent.train_step), Code(DeepQAgent.train_step), Code(DeepQAgent.learn)]
+
+    def below(self, column: Column) -> None:
+        for name in STEPS:
+            column.add(partial(self._write_step, name))
+        column.text(lambda: texts.LEARN_OWN_DONE.format(done=sum(step.done for step in self.steps.values()),
+                                                        count=len(STEPS)), colour=MUTE)  # fmt: skip
+
+    def _write_step(self, name: str, cursor: Cursor) -> None:
+        """Write a step behind a ring, or a full one once it is done."""
+        step, words = self.steps[name], replace(cursor, left=cursor.left + _INDENT, width=cursor.width - _INDENT)
+        words.size, words.weight, words.colour = TITLE - 3, "light", INK if step.done else MUTE
+        if canvas := cursor.canvas:
+            x, y = cursor.left + 10, words.y + 0.7 * words.size
+            if step.done:
+                canvas.dot((x, y), 8, canvas.palette.good)
+                canvas.marker("check", (x, y), 9, (0, 0, 0))
+            else:
+                canvas.outline((x - 7, y - 7, 14, 14), 7, FAINT, 1.5)
+        words.text(texts.LEARN_OWN_STEPS[name])
+        told = replace(words, size=SMALL, weight="regular", colour=HUMAN if step.done else MUTE)
+        told.text(step.told)
+        cursor.y = told.y + 14
+
+    def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
+        """Draw nothing: the list is all there is."""

@@ -1,0 +1,230 @@
+"""Chapter 5, what is it paid for: a small agent is trained on another pay, in a process of its own, and then flies."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+import pygame
+
+from ai.environment import Bools, Doubles, Ints
+from ai.lander.environment import LanderEnv, Outcome
+from ai.lander.rewards import REWARDS, RewardWeights
+from ai.training.config import Config
+from ai.training.history import Checkpoint
+from ai.training.lander_session import live
+from ai.training.messages import SwarmState
+from engine import DT
+from game.core import texts
+from game.core.scene import Route
+from game.core.worker import Worker, WorkerState
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import HUMAN, SMALL
+from game.flight.poses import Poses
+from game.scenes.learn.chapter import Chapter, Code
+from game.scenes.learn.pictures import draw_ground, view_in
+from game.ui.context import Context
+from game.ui.panel import Column
+from game.world.craft import draw_crowd, draw_fires
+
+Flown = dict[str, float]
+ENDS: Final = dict(zip(("landed", "crashed", "gone", "late"), list(Outcome)[1:], strict=True))
+# What each pay is: a landing, haste, time aloft, fuel. By the key of its texts.
+PAYS: Final = {
+    "landing": RewardWeights(time=-0.4, switch=-0.05),
+    "aloft": RewardWeights(time=1.0, switch=-0.05),
+    "haste": RewardWeights(time=-8.0, switch=-0.05, terminal=20.0),
+    "fuel": RewardWeights(time=0.0, switch=-0.05, engine=-4.0, terminal=30.0),
+}
+ASKED: Final = "aloft"  # the pay that the question is about
+DECISIONS: Final = 24_000  # of single landers, after which it is looked at
+SPAWN: Final = "near"
+FLIGHTS: Final = 24
+_SEED: Final = 7  # of the flights that are looked at
+_SKIP, _PACE = 4, 2  # physics steps of a decision, and in an update
+_SIZE, _METRES, _MIDDLE = 0.6, 26.0, (0.0, 6.4)  # of a lander's picture; what the picture shows
+
+
+def config_of(pay: RewardWeights) -> Config:
+    """Return the settings of a small, short run on that pay."""
+    return Config().changed(
+        num_envs=64, spawn=SPAWN, gradient_steps=6, learning_starts=1000, epsilon_decisions=8000,
+        schedule_decisions=DECISIONS, replay_size=100_000, reward_weights=pay,
+    )  # fmt: skip
+
+
+class Trial:
+    """Flights of an agent without random actions, one physics step at a time."""
+
+    def __init__(self, config: Config, checkpoint: Checkpoint, flights: int = FLIGHTS) -> None:
+        self.agent = checkpoint.agent(config)
+        self.env = LanderEnv(flights, _SEED, SPAWN, frame_skip=1)
+        self.env.reset()
+        self.poses = Poses(self.env)
+        self._steps = 0
+        self._actions: Ints = np.zeros(flights, np.intp)
+
+    @property
+    def over(self) -> bool:
+        """Whether all flights have ended."""
+        return bool((self.env.outcome != Outcome.FLYING).all())
+
+    def step(self) -> None:
+        """Fly one physics step; the agent decides in every fourth."""
+        if self._steps % _SKIP == 0:
+            self._actions = self.agent.act(self.env.observe(), held=self._actions)
+        self._steps += 1
+        self.env.fly(self._actions)
+        self.poses.take()
+
+    def flown(self) -> Flown:
+        """Return how the flights have ended so far: how many of each kind, and their mean time and fuel in seconds."""
+        ends = {name: int((self.env.outcome == kind).sum()) for name, kind in ENDS.items()}
+        return {**ends, "time": float(self.env.time.mean()), "fuel": float(self.env.fuel.mean())}
+
+
+class PayChapter(Chapter):
+    """A choice of four pays; the run of the chosen one; and its flights.
+
+    Attributes:
+        pay: key of the chosen pay.
+        decisions: how many the run has taken.
+        trial: the flights after it; None before.
+        results: by key of a pay, how its flights ended.
+        note: why a run has failed; empty if none has.
+
+    """
+
+    key, answer, door = "pay", 1, Route("train")
+
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
+        self._worker: Worker | None = None
+        self._runs = 0
+        self.restart()
+
+    def restart(self) -> None:
+        self.pay, self.tried = ASKED, False
+        self.results: dict[str, Flown] = {}
+        self._clear()
+
+    def _clear(self) -> None:
+        self.close()
+        self.decisions, self.note = 0, ""
+        self.trial: Trial | None = None
+        self._swarm: SwarmState | None = None
+        self._checkpoint: Checkpoint | None = None
+
+    def close(self) -> None:
+        if self._worker:
+            self._worker.close()
+            self._worker = None
+
+    @property
+    def learning(self) -> bool:
+        """Whether a run goes on."""
+        return self._worker is not None
+
+    @property
+    def running(self) -> bool:
+        return self.learning or (self.trial is not None and not self.trial.over)
+
+    def controls(self, column: Column) -> None:
+        keys = list(PAYS)
+        column.choice("", [texts.LEARN_PAY_NAMES[key] for key in keys], keys.index(self.pay), self.choose)
+        column.text(self._paid, size=SMALL, colour=HUMAN)
+        column.button(texts.LEARN_PAY_STOP if self.learning else texts.LEARN_PAY_TRAIN, self.train)
+
+    def _paid(self) -> str:
+        """Return what the chosen pay is."""
+        pay, steps = PAYS[self.pay], 1 / DT
+        return texts.LEARN_PAY_POINTS.format(second=pay.time * steps, engine=pay.engine * steps, terminal=pay.terminal)
+
+    def choose(self, index: int) -> None:
+        """Choose a pay, an index into `PAYS`."""
+        self.pay, self.changed = list(PAYS)[index], True
+        self._clear()
+
+    def train(self) -> None:
+        """Begin a run on the chosen pay, or end the one that goes on."""
+        self.changed = True
+        if self.learning:
+            self.close()
+            return
+        self._clear()
+        self._worker = Worker(live, config_of(PAYS[self.pay]), self._runs)
+        self._runs += 1
+
+    def update(self) -> None:
+        if self._worker:
+            self._hear(self._worker)
+        elif self.trial and not self.trial.over:
+            self._fly(self.trial)
+
+    def _hear(self, worker: Worker) -> None:
+        for message in worker.poll():
+            if isinstance(message, SwarmState):
+                self._swarm, self.decisions = message, message.decisions
+            elif isinstance(message, Checkpoint):
+                self._checkpoint = message
+        learnt = self._checkpoint is not None and self._checkpoint.decisions >= DECISIONS
+        if learnt or worker.state in (WorkerState.FAILED, WorkerState.ENDED):
+            self.note, self.changed = worker.problem, True
+            self.close()
+        if learnt and self._checkpoint:
+            self.trial = Trial(config_of(PAYS[self.pay]), self._checkpoint)
+
+    def _fly(self, trial: Trial) -> None:
+        for _ in range(_PACE):
+            trial.step()
+        if trial.over:
+            self.results[self.pay], self.tried, self.changed = trial.flown(), True, True
+
+    # What it tells
+
+    def why(self) -> str:
+        """Return how the flights of each run ended."""
+        return " ".join(
+            texts.LEARN_PAY_WHY.format(name=texts.LEARN_PAY_NAMES[key], count=FLIGHTS, **self.results[key])
+            for key in PAYS
+            if key in self.results
+        )
+
+    def code(self) -> Sequence[Code]:
+        pay = PAYS[self.pay]
+        weights = texts.LEARN_PAY_NOTE.format(time=pay.time, terminal=pay.terminal)
+        return [Code(LanderEnv.step, "parts", {"parts": weights, np.add.accumulate: f"{len(REWARDS)}"})]
+
+    def below(self, column: Column) -> None:
+        column.bar(lambda: self.decisions / DECISIONS)
+        column.text(self._state, size=SMALL)
+
+    def _state(self) -> str:
+        if self.trial:
+            seconds = self.trial.env.time.max()
+            return texts.LEARN_PAY_FLIGHTS.format(count=FLIGHTS, seconds=seconds, **self.trial.flown())
+        if self.learning:
+            return texts.LEARN_PAY_TRAINING.format(decisions=self.decisions, most=DECISIONS)
+        return self.note or texts.LEARN_PAY_WAITING
+
+    def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
+        view = view_in(box, _MIDDLE, _METRES, canvas.scale)
+        draw_ground(canvas, box, view)
+        poses, burning = self._shown(alpha)
+        if len(poses):
+            draw_fires(canvas, view, poses[burning], self.decisions, _SIZE)
+            draw_crowd(canvas, view, poses, _SIZE)
+
+    def _shown(self, alpha: float) -> tuple[Doubles, Bools]:
+        """Return the poses (n, 3) to draw, and which of them fire their main engines (n,)."""
+        if self.trial:
+            poses, outcome = self.trial.poses.at(alpha), self.trial.env.outcome.astype(np.intp)
+            fired = self.trial.env.fired
+        elif self._swarm is not None:
+            outcome, fired = self._swarm.outcome.astype(np.intp), self._swarm.action.astype(np.intp)
+            poses = np.column_stack([self._swarm.position, self._swarm.angle]).astype(float)
+        else:
+            return np.empty((0, 3)), np.empty(0, bool)
+        seen = outcome != Outcome.CRASHED
+        return poses[seen], ((fired >= 3) & (outcome == Outcome.FLYING))[seen]

@@ -1,0 +1,198 @@
+"""Chapter 2, a second layer: points that no line divides, and a small network that is trained on them live."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+import pygame
+
+from ai.nn import (
+    ActivationFunctions,
+    ActivationLayer,
+    Adam,
+    Array,
+    CostFunctions,
+    FullyConnectedLayer,
+    NeuralNetwork,
+    Optimizer,
+)
+from game.core import texts
+from game.core.scene import Route
+from game.core.source import Mark
+from game.drawing.canvas import Canvas
+from game.drawing.paint_cache import PaintCache
+from game.drawing.tokens import CAPTION, FAINT, INK, MUTE, SMALL
+from game.scenes.learn.chapter import Chapter, Code
+from game.scenes.learn.pictures import paint_heat
+from game.ui.context import Context
+from game.ui.panel import Column
+
+UNITS: Final = (0, 2, 4, 8)  # hidden units to choose from
+QUARTER: Final = 20  # points in each quarter of the plane
+STEPS: Final = 1200  # learning steps after which training rests
+SPOKEN: Final = 300  # learning steps after which a try says something
+_RATE: Final = 0.02
+_GAP: Final = 0.12  # no point is nearer to an axis
+_CELLS: Final = 40
+_EVERY: Final = 6  # updates from one picture of the plane to the next
+
+
+def examples(seed: int) -> tuple[Array, Array]:
+    """Return points (80, 2) of tilt and place from -1 to 1, and targets (80, 1): 1 leans towards the pad, -1 away."""
+    rng = np.random.default_rng(seed)
+    signs = np.repeat([(-1, -1), (-1, 1), (1, -1), (1, 1)], QUARTER, axis=0)
+    points = signs * rng.uniform(_GAP, 1.0, signs.shape)
+    away = signs[:, :1] * signs[:, 1:] > 0
+    return points.astype(np.float32), np.where(away, -1.0, 1.0).astype(np.float32)
+
+
+def network_of(units: int, seed: int) -> NeuralNetwork:
+    """Return an untrained network of two inputs, hidden tanh units or none, and one tanh output."""
+    network = NeuralNetwork(*CostFunctions.use_mse(), rng=np.random.default_rng(seed))
+    for inputs, outputs in ((2, units), (units, 1)) if units else ((2, 1),):
+        network.add_layer(FullyConnectedLayer(inputs, outputs))
+        network.add_layer(ActivationLayer(*ActivationFunctions.use_tanh()))
+    return network
+
+
+def _places() -> Array:
+    """Return the middles (cells², 2) of the cells of the plane's picture, column by column."""
+    across, up = np.meshgrid(*[np.linspace(-1.0, 1.0, _CELLS)] * 2, indexing="ij")
+    return np.stack([across.ravel(), up.ravel()], axis=1).astype(np.float32)
+
+
+class PlaneChapter(Chapter):
+    """Training on points of two kinds; the plane's colour is what the network answers there.
+
+    Attributes:
+        units: hidden units of the network.
+        network: the network that is trained.
+        results: by number of hidden units, how many points were divided right at best.
+
+    """
+
+    key, answer, door = "plane", 2, Route("train")
+
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
+        self._cache, self._places = PaintCache(most=2 * max(UNITS) + 4), _places()
+        self.points, self.targets = examples(0)
+        self.restart()
+
+    def restart(self) -> None:
+        self.units, self._seed, self.tried = 0, 0, False
+        self.results: dict[int, int] = {}
+        self._version = 0
+        self.begin()
+
+    def begin(self) -> None:
+        """Begin training from new first weights."""
+        self.network, self._optimizer = network_of(self.units, self._seed), Adam(_RATE)
+        self.steps, self.cost = 0, float("nan")
+        self._seed += 1
+        self._look()
+
+    @property
+    def right(self) -> int:
+        """Number of points on the right side."""
+        return int(((self.network.predict(self.points) > 0) == (self.targets > 0)).sum())
+
+    def controls(self, column: Column) -> None:
+        column.choice(texts.LEARN_PLANE_UNITS, list(map(str, UNITS)), UNITS.index(self.units), self.choose)
+        column.button(texts.LEARN_PLANE_AGAIN, self.begin)
+
+    def choose(self, index: int) -> None:
+        """Train with another number of hidden units, an index into `UNITS`."""
+        self.units = UNITS[index]
+        self.begin()
+
+    def update(self) -> None:
+        if self.steps < STEPS:
+            self.cost = self.network.train_batch(self.points, self.targets, self._optimizer)
+            self.steps += 1
+            if self.steps % _EVERY == 0:
+                self._look()
+            if self.steps >= SPOKEN:
+                self.results[self.units] = max(self._shown, self.results.get(self.units, 0))
+                self.tried = True
+
+    def _look(self) -> None:
+        """Ask the network, at every place of the plane, for what its hidden units and its output say."""
+        stages = self.network.activations(self._places)
+        hidden = stages[1] if self.units else np.empty((len(self._places), 0))
+        self._planes = np.concatenate([hidden, stages[-1]], axis=1).T.reshape(-1, _CELLS, _CELLS)
+        self._version += 1
+        self._shown = self.right
+
+    def why(self) -> str:
+        """Return how many points were on the right side, for each number of hidden units that was tried."""
+        return " ".join(
+            texts.LEARN_PLANE_WHY.format(units=units, right=self.results[units], count=len(self.points))
+            for units in sorted(self.results)
+        )
+
+    def code(self) -> Sequence[Code]:
+        stages = self.network.activations(self.points)
+        shapes = " → ".join(str(stage.shape[1]) for stage in (self.points, *stages[1::2]))
+        passes: dict[Mark, str] = {FullyConnectedLayer.forward_propagate: shapes}
+        step: dict[Mark, str] = {"cost": f"{self.cost:.4f}", Optimizer.step: f"{self.network.values.size}"}
+        return [
+            Code(NeuralNetwork.forward_propagate, FullyConnectedLayer.forward_propagate, passes),
+            Code(NeuralNetwork.correct, NeuralNetwork.backward_propagate, step),
+        ]
+
+    def below(self, column: Column) -> None:
+        column.text(
+            lambda: texts.LEARN_PLANE_STATE.format(right=self._shown, count=len(self.points), steps=self.steps),
+            size=SMALL,
+        )
+
+    def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
+        side = box.height - 22
+        plane = pygame.FRect(box.left, box.top, side, side)
+        self._draw_plane(canvas, plane, -1)
+        canvas.line((plane.centerx, plane.top), (plane.centerx, plane.bottom), FAINT)
+        canvas.line((plane.left, plane.centery), (plane.right, plane.centery), FAINT)
+        for (x, y), target in zip(self.points.tolist(), self.targets[:, 0].tolist(), strict=True):
+            place = (plane.centerx + x * side / 2, plane.centery - y * side / 2)
+            colour = canvas.palette.good if target > 0 else canvas.palette.warn
+            canvas.marker("ring" if target > 0 else "triangle", place, 9, colour)
+        left, right, below, above = texts.LEARN_PLANE_AXES
+        y = plane.bottom + 17
+        canvas.text(left, (plane.left, y), size=CAPTION, colour=MUTE, room=side / 2 - 8)
+        canvas.text(right, (plane.right, y), size=CAPTION, colour=MUTE, align="right", room=side / 2 - 8)
+        beside = pygame.FRect(plane.right + 12, plane.top, box.right - plane.right - 12, side)
+        for text, y in ((above, plane.top + 12), (below, plane.bottom - 2)):
+            canvas.text(text, (beside.left, y), size=CAPTION, colour=MUTE, room=beside.width / 2)
+        self._draw_network(canvas, beside)
+
+    def _draw_plane(self, canvas: Canvas, box: pygame.FRect, number: int) -> None:
+        colours, values = (canvas.palette.warn, canvas.palette.good), self._planes[number]
+        shows = (self._version, number % len(self._planes))
+        self._cache.draw(canvas, box, shows, lambda sheet: paint_heat(sheet, values, *colours))
+
+    def _draw_network(self, canvas: Canvas, box: pygame.FRect) -> None:
+        """Draw each hidden unit as its own map of the plane, with lines as wide as the weights."""
+        mini = min(0.1 * box.height, 0.22 * box.width)
+        units = [
+            pygame.FRect(box.left + 0.5 * box.width, box.centery + (number - self.units / 2) * 1.16 * mini, mini, mini)
+            for number in range(self.units)
+        ]
+        out = pygame.FRect(box.right - 1.3 * mini, box.centery - 0.65 * mini, 1.3 * mini, 1.3 * mini)
+        inputs = [(box.left + 0.2 * box.width, box.centery + side * 0.16 * box.height) for side in (-1, 1)]
+        layers = [layer for layer in self.network.layers if isinstance(layer, FullyConnectedLayer)]
+        sources, targets = [inputs, [unit.midright for unit in units]], [units, [out]] if units else [[out]]
+        for layer, starts, ends in zip(layers, sources, targets, strict=False):
+            for row, start in enumerate(starts):
+                for column, end in enumerate(ends):
+                    weight = float(layer.weights[row, column])
+                    colour = canvas.palette.good if weight > 0 else canvas.palette.warn
+                    canvas.line(start, end.midleft, colour, min(0.5 + abs(weight), 4.0), 0.55)
+        for name, (x, y) in zip(texts.LEARN_PLANE_INPUTS, inputs, strict=True):
+            canvas.dot((x, y), 5, INK)
+            canvas.text(name, (x, y - 12), size=CAPTION, colour=MUTE, align="centre", room=0.36 * box.width)
+        for number, unit in enumerate(units):
+            self._draw_plane(canvas, unit, number)
+        self._draw_plane(canvas, out, -1)

@@ -1,0 +1,240 @@
+"""Chapter scene: one chapter of the path, in four pages: predict, try, see why, in the code."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from functools import partial
+from typing import Final
+
+import pygame
+
+from game.core import texts
+from game.core.scene import Push, Replace, Route, Transition
+from game.core.source import Source, source_of
+from game.drawing.canvas import Canvas
+from game.drawing.cursor import Cursor
+from game.drawing.tokens import HUMAN, INK, MUTE, NET, SMALL, STEP, TEXT, TITLE, Colour
+from game.input.controls import Command
+from game.panels.code_listing import add_listing
+from game.panels.explained import Explained
+from game.scenes.learn.chapter import Code
+from game.scenes.learn.path import FIRST, PAGES, PATH, Progress, chapter_type, following
+from game.ui.actions import Action, Table
+from game.ui.context import Context
+from game.ui.panel import Column, Panel, Row
+from game.ui.panel_scene import PanelScene
+
+PREDICT, TRY, WHY, CODE = range(len(PAGES))
+_SHARES, _LEAST, _APART = (1.0, 1.8), 240.0, 36.0  # of the columns of words and of the picture
+_BODY: Final = SMALL + 1.5
+_OPEN: Final[Colour] = (190, 198, 214)  # an answer that was not given
+_AROUND, _LOWEST = 250.0, 0.42  # points above and below the picture; its least height, as a share of its width
+_LISTING, _NOTES = 420.0, 230.0  # height of a listing, and width of what stands beside its lines
+_INDENT: Final = 18.0  # of a verdict, behind its line
+
+
+class ChapterScene(PanelScene):
+    """Chapter scene.
+
+    Attributes:
+        chapter: the chapter that is shown.
+        page: which of `PAGES` is shown, by its index.
+
+    """
+
+    def __init__(self, context: Context, key: str = FIRST) -> None:
+        super().__init__(context)
+        self._progress, self.explained = Progress(context.settings), Explained()
+        self.chapter = chapter_type(key)(context)
+        # One that is done asks for a guess again. Of any other, a try from an earlier visit is gone with its numbers.
+        self.page = PREDICT if self._progress.done(key) else min(self._progress.page(key), TRY)
+        self._function, self._told, self._code = 0, "", list[Code]()
+        context.settings.chapter = key
+        self.turn_to(self.page)
+
+    def close(self) -> None:
+        self.chapter.close()
+        self.context.apply_settings()
+
+    @property
+    def key(self) -> str:
+        """Key of the chapter."""
+        return self.chapter.key
+
+    def turn_to(self, page: int) -> None:
+        """Show another page, and keep that it was opened."""
+        on_tabs = page != self.page and self.form.focused is self._tabs
+        self.page = page
+        self._progress.note(self.key, page=page)
+        if page == WHY and self.chapter.tried:
+            self._progress.note(self.key, done=True)
+        self._told = self.chapter.why() if self.chapter.tried else ""
+        # Of what runs on, the numbers of this moment: they could not be read otherwise.
+        self._code = list(self.chapter.code()) if page == CODE else []
+        self.context.apply_settings()
+        self.panel.scrolled = 0.0
+        self.build()
+        if not on_tabs:
+            self.form.focus(self.form.widgets[1])
+
+    def _restart(self) -> None:
+        """Begin the chapter's picture anew."""
+        self.chapter.restart()
+        self.build()
+
+    def actions(self) -> Table:
+        again = [Action(Command.RETRY, self._restart, texts.LEARN_AGAIN)] if self.page == TRY else []
+        on = texts.LEARN_NEXT_PAGE
+        if self.page == CODE:
+            on = texts.LEARN_NEXT_CHAPTER if following(self.key) else ""
+        return [
+            self.form.moves,
+            self.form.changes,
+            *again,
+            Action(Command.NEXT, self._go_on, on),
+            Action(Command.PREVIOUS, partial(self._turn, -1)),
+            self.explained.action(),
+            self.form.goes_back(texts.HINT_BACK),
+        ]
+
+    def handle_event(self, event: pygame.event.Event) -> Transition | None:
+        return None if self.explained.handle_event(event) else super().handle_event(event)
+
+    def update(self) -> Transition | None:
+        if self.page != PREDICT:
+            self.chapter.update()
+        if self.page == WHY and self.chapter.tried and (self.chapter.changed or not self._told):
+            self.turn_to(WHY)  # what was begun on the page before has come to its end
+        elif self.chapter.changed:
+            self.build()
+        self.chapter.changed = False
+        self.explained.update()
+        return super().update()
+
+    def _guess(self, number: int) -> None:
+        self._progress.note(self.key, guess=number)
+        self.turn_to(TRY)
+
+    def _turn(self, pages: int) -> None:
+        if 0 <= self.page + pages < len(PAGES):
+            self.turn_to(self.page + pages)
+
+    def _go_on(self) -> Transition | None:
+        if self.page < CODE:
+            self._turn(1)
+            return None
+        after = following(self.key)
+        return Replace(Route("chapter", (after,))) if after else self.form.goes_back("").run()
+
+    # Rows
+
+    def describe(self, panel: Panel) -> None:
+        number, words = list(PATH).index(self.key) + 1, self.chapter.words
+        panel.title(f"{number}   {words['title']}", TITLE + 6)
+        panel.text(words["question"], colour=MUTE)
+        panel.gap(6)
+        self._tabs = panel.choice("", texts.LEARN_PAGES, self.page, self.turn_to)
+        panel.gap(6)
+        left, right = panel.beside(_SHARES, _LEAST, _APART)
+        [self._describe_predict, self._describe_try, self._describe_why, self._describe_code][self.page](left)
+        self._picture: Row | None = None
+        if self.page == CODE:
+            self._describe_listing(right)
+        else:
+            self._picture = right.add(self._leave_room)
+            right.gap(4)
+            self.chapter.below(right)
+        panel.gap(10)
+        labels = (*texts.LEARN_ON, texts.LEARN_TO_CHAPTER if following(self.key) else texts.LEARN_TO_LIST)
+        door = [(words["door"], lambda: Push(self.chapter.door))] if self.page >= WHY else []
+        panel.words([(labels[self.page], self._go_on), *door])
+
+    def _leave_room(self, cursor: Cursor) -> None:
+        """Leave room for the picture: as high as it should be, or as all else leaves room for in the window."""
+        wide, room = cursor.width, cursor.seen.height - _AROUND if cursor.seen else math.inf
+        cursor.take(min(self.chapter.shape * wide, max(room, _LOWEST * wide)))
+
+    def _describe_predict(self, column: Column) -> None:
+        column.text(self.chapter.words["lead"], size=_BODY, colour=MUTE)
+        column.gap(8)
+        column.text(self.chapter.words["predict"])
+        guess = self._progress.guess(self.key)
+        for number, answer in enumerate(filter(None, texts.LEARN_ANSWERS[self.key])):
+            column.button(answer, partial(self._guess, number), colour=HUMAN if number == guess else _OPEN)
+
+    def _describe_try(self, column: Column) -> None:
+        column.text(lambda: self.chapter.words["task"], size=_BODY)
+        column.gap(6)
+        self.chapter.controls(column)
+
+    def _describe_why(self, column: Column) -> None:
+        guess = self._progress.guess(self.key)
+        if guess is not None:
+            column.add(partial(self._write_verdict, guess, self.chapter.verdict() if self._told else None))
+        waits = texts.LEARN_STILL_RUNS if self.chapter.running else texts.LEARN_TRY_FIRST
+        column.text(self._told or waits, size=_BODY)
+        column.gap(8)
+        column.text(self.chapter.words["why"], size=_BODY, colour=MUTE)
+
+    def _write_verdict(self, guess: int, came: int | None, cursor: Cursor) -> None:
+        """Write the card of a guess: what was said, and what came of this very try."""
+        answers, top = texts.LEARN_ANSWERS[self.key], cursor.y
+        open_words = texts.LEARN_UNDECIDED.get(self.key, "") if self._told else ""
+        colour = MUTE
+        if came is not None and cursor.canvas:
+            colour = cursor.canvas.palette.good if came == guess else cursor.canvas.palette.warn
+        card = cursor.in_style(TEXT, HUMAN)
+        card.left, card.width = cursor.left + _INDENT, cursor.width - _INDENT
+        card.gap(4)
+        card.caption(texts.LEARN_YOU_SAID)
+        card.text(self._progress.answer(self.key))
+        card.gap(8)
+        said = answers[came] if came is not None else open_words
+        if said:
+            card.caption(texts.LEARN_CAME[came == guess])
+            place = (card.right - 14, card.y + 0.6 * card.size)
+            if came is not None and cursor.canvas:
+                cursor.canvas.marker("check" if came == guess else "cross", place, 16, colour)
+            card.colour, card.width = INK if came is not None else MUTE, card.width - 36
+            card.text(said)
+            card.gap(4)
+        if cursor.canvas:
+            cursor.canvas.fill(cursor.canvas.rect(cursor.left, top, 3, card.y - top), colour)
+        cursor.y = card.y + 2 * STEP
+
+    def _describe_code(self, column: Column) -> None:
+        column.text(self.chapter.words["code"], size=_BODY)
+        column.gap(6)
+        for number, code in enumerate(self._code):
+            lit = number == self._function
+            column.button(code.function.__qualname__, partial(self._show_function, number), size=SMALL, weight="code",
+                          colour=NET if lit else MUTE)  # fmt: skip
+
+    def _show_function(self, number: int) -> None:
+        self._function = number
+        self.build()
+
+    def _describe_listing(self, column: Column) -> None:
+        code = self._code[self._function]
+        source = source_of(code.function)
+        if source is None:
+            column.text(texts.LEARN_NO_SOURCE, size=_BODY, colour=MUTE)
+            return
+        current, notes = placed(source, code)
+        add_listing(column, _LISTING, lambda: (source, current, notes), _NOTES)
+
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        super().draw(canvas, alpha)
+        if self._picture:
+            before = canvas.surface.get_clip()
+            canvas.surface.set_clip(canvas.rect(*self._picture.box).clip(canvas.rect(*self.panel.box)).clip(before))
+            self.chapter.draw(canvas, self._picture.box, alpha)
+            canvas.surface.set_clip(before)
+        self.explained.draw(canvas)
+
+
+def placed(source: Source, code: Code) -> tuple[int | None, Mapping[int, str]]:
+    """Return the number of the lit line, and what stands beside lines by their numbers."""
+    notes = {source.line_of(mark): note for mark, note in code.notes.items()}
+    return source.line_of(code.current) if code.current else None, notes

@@ -1,0 +1,146 @@
+"""Frames of a flight: the moment, with all that is sensed of it, and what happened then."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import Final
+
+import numpy as np
+import pygame
+
+from ai.agent.agent import DeepQAgent
+from ai.agent.n_step import NStep
+from ai.agent.normalizer import Normalizer
+from ai.environment import Doubles, Floats
+from ai.explain.agent_lesson import Flown, Lesson
+from ai.lander.environment import ACTION_NAMES, OBSERVATION_SCALE, PARAMS, Outcome
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.drawing.cursor import Cursor
+from game.drawing.paint_cache import PaintCache
+from game.drawing.tokens import INK, SMALL, VIEW_SIZE
+from game.panels.figures import decimal, number, points
+from game.panels.tables import Line, table, told
+from game.scenes.lesson.frame import Frame, in_points
+from game.ui.panel import Column
+from game.world.camera import HOME, POINTS_PER_METRE, View
+from game.world.craft import draw_craft
+from game.world.lander import LANDER
+from game.world.landscape.backdrop import Backdrop
+from game.world.landscape.pad import draw_pad
+
+_LEAST: Final = 300.0  # width of a column
+_ARROW: Final = 9.0  # points of the velocity's arrow for each metre per second
+_MOON: Final = 5
+_DIGITS: Final = (2, 2, 2, 2, 3, 3, 3)
+_UNITS: Final = (0, 0, 1, 1, None, None, 2)  # of each feature, among the texts; None for a plain number
+
+
+def said_action(action: int) -> str:
+    """Return the word for an action."""
+    return texts.said(ACTION_NAMES[action])
+
+
+def in_units(observation: Floats) -> Doubles:
+    """Return an observation (9,) in metres, metres per second, radians per second and plain numbers."""
+    units: Doubles = np.asarray(observation, float) / OBSERVATION_SCALE
+    return units
+
+
+def sensed(value: float, feature: int) -> str:
+    """Write a sensed quantity with its unit."""
+    if feature >= len(_DIGITS):
+        return texts.LESSON_FEET[value > 0.5]
+    figure, unit = decimal(value, _DIGITS[feature]), _UNITS[feature]
+    return figure if unit is None else texts.LESSON_UNITS[unit].format(value=figure)
+
+
+class MomentFrame(Frame):
+    """Frame of the moment: a picture, and the nine inputs with their units."""
+
+    def __init__(self, lesson: Lesson) -> None:
+        self._state, self._action = np.asarray(lesson.cell.state), int(lesson.cell.action)
+        units = in_units(self._state).tolist()
+        functions = (DeepQAgent.learn, DeepQAgent._learn_from, Normalizer.__call__)
+        super().__init__(texts.LESSON_FRAMES["moment"], sensed(units[1], 1), functions, "rows")
+        self._cache = PaintCache()
+        self._lines = [
+            Line((name, sensed(value, feature), number(given)), texts.LESSON_INPUTS_HELP[feature],
+                 told((texts.LESSON_IN_UNITS, sensed(value, feature)),
+                      (texts.LESSON_SCALED.format(scale=f"{OBSERVATION_SCALE[feature]:g}"),
+                       number(float(self._state[feature]))),
+                      (texts.LESSON_GIVEN, number(given))))
+            for feature, (name, value, given) in enumerate(zip(texts.INPUTS, units, lesson.state.tolist(), strict=True))
+        ]  # fmt: skip
+
+    def describe(self, column: Column) -> None:
+        left, right = column.beside((1, 1), _LEAST)
+        left.add(self._write_picture)
+        left.aside(texts.LESSON_PICTURE_NOTE)
+        right.add(table((texts.LESSON_INPUTS, texts.LESSON_IN_UNITS, texts.LESSON_GIVEN), lambda: self._lines))
+
+    def _write_picture(self, cursor: Cursor) -> None:
+        box = cursor.take(cursor.width * VIEW_SIZE[1] / VIEW_SIZE[0])
+        if cursor.canvas:
+            self._cache.draw(cursor.canvas, box, (), partial(self._paint, box.width))
+        cursor.gap(4)
+
+    def _paint(self, width: float, canvas: Canvas) -> None:
+        """Paint the moon with the lander, its engines and an arrow for its velocity, on a sheet of that width."""
+        share = width / VIEW_SIZE[0]
+        moon = pygame.Surface(canvas.size)
+        Backdrop(canvas.size, np.random.default_rng(_MOON), reduced_motion=True).paint(moon)
+        canvas.surface.blit(moon, (0, 0))
+        span = (1 - share) / (2 * share * POINTS_PER_METRE)
+        view = View(canvas.scale, (HOME[0] + span * VIEW_SIZE[0], HOME[1] - span * VIEW_SIZE[1]), share)
+        draw_pad(canvas, view, (0.0, PARAMS.pad_top), PARAMS.pad_width, 0.0)
+        units = in_units(self._state).tolist()
+        place = np.array([units[0], units[1] + PARAMS.pad_top + PARAMS.stand])
+        thrust = np.array([self._action >= 3, self._action % 3 == 2, self._action % 3 == 1], float)
+        pose = np.array([*place, math.atan2(units[4], units[5])])
+        draw_craft(canvas, view, LANDER, pose, thrust, 1.0, 0, 1.5)
+        (x, y), across, up = view.points(place).tolist(), units[2] * _ARROW, units[3] * _ARROW
+        if math.hypot(across, up) > 2:
+            canvas.line((x, y), (x + across, y - up), INK, 1.5)
+            canvas.dot((x + across, y - up), 2.5, INK)
+
+
+class HappenedFrame(Frame):
+    """Frame of what happened: the action and the pay of each decision, and the state after."""
+
+    def __init__(self, lesson: Lesson) -> None:
+        self._lesson, self._pay = lesson, float(lesson.cell.reward) / lesson.config.reward_scale
+        super().__init__(texts.LESSON_FRAMES["happened"], in_points(self._pay), (NStep.add,), "self._returns")
+
+    def describe(self, column: Column) -> None:
+        lesson, flown, count = self._lesson, self._lesson.flown, int(self._lesson.cell.steps)
+        left, right = column.beside((1, 1), _LEAST)
+        lines = self._decisions(flown) if flown else []
+        words = texts.LESSON_RETURN.format(discount=f"{lesson.config.discount:g}", count=count)
+        whole = Line((words, *[""] * (2 if flown else 0), points(self._pay)), texts.LESSON_RETURN_HELP, lit=True)
+        left.add(table(texts.LESSON_PAY if flown else (), lambda: [*lines, whole]))
+        if flown is None:
+            left.aside(texts.LESSON_NOT_KNOWN)
+        before, after = (in_units(each).tolist() for each in (lesson.cell.state, lesson.cell.next_state))
+        changes = [
+            Line((name, sensed(before[feature], feature), sensed(after[feature], feature)),
+                 texts.LESSON_INPUTS_HELP[feature])
+            for feature, name in enumerate(texts.INPUTS)
+        ]  # fmt: skip
+        head = (texts.LESSON_AFTER.format(count=count), texts.LESSON_BEFORE, texts.LESSON_NOW)
+        right.add(table(head, lambda: changes))
+        if flown is not None and flown.outcome != Outcome.FLYING:
+            right.text(texts.LESSON_OUTCOMES[flown.outcome - 1], size=SMALL)
+
+    def _decisions(self, flown: Flown) -> list[Line]:
+        """Return a line for each decision: its action, its pay, how much that counts, and that much of it."""
+        lines, discount = [], self._lesson.config.discount
+        for place, (action, pay) in enumerate(zip(flown.actions.tolist(), flown.rewards.tolist(), strict=True)):
+            words = (texts.REWARD_PARTS.get(name, (name,))[0] for name in flown.parts)
+            parts = [(word, points(float(paid[place]))) for word, paid in zip(words, flown.parts.values(), strict=True)
+                     if paid[place]]  # fmt: skip
+            factor, what = discount**place, texts.LESSON_DECISION.format(number=place + 1)
+            cells = (said_action(action), points(pay), f"× {factor:.3f}", points(pay * factor))
+            lines.append(Line(cells, what, told(*parts, (texts.LESSON_IN_ALL, points(pay)))))
+        return lines

@@ -1,0 +1,173 @@
+"""Frame of a lesson: a sentence, and rows with numbers of the step that explain themselves; and the code beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from ai.explain.learning_step import Value
+from ai.explain.recorder import Function, Line
+from game.core import texts
+from game.core.source import Source, source_of
+from game.drawing.canvas import Point
+from game.drawing.cursor import Cursor
+from game.drawing.tokens import CAPTION, INK, NET
+from game.panels.code_listing import add_listing
+from game.panels.figures import number, points
+from game.ui.panel import Column
+
+
+class Frame:
+    """One of the frames of a lesson; a subclass adds its rows.
+
+    Attributes:
+        name: its name, on its card.
+        sentence: the field's term for what happens here, then plain words for it.
+        figure: the one figure that stands for it on its card.
+        functions: the functions whose lines are shown beside it.
+        begin: variable that the line sets which is lit at first; empty for any.
+
+    """
+
+    def __init__(
+        self, words: Sequence[str], figure: str, functions: Sequence[Function], begin: str = "", sentence: str = ""
+    ) -> None:
+        self.name, self.sentence = words[0], sentence or words[1]
+        self.figure, self.functions, self.begin = figure, tuple(functions), begin
+
+    def describe(self, column: Column) -> None:
+        """Add the rows."""
+
+    def point(self, place: Point | None) -> None:
+        """Follow the pointer, in points; None while it is nowhere."""
+
+    def update(self, still: bool) -> None:
+        """Advance by 1/60 s; `still` with reduced motion."""
+
+
+def in_points(value: float) -> str:
+    """Write a number of points with its unit."""
+    return texts.LESSON_POINTS.format(points=points(value))
+
+
+_LISTING: Final = 300.0  # height
+_MOST: Final = 6  # values of a line that are shown
+_FEW: Final = 4  # numbers of an array that are written out, at most
+# Variables of the agent's code that are rewards, values or differences of these.
+_REWARDS: Final = frozenset((
+    "reward", "transitions.reward", "return.0.reward", "self._returns", "value", "targets", "errors", "chosen",
+    "predicted", "prediction", "target",
+))  # fmt: skip
+_VALUES_OF: Final = ("DeepQAgent._next_value", "DeepQAgent._learn_from")  # functions whose `values` are such, too
+
+
+def in_points_of_reward(line: Line, scale: float) -> Line:
+    """Return a line of the agent's code with its rewards and values in points, as all else on the screen has them."""
+
+    def shown(name: str, value: Value) -> Value:
+        rewards = name in _REWARDS or (name == "values" and line.function in _VALUES_OF)
+        if not rewards or value.case is None:
+            return value
+        return replace(value, case=np.asarray(value.case, float) / scale)
+
+    return replace(line, values={name: shown(name, value) for name, value in line.values.items()})
+
+
+class CodeWalk:
+    """Walk through the lines that ran for one frame, those of its functions.
+
+    Where there are none, its first function is shown, with no line lit. The walk begins at the last line that sets the
+    frame's `begin`, a variable as it is recorded.
+
+    Attributes:
+        lines: the lines, in the order in which they ran.
+        index: number of the current one.
+
+    """
+
+    def __init__(self, lines: Iterable[Line], frame: Frame) -> None:
+        self._functions = {function.__qualname__: function for function in frame.functions}
+        self.lines = tuple(line for line in lines if line.function in self._functions)
+        # Without such a line, begin where numbers are set, past the head of the function.
+        sets = [place for place, line in enumerate(self.lines[:-1]) if place and line.values]
+        named = (place for place in reversed(sets) if frame.begin in self.lines[place].values)
+        self.index = next(named, next(iter(sets), 0))
+
+    @property
+    def line(self) -> Line | None:
+        """The current line; None where no line was recorded."""
+        return self.lines[self.index] if self.lines else None
+
+    @property
+    def source(self) -> Source | None:
+        """Source of the current line's function; None where the program was installed without it."""
+        return source_of(self._functions[self.line.function] if self.line else next(iter(self._functions.values())))
+
+    def describe(self, column: Column) -> None:
+        """Add the listing, what goes from line to line, and what the line sets."""
+        last = len(self.lines) - 1
+        if self.source is None:
+            column.aside(texts.LESSON_NO_SOURCE)
+        else:
+            add_listing(column, _LISTING, self._shown)
+        if last > 0:
+            column.slider(
+                texts.LESSON_LINE, self.index, (0, last), self._go, step=1,
+                figure=lambda value: texts.LESSON_LINE_OF.format(number=round(value) + 1, count=last + 1),
+            )  # fmt: skip
+        column.add(self._write_values)
+
+    def _go(self, index: float) -> None:
+        self.index = round(index)
+
+    def _shown(self) -> tuple[Source, int | None, dict[int, str]]:
+        """Return the source, the lit line, and beside lines what this call has set there so far, in a loop the last."""
+        source, notes = self.source, dict[int, str]()
+        assert source is not None
+        for line in reversed(self.lines[: self.index + 1]):
+            if self.line is None or line.function != self.line.function:
+                continue
+            if line.number == source.lines[0][0]:
+                break  # the head of the call
+            if line.values:
+                notes.setdefault(line.number, _note(list(line.values.values())))
+        return source, self.line.number if self.line else None, notes
+
+    def _write_values(self, cursor: Cursor) -> None:
+        """Write the name and the shape of what the current line has set, and the numbers of this case."""
+        if self.line is None:
+            return
+        cursor.aside(texts.LESSON_SETS if self.line.values else texts.LESSON_SETS_NOTHING)
+        values = list(self.line.values.values())
+        for value in values[:_MOST]:
+            row = cursor.in_style(CAPTION, INK, "code")
+            row.pair(f"{value.name} {shape_of(value)}".rstrip(), case_of(value), NET)
+            cursor.y = row.y + 2
+        if len(values) > _MOST:
+            cursor.aside(texts.LESSON_MORE.format(count=len(values) - _MOST))
+
+
+def shape_of(value: Value) -> str:
+    """Write the shape of an array: 256 × 9; nothing for a number."""
+    return " × ".join(map(str, value.shape))
+
+
+def _note(values: list[Value]) -> str:
+    """Write the first of some values: this case's number, or the shape of an array that has several for it."""
+    first = values[0]
+    note = case_of(first) if np.size(first.case) == 1 and first.case is not None else shape_of(first)
+    return note if len(values) == 1 else f"{note} ..."
+
+
+def case_of(value: Value) -> str:
+    """Write this case's numbers of a value, the first few of many."""
+    if value.case is None:
+        return ""
+    if isinstance(value.case, bool | np.bool_):
+        return str(bool(value.case))
+    numbers = np.asarray(value.case).ravel()
+    shown = " ".join(str(each) if isinstance(each, int) else number(each) for each in numbers[:_FEW].tolist())
+    return shown if len(numbers) <= _FEW else f"{shown} ..."

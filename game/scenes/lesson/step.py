@@ -1,0 +1,192 @@
+"""One learning step of any network, as the frames on networks, gradients and optimizers need it, and what it pulled."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from ai.explain.inspection import Link, links
+from ai.explain.learning_step import Step
+from ai.nn import ActivationLayer, Array, DuelingLayer, FullyConnectedLayer, Layer, LayerNormalisation, NeuralNetwork
+from ai.nn.layers import DropoutLayer
+from game.core import texts
+
+_SUM, _NORMALISED, _DROPPED = "sum", "normalised", "dropout"
+# What optimizers remember of the slopes so far, by its name in `Optimizer.remembers`.
+_RUNNING: Final = ("gradient_sum", "velocity")
+
+
+@dataclass(frozen=True)
+class WeightPlace:
+    """Place of a weight: the link it belongs to, from 0, and the units at its two ends."""
+
+    link: int
+    start: int
+    end: int
+
+
+@dataclass(frozen=True, eq=False)
+class LearningStep:
+    """One step of an optimizer on a batch of examples, around one of them, and the names of all that it moves.
+
+    Attributes:
+        network: a network with the parameters from before the step.
+        taken: the step as it was recorded.
+        observation: (inputs,) that the network was given.
+        inputs, outputs: names of the network's ends.
+        scale: size of one shown unit in the unit of the network's outputs: one point of reward, or 1.
+        optimizer: name of the optimizer.
+        examples: number of examples in the batch.
+
+    """
+
+    network: NeuralNetwork
+    taken: Step
+    observation: Array
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    scale: float
+    optimizer: str
+    examples: int
+
+    @cached_property
+    def stages(self) -> list[list[tuple[str, Array]]]:
+        """For each link, the name and the values (units,) of each layer from it up to the next link."""
+        found: list[list[tuple[str, Array]]] = []
+        for layer, values in zip(self.network.layers, self.taken.activations, strict=True):
+            if _joins_units(layer):
+                found.append([(_SUM, values)])
+            elif isinstance(layer, LayerNormalisation) and found:
+                found[-1].append((_NORMALISED, values))
+            elif isinstance(layer, DropoutLayer) and found:
+                found[-1].append((_DROPPED, values))
+            elif isinstance(layer, ActivationLayer) and found:
+                found[-1].append((str(layer.activation.name), values))
+        return found
+
+    def given(self, link: int) -> Array:
+        """Return what a link is given: what the layers below make of the observation, (units,)."""
+        if link:
+            return self.stages[link - 1][-1][1]
+        given = np.asarray(self.observation, float).ravel()
+        for layer, values in zip(self.network.layers, self.taken.activations, strict=True):
+            if _joins_units(layer):
+                break
+            given = np.asarray(values, float).ravel()
+        return given
+
+    @cached_property
+    def weights(self) -> list[Link]:
+        """The weights before the step, as the links between the network's stages."""
+        twin = self.network.copy()
+        twin.values = self.taken.values_before
+        return [Link(link.weights.copy(), link.bias.copy(), link.gradient) for link in links(twin)]
+
+    @cached_property
+    def _indices(self) -> list[npt.NDArray[np.intp] | None]:
+        """For each link, where its weights lie in a flat vector; None where they are mixed, in a dueling layer."""
+        found: list[npt.NDArray[np.intp] | None] = []
+        first = 0
+        for layer in self.network.layers:
+            if _joins_units(layer):
+                shape = layer.shapes["weights"]
+                whole = np.arange(first, first + int(np.prod(shape))).reshape(shape)
+                found.append(None if isinstance(layer, DuelingLayer) else whole)
+            first += sum(parameter.value.size for parameter in layer.parameters)
+        return found[-len(self.weights) :]
+
+    def index(self, place: WeightPlace) -> int | None:
+        """Return where a weight lies in the flat vectors; None for one of a dueling layer, which mixes several."""
+        indices = self._indices[place.link]
+        return None if indices is None else int(indices[place.start, place.end])
+
+    def strongest(self, flat: Array, most: int) -> list[WeightPlace]:
+        """Return the places of the weights for which a flat vector is largest, the largest first."""
+        found = []
+        for link, indices in enumerate(self._indices):
+            if indices is None:
+                continue
+            sizes = np.nan_to_num(np.abs(flat[indices]), nan=np.inf)
+            best = np.argsort(-sizes, axis=None, kind="stable")[:most]
+            places = np.stack(np.unravel_index(best, sizes.shape), axis=1).tolist()
+            found += [(float(sizes[start, end]), WeightPlace(link, start, end)) for start, end in places]
+        found.sort(key=lambda each: -each[0])
+        return [place for _, place in found[:most]]
+
+    def unit_name(self, column: int, unit: int) -> str:
+        """Return the name of a unit of a column, by its number in the layer."""
+        names = self.inputs if column == 0 else self.outputs if column == len(self.weights) else ()
+        return names[unit] if unit < len(names) else texts.NETWORK_VIEW_UNIT.format(layer=column, unit=unit + 1)
+
+    def weight_name(self, weight: WeightPlace) -> str:
+        """Return the names of the units that a weight connects."""
+        start, end = self.unit_name(weight.link, weight.start), self.unit_name(weight.link + 1, weight.end)
+        return texts.LESSON_WEIGHT_NAME.format(start=start, end=end)
+
+    @property
+    def _carried(self) -> str | None:
+        """What the optimizer carries on of earlier slopes, by its name; None if it carries on nothing."""
+        return next((name for name in _RUNNING if name in self.taken.optimizer_after), None)
+
+    @property
+    def carries_on(self) -> bool:
+        """Whether the optimizer remembers earlier slopes: then a weight may move up its slope."""
+        return self._carried is not None
+
+    @cached_property
+    def pace(self) -> Array:
+        """Step for each unit of the slopes that the optimizer goes by, parameter by parameter: 0 where nothing moves.
+
+        Those slopes are the running sum that it carries on, or this gradient alone.
+        """
+        kept = self._carried
+        running = (self.taken.optimizer_after[kept] if kept else self.taken.gradient).astype(float)
+        pace: Array = np.divide(self.taken.taken, running, out=np.zeros(len(running)), where=running != 0)
+        return pace
+
+
+@dataclass(frozen=True)
+class Pulls:
+    """Change of one output in a step, by its causes, in the unit of the network.
+
+    The step of each of our optimizers is a pace times a sum of gradients, parameter by parameter, and the gradient of a
+    batch is the sum of its examples' shares. So each part of the sum has its part of the step, and the slope of the
+    output says how far that part alone would move it along a straight line.
+
+    Attributes:
+        own: by the gradient of its own example.
+        others: by the gradients of the other examples in the batch.
+        earlier: by what the optimizer still carries of the steps before.
+        bend: the rest, since a network is no straight line.
+
+    """
+
+    own: float
+    others: float
+    earlier: float
+    bend: float
+
+    @classmethod
+    def of(cls, step: LearningStep, derivative: float, moved: float) -> Pulls | None:
+        """Return the pulls that moved an output by `moved`; None where the cost's `derivative` by it is 0.
+
+        The share of the example in the gradient is that derivative times the slope of the output.
+        """
+        if derivative == 0.0 or not np.isfinite(derivative):
+            return None
+        taken = step.taken
+        gradient, share, whole = (each.astype(float) for each in (taken.gradient, taken.share, taken.taken))
+        clipped = float(np.linalg.norm(gradient)) / taken.gradient_length if taken.gradient_length > 0 else 1.0
+        own, together = step.pace * share * clipped, step.pace * gradient
+        pulls = [-float(share @ part) / derivative for part in (own, together - own, whole - together)]
+        own, others, earlier = pulls
+        return cls(own, others, earlier, moved - sum(pulls))
+
+
+def _joins_units(layer: Layer) -> bool:
+    """Whether a layer is one of the links between units: a convolution joins images."""
+    return isinstance(layer, FullyConnectedLayer) and not isinstance(layer.inputs, tuple)

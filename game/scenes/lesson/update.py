@@ -1,0 +1,293 @@
+"""Frames of the update: the target of a value, its error, and what the step did to it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from itertools import pairwise
+from typing import Final
+
+import numpy as np
+import pygame
+
+from ai.agent.agent import DeepQAgent
+from ai.explain.agent_lesson import Lesson
+from ai.explain.recorder import Function
+from ai.nn import NeuralNetwork
+from ai.nn.costs import COSTS, Cost
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.drawing.paint_cache import PaintCache
+from game.drawing.tokens import CAPTION, EMBER, FAINT, HUMAN, INK, LINE, MUTE, NET, SMALL
+from game.panels.figures import decimal, number, points, signed
+from game.panels.tables import Line, Part, formula, table, told
+from game.scenes.lesson.flight import said_action
+from game.scenes.lesson.frame import Frame, in_points
+from game.scenes.lesson.step import LearningStep, Pulls
+from game.ui.panel import Column
+
+_LEAST: Final = 300.0  # width of a column
+
+
+class TargetFrame(Frame):
+    """Frame of the target."""
+
+    def __init__(self, lesson: Lesson) -> None:
+        self._lesson, self._scale = lesson, lesson.config.reward_scale
+        functions = (DeepQAgent.targets, DeepQAgent._next_value, NeuralNetwork.predict)
+        super().__init__(texts.LESSON_FRAMES["target"], in_points(lesson.target / self._scale), functions, "targets")
+
+    def describe(self, column: Column) -> None:
+        column.add(formula(self._sum))
+        column.gap(4)
+        left, right = column.beside((1, 1), _LEAST)
+        left.add(table(self._head(), self._values))
+        for words in self._roles():
+            right.text(words, size=SMALL, colour=MUTE)
+            right.gap(4)
+
+    def _sum(self) -> list[Part]:
+        lesson, steps, ended = self._lesson, int(self._lesson.cell.steps), bool(self._lesson.cell.terminal)
+        target, pay, value = (float(each) / self._scale for each in (lesson.target, lesson.cell.reward,
+                                                                     lesson.next_value))  # fmt: skip
+        whole = told(
+            (texts.LESSON_PART_PAY, points(pay)),
+            (texts.LESSON_PART_VALUE.format(factor=f"{lesson.discount:.4f}", value=points(value)),
+             points(0.0 if ended else lesson.discount * value)),
+            (texts.LESSON_TARGET, points(target)),
+        )  # fmt: skip
+        factor = told((f"{lesson.config.discount:g}^{steps}", f"{lesson.discount:.4f}"))
+        parts = [
+            Part(points(target), texts.LESSON_TARGET, texts.LESSON_TARGET_HELP, whole),
+            Part("="),
+            Part(points(pay), texts.LESSON_PART_PAY, texts.LESSON_RETURN_HELP),
+            Part("+"),
+            Part(f"{lesson.discount:.3f}", texts.LESSON_PART_DISCOUNT.format(count=steps), texts.LESSON_DISCOUNT_HELP,
+                 factor),
+            Part("×"),
+            Part(points(value), texts.LESSON_PART_NEXT, texts.LESSON_NEXT_HELP),
+        ]  # fmt: skip
+        return [*parts, Part("×"), Part("0", texts.LESSON_PART_ENDED, texts.LESSON_NOTHING_AFTER)] if ended else parts
+
+    def _head(self) -> tuple[str, ...]:
+        """Return the heads of the values' table: one network, or one that picks and one that judges."""
+        if self._lesson.next_online is not None:
+            return "", texts.LESSON_PICK, texts.LESSON_JUDGE
+        judge = texts.LESSON_PICK_AND_JUDGE if self._lesson.config.target_judges else texts.LESSON_NEWEST_JUDGES
+        return "", judge
+
+    def _values(self) -> list[Line]:
+        """Return the values of the six actions afterwards, by each of the networks, on one scale."""
+        lesson = self._lesson
+        columns = [each for each in (lesson.next_online, lesson.next_judged) if each is not None]
+        shown = np.stack(columns, axis=1) / self._scale
+        low, span = float(shown.min()), max(float(np.ptp(shown)), 1e-9)
+        return [
+            Line((said_action(action), *map(points, row)), texts.LESSON_NEXT_HELP,
+                 told((texts.LESSON_OWN_SCALE, " ".join(number(value * self._scale) for value in row))),
+                 lit=action == lesson.best, bars=[(value - low) / span for value in row])
+            for action, row in enumerate(shown.tolist())
+        ]  # fmt: skip
+
+    def _roles(self) -> list[str]:
+        """Say which network picks, which one judges, and what comes of it; or what stands in for a second one."""
+        lesson, config, words = self._lesson, self._lesson.config, texts.LESSON_ROLES_NEWEST
+        if lesson.next_online is not None:
+            said = [*texts.LESSON_ROLES_DOUBLE]
+        elif config.target_judges:
+            said = [*texts.LESSON_ROLES_SINGLE]
+        else:
+            pays = [words["pays"].format(count=int(lesson.cell.steps))] if config.n_step > 1 else []
+            said = [words["picks"], *pays, words["normalised" if config.layer_normalisation else "bare"]]
+        judged = lesson.next_judged / self._scale
+        own, most = points(float(judged[lesson.best])), points(float(judged.max()))
+        return [text.format(action=said_action(lesson.best), value=own, most=most) for text in said]
+
+
+Curve = Callable[[float], float]
+_VALUES, _CHART = 72.0, 180.0  # heights
+_POINTS: Final = 121  # of a curve
+_WIDEST: Final = 1.15  # the axis reaches so many times as far as the largest error of the batch
+_CURVE: Final = 260.0  # width of a chart
+
+
+class ErrorFrame(Frame):
+    """Frame of the error."""
+
+    def __init__(self, lesson: Lesson) -> None:
+        self._scale, self._lesson = lesson.config.reward_scale, lesson
+        words, error = texts.LESSON_FRAMES["error"], lesson.error / self._scale
+        self._cost: Cost = COSTS[lesson.config.cost]()
+        said = texts.LESSON_TOO[error > 0].format(by=decimal(abs(error), 2)) if error else ""
+        functions = (DeepQAgent.gradient_step, self._cost.function, self._cost.derivative)
+        super().__init__(words, in_points(error), functions, "errors", f"{words[1]} {said}".strip())
+        largest = max(float(np.abs(lesson.batch_errors).max()), abs(lesson.error), 1e-6)
+        self._delta = float(self._cost.options.get("delta", 0.0))
+        # Where errors are far from the bend of the cost, the bend is out of sight, and the curves say so truly.
+        self._reach = max(_WIDEST * largest, 1.2 * self._delta if largest > 0.3 * self._delta else 0.0)
+        self._cache = PaintCache(most=2)
+
+    def cost_of(self, error: float) -> float:
+        """Return the cost of one memory with an error, in the network's own scale."""
+        return self._cost(np.array([error]), np.array([0.0]))
+
+    def push_of(self, error: float) -> float:
+        """Return the derivative of that cost by the value."""
+        return float(self._cost.derivative(np.array([error]), np.array([0.0]))[0])
+
+    def describe(self, column: Column) -> None:
+        column.picture(_VALUES, self._draw_line)
+        cost = self._lesson.config.cost
+        curves = ((texts.LESSON_COSTS[cost], self.cost_of, texts.LESSON_COST_HELP),
+                  (texts.LESSON_PUSH, self.push_of, texts.LESSON_PUSH_HELP))  # fmt: skip
+        for side, (title, curve, help_) in zip(column.beside((1, 1), _CURVE), curves, strict=True):
+            rows = told((texts.LESSON_ERROR, points(self._lesson.error / self._scale)),
+                        (texts.LESSON_OWN_SCALE, signed(self._lesson.error)),
+                        (title, number(curve(self._lesson.error))))  # fmt: skip
+            side.caption(title)
+            side.picture(_CHART, partial(self._draw_curve, curve))
+            side.rows[-1].what, side.rows[-1].now = help_, partial(str, rows)
+        column.add(formula(self._result))
+        column.aside(texts.LESSON_BENDS[cost].format(delta=f"{self._delta / self._scale:g}"))
+
+    def _result(self) -> list[Part]:
+        """Return how the push of this memory becomes what goes back into the network."""
+        lesson, count = self._lesson, len(self._lesson.batch_errors)
+        return [
+            Part(signed(self.push_of(lesson.error)), texts.LESSON_PUSHES, texts.LESSON_PUSH_HELP),
+            Part("÷"),
+            Part(str(count), texts.LESSON_SHARED, texts.LESSON_SHARED_HELP),
+            Part("×"),
+            Part(f"{lesson.weight:g}", texts.LESSON_WEIGHTED),
+            Part("="),
+            Part(signed(lesson.derivative), texts.LESSON_DERIVATIVE, texts.LESSON_DERIVATIVE_HELP),
+        ]
+
+    def _draw_line(self, canvas: Canvas, box: pygame.FRect) -> None:
+        """Draw the value and its target on a line, and the error between them."""
+        lesson, y = self._lesson, box.top + 34
+        predicted, target = float(lesson.predicted[int(lesson.cell.action)]) / self._scale, lesson.target / self._scale
+        ends = (box.left + 0.15 * box.width, box.left + 0.85 * box.width)
+        here, there = ends if predicted <= target else ends[::-1]
+        canvas.line((box.left, y), (box.right, y), LINE)
+        canvas.line((here, y), (there, y), EMBER, 2.5)
+        canvas.dot((here, y), 5, NET)
+        canvas.marker("ring", (there, y), 12, HUMAN)
+        for x, value, word, colour in ((here, predicted, texts.LESSON_PREDICTED, NET),
+                                       (there, target, texts.LESSON_TARGET, HUMAN)):  # fmt: skip
+            canvas.text(f"{word} {points(value)}", (x, y - 16), size=SMALL, colour=colour, align="centre", tabular=True)
+        middle = ((here + there) / 2, y + 22)
+        told_error = f"{texts.LESSON_ERROR} {points(lesson.error / self._scale)}"
+        canvas.text(told_error, middle, size=SMALL, colour=MUTE, align="centre", tabular=True)
+        canvas.explain((ends[0], y - 6, ends[1] - ends[0], 12), texts.LESSON_ERROR_HELP)
+
+    def _draw_curve(self, curve: Curve, canvas: Canvas, box: pygame.FRect) -> None:
+        """Draw a curve over errors, with each memory of the batch on it."""
+        chart = pygame.FRect(0, 8, box.width, box.height - 28)
+        self._cache.draw(canvas, box, curve.__name__, lambda sheet: self._paint_curve(sheet, chart, curve))
+
+    def _paint_curve(self, sheet: Canvas, box: pygame.FRect, curve: Curve) -> None:
+        errors, own = np.linspace(-self._reach, self._reach, _POINTS).tolist(), self._lesson.error
+        low, high = min(0.0, *map(curve, errors[:: _POINTS - 1])), max(0.0, *map(curve, errors[:: _POINTS - 1]))
+
+        def place(error: float) -> tuple[float, float]:
+            x = box.left + box.width * (error + self._reach) / (2 * self._reach)
+            return x, box.bottom - box.height * (curve(error) - low) / max(high - low, 1e-12)
+
+        base = place(0.0)[1]
+        sheet.line((box.centerx, box.top), (box.centerx, box.bottom), LINE)
+        sheet.line((box.left, base), (box.right, base), LINE)
+        for start, end in pairwise(map(place, errors)):
+            sheet.line(start, end, MUTE, 1.5)
+        for error in np.delete(self._lesson.batch_errors, self._lesson.step.row).tolist():
+            sheet.dot(place(error), 1.8, FAINT)
+        sheet.line((place(own)[0], base), place(own), EMBER, 1.5)
+        sheet.dot(place(own), 4.5, INK)
+        widest, y = points(self._reach / self._scale, 1), box.bottom + 18
+        sheet.text(widest.replace("+", "−"), (box.left, y), size=CAPTION, colour=MUTE)
+        sheet.text("0", (box.centerx, y), size=CAPTION, colour=MUTE, align="centre")
+        sheet.text(texts.LESSON_POINTS.format(points=widest), (box.right, y), size=CAPTION, colour=MUTE, align="right")
+
+
+_MOVED, _ROW = 60.0, 30.0  # heights
+_NAMES, _FIGURES = 0.52, 0.66  # of the width: where names and figures of pulls end
+
+
+class AfterFrame(Frame):
+    """Frame after the step.
+
+    `values` are an output before, the same after, and its target, in the network's scale; `telling` says that it is
+    nearer now, or farther. `derivative` is that of the cost by the output, which is in points then; without it,
+    nothing is said of pulls.
+    """
+
+    def __init__(
+        self,
+        words: Sequence[str],
+        functions: Sequence[Function],
+        step: LearningStep,
+        values: tuple[float, float, float],
+        derivative: float | None,
+        telling: Sequence[str],
+    ) -> None:
+        self._values = before, after, target = [value / step.scale for value in values]
+        figure, write = (number(after), number) if derivative is None else (in_points(after), points)
+        super().__init__(words, figure, functions, "values")
+        self.step, self._pulled = step, derivative is not None
+        self.pulls = None if derivative is None else Pulls.of(step, derivative, values[1] - values[0])
+        closer = abs(before - target) - abs(after - target)
+        self._told = telling[closer <= 0].format(
+            before=write(before), after=write(after), target=write(target), by=number(abs(closer))
+        )
+        if self.pulls is not None:
+            strongest = texts.LESSON_PULL_PARTS[int(np.argmax(np.abs(self._found())))][0]
+            name = strongest.format(count=step.examples - 1)
+            self._told = f"{self._told} {texts.LESSON_STRONGEST.format(name=name)}"
+
+    def describe(self, column: Column) -> None:
+        column.text(self._told, size=SMALL)
+        column.picture(_MOVED, self._draw_value)
+        if self._pulled:
+            column.gap(8)
+            column.aside(texts.LESSON_PULLS if self.pulls else texts.LESSON_NO_PULL)
+        if self.pulls:
+            column.picture(_ROW * len(texts.LESSON_PULL_PARTS), self._draw_pulls)
+
+    def _found(self) -> list[float]:
+        """Return the pulls in points, in the order of their texts."""
+        pulls = self.pulls
+        assert pulls is not None
+        return [pull / self.step.scale for pull in (pulls.own, pulls.others, pulls.earlier, pulls.bend)]
+
+    def _draw_value(self, canvas: Canvas, box: pygame.FRect) -> None:
+        """Draw the value before and after, and its target."""
+        low, high = min(self._values), max(self._values)
+        before, after, target = (
+            box.left + 10 + (box.width - 20) * (value - low) / max(high - low, 1e-9) for value in self._values
+        )
+        y = box.centery
+        canvas.line((box.left, y), (box.right, y), LINE)
+        canvas.line((before, y), (after, y), NET, 2.5)
+        canvas.dot((before, y), 4, FAINT)
+        canvas.dot((after, y), 5, NET)
+        canvas.marker("ring", (target, y), 12, HUMAN)
+        for x, value, word in zip((before, after, target), self._values, texts.LESSON_VALUE_MARKS, strict=True):
+            rows = [(texts.LESSON_OWN_SCALE, number(value * self.step.scale))]
+            if self._pulled:
+                rows.append((texts.LESSON_IN_POINTS.format(scale=f"{self.step.scale:g}"), points(value, 3)))
+            canvas.explain((x - 6, y - 6, 12, 12), word, partial(told, *rows))
+
+    def _draw_pulls(self, canvas: Canvas, box: pygame.FRect) -> None:
+        """Draw a bar for each pull: blue towards the target, orange away from it."""
+        found, (before, _, target) = self._found(), self._values
+        most, zero = max(1e-12, *map(abs, found)), box.left + 0.83 * box.width
+        canvas.line((zero, box.top), (zero, box.bottom), LINE)
+        for row, (pull, (word, help_)) in enumerate(zip(found, texts.LESSON_PULL_PARTS, strict=True)):
+            y, length = box.top + _ROW * row + 19, 0.16 * box.width * pull / most
+            canvas.text(word.format(count=self.step.examples - 1), (box.left, y), size=SMALL, colour=MUTE,
+                        room=_NAMES * box.width)  # fmt: skip
+            end = box.left + _FIGURES * box.width
+            canvas.text(points(pull), (end, y), size=SMALL, align="right", tabular=True)
+            area = canvas.rect(min(zero, zero + length), y - 8, max(abs(length), 1), 7)
+            canvas.fill(area, NET if pull * (target - before) >= 0 else EMBER)
+            canvas.explain((box.left, y - 14, box.width, _ROW), help_, partial(points, pull, 3))
