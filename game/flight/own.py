@@ -25,11 +25,11 @@ RIVALS: Final = ("modern", "classic", networks.SCRIPTED)
 _MARK: Final = "/"  # before a rival's name: no file's name has it
 
 
-def take(context: Context, path: Path) -> None:
-    """Let a file be the player's pilot from now on, as they have chosen it by name."""
+def take(context: Context, path: Path | None) -> None:
+    """Let a file be the player's pilot from now on, as they have chosen it by name; or none."""
     if context.pilot:
         context.pilot.close()
-    context.pilot = OwnPilot(path)
+    context.pilot = OwnPilot(path) if path else None
 
 
 def flying(context: Context) -> networks.Network | None:

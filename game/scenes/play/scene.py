@@ -296,7 +296,7 @@ class PlayScene(Scene):
         self._load_network()
         self.flown.change_network(self.network)
 
-    def _choose_own(self, path: Path) -> None:
+    def _choose_own(self, path: Path | None) -> None:
         own.take(self.context, path)
         self._load_network()
         self.flown.change_network(self.network)

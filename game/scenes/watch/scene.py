@@ -298,9 +298,10 @@ class WatchScene(FormScene):
         return push("runs", choose=self._want)
 
     def _open_pilots(self) -> Transition:
-        def choose(path: Path) -> None:
-            own.take(self.context, path)
-            self._want(path.name)
+        def choose(path: Path | None) -> None:
+            if path:
+                own.take(self.context, path)
+                self._want(path.name)
 
         return push("pilots", choose, now=self.context.pilot.path if self.context.pilot else None)
 
