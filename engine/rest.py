@@ -90,8 +90,9 @@ class Rest:
         restless = self._still < STEPS
         self.asleep = np.zeros_like(restless)
         if contacts is not None:
-            held = _linked(~restless & ~self._dynamic, contacts, self._dynamic)
-            self.asleep = held & ~_linked(restless, contacts, self._dynamic) & self._dynamic
+            supported = _linked(~restless & ~self._dynamic, contacts, self._dynamic)
+            disturbed = _linked(restless, contacts, self._dynamic)
+            self.asleep = supported & ~disturbed & self._dynamic
         self.awake = ~self.asleep & (self._dynamic | restless) if self.asleep.any() else None
 
 

@@ -174,6 +174,7 @@ class LayerNormalisation(Layer):
     def forward_propagate(self, input_data: Array) -> Array:
         """Return the normalised batch, (batch, size)."""
         gain, bias = self.parameters
+        # Five arrays in one: there is one look whether they fit the batch.
         self.output, self.centred, self.stretch, self.error, self.scratch = self.kept(
             "buffers", (5, *input_data.shape), self.dtype
         )

@@ -87,7 +87,7 @@ class Flight:
 
     @property
     def outcome(self) -> Outcome:
-        """Outcome of the flight so far."""
+        """Outcome of the flight so far; it is `over` unless it is still flying."""
         return Outcome(int(self.env.outcome[0]))
 
     @property

@@ -45,56 +45,30 @@ def _plain_name(name: str) -> None:
 
 @dataclass(frozen=True)
 class Entry:
-    """Line of the logbook.
+    """Line of the logbook."""
 
-    Attributes:
-        when: time of the flight's end, in seconds since 1970.
-        outcome: name of an Outcome.
-        seconds, fuel: duration; fuel in seconds of main engine.
-        touchdown: speed in m/s into the surface; 0 without a touch.
-        human: the person's share of the steps, 0 to 1.
-        alone: whether the person flew all of it without help, so that it counts for their skill.
-        network: name of the network that flew the rest, or could have.
-        pads: number of landing pads.
-        score: points for the landing.
-        gravity: share of normal gravity; the one farthest from 1 during the flight.
-        pace: slowest time scale the player chose during the flight; 1 is normal.
-        rules: version of its mission's rules at the time, from `rules_of`.
-        barred: why it does not count as the person's own, a key of `texts.NOT_COUNTED`; empty if it does, or was flown
-            before this field existed.
-        guarded: assist of the guardian by futures that watched over all of it, 0 to 1; 0 for none.
-        course: name of a mission; empty for a free flight.
-        medal: 3 for gold, 2, 1, and 0 for none.
-        file: name of the flight's file, for a replay.
-        spawn: the kind of start, a name of `ai.lander.spawns.SPAWNS`.
-        intact: whether it came down whole beside the pad; its outcome is CRASHED.
-        leg: number of the leg in a descent; 0 for any other flight.
-        total: points of the descent so far.
-
-    """
-
-    when: _Figure
+    when: _Figure  # the flight's end, in seconds since 1970
     outcome: Annotated[str, OneOf(Outcome.__members__)]
     seconds: _Figure
-    fuel: _Figure
-    touchdown: _Figure
-    human: Share
-    alone: bool = False
-    network: _Name = ""
+    fuel: _Figure  # seconds of main engine
+    touchdown: _Figure  # m/s into the surface; 0 without a touch
+    human: Share  # the person's of the steps
+    alone: bool = False  # whether the person flew all of it without help, so that it counts for their skill
+    network: _Name = ""  # that flew the rest, or could have
     pads: _Number = 1
     score: _Number = 0
-    course: _Name = ""
-    medal: _Number = 0
-    file: Annotated[str, Sized(LONGEST_NAME), _plain_name] = ""
-    gravity: _Figure = 1.0
-    pace: _Figure = 1.0
-    rules: _Number = 0
-    barred: _Name = ""
-    guarded: Share = 0.0
-    intact: bool = False
-    spawn: Annotated[str, OneOf(SPAWNS)] = "random"
-    leg: _Number = 0
-    total: _Number = 0
+    course: _Name = ""  # name of a mission; empty for a free flight
+    medal: _Number = 0  # 3 for gold, 2, 1, and 0 for none
+    file: Annotated[str, Sized(LONGEST_NAME), _plain_name] = ""  # for a replay
+    gravity: _Figure = 1.0  # share of the normal one; the farthest from 1 during the flight
+    pace: _Figure = 1.0  # slowest time scale during the flight; 1 is normal
+    rules: _Number = 0  # version of its mission's rules at the time, from `rules_of`
+    barred: _Name = ""  # why it does not count, a key of `texts.NOT_COUNTED`; empty if it does, or nobody noted it yet
+    guarded: Share = 0.0  # assist of the guardian by futures that watched over all of it; 0 for none
+    intact: bool = False  # whether it came down whole beside the pad; its outcome is CRASHED
+    spawn: Annotated[str, OneOf(SPAWNS)] = "random"  # the kind of start
+    leg: _Number = 0  # number of the leg in a descent; 0 for any other flight
+    total: _Number = 0  # points of the descent so far
 
     @property
     def on_ladder(self) -> bool:

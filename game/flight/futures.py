@@ -32,22 +32,21 @@ _SWITCH: Final = 5e-4  # seconds after which the thread that receives requests g
 
 
 class Flyer(NamedTuple):
-    """All that a network flies by, for another process."""
+    """All that a network flies by, for another process: `made` makes an agent, which is then given its values."""
 
-    num_features: int
-    num_actions: int
-    config: AgentConfig
+    made: tuple[int, int, AgentConfig]
     values: Floats  # (parameters,)
     normalizer: Normalizer | None
 
     @classmethod
     def of(cls, agent: DeepQAgent) -> Flyer:
         """Return that of an agent."""
-        return cls(agent.num_features, agent.num_actions, agent.config, agent.network.values.copy(), agent.normalizer)
+        made = agent.num_features, agent.num_actions, agent.config
+        return cls(made, agent.network.values.copy(), agent.normalizer)
 
     def agent(self) -> DeepQAgent:
         """Return an agent that flies alike."""
-        agent = DeepQAgent(self.num_features, self.num_actions, self.config)
+        agent = DeepQAgent(*self.made)
         agent.restore(self.values, self.normalizer)
         return agent
 

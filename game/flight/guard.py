@@ -43,26 +43,24 @@ class Taps:
     """What was pressed since the last decision: an engine that was tapped between two decisions counts in the next."""
 
     def __init__(self) -> None:
-        self._before: tuple[float, ...] = (0.0, 0.0)
-        self._tapped: tuple[float, ...] = (0.0, 0.0)
+        self._now, self._tapped = [0.0, 0.0], [0.0, 0.0]  # shares of main engine and jets
 
     def follow(self, push: Push) -> None:
         """Follow one step's stick."""
-        now = push.main, push.side
-        self._tapped = tuple(
-            share if share and not before else tapped
-            for share, before, tapped in zip(now, self._before, self._tapped, strict=True)
-        )
-        self._before = now
+        for engine, share in enumerate(push[1:]):
+            if share and not self._now[engine]:
+                self._tapped[engine] = share
+            self._now[engine] = share
 
     @property
     def asked(self) -> Push:
         """What the stick asks for in the decision that begins."""
-        return Push.of(*(share or tapped for share, tapped in zip(self._before, self._tapped, strict=True)))
+        main, side = (now or tapped for now, tapped in zip(self._now, self._tapped, strict=True))
+        return Push.of(main, side)
 
     def forget(self) -> None:
         """Forget the taps: they are flown."""
-        self._tapped = (0.0, 0.0)
+        self._tapped = [0.0, 0.0]
 
 
 class Guard:
@@ -143,8 +141,8 @@ class Guard:
         elif by is StickHolder.HUMAN:
             self.ahead.hint(push_of(flight.asked, shares))
         flight.decision = decision = self._decision
-        assert self.push is not None
-        assert decision is not None
+        assert self.push
+        assert decision
         if by is StickHolder.NETWORK:
             flight.asked = COAST
             return self.push.action, by, shares_of(self.push)

@@ -56,8 +56,8 @@ def decide(policy: Policy, observation: Floats, held: Ints | None = None) -> Dec
 
 def decision_steps(policy: Policy | None) -> int:
     """Return after how many physics steps a policy decides anew: as many as it was trained with, or four."""
-    config = getattr(policy, "config", None)
-    steps = getattr(policy, "run_settings", {}).get("frame_skip", getattr(config, "frame_skip", DECISION_STEPS))
+    usual = getattr(getattr(policy, "config", None), "frame_skip", DECISION_STEPS)
+    steps = getattr(policy, "run_settings", {}).get("frame_skip", usual)
     return steps if isinstance(steps, int) and steps > 0 else DECISION_STEPS
 
 
@@ -143,15 +143,9 @@ def _fresh(name: str, folder: Path, features: int) -> Network:
         _log.exception("reading %s", folder)
         return Network(name, problem=brief(f"{type(error).__name__}: {error}"))
     if (agent.num_features, agent.num_actions) != (features, NUM_ACTIONS):
-        return Network(
-            name,
-            problem=texts.NETWORK_ELSEWHERE.format(
-                features=agent.num_features,
-                actions=agent.num_actions,
-                lander_features=features,
-                lander_actions=NUM_ACTIONS,
-            ),
-        )
+        lander = {"lander_features": features, "lander_actions": NUM_ACTIONS}
+        problem = texts.NETWORK_ELSEWHERE.format(features=agent.num_features, actions=agent.num_actions, **lander)
+        return Network(name, problem=problem)
     return Network(name, agent)
 
 

@@ -61,25 +61,21 @@ class RivalOutcome:
 
 def outcome_card(env: LanderEnv, human: float, slot: int = 0) -> OutcomeCard:
     """Return the outcome card of a flight that has ended; `human` is the person's share of the steps, 0 to 1."""
-    outcome = Outcome(int(env.outcome[slot]))
-    title, reason = texts.OUTCOMES[outcome.name]
-    intact = bool(env.intact[slot])
-    if intact:
-        title, reason = texts.BESIDE_TITLE, crash_reason(env, slot)
-    elif outcome is Outcome.CRASHED:
+    outcome, intact = Outcome(int(env.outcome[slot])), bool(env.intact[slot])
+    title, reason = ending_word(outcome.name, intact=intact), texts.OUTCOMES[outcome.name][1]
+    if outcome is Outcome.CRASHED:
         reason = crash_reason(env, slot)
     elif outcome is Outcome.OUT_OF_BOUNDS:
         reason = reason.format(where=_where_left(env, slot))
     elif outcome is Outcome.TIMED_OUT:
         reason = reason.format(limit=f"{env.limits.time:.0f}")
-    advice = texts.ADVICE.get(cause_of(env, slot).name, "")
-    figures = flight_figures(env, slot)
-    landed, quality = outcome is Outcome.LANDED, ""
-    if landed:
-        met = qualities(env, slot)
-        title = texts.PERFECT if len(met) == len(texts.QUALITIES) else title
-        quality = texts.AND.join(texts.QUALITIES[name] for name in met).capitalize()
-    return OutcomeCard(landed, title, reason, figures, human, advice, intact=intact, quality=quality)
+    advice, figures = texts.ADVICE.get(cause_of(env, slot).name, ""), flight_figures(env, slot)
+    if outcome is not Outcome.LANDED:
+        return OutcomeCard(False, title, reason, figures, human, advice, intact=intact)
+    met = qualities(env, slot)
+    title = texts.PERFECT if len(met) == len(texts.QUALITIES) else title
+    quality = texts.AND.join(texts.QUALITIES[name] for name in met).capitalize()
+    return OutcomeCard(True, title, reason, figures, human, quality=quality)
 
 
 def qualities(env: LanderEnv, slot: int = 0) -> list[str]:

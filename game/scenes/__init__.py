@@ -12,8 +12,8 @@ from game.ui.context import Context
 # The name of each scene that another may lead to: the module in this package, and the class in that.
 ROUTES: Final = {
     "menu": "menus.menu.MenuScene", "flights": "menus.menu.FlightsScene", "play": "play.scene.PlayScene",
-    "tutorial": "play.scene.tutorial", "descent": "play.scene.descent", "race": "play.scene.race",
-    "fly_on": "play.scene.fly_on", "missions": "play.missions.MissionsScene", "days": "play.daily.DaysScene",
+    "tutorial": "play.starts.tutorial", "descent": "play.starts.descent", "race": "play.starts.race",
+    "fly_on": "play.starts.fly_on", "missions": "play.missions.MissionsScene", "days": "play.daily.DaysScene",
     "watch": "watch.scene.WatchScene", "pilots": "watch.pilots.PilotsScene",
     "train": "train.scene.TrainScene", "runs": "train.networks.NetworksScene",
     "digits": "digits.scene.DigitsScene", "digit_training": "train.digits.DigitTrainingScene",

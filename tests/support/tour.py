@@ -36,7 +36,8 @@ from game.scenes.physics.step_scene import PhysicsStepScene
 from game.scenes.play.challenge import FlownMission
 from game.scenes.play.daily import DailyStart
 from game.scenes.play.descent import Descent
-from game.scenes.play.scene import PlayScene, race
+from game.scenes.play.scene import PlayScene
+from game.scenes.play.starts import race
 from game.scenes.watch.scene import COUNTS, WatchScene
 from game.ui.context import Context
 from tests.support.lessons import lesson_of

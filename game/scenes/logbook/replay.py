@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from functools import partial
 from pathlib import Path
 from typing import Final
 
@@ -109,7 +110,7 @@ class ReplayScene(FormScene):
         stop, step, *speeds = self.playback.actions(
             texts.HINT_STEP, stop=self._stop_or_go, gamepad=Command.CONFIRM, resting=self.ended
         )
-        on_strip = self.form.focused is self._reward_bar
+        on_strip = self.form.focused is self._strip
         if self.context.controls.gamepad_in_use and not on_strip:  # its A presses what is in focus
             stop = self.form.confirms(texts.HINT_CHOOSE)
         table = [
@@ -123,7 +124,8 @@ class ReplayScene(FormScene):
             Action(pygame.K_END, lambda: self.seek(self.flight_replay.length)),
         ]
         if on_strip or self.context.controls.gamepad_in_use:
-            table += [Action(Command.NEXT, lambda: self._wind(60)), Action(Command.PREVIOUS, lambda: self._wind(-60))]
+            winds = ((Command.NEXT, 60), (Command.PREVIOUS, -60))
+            table += [Action(command, partial(self._wind, steps)) for command, steps in winds]
         return [*table, Action(pygame.K_t, self._show_futures, texts.REPLAY_FUTURES), self.explained.action()]
 
     def hint_rows(self, canvas: Canvas) -> list[HintRow]:
@@ -135,7 +137,7 @@ class ReplayScene(FormScene):
     def update(self) -> Transition | None:
         self.flight_replay.scout(1 if self.flight_replay.touching else _SCOUT)
         self._look_ahead()
-        self._reward_bar.reached = self.flight_replay.reached
+        self._strip.reached = self.flight_replay.reached
         self.explained.update()
         if self.export:
             self._follow_export(self.export)
@@ -206,17 +208,13 @@ class ReplayScene(FormScene):
 
     def _look(self) -> None:
         """Update the read-outs; at the end they keep the values of the last moment before."""
-        self._reward_bar.at = self.flight_replay.at
+        self._strip.at = self.flight_replay.at
         flight = self.flight_replay.flight
-        self._readouts = (
-            readouts.at_touch(self._readouts, flight.env) if flight.over else readouts.flight_readouts(flight.env)
-        )
+        now = readouts.flight_readouts(flight.env)
+        self._readouts = readouts.at_touch(self._readouts, flight.env) if flight.over else now
 
     def _stop_or_go(self) -> None:
-        if self.ended:
-            self._replay()
-        else:
-            self.playback.toggle()
+        self._replay() if self.ended else self.playback.toggle()
 
     def _replay(self) -> None:
         self.seek(0)
@@ -226,11 +224,9 @@ class ReplayScene(FormScene):
 
     def _build(self) -> None:
         manager, recording = self.form.manager, self.record.recording
-        self._reward_bar = self.form.add(
-            Timeline(
-                manager, _STRIP, texts.REPLAY_LANES, recording.actions, recording.hands, self.seek, self._stop_or_go
-            )
-        )
+        flown = recording.actions, recording.hands
+        self._strip = Timeline(manager, _STRIP, texts.REPLAY_LANES, *flown, self.seek, self._stop_or_go)
+        self.form.add(self._strip)
         width = LABEL_WIDTH + sum(typeface.width(word, SMALL, "regular") + GAP for word in self.playback.words)
         box = (MARGIN, _VERBS, round(width), _VERB)
         self.form.add(self.playback.row(manager, box))
@@ -302,28 +298,22 @@ class ReplayScene(FormScene):
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         self.draw_world(canvas, alpha)
-        self._draw_words(canvas)
-
-    def draw_world(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the moment that is shown, the way there and on, and its figures."""
-        between = self.playback.between(alpha)
-        self._scenery.draw_land(canvas, between, _EARTH_BELOW_CLAIM if self.claimed else _EARTH)
-        _draw_way(
-            canvas, self._scenery.view(canvas.scale, between).filling(canvas), self.flight_replay, self._clear.head
-        )
-        if self._futures:
-            draw_futures(
-                canvas, self._scenery.view(canvas.scale, between).filling(canvas), self._futures, self._clear.head
-            )
-        self._scenery.draw_craft(canvas, between)
-        readouts.draw_flight(canvas, self._readouts)
-
-    def _draw_words(self, canvas: Canvas) -> None:
         self._draw_title(canvas)
         self._draw_moment(canvas)
         self.form.draw(canvas)
         self.draw_hints(canvas)
         self.explained.draw(canvas)
+
+    def draw_world(self, canvas: Canvas, alpha: float) -> None:
+        """Draw the moment that is shown, the way there and on, and its figures."""
+        between = self.playback.between(alpha)
+        view = self._scenery.view(canvas.scale, between).filling(canvas)
+        self._scenery.draw_land(canvas, between, _EARTH_BELOW_CLAIM if self.claimed else _EARTH)
+        _draw_way(canvas, view, self.flight_replay, self._clear.head)
+        if self._futures:
+            draw_futures(canvas, view, self._futures, self._clear.head)
+        self._scenery.draw_craft(canvas, between)
+        readouts.draw_flight(canvas, self._readouts)
 
     def _draw_title(self, canvas: Canvas) -> None:
         """Draw which flight it is; of a friend's, the claim, and what comes of checking it."""
@@ -334,13 +324,8 @@ class ReplayScene(FormScene):
         when = time.strftime("%Y-%m-%d %H:%M", time.localtime(entry.when))
         mission = texts.MISSIONS.get(self.record.recording.mission)
         title = texts.REPLAY_MISSION.format(mission=mission[0]) if mission else texts.REPLAY_TITLE
-        readouts.draw_corner(
-            canvas,
-            title,
-            texts.REPLAY_LINE.format(
-                end=ending_word(entry.outcome, intact=entry.intact), seconds=entry.seconds, when=when
-            ),
-        )
+        end = ending_word(entry.outcome, intact=entry.intact)
+        readouts.draw_corner(canvas, title, texts.REPLAY_LINE.format(end=end, seconds=entry.seconds, when=when))
 
     def _draw_moment(self, canvas: Canvas) -> None:
         """Draw the seconds, and who flies at that moment or how it ended."""

@@ -92,7 +92,7 @@ class LogbookScene(PanelScene):
         if entry and self._replayable:
             column.button(texts.LOGBOOK_WATCH, self._watch, size=TITLE, colour=INK)
             column.words([
-                (texts.LOGBOOK_RACE, self._race), (texts.LOGBOOK_COPY, self._copy),
+                (texts.LOGBOOK_RACE, self._race), (texts.CODE_COPY, self._copy),
                 (texts.LOGBOOK_THROW_AWAY, self._throw_away),
             ])  # fmt: skip
         elif entry and entry.file in self._thrown:

@@ -33,6 +33,7 @@ _WORD: Final = 22.0
 _TITLE, _ACROSS, _DOWN = 88.0, 0.11, 0.12
 _LINE_ROOM, _LINE_SHARE = 520.0, 0.52  # points of the line, and share of the window, which ends before the Earth
 _LOW: Final = 430.0  # points of a window in which nothing is left free
+_ROOMY: Final = 560.0  # points of a window in which all that can be flown is explained
 _PAD, _ABOVE, _BETWEEN = 4.0, 28.0, 20.0  # points around a word, above the title and below the line, in a high one
 
 # Entries: the route of a screen and its key in `texts.MENU`; the last one closes the game.
@@ -155,13 +156,16 @@ class FlightsScene(_OverMoon):
 
     def describe(self, panel: Panel) -> None:
         panel.title(texts.FLIGHTS_TITLE)
-        panel.gap(12)
+        panel.gap(8)
         for name, route in FLIGHTS.items():
-            label, line = texts.FLIGHTS[name]
             panel.button(
-                label, partial(push, route), line, figure=partial(self._figure, name), size=_WORD, weight="light",
-                colour=INK,
+                texts.FLIGHTS[name][0], partial(push, route), partial(self._line, name),
+                figure=partial(self._figure, name), size=_WORD, weight="light", colour=INK,
             )  # fmt: skip
+
+    def _line(self, name: str) -> str:
+        """Return what it is, where there is room for that."""
+        return texts.FLIGHTS[name][1] if self.context.reading().view.height > _ROOMY else ""
 
     def _figure(self, name: str) -> str:
         return self._figures[name]

@@ -43,7 +43,7 @@ class ChoicesScene(PanelScene):
         panel.title(texts.CHOICES_TITLE)
         if self._begun and self._free:
             panel.aside(texts.CHOICES_LATER)
-        panel.gap(8)
+        panel.gap(4)
         more = self.context.settings.more_flights
         left, *beside = panel.beside((1, 1) if more else (1,), _LEAST)
         self._describe_help(left)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
@@ -15,7 +14,7 @@ from game.audio.flight_sounds import FlightSound
 from game.core import texts
 from game.core.pace import SlowMotion
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import HUMAN, NET, VIEW_SIZE
+from game.drawing.tokens import VIEW_SIZE
 from game.flight import networks
 from game.flight.credit import Credit, eased
 from game.flight.demonstrations import add_demonstration
@@ -24,7 +23,7 @@ from game.flight.flight_file import Entry, Record
 from game.flight.foresight import LastChance, SixFutures
 from game.flight.handicap import OWN
 from game.flight.logbook import Records
-from game.flight.networks import Network, Policy
+from game.flight.networks import Network
 from game.flight.outcomes import OutcomeCard, outcome_card
 from game.panels.landings import Landings
 from game.panels.readouts import GAUGES, PILOT, READOUTS, at_touch, draw_flight, flight_readouts
@@ -36,8 +35,7 @@ from game.scenes.play.head import Head
 from game.scenes.play.help import MODES, HelpWords
 from game.scenes.play.interventions import Interventions
 from game.scenes.play.wind import draw_wind
-from game.scenes.play.words import dial_words, sentence, surroundings, why_not_saved
-from game.ui.hints import Hint, flight_hints
+from game.scenes.play.words import why_not_saved
 from game.world.camera import ClearArea, View
 from game.world.landscape.backdrop import EARTH, EARTH_RADIUS
 from game.world.landscape.ground import begin_hills
@@ -67,6 +65,7 @@ class FlownFlight:
         spawn: kind of start; empty for the player's own.
 
     Attributes:
+        context, challenge, network: as given, but that the network can be changed.
         flight: the flight itself.
         credit: who flies it, and whether it counts as the player's own.
         pace: the clock that slows down after a crash.
@@ -82,8 +81,8 @@ class FlownFlight:
     """
 
     def __init__(self, context: Context, seed: int, network: Network, challenge: Challenge, spawn: str = "") -> None:
-        self._context, self._settings = context, context.settings
-        self.challenge, self._network = challenge, network
+        self.context, self._settings = context, context.settings
+        self.challenge, self.network = challenge, network
         self.waiting = self._held_before = True
         self.begun = self._was_over = False  # was: before its latest step
         self.age, self._looked = 0, -1  # step of the moment whose six futures are known, or are being flown
@@ -111,7 +110,7 @@ class FlownFlight:
         self.ending = FlightEnding(self.flight, self.pace, calm)
         self._readouts = flight_readouts(self.flight.env)
         self._network_here = self._shadow() if challenge.shadows and self._policy else None
-        self.path_preview = PathPreview(self.flight, self._guide)
+        self.path_preview = PathPreview(self.flight, self._policy if challenge.guides else None)
 
     def _shadow(self) -> Flight:
         """Return the network's own flight from the same start, flown unseen: the card tells its score."""
@@ -124,11 +123,6 @@ class FlownFlight:
     def helps(self) -> bool:
         """Whether a network may help in this flight."""
         return self.flight.shares and not self.credit.alone
-
-    @property
-    def _guide(self) -> Policy | None:
-        """The network whose path is previewed; None where none is."""
-        return self._policy if self.challenge.guides else None
 
     @property
     def rival(self) -> Ghost | None:
@@ -148,11 +142,11 @@ class FlownFlight:
 
     def change_network(self, network: Network) -> None:
         """Change the network to hand over to, unless the player must fly alone."""
-        self._network = network
+        self.network = network
         if not self.credit.alone:
             self._policy = network.policy
             self.flight.change_network(network.policy)
-            self.path_preview.ask(self._guide)
+            self.path_preview.ask(self._policy if self.challenge.guides else None)
 
     # Time
 
@@ -175,7 +169,7 @@ class FlownFlight:
 
     def _waits(self, action: int) -> bool:
         """Whether the craft still hangs; a key that began the flight itself must first be let go."""
-        self._held_before = self._held_before and bool(action)
+        self._held_before &= bool(action)
         touched, guard = bool(action) or not self.challenge.waits, self.flight.guard
         ready = guard is None or guard.ready  # or nobody would keep it from harm at first
         goes = touched and ready and not (self._held_before or self.challenge.holds)
@@ -192,7 +186,7 @@ class FlownFlight:
         """Set the help of the next step from the settings, and have futures flown ahead once a guardian needs them."""
         flight = self.flight
         flight.help(0.0 if self.credit.alone else self.helped.assist, self.helped.copilot)
-        if flight.guard is None and flight.shared and (ahead := self._context.ahead()):
+        if flight.guard is None and flight.shared and (ahead := self.context.ahead()):
             from game.flight.guard import Guard
 
             flight.guard = Guard(flight, ahead)
@@ -220,7 +214,7 @@ class FlownFlight:
             self._last_chance.look(_SEARCH)
         self.scenery.follow(flight.over and not self._was_over, self.ending.shot)
         if told := self.challenge.follow(flight):
-            self._context.sound.play(told)
+            self.context.sound.play(told)
 
     def _follow_flight(self) -> None:
         flight, asks = self.flight, self._settings.show_thinking
@@ -255,8 +249,8 @@ class FlownFlight:
 
     # The end
 
-    def make_card(self, best: int) -> OutcomeCard:
-        """Return the outcome card of the finished flight; `best` is the score to beat in free flights."""
+    def make_card(self, best: int, best_here: int) -> OutcomeCard:
+        """Return the outcome card; `best` is the score to beat in free flights, `best_here` from this start."""
         flight, credit, ending = self.flight, self.credit, self.ending
         ending.whole = self.scenery.shot_of(self.path.places)
         unranked = rung_of(flight) is not None or self.challenge.name
@@ -264,6 +258,7 @@ class FlownFlight:
         card = replace(
             card, score=credit.score(0 if unranked else best), reason=credit.reason(card.reason),
             assists=credit.assists, place=self.path.clear_place(ending.whole.view(1.0)),
+            compared=self._compared(best_here),
         )  # fmt: skip
         if credit.helped:
             chance = None if card.good else self._last_chance
@@ -275,7 +270,7 @@ class FlownFlight:
             card = replace(card, stepped_in=times, watched=watched, bare=bare, advice=advice)
         return self.challenge.card(card, flight, credit)
 
-    def compared(self, best: int) -> tuple[tuple[str, str], ...]:
+    def _compared(self, best: int) -> tuple[tuple[str, str], ...]:
         """Return other scores from the same start: the player's `best` before, 0 for none, and the network's."""
         rows = [(texts.CARD_BEST_HERE, texts.SCORE.format(count=best))] if best else []
         if shadow := self._network_here:
@@ -299,7 +294,7 @@ class FlownFlight:
             time.time(),
             alone=credit.counts,
             barred=credit.bar,
-            network=self._network.name if self._network.policy else "",
+            network=self.network.name if self.network.policy else "",
             course=challenge.name,
             medal=credit.medal,
             pace=credit.pace,
@@ -309,7 +304,7 @@ class FlownFlight:
         x, y, angle = self.flight.poses.now[0].tolist()
         self.record = Record(self.flight.recording, entry, (x, y, angle))
         if told := told or challenge.written(entry) or records.problem:
-            self._context.note(told)
+            self.context.note(told)
         return entry
 
     def _teach(self) -> str:
@@ -317,80 +312,30 @@ class FlownFlight:
         if self.flight.outcome is not Outcome.LANDED or not self._settings.teach or self.challenge.hands != OWN:
             return ""
         try:
-            return texts.TAUGHT if add_demonstration(self.flight, self._context.user_dir) else ""
+            return texts.TAUGHT if add_demonstration(self.flight, self.context.user_dir) else ""
         except (OSError, ValueError) as error:
             return texts.NOT_TAUGHT.format(reason=error)
 
-    # The words
-
-    def head(self, hints: Sequence[Hint], *, whole: bool) -> Head:
-        """Return the words at the head: all while there is time to read, which `whole` says, or the sentence."""
-        flight, challenge, controls = self.flight, self.challenge, self._context.controls
-        waits, stuck, lamp = self.waiting and not flight.over, self.stuck, self.interventions.lamp(flight)
-        told = challenge.sentence(flight, controls, waiting=waits, stuck=stuck)
-        helps = self.help_words if self.helps and not flight.over else None
-        if not (waits or whole or flight.over):
-            usual = sentence(flight, self.credit, self.interventions.word, controls)
-            words, warns = (told, False) if told else usual
-            shown = helps if self.help_words.shown else None
-            return Head(words, warns, lamp, hints=hints, help=shown, means=self._means)
-        if self.ending.shown:
-            return Head(hints=hints)
-        caption, name = challenge.titles(flight, self._network, whole=whole)
-        head = Head(caption=caption, name=name, rung=rung_of(flight), aside=self._asides(), hints=hints)
-        if flight.over:
-            return replace(head, sentence=told or "")
-        if not waits:
-            return replace(head, sentence=self.credit.header, lamp=lamp)
-        opening = challenge.opening
-        if self.begun:
-            opening = texts.TUTORIAL_LET_GO if stuck else texts.WAITS_AGAIN
-        keys = flight_hints(controls) if opening and told is None else []
-        guided = [(texts.PATH_NETWORK, NET)] if self.path_preview.asks else []
-        paths = [(texts.PATH_YOURS, HUMAN), *guided] if keys and challenge.free else []
-        return replace(
-            head, sentence=told or opening, lamp=lamp, controls=keys, paths=paths, help=helps, means=self._means
-        )
-
-    def _asides(self) -> list[str]:
-        """Say what else is to be known of the flight."""
-        flight, challenge, credit = self.flight, self.challenge, self.credit
-        off = challenge.kept and self.helps and self.helped.assist == 0 < self._settings.assist and not flight.over
-        told = [
-            texts.HELP_NOT_HERE if off and not self.begun else "",
-            credit.header if credit.alone and not flight.over else "",
-            credit.notice or challenge.goal,
-            *surroundings(flight.env),
-            *challenge.asides(flight),
-        ]
-        return [words for words in told if words]
-
-    def _means(self) -> str:
-        """Say what the help that is set means now."""
-        guard = self.flight.guard
-        problem = guard.ahead.problem if guard else texts.FUTURES_NOT_YET
-        return dial_words(self.helped.assist, self.flight.copilot, problem)
+    # The picture
 
     def lay_out(self, head: Head) -> None:
         """Keep the flight clear of its words, and of what the network thinks."""
         self.clear = self._clear_of(head)
         if not self.begun:
-            reading = self._context.reading()
+            reading = self.context.reading()
             if reading.scale > _LARGE * reading.whole.scale:  # the words reach over the Earth's usual place
                 self._earth = EARTH[0], max(EARTH[1], self.clear.head - _BELOW_HEAD + 1.3 * EARTH_RADIUS)
             self.scenery.clear = self.clear
             self.scenery.cut()
 
     def _clear_of(self, head: Head) -> ClearArea:
-        reading = self._context.reading()
+        reading = self.context.reading()
         scale, view = reading.whole.scale, reading.whole.view
         low = head.write(reading, drawn=False) * reading.scale / scale + _BELOW_HEAD + min(view.top, 0.0)
         right = float(VIEW_SIZE[0])
         if self.thinks:
             right = min(right, (self.copilot_panel.box(reading).left - 16) * reading.scale / scale + view.left)
         return ClearArea(right=max(right, 0.4 * VIEW_SIZE[0]), head=max(low, ClearArea.head))
-
-    # The picture
 
     @property
     def thinks(self) -> bool:
@@ -429,8 +374,7 @@ class FlownFlight:
             draw_flight(world, self._readouts, self._shown(whole=whole))
         head.write(canvas)
         if thinks and not self._behind_panel(canvas, view, pose):
-            share = flight.share if self.begun else None
-            self.copilot_panel.draw(canvas, share, networks.word(self._network.name))
+            self.copilot_panel.draw(canvas, flight.share if self.begun else None, networks.word(self.network.name))
 
     @property
     def _coasting(self) -> tuple[float, bool] | None:

@@ -8,19 +8,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import pygame
 
+from game.core import texts
 from game.drawing.canvas import Now
 from game.drawing.cursor import LEADING, Cursor
-from game.drawing.tokens import FAINT, HUMAN, INK, MARGIN, MUTE, SMALL, TEXT, Colour
+from game.drawing.tokens import FAINT, HUMAN, INK, MARGIN, MUTE, NET, SMALL, TEXT, Colour
 from game.panels.readouts import Lamp
-from game.scenes.play.free import COUNT
-from game.ui.hints import Hint, HintRow
+from game.scenes.play.free import COUNT, rung_of
+from game.scenes.play.words import dial_words, sentence, surroundings
+from game.ui.hints import Hint, HintRow, flight_hints
 
 if TYPE_CHECKING:
     from game.drawing.canvas import Canvas
+    from game.scenes.play.flown_flight import FlownFlight
     from game.scenes.play.help import HelpWords
 
 _SIDES, _TOP = 0.05, 20.0  # free at either side, of the width; and points above
@@ -192,3 +196,52 @@ def draw_ladder(canvas: Canvas, left: float, baseline: float, rung: int) -> None
     for number in range(COUNT):
         x, top = left + number * _PITCH, baseline - _LOWEST - _HIGHER * number
         canvas.line((x, baseline), (x, top), HUMAN if number <= rung else FAINT, 2.0)
+
+
+def head_of(flown: FlownFlight, hints: Sequence[Hint], *, whole: bool) -> Head:
+    """Return the words of a flight: all while there is time to read, which `whole` says, or the sentence."""
+    flight, challenge, controls = flown.flight, flown.challenge, flown.context.controls
+    waits, stuck, lamp = flown.waiting and not flight.over, flown.stuck, flown.interventions.lamp(flight)
+    told = challenge.sentence(flight, controls, waiting=waits, stuck=stuck)
+    helps = flown.help_words if flown.helps and not flight.over else None
+    means = partial(_means, flown)
+    if not (waits or whole or flight.over):
+        usual = sentence(flight, flown.credit, flown.interventions.word, controls)
+        words, warns = (told, False) if told else usual
+        return Head(words, warns, lamp, hints=hints, help=helps if flown.help_words.shown else None, means=means)
+    if flown.ending.shown:
+        return Head(hints=hints)
+    caption, name = challenge.titles(flight, flown.network, whole=whole)
+    head = Head(caption=caption, name=name, rung=rung_of(flight), aside=_asides(flown), hints=hints)
+    if flight.over:
+        return replace(head, sentence=told or "")
+    if not waits:
+        return replace(head, sentence=flown.credit.header, lamp=lamp)
+    opening = challenge.opening
+    if flown.begun:
+        opening = texts.TUTORIAL_LET_GO if stuck else texts.WAITS_AGAIN
+    keys = flight_hints(controls) if opening and told is None else []
+    guided = [(texts.PATH_NETWORK, NET)] if flown.path_preview.asks else []
+    paths = [(texts.PATH_YOURS, HUMAN), *guided] if keys and challenge.free else []
+    return replace(head, sentence=told or opening, lamp=lamp, controls=keys, paths=paths, help=helps, means=means)
+
+
+def _asides(flown: FlownFlight) -> list[str]:
+    """Say what else is to be known of the flight."""
+    flight, challenge, credit = flown.flight, flown.challenge, flown.credit
+    off = flown.helps and flown.helped.assist == 0 < flown.context.settings.assist
+    told = [
+        texts.HELP_NOT_HERE if off and challenge.kept and not (flown.begun or flight.over) else "",
+        credit.header if credit.alone and not flight.over else "",
+        credit.notice or challenge.goal,
+        *surroundings(flight.env),
+        *challenge.asides(flight),
+    ]
+    return [words for words in told if words]
+
+
+def _means(flown: FlownFlight) -> str:
+    """Say what the help that is set means now."""
+    guard = flown.flight.guard
+    problem = guard.ahead.problem if guard else texts.FUTURES_NOT_YET
+    return dial_words(flown.helped.assist, flown.flight.copilot, problem)

@@ -14,6 +14,7 @@ from game.drawing.tokens import INK
 from game.input.controls import Command
 from game.panels.explained import Explained
 from game.panels.readouts import READOUTS
+from game.scenes.play.head import Head, head_of
 from game.ui.actions import Action, Table
 from game.ui.hints import HintRow, hint_lines
 from game.ui.panel_scene import PanelScene
@@ -100,7 +101,7 @@ class FlightPauseScene(PauseScene):
 
     def describe_below(self, panel: Panel) -> None:
         """Add which flight it is, and what is to be known of it."""
-        head = self._flight.titles()
+        head = head_of(self._flight.flown, (), whole=True)
         panel.aside(head.caption)
         if not self._flight.challenge.free:
             panel.text(head.name)
@@ -133,7 +134,7 @@ class FlightPauseScene(PauseScene):
 
     def draw_behind(self, canvas: Canvas, alpha: float) -> None:
         """Draw the flight below, and the ground of the entries."""
-        self._flight.draw_whole(canvas)
+        self._flight.flown.draw(canvas, 1.0, Head(), whole=True)
         low = max(row.position[1] for row in self.hint_rows(canvas)) + 12
         canvas.panel((self.panel.box.left - 24, 12, self.panel.box.width + 48, low - 12), _COVER)
 

@@ -4,36 +4,30 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Final
 
 import pygame
 
-from ai.flights.verification import landing_score
-from ai.lander.environment import Outcome
 from game.core import texts
 from game.core.scene import Pop, Push, Scene, Transition, push
 from game.drawing.canvas import Canvas
 from game.flight import networks, own
-from game.flight.credit import Credit, eased
-from game.flight.flight import Flight, StickHolder
-from game.flight.flight_file import Record
+from game.flight.credit import eased
+from game.flight.flight import StickHolder
 from game.flight.logbook import Records, best_alone
-from game.flight.outcomes import OutcomeCard
-from game.flight.replay import FlightReplay
 from game.input.controls import Command, translate
 from game.panels.explained import Explained
 from game.scenes.play.card import ShownCard
-from game.scenes.play.challenge import Challenge, ContinuedFlight, Duel, against, dated
-from game.scenes.play.descent import Descent
-from game.scenes.play.ending import FlightEnding
+from game.scenes.play.challenge import Challenge, Duel
 from game.scenes.play.flight_controls import FlightControls
 from game.scenes.play.flown_flight import FlownFlight
-from game.scenes.play.free import FreeFlight, rung_of
-from game.scenes.play.head import Head
+from game.scenes.play.free import FreeFlight
+from game.scenes.play.head import Head, head_of
 from game.scenes.play.help import choose
+from game.scenes.play.keys import card_actions, flight_actions
+from game.scenes.play.sitting import Sitting
 from game.scenes.play.tutorial import Tutorial
 from game.ui.actions import Action, Run, Table, answering, hints_of
 from game.ui.clipboard import give
@@ -41,13 +35,11 @@ from game.ui.context import Context
 from game.ui.hints import HintRow
 from game.ui.widget import OnPress
 
-CRASHES: Final = 3  # in a row, after which help is offered
 # Switching to full screen and back removes the window's focus for a moment, which must not pause the game.
 _AWAY_STEPS: Final = 10
 _SKIP_ALL: Final = 60  # steps that the key for what comes next is held to leave out the whole tutorial
 _RELEASES: Final = (pygame.KEYUP, pygame.CONTROLLERBUTTONUP, pygame.WINDOWFOCUSLOST)
 _INTERRUPTS: Final = (pygame.WINDOWFOCUSLOST, pygame.WINDOWSIZECHANGED)
-_IN_FLIGHT: Final = (Command.HANDOVER, Command.PAUSE)  # keys that are named while the craft flies, for the mouse
 
 
 class _Bare(Scene):
@@ -72,6 +64,7 @@ class PlayScene(Scene):
     Attributes:
         challenge: what flights are flown as.
         flown: the flight on the screen, with all that belongs to it.
+        flight, credit, ending: parts of that.
 
     """
 
@@ -89,21 +82,18 @@ class PlayScene(Scene):
         self._controls, self._settings, self._sound = context.controls, context.settings, context.sound
         self._stick = FlightControls(context.controls, context.settings)
         self.explained = Explained()
-        self._away = 0  # steps since the window was left; 0 while it is in use
-        self._held_next = 0  # steps for which the key for what comes next is held; 0 while it is not
+        self._away = self._held_next = 0  # steps since the window was left, and the key for what comes next is held
         self._records = Records(context.user_dir)
         entries = self._records.entries()
         if self._records.problem:
             context.note(self._records.problem)
-        self._best, self._crashes, self._offered = best_alone(entries), 0, False
-        self._landed_before = any(entry.landed and not entry.bar for entry in entries)
-        self._best_here: dict[tuple[int, str, int], int] = {}  # scores of one's own landings by their starts
-        newcomer = seed is None and not context.settings.tutored
-        usual = Duel(rival, rival_name) if rival else Tutorial() if newcomer else FreeFlight(context.settings)
+        self._best, self._sitting = best_alone(entries), Sitting(entries)
+        new = seed is None and not context.settings.tutored
+        usual = Duel(rival, rival_name) if rival else Tutorial() if new else FreeFlight(context.settings)
         self.challenge = challenge or usual
         self.challenge.recall(entries)
         self._load_network()
-        self._begin(self._new_seed() if seed is None else seed)
+        self._begin_anew() if seed is None else self._begin(seed)
 
     def enter(self) -> None:
         """Return to the paused flight, which hangs until a touch; choices made meanwhile may require a new one."""
@@ -117,12 +107,10 @@ class PlayScene(Scene):
             self._begin(self.flight.recording.seed)
 
     def exit(self) -> None:
-        """Keep the flight for the return, and save the dial's setting."""
         self._stick.release()
         self.context.apply_settings()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Handle explanations, handover, retry, pause and the choice of help."""
         self.explained.handle_event(event)
         if event.type in _RELEASES:
             self._held_next = 0
@@ -143,7 +131,6 @@ class PlayScene(Scene):
 
     @property
     def takes_switch(self) -> bool:  # type: ignore[override]
-        """Whether the one switch flies."""
         return not self.flight.over
 
     def update(self) -> Transition | None:
@@ -187,42 +174,26 @@ class PlayScene(Scene):
         return [*self._card_actions(), *self._flight_actions(), Action(Command.CONFIRM, self._go_on), *space, *explain]
 
     def _flight_actions(self) -> list[Action]:
-        challenge, flight, leaves = self.challenge, self.flight, self._leaves
-        taken = flight.hand is StickHolder.NETWORK
-        hands = (texts.HINT_TAKE_BACK if taken else texts.HINT_HAND_OVER) if flight.network and not flight.over else ""
-        table: list[tuple[Command, Run, str]] = [
-            (Command.HANDOVER, self._hand_over, hands),
-            (Command.CHOICES, self._choose, texts.CHOICES_HINT if challenge.free else ""),
-            (Command.NEXT, self._asking(self._begin_elsewhere), "" if challenge.through else challenge.next_hint),
-            (Command.RETRY, self._asking(self.retry), texts.HINT_RETRY),
-            (Command.PAUSE, Pop if leaves else self.pause, texts.HINT_LEAVE if leaves else texts.HINT_PAUSE),
-        ]
-        calm, named = self.waiting or flight.over, _IN_FLIGHT if self._controls.mouse_in_use else ()
-        return [Action(command, run, hint if calm or command in named else "") for command, run, hint in table]
+        return flight_actions(self)
 
     def _card_actions(self) -> list[Action]:
-        """Return what an outcome card names: to go on, one of the others, and what is offered."""
-        card, challenge = self.ending.card, self.challenge
-        if card is None:
-            return []
-        again, new = challenge.again_hint, challenge.new_hint
-        first = (texts.CARD_FIRST_FIXED if challenge.fixed else texts.CARD_FIRST)[card.good]
-        if card.rung is not None and card.rung < (rung_of(self.flight) or 0):
-            first = texts.LADDER_NEARER
-        if card.good:
-            first, other = new or first, Action(Command.RETRY, self._asking(self.retry), again or texts.HINT_AGAIN)
-        elif challenge.fixed:
-            first, other = again or first, Action(Command.PAUSE, Pop if self._leaves else self.pause, texts.HINT_LEAVE)
-        else:
-            elsewhere = self._asking(self._begin_elsewhere)
-            first, other = again or first, Action(Command.NEXT, elsewhere, new or texts.HINT_NEW)
-        offer = [Action(Command.HANDOVER, self._accept_help, texts.HELP_HINT)] if self._offered else []
-        hint = challenge.copy_hint or texts.CODE_HINT_COPY
+        offer = [Action(Command.HANDOVER, self._accept_help, texts.HELP_HINT)] if self._sitting.offers else []
+        hint = self.challenge.copy_hint or texts.CODE_HINT_COPY
         copy = [Action(pygame.K_k, self._copy, hint, Command.STEP)] if self.flown.record else []
-        return [Action(Command.CONFIRM, self._go_on, first), other, *offer, *copy]
+        return [*card_actions(self, self._go_on), *offer, *copy] if self.ending.card else []
+
+    @property
+    def runs(self) -> dict[Command, Run]:
+        """What each command does in a flight, whether or not a hint names it."""
+        return {
+            Command.HANDOVER: self._hand_over,
+            Command.CHOICES: self._choose,
+            Command.NEXT: self._asking(self._begin_elsewhere),
+            Command.RETRY: self._asking(self.retry),
+            Command.PAUSE: Pop if self.leaves else self.pause,
+        }
 
     def hint_rows(self, canvas: Canvas) -> list[HintRow]:
-        """Return the hints of the flight, and those of the card."""
         card = self._card
         return [*self._head.hint_rows(canvas), *(card.hint_rows(canvas) if card else ())]
 
@@ -257,18 +228,16 @@ class PlayScene(Scene):
             self.context.note(text.format(name=network.name, problem=network.problem))
 
     def _copy(self) -> None:
-        """Copy what tells a friend of the flight that is over."""
         if self.flown.record:
             give(self.context, *self.challenge.message(self.flown.record))
 
     @property
-    def _leaves(self) -> bool:
+    def leaves(self) -> bool:
         """Whether Escape goes straight back: in a challenge that has not begun or is over, where nothing is lost."""
         challenge = self.challenge
         return not (challenge.free or challenge.stake) and (not self.flown.begun or self.flight.over)
 
     def pause(self) -> Transition:
-        """Pause the flight."""
         self._away = 0
         return push("flight_pause", self, retry=self.retry, more=self._pause_words)
 
@@ -310,13 +279,11 @@ class PlayScene(Scene):
 
     @property
     def _head(self) -> Head:
-        """The words at the head."""
         named = self._settings.show_hints or self._controls.mouse_in_use  # for the mouse, they are what it presses
         hints = hints_of(self._flight_actions(), self._controls) if named else []
-        return self.flown.head(hints, whole=False)
+        return head_of(self.flown, hints, whole=False)
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the flight and, at the end, the card."""
         card = self._card
         low = card.box(canvas).bottom if card else 0.0
         self.flown.draw(canvas, alpha, self._head, whole=False, low=low)
@@ -330,30 +297,7 @@ class PlayScene(Scene):
         """This flight as a scene without words, for a picture behind other ones."""
         return _Bare(self)
 
-    def draw_whole(self, canvas: Canvas) -> None:
-        """Draw the flight while it is paused, with all that can be known of it but the words at the head."""
-        self.flown.draw(canvas, 1.0, Head(), whole=True)
-
-    def titles(self) -> Head:
-        """Return the words at the head while it is paused."""
-        return self.flown.head((), whole=True)
-
     # The flight
-
-    @property
-    def flight(self) -> Flight:
-        """The flight on the screen."""
-        return self.flown.flight
-
-    @property
-    def credit(self) -> Credit:
-        """Who flies it, and whether it counts as the player's own."""
-        return self.flown.credit
-
-    @property
-    def ending(self) -> FlightEnding:
-        """Its ending, with slow motion and outcome card."""
-        return self.flown.ending
 
     @property
     def waiting(self) -> bool:
@@ -376,16 +320,17 @@ class PlayScene(Scene):
         elif self.network.stands_in:
             context.note(self.network.stands_in)
 
-    def _new_seed(self) -> int:
-        return int(self.context.rng.integers(2**31))
-
     def _begin(self, seed: int, spawn: str = "") -> None:
         """Begin a flight, from the kind of start that `spawn` names or, if empty, from the player's own."""
         self._stick.begin()
         if self._elsewhere != self._loaded_for:
             self._load_network()
         self._begun_with = self.challenge.chosen()
-        self.flown = FlownFlight(self.context, seed, self.network, self.challenge, spawn)
+        self.flown = flown = FlownFlight(self.context, seed, self.network, self.challenge, spawn)
+        self.flight, self.credit, self.ending = flown.flight, flown.credit, flown.ending
+
+    def _begin_anew(self) -> None:
+        self._begin(int(self.context.rng.integers(2**31)))
 
     def retry(self) -> None:
         """Fly again from the same start."""
@@ -416,21 +361,19 @@ class PlayScene(Scene):
         if self.challenge.through:
             self._end_challenge()
         else:
-            self._begin(self.flight.recording.seed if self.challenge.fixed else self._new_seed())
+            self._begin(self.flight.recording.seed) if self.challenge.fixed else self._begin_anew()
 
     def _leave_challenge(self) -> Transition:
-        """Leave the challenge for free flights, from the pause menu."""
         self._end_challenge()
         return Pop()
 
     def _end_challenge(self) -> None:
-        """Go on with free flights."""
         self._held_next = 0
         self.challenge.leave()
         self._remember()
         self.challenge = FreeFlight(self._settings)
         self.challenge.recall(self._records.entries())
-        self._begin(self._new_seed())
+        self._begin_anew()
 
     # The end of a flight
 
@@ -446,8 +389,10 @@ class PlayScene(Scene):
             if ending.due:
                 self.retry()
         elif ending.card is None:
-            card = self.flown.make_card(self._best)
-            ending.card = self._offer_help(self._compare(card))
+            card = self.flown.make_card(self._best, self._sitting.best_here(self.flight))
+            ending.card = self._sitting.add(self.flown, card)
+            if self._sitting.first:
+                self._sound.play("choose")
             self._remember()
             self._write_down()
 
@@ -460,55 +405,8 @@ class PlayScene(Scene):
         if self.challenge.kept and (entry := self.flown.write_down(self._records)):
             self._best = max(self._best, best_alone([entry]))
 
-    def _compare(self, card: OutcomeCard) -> OutcomeCard:
-        """Return the card with other scores from the same start; the player's first landing alone has its own words."""
-        recording, score = self.flight.recording, landing_score(self.flight.env)
-        here = recording.seed, recording.spawn, recording.pads
-        card = replace(card, compared=self.flown.compared(self._best_here.get(here, 0)))
-        if not (self.credit.counts and card.good and self.challenge.kept):
-            return card
-        self._best_here[here] = max(score, self._best_here.get(here, 0))
-        if self._landed_before:
-            return card
-        self._landed_before = True
-        self._sound.play("choose")
-        return replace(card, title=texts.FIRST_LANDING, reason=texts.FIRST_LANDING_LINE)
-
-    def _offer_help(self, card: OutcomeCard) -> OutcomeCard:
-        """Count the crashes in a row; return the card, which offers help once it is time and there is help."""
-        landed = self.flight.outcome is Outcome.LANDED
-        self._crashes = 0 if landed else self._crashes + (not self.flight.intact)
-        there = self.flight.copilot is not None and not self.credit.alone
-        self._offered = self._crashes >= CRASHES and there and self.flown.helped.assist == 0
-        return replace(card, advice=texts.HELP_OFFER) if self._offered else card
-
     def _accept_help(self) -> None:
-        """Turn the dial to the offered help, and try again."""
         choose(self.flown.helped, "guard")
-        self._crashes, self._offered = 0, False
+        self._sitting.begin()
         self.context.apply_settings()
         self._go_on()
-
-
-# Flights that other screens lead to, by their routes
-
-
-def tutorial(context: Context) -> PlayScene:
-    """Fly the first flight, again if need be."""
-    return PlayScene(context, 0, challenge=Tutorial())
-
-
-def descent(context: Context) -> PlayScene:
-    """Fly from pad to pad."""
-    return PlayScene(context, challenge=Descent())
-
-
-def race(context: Context, record: Record, rival: str = "") -> PlayScene:
-    """Race against a recorded flight."""
-    return PlayScene(context, record.recording.seed, challenge=against(record, rival))
-
-
-def fly_on(context: Context, record: Record, flight_replay: FlightReplay, rival: str = "") -> PlayScene:
-    """Fly on from a replay's present moment, beside the recorded flight as a ghost."""
-    challenge = ContinuedFlight(flight_replay, rival or dated(record))
-    return PlayScene(context, record.recording.seed, challenge=challenge)

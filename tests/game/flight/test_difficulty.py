@@ -1,6 +1,5 @@
 from collections.abc import Callable
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pygame
@@ -12,7 +11,7 @@ from ai.lander.pilots import ScriptedPilot
 from game.core import texts
 from game.core.settings import Settings
 from game.flight import flight_file
-from game.flight.flight import Flight, Recording
+from game.flight.flight import Flight
 from game.flight.flight_file import Record
 from game.flight.logbook import Records, best, best_alone, describe
 from game.flight.replay import ReplayedFlight
@@ -42,18 +41,6 @@ def fly(changes: dict[int, float], steps: int = 3600) -> Flight:
 def record_of(flight: Flight) -> Record:
     x, y, angle = flight.poses.now[0].tolist()
     return Record(flight.recording, describe(flight, 1.0), (x, y, angle))
-
-
-def test_less_gravity_falls_more_slowly():
-    heights = []
-    for share in (0.6, 1.0, 1.4):
-        flight = Flight(3)
-        flight.set_gravity(share)
-        for _ in range(60):
-            flight.step(0)
-        heights.append(float(flight.env.velocity[0, 1]))
-    assert all(slow > fast for slow, fast in pairwise(heights))
-    assert np.diff(heights) == pytest.approx(-0.4 * PARAMS.gravity, rel=0.05)
 
 
 def test_all_of_it_is_no_change_bit_for_bit():
@@ -155,11 +142,6 @@ def test_nothing_but_help_and_the_pace_can_be_chosen_in_a_course(open_game: Open
     labels = [widget.label for widget in game.top.form.widgets]
     assert texts.PACE in labels
     assert texts.CHOICES_GRAVITY not in labels
-
-
-def test_a_recording_says_what_a_step_was_flown_under():
-    recording = Recording(1, "random", gravity=((5, 0.8), (9, 1.0)))
-    assert [recording.gravity_at(step) for step in (0, 4, 5, 8, 9, 99)] == [1.0, 1.0, 0.8, 0.8, 1.0, 1.0]
 
 
 def test_time_slowed_down_flies_the_same_flight_more_slowly_and_as_an_assist(open_game: Open, context: Context):

@@ -65,6 +65,7 @@ def test_a_flight_comes_back_from_its_file_and_flies_as_it_did(kept: Records, pa
     flight = fly(pads=pads)
     line = kept.keep(flight, NOON, network="modern")
     assert not kept.problem
+    assert (kept.folder / line.file).stat().st_size < 8_000
     record = kept.read(line.file)
     assert record.recording == flight.recording
     assert record.entry == line
@@ -92,15 +93,6 @@ def test_a_network_of_any_name_leaves_a_line_that_can_be_read(kept: Records):
     assert [len(each.network) for each in kept.entries()] == [8, 1, 1, 255]
     assert not kept.problem
     assert kept.read(kept.entries()[-1].file)
-
-
-def test_a_flight_takes_little_room(kept: Records):
-    line = kept.keep(fly(), NOON)
-    assert (kept.folder / line.file).stat().st_size < 8_000
-
-
-def test_flights_that_end_at_one_moment_keep_a_file_each(kept: Records):
-    assert kept.keep(fly(), NOON).file != kept.keep(fly(), NOON).file
 
 
 @pytest.mark.parametrize(

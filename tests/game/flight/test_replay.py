@@ -208,7 +208,7 @@ def test_a_crash_is_slow_at_its_own_pace(open_game: Open, context: Context, redu
 
 def test_the_mouse_winds_and_goes_on_playing(replay: Driver):
     replay.frames(150)
-    box = scene(replay)._reward_bar.box
+    box = scene(replay)._strip.box
     replay.click((box.left + 84 + 0.5 * (box.width - 84), box.centery))
     assert scene(replay).flight_replay.at == pytest.approx(scene(replay).flight_replay.length / 2, abs=5)
     assert not scene(replay).playback.stopped

@@ -20,7 +20,8 @@ from game.flight.flight_file import Entry
 from game.flight.outcomes import outcome_card
 from game.scenes.play.free import FreeFlight
 from game.scenes.play.help import HELP
-from game.scenes.play.scene import CRASHES, PlayScene
+from game.scenes.play.scene import PlayScene
+from game.scenes.play.sitting import CRASHES
 from game.scenes.play.tutorial import Tutorial
 from game.ui.context import Context
 from tests.support.driver import Driver
@@ -100,32 +101,17 @@ def test_landings_lead_up_and_crashes_down_and_the_card_and_title_say_so(open_ga
     assert driver.saved()["rung"] == 0
 
 
-def test_a_helped_landing_on_the_ladder_says_one_thing_on_what_it_counts_for(open_game: Open):
+def test_another_try_is_the_very_same_start_and_the_top_is_flights_from_anywhere_for_good(open_game: Open):
     driver = open_game(PlayScene, ladder=True)
-    driver.app.context.settings.assist = 0.4
-    driver.key(pygame.K_r)
-    end(driver, ON_PAD)
-    card = play(driver).ending.card
-    assert (card.reason, card.climb) == (texts.OUTCOMES["LANDED"][1], texts.LADDER_UP.format(number=2))
-
-
-def test_another_try_by_key_is_the_very_same_start(open_game: Open):
-    driver = open_game(PlayScene, ladder=True)
-    driver.app.context.settings.rung = 4
+    settings = driver.app.context.settings
+    settings.rung = TOP_RUNG - 1
     driver.key(pygame.K_n)
     before = play(driver).flight
     end(driver, TOO_FAST)
     driver.key(pygame.K_r)
     again = play(driver).flight
     assert again is not before
-    assert (again.recording.seed, again.recording.spawn) == (before.recording.seed, "rung_5")
-
-
-def test_the_top_is_flights_from_anywhere_for_good(open_game: Open):
-    driver = open_game(PlayScene, ladder=True)
-    settings = driver.app.context.settings
-    settings.rung = TOP_RUNG - 1
-    driver.key(pygame.K_n)
+    assert (again.recording.seed, again.recording.spawn) == (before.recording.seed, f"rung_{TOP_RUNG}")
     end(driver, ON_PAD)
     assert play(driver).ending.card.climb == texts.LADDER_TOP
     driver.key(pygame.K_RETURN)
@@ -204,35 +190,29 @@ def test_a_click_takes_the_help_and_a_landing_counts_anew(open_game: Open):
     assert driver.app.context.settings.assist == HELP["guard"]
 
 
-# Hanging until touched
-
-
-@pytest.mark.parametrize("way", ["pause", "choices", "focus", "size"])
-def test_a_flight_hangs_after_every_interruption_until_it_is_touched(open_game: Open, written: list[str], way: str):
+def test_a_flight_hangs_after_every_interruption_until_it_is_touched(open_game: Open, written: list[str]):
     driver = open_game(PlayScene, 4)
     driver.frames(2)
     driver.key(pygame.K_UP)
-    driver.frames(20)
-    if way == "pause":
-        driver.keys(pygame.K_ESCAPE, pygame.K_ESCAPE)
-    elif way == "choices":
-        driver.keys(pygame.K_c, pygame.K_c)
-    elif way == "focus":
-        driver.post(pygame.WINDOWFOCUSLOST)
-        driver.post(pygame.WINDOWFOCUSGAINED)
-    else:
-        driver.post(pygame.WINDOWSIZECHANGED, x=1280, y=720)
-    driver.frames(2)
-    steps = len(play(driver).flight.recording.actions)
-    written.clear()
-    driver.frames(30)
-    assert play(driver).waiting
-    assert len(play(driver).flight.recording.actions) == steps > 10
-    assert texts.WAITS_AGAIN in written
-    driver.key(pygame.K_LEFT)
-    driver.frames(5)
-    assert not play(driver).waiting
-    assert len(play(driver).flight.recording.actions) > steps
+    for way, interrupt in {
+        "pause": lambda: driver.keys(pygame.K_ESCAPE, pygame.K_ESCAPE),
+        "choices": lambda: driver.keys(pygame.K_c, pygame.K_c),
+        "focus": lambda: (driver.post(pygame.WINDOWFOCUSLOST), driver.post(pygame.WINDOWFOCUSGAINED)),
+        "size": lambda: driver.post(pygame.WINDOWSIZECHANGED, x=1280, y=720),
+    }.items():
+        driver.frames(8)
+        interrupt()
+        driver.frames(2)
+        steps = len(play(driver).flight.recording.actions)
+        written.clear()
+        driver.frames(20)
+        assert play(driver).waiting, way
+        assert len(play(driver).flight.recording.actions) == steps > 5, way
+        assert texts.WAITS_AGAIN in written, way
+        driver.key(pygame.K_LEFT)
+        driver.frames(3)
+        assert not play(driver).waiting, way
+        assert len(play(driver).flight.recording.actions) > steps, way
 
 
 # The rescue

@@ -65,20 +65,17 @@ def test_a_medal_is_for_little_fuel_and_little_time_together():
 
 
 def test_whoever_flies_the_printed_limit_has_kept_it_and_a_tenth_more_is_too_much(subtests: pytest.Subtests):
-    for name in MISSIONS:
-        with subtests.test(name=name):
-            mission = MISSIONS[name]
+    for mission in MISSIONS.values():
+        with subtests.test(name=mission.name):
+            env = Flight(0, None, mission=mission.name).env
             for medal, (most_fuel, longest) in ((3, mission.gold), (2, mission.silver)):
-                flight = Flight(0, None, mission=name)
-                env = flight.env
                 for steps in range(round(600 * most_fuel) - 90, round(600 * most_fuel) + 91):  # of a jet, a 600th each
                     env.main_steps[:], env.side_steps[:], env.steps[:] = 0, steps, round(60 * (longest - 1))
                     figures = {label: float(value) for label, value, _ in flight_figures(env)}
-                    kept = mission.medal(float(env.fuel[0]), float(env.time[0])) >= medal
-                    assert kept == (figures[texts.FUEL] <= most_fuel)
+                    won = mission.medal(float(env.fuel[0]), float(env.time[0])) >= medal
+                    assert won == (figures[texts.FUEL] <= most_fuel)
                     if env.conditions.tank == np.inf:
-                        burnt = flight_readouts(env)["fuel"].figure
-                        assert float(burnt) == figures[texts.FUEL]
+                        assert float(flight_readouts(env)["fuel"].figure) == figures[texts.FUEL]
                 env.side_steps[:] = 0
                 for steps in range(round(60 * longest) - 9, round(60 * longest) + 10):
                     env.steps[:] = steps
@@ -158,41 +155,34 @@ def test_a_landing_with_help_earns_a_ring_on_the_card_and_in_the_list(open_game:
     assert rows(driver)["fall"][1] == texts.MISSION_TOGETHER
 
 
-def test_the_card_says_what_the_next_medal_asks():
-    mission = MISSIONS["brake"]
-    flight = Flight(0, None, mission="brake")
+def carded(name: str, fuel: float, seconds: float, cause: Cause = Cause.NONE) -> OutcomeCard:
+    """The card of a mission that ended in a landing, or was lost for a cause."""
+    flight = Flight(0, None, mission=name)
     env = flight.env
-    env.outcome[:] = Outcome.LANDED
-    card = OutcomeCard(True, "", "", (), 1.0)
-
-    def said(fuel: float, seconds: float) -> str:
-        env.main_steps[:], env.steps[:] = round(60 * fuel), round(60 * seconds)
-        challenge = FlownMission(mission)
-        credit = Credit(flight, Settings(), challenge)
-        return challenge.card(card, flight, credit).reason
-
-    assert said(3.0, 7.0) == texts.MEDAL_GOLD
-    assert said(3.5, 7.0) == "Gold asks for 0.4 s less fuel."
-    assert said(3.0, 8.1) == "Gold asks for 0.1 s less time."
-    assert said(5.0, 13.5) == "Silver asks for 0.8 s less fuel and 1.5 s less time."
+    env.outcome[:], env.cause[:] = Outcome.CRASHED if cause else Outcome.LANDED, cause
+    env.main_steps[:], env.steps[:] = round(60 * fuel), round(60 * seconds)
+    challenge = FlownMission(MISSIONS[name])
+    card = OutcomeCard(not cause, "", "", (), 1.0, advice="else")
+    return challenge.card(card, flight, Credit(flight, Settings(), challenge))
 
 
-def test_a_mission_that_is_lost_says_what_its_own_trouble_asks():
-    def said(name: str, cause: Cause, *, fuel: float = 0.0, seconds: float = 9.0) -> str:
-        flight = Flight(0, None, mission=name)
-        env = flight.env
-        env.outcome[:], env.cause[:] = Outcome.CRASHED, cause
-        env.main_steps[:], env.steps[:] = round(60 * fuel), round(60 * seconds)
-        challenge = FlownMission(MISSIONS[name])
-        credit = Credit(flight, Settings(), challenge)
-        return challenge.card(OutcomeCard(False, "", "", (), 1.0, advice="else"), flight, credit).advice
-
-    assert said("tank", Cause.HARD, fuel=3.0) == texts.ADVICE_TANK
-    assert said("tank", Cause.HARD, fuel=2.0) == "else"
-    assert said("outage", Cause.HARD, seconds=4.5) == texts.ADVICE_OUTAGE
-    assert said("ferry", Cause.SLIDING) == texts.ADVICE_MOVING
-    assert said("wind", Cause.TERRAIN) == texts.ADVICE_WIND
-    assert said("fall", Cause.HARD) == "else"
+def test_the_card_says_what_the_next_medal_asks_and_of_a_loss_what_the_missions_own_trouble_does():
+    for fuel, seconds, reason in (
+        (3.0, 7.0, texts.MEDAL_GOLD),
+        (3.5, 7.0, "Gold asks for 0.4 s less fuel."),
+        (3.0, 8.1, "Gold asks for 0.1 s less time."),
+        (5.0, 13.5, "Silver asks for 0.8 s less fuel and 1.5 s less time."),
+    ):
+        assert carded("brake", fuel, seconds).reason == reason
+    for name, cause, fuel, seconds, advice in (
+        ("tank", Cause.HARD, 3.0, 9.0, texts.ADVICE_TANK),
+        ("tank", Cause.HARD, 2.0, 9.0, "else"),
+        ("outage", Cause.HARD, 0.0, 4.5, texts.ADVICE_OUTAGE),
+        ("ferry", Cause.SLIDING, 0.0, 9.0, texts.ADVICE_MOVING),
+        ("wind", Cause.TERRAIN, 0.0, 9.0, texts.ADVICE_WIND),
+        ("fall", Cause.HARD, 0.0, 9.0, "else"),
+    ):
+        assert carded(name, fuel, seconds, cause).advice == advice, (name, cause)
 
 
 def test_on_a_pad_that_moves_its_own_middle_and_speed_count():

@@ -23,12 +23,14 @@ from game.scenes.play.challenge import FlownMission, against
 from game.scenes.play.choices import ChoicesScene
 from game.scenes.play.daily import DailyStart
 from game.scenes.play.missions import MissionsScene
-from game.scenes.play.scene import PlayScene, fly_on
+from game.scenes.play.scene import PlayScene
+from game.scenes.play.starts import fly_on
 from game.scenes.play.tutorial import Tutorial
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import challenge_of, fly_out, kept, play
 from tests.support.reading import OnlyFlies, Reading, Weighs, flew, pattern
+from tests.support.screens import settle
 
 Open = Callable[..., Driver]
 
@@ -117,9 +119,7 @@ def test_header_panel_hints_card_and_logbook_say_the_same(
 
 def begin(open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch, scene: str, settings: dict) -> Reading:
     monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", Weighs()))
-    for name, value in {**settings, "reduced_motion": True}.items():
-        setattr(context.settings, name, value)
-    context.settings_file.save(context.settings)
+    settle(context, **settings)
     reading = Reading(open_game(SCENES[scene]), monkeypatch)
     flight = reading.driver.top.flight
     assert (flight.copilot is not None) == (flight.network is not None and flight.shares)  # or nothing is shared here
@@ -187,8 +187,7 @@ def assert_book_agrees(reading: Reading, entry: Entry) -> None:
 
 @pytest.mark.parametrize("network", [OnlyFlies(), None])
 def test_nobody_is_said_to_help_who_can_not(open_game: Open, context: Context, monkeypatch, network: object):
-    context.settings.assist = 0.6
-    context.settings_file.save(context.settings)
+    settle(context, assist=0.6)
     monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", network, "it is gone"))
     reading = Reading(open_game(PlayScene, 4), monkeypatch)
     reading.check(3)
@@ -258,22 +257,16 @@ LOST = [Outcome.CRASHED, Outcome.OUT_OF_BOUNDS, Outcome.TIMED_OUT]
 MEDALS_AND_POINTS = [pattern(text) for text in (*texts.MEDALS, texts.SCORE, texts.SCORE_BEST, texts.MEDAL_NEXT)]
 
 
-@pytest.mark.parametrize(
-    ("scene", "settings", "way", "outcome"),
-    [(scene, more, WAYS[(number + 2 * row) % len(WAYS)], outcome)
-     for row, (scene, more) in enumerate(
-         [*((name, {}) for name in SCENES), ("free", {"pace": 0.5}), ("free", {"assist": 0.5})]
-     )
-     for number, outcome in enumerate(LOST)],
-)  # fmt: skip
+LOSSES = [
+    (scene, more, WAYS[(number + 2 * row) % len(WAYS)], outcome)
+    for row, (scene, more) in enumerate([*((name, {}) for name in SCENES), ("free", {"pace": 0.5, "assist": 0.5})])
+    for number, outcome in enumerate(LOST)
+]
+
+
+@pytest.mark.parametrize(("scene", "settings", "way", "outcome"), LOSSES)
 def test_a_flight_that_is_no_landing_is_told_of_alike_everywhere(
-    open_game: Open,
-    context: Context,
-    monkeypatch: pytest.MonkeyPatch,
-    scene: str,
-    settings: dict,
-    way: str,
-    outcome: Outcome,
+    open_game: Open, context: Context, monkeypatch, scene: str, settings: dict, way: str, outcome: Outcome
 ):
     reading = begin(open_game, context, monkeypatch, scene, settings)
     set_off(reading, way)

@@ -42,19 +42,6 @@ def test_every_assist_is_switched_and_saved_by_each_device(open_game: Open, cont
     assert {name: saved[name] for name in before} == {name: not value for name, value in before.items()}
 
 
-def test_it_is_reached_from_the_pause(open_game: Open, context: Context):
-    settle(context)
-    player = Player(open_game(PlayScene, 3), "pad")
-    player.frames(2)
-    player.press("main")
-    player.frames(5)
-    player.press("pause")
-    player.choose(texts.ASSISTS_OPEN)
-    assert (player.top_name, player.top.group) == ("SettingsScene", "flights")
-    player.press("back")
-    assert "PauseScene" in player.top_name
-
-
 def test_a_landing_with_assists_is_told_kindly_and_kept_apart(open_game: Open, context: Context):
     settle(context, wider_pads=True, untimed=True, pace=0.5)
     player = Player(open_game(PlayScene, 0, challenge=FlownMission(MISSIONS["fall"])), "keys")

@@ -12,7 +12,6 @@ from game.flight import networks
 from game.flight.outcomes import crash_reason
 from game.flight.replay import ReplayedFlight
 from game.scenes.play.scene import PlayScene
-from game.world.camera import View
 from tests.support.driver import Driver
 
 Open = Callable[..., Driver]
@@ -187,17 +186,6 @@ def test_a_hard_touch_shakes_the_world_and_not_the_words(game: Driver, monkeypat
         jolts.append(stage.jolt)
     assert max(jolts) > 1.0
     assert sum(jolt > 0 for jolt in jolts) <= 3
-
-
-def test_motion_can_be_reduced_in_the_midst_of_a_flight(game: Driver):
-    place(game, (8.0, 12.0, 0.0, 0.0, 0.0, 0.0))
-    game.frames(30)
-    assert scene(game).flown.scenery.view(1.0) != View(1.0)
-    game.key(pygame.K_ESCAPE)
-    game.app.context.settings.reduced_motion = True
-    game.key(pygame.K_ESCAPE)
-    game.frames(2)
-    assert scene(game).flown.scenery.view(1.0) == View(1.0)
 
 
 def test_nothing_is_heard_of_a_craft_that_hangs_and_waits(game: Driver, monkeypatch: pytest.MonkeyPatch):

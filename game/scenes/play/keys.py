@@ -1,0 +1,51 @@
+"""What the keys of a flight that is played do, with the hints that fit the moment."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from game.core import texts
+from game.flight.flight import StickHolder
+from game.input.controls import Command
+from game.scenes.play.free import rung_of
+from game.ui.actions import Action, Run
+
+if TYPE_CHECKING:
+    from game.scenes.play.scene import PlayScene
+
+_IN_FLIGHT: Final = (Command.HANDOVER, Command.PAUSE)  # keys that are named while the craft flies, for the mouse
+
+
+def flight_actions(scene: PlayScene) -> list[Action]:
+    """Return what keys do in flight."""
+    challenge, flight = scene.challenge, scene.flight
+    taken = flight.hand is StickHolder.NETWORK
+    hints = {
+        Command.HANDOVER: texts.HINT_TAKE_BACK if taken else texts.HINT_HAND_OVER,
+        Command.CHOICES: texts.CHOICES_HINT if challenge.free else "",
+        Command.NEXT: "" if challenge.through else challenge.next_hint,
+        Command.RETRY: texts.HINT_RETRY,
+        Command.PAUSE: texts.HINT_LEAVE if scene.leaves else texts.HINT_PAUSE,
+    }
+    if flight.over or not flight.network:
+        hints[Command.HANDOVER] = ""
+    calm, mouse = scene.waiting or flight.over, scene.context.controls.mouse_in_use
+    named = hints if calm else _IN_FLIGHT if mouse else ()
+    return [Action(command, run, hints[command] if command in named else "") for command, run in scene.runs.items()]
+
+
+def card_actions(scene: PlayScene, go_on: Run) -> list[Action]:
+    """Return the two actions that an outcome card names: to go on, and one of the others."""
+    card, challenge = scene.ending.card, scene.challenge
+    assert card is not None
+    again, new = challenge.again_hint, challenge.new_hint
+    first = (texts.CARD_FIRST_FIXED if challenge.fixed else texts.CARD_FIRST)[card.good]
+    if card.rung is not None and card.rung < (rung_of(scene.flight) or 0):
+        first = texts.LADDER_NEARER
+    if card.good:
+        first, other, hint = new or first, Command.RETRY, again or texts.HINT_AGAIN
+    elif challenge.fixed:
+        first, other, hint = again or first, Command.PAUSE, texts.HINT_LEAVE
+    else:
+        first, other, hint = again or first, Command.NEXT, new or texts.HINT_NEW
+    return [Action(Command.CONFIRM, go_on, first), Action(other, scene.runs[other], hint)]
