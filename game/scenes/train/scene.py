@@ -238,7 +238,7 @@ class TrainScene(TrainingScene):
         else:
             self.knobs.show_in_force(run.in_force)
         self._go_to(self.moment)
-        self.charts.look(run.history, self._beside, self._caption)
+        looked |= self.charts.look(run.history, self._beside, self._caption)
         self.swarm.update(still)
         self.split_view.update(still, self.moment)
         self._frame += 1
