@@ -29,6 +29,8 @@ OPENED = {
     "game.drawing.typeface": ({"pygame.font.Font"}, "comes with the program"),
     "game.export.gif": ({"path.open"}, "writes"),
     "game.panels.lesson_door": ({"self.open"}, "a dialog"),
+    "game.scenes.physics.scene": ({"self.context.settings.open"}, "a part of the panel"),
+    "game.scenes.train.base": ({"self._settings.open"}, "a part of the panel"),
     "game.scenes.train.scene": ({"self.open", "self.laboratory.open"}, "a part of the panel"),
     "game.start": ({"context.sound.open"}, "the sound device"),
     "tranquility.__main__": ({"os.open"}, "the null device"),

@@ -105,7 +105,9 @@ def _draw(canvas: Canvas, area: Explanation) -> None:
         within.height -= box.bottom + 6 - within.top
         within.bottom, place = view.bottom - _MARGIN, (box.left - _ASIDE, view.top)
     elif box.top > view.bottom - _FOOT:
-        within.height, place = box.top - 6 - within.top, (box.left - _ASIDE, view.bottom)
+        foot = (each.box for each in canvas.explained if each.box.top > view.bottom - _FOOT)
+        top = min(each.top for each in foot if each.left < box.right and box.left < each.right)  # and of all above it
+        within.height, place = top - 6 - within.top, (box.left - _ASIDE, view.bottom)
     elif box.right + _WIDTH + 40 > within.right:
         within.width, place = box.left - 6 - within.left, (box.left, box.centery)
     with canvas.unnoted():
