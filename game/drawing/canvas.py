@@ -228,6 +228,16 @@ class Canvas:
         finally:
             self._covered = covered
 
+    @contextmanager
+    def clipped(self, box: pygame.typing.RectLike) -> Iterator[None]:
+        """Draw within a box alone, in points; a context manager."""
+        before = self.surface.get_clip()
+        self.surface.set_clip(self.rect(*pygame.FRect(box)).clip(before))
+        try:
+            yield
+        finally:
+            self.surface.set_clip(before)
+
     def turn_page(self) -> None:
         """Begin a new frame: move the noted areas to `words`."""
         around = 2 * self.px(_AROUND)

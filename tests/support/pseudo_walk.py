@@ -223,7 +223,8 @@ def tried(*labels: str, steps: int) -> Happens:
 def switched(driver: Driver) -> None:
     """Draw a seven, and switch the last step of its preprocessing off."""
     drawn(driver)
-    driver.click(driver.widget(texts.DIGITS_STAGES[4]).box.center)
+    driver.press_on(texts.DIGITS_SEES)
+    driver.press_on(texts.DIGITS_STAGES["centre"])
     driver.frames(2)
 
 
