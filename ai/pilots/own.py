@@ -76,6 +76,8 @@ class OwnPilot:
     Attributes:
         path: the file.
         problem: what is wrong with the file as it was saved last; empty while there is nothing.
+        chosen: whether it is to fly, and not another that the player chose since.
+        told: the problem that was told last, for whoever tells each once.
         ready: whether a process has answered yet; until then it coasts.
 
     """
@@ -83,7 +85,7 @@ class OwnPilot:
     work = 100_000  # multiplications that a decision may well take the time of, for those who ask for many
 
     def __init__(self, path: Path, patience: float = PATIENCE, clock: Callable[[], float] = time.monotonic) -> None:
-        self.path, self.problem, self.ready = path, "", False
+        self.path, self.problem, self.told, self.ready, self.chosen = path, "", "", False, True
         self._patience, self._clock = patience, clock
         self._flying: PilotProcess | None = None
         self._before: PilotProcess | None = None  # flew well, and waits in case that the one that flies does not
@@ -190,22 +192,20 @@ def _stamp(path: Path) -> tuple[int, int]:
     return told.st_mtime_ns, told.st_size
 
 
-class OwnPay(LanderEnv):
-    """Landers that are paid by a file's `pay`, read as it is at the start; `step` raises PilotError where it fails.
+def pay_by(env: LanderEnv, path: Path) -> Callable[[], None]:
+    """Let landers be paid by a file's `pay`, as it is now; return what ends its process. Raises PilotError.
 
-    The parts of the usual pay go on being told beside it.
+    `step` raises it too, where the file fails. The parts of the usual pay go on being told beside it.
     """
+    process, usual = loaded(path, PAY), env.step
 
-    def __init__(self, path: Path, *args: Any, **kwargs: Any) -> None:
-        super().__init__(*args, **kwargs)
-        self._process = loaded(path, PAY)
-        self.close = self._process.close
-
-    def step(self, actions: Any) -> StepResult:
-        """Fly one decision."""
-        before = Situation.of(self)
-        result = super().step(actions)
-        pay = self._process.pay(before, Situation.of(self), ALONE)
+    def step(actions: Any) -> StepResult:
+        before = Situation.of(env)
+        result = usual(actions)
+        pay = process.pay(before, Situation.of(env), ALONE)
         if pay is None:
             raise PilotError(f"pay took longer than {ALONE:.0f} seconds")
         return replace(result, reward=pay.astype(np.float32))
+
+    env.step = step  # type: ignore[method-assign]
+    return process.close

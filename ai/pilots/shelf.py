@@ -39,7 +39,7 @@ class Shelf:
 
     def __init__(self, user_dir: Path, kind: str = ACT) -> None:
         self.kind, self.folder = kind, user_dir / _FOLDERS[kind]
-        self._measured = self.folder / "measured.jsonl"
+        self.results = self.folder / "measured.jsonl"
 
     def files(self) -> dict[str, Path]:
         """Return the files by name; raises OSError for a folder that cannot be read."""
@@ -58,12 +58,12 @@ class Shelf:
 
     def keep(self, measured: Measured) -> None:
         """Write down how a pilot was measured; raises OSError."""
-        append_line(self._measured, asdict(measured))
+        append_line(self.results, asdict(measured))
 
     def measured(self) -> list[Measured]:
         """Return all measurements, the latest last; raises OSError. Lines that make no sense are passed over."""
         try:
-            return read_lines(Measured, self._measured, _LARGEST)[0]
+            return read_lines(Measured, self.results, _LARGEST)[0]
         except FileNotFoundError:
             return []
 

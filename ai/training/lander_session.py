@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Generator
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, Final
 
@@ -12,6 +13,7 @@ import numpy as np
 from ai.environment import StepResult
 from ai.files import count_of
 from ai.lander.environment import LanderEnv
+from ai.pilots.own import pay_by
 from ai.training.config import Config, InForce, in_force
 from ai.training.demonstrations import read, teach
 from ai.training.edits import EDITED, Edit, NetworkEditor
@@ -38,17 +40,22 @@ def live(
     keep: Path | None = None,
     resume: Path | None = None,
     clock: Callable[[], float] = time.monotonic,
+    pay: Path | None = None,
 ) -> Generator[tuple[Any, ...], Any, None]:
     """Train landers without end, as `Session.lead` does; every turn is one decision of all landers.
 
     The run is kept in `keep`. With `resume`, it goes on from a saved run, with the settings, seed and history of that.
-    `clock` counts seconds. Raises ModelFormatError if there is nothing to resume from, and ValueError for settings
-    that are not a lander's.
+    `clock` counts seconds. `pay` is a file of the player's own that pays in place of the usual pay; validations keep
+    that. Raises PilotError for what is wrong with it, ModelFormatError if there is nothing to resume from, and
+    ValueError for settings that are not a lander's.
     """
     training = Training(config, seed) if resume is None else resume_run(Training, resume)
     training.clock = clock
     session = LanderSession(training, keep, resume)
-    yield from session.lead()
+    with ExitStack() as ends:
+        if pay:
+            ends.callback(pay_by(session.env, pay))
+        yield from session.lead()
 
 
 class LanderSession(Session[Training]):

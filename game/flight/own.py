@@ -25,11 +25,23 @@ RIVALS: Final = ("modern", "classic", networks.SCRIPTED)
 _MARK: Final = "/"  # before a rival's name: no file's name has it
 
 
-def take(context: Context, path: Path) -> None:
-    """Let a file be the player's pilot from now on, as they have chosen it by name."""
+def take(context: Context, path: Path | None) -> None:
+    """Let a file be the player's pilot from now on, as they have chosen it by name; or none."""
     if context.pilot:
         context.pilot.close()
-    context.pilot = OwnPilot(path)
+    context.pilot = OwnPilot(path) if path else None
+
+
+def flying(context: Context) -> networks.Network | None:
+    """Return the player's own pilot where it was the last that they chose, and say once what is wrong with it."""
+    pilot = context.pilot
+    if pilot is None or not pilot.chosen:
+        return None
+    pilot.look()
+    if pilot.problem not in ("", pilot.told):
+        pilot.told = pilot.problem
+        context.note(f"{pilot.path.name}: {pilot.problem}")
+    return networks.Network(pilot.path.name, pilot)
 
 
 def measure(user_dir: Path, models_dir: Path, path: Path) -> Generator[list[Any], None, None]:

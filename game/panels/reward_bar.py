@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Final
+from functools import partial
+from typing import Final, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -31,19 +31,15 @@ PART_COLOURS: Final[dict[str, Colour]] = {
     "time": (116, 126, 154),
     "terminal": (240, 234, 206),
 }
-_OTHERS: Final[tuple[Colour, ...]] = ((176, 196, 140), (196, 150, 214), (128, 190, 196), (214, 190, 150))
 _BAR_TOP: Final = 25.0
 _BAR_HEIGHT: Final = 13.0
 _NAMES: Final = 55.0  # baseline, from the top of the box
-_EASE: Final = 0.15
-_NEAR: Final = 1e-3  # share of the width within which a part has arrived
 _LEAST: Final = 0.5  # points below which a part is not drawn
 _FADED: Final = 0.35  # strength of the other parts while one is hovered
 _MARGIN: Final = 6.0  # of the sheet around the box
 
 
-@dataclass(frozen=True)
-class RewardPiece:
+class RewardPiece(NamedTuple):
     """Place of a part in the bar, in points."""
 
     name: str
@@ -59,65 +55,39 @@ class RewardBar:
     A mark stands at the sum. Hovering a part explains it.
     """
 
-    def __init__(self, box: pygame.typing.RectLike, label: str = "") -> None:
+    def __init__(self, box: pygame.typing.RectLike) -> None:
         self.box = pygame.FRect(box)
-        self.label = label or texts.REWARD_BAR_LABEL
-        self.names: tuple[str, ...] = ()
-        self._values = self._shown = np.zeros(0)
+        self._parts: dict[str, float] = {}
         self._lines = plotting.grid(-1.0, 1.0)
-        self._limits = np.array([-1.0, 1.0])
         self._pointer: Point | None = None
         self._cache = PaintCache()
 
     def set(self, names: Sequence[str], values: npt.ArrayLike) -> None:
         """Set the reward of each part, per flight; a value that is not finite counts as 0."""
         numbers = np.nan_to_num(np.array(values, float).ravel(), nan=0.0, posinf=0.0, neginf=0.0)
-        names = tuple(names)[: len(numbers)]
-        numbers = numbers[: len(names)]
+        before, self._parts = self._parts, dict(zip(names, numbers.tolist(), strict=False))
         low, high = float(numbers[numbers < 0].sum()), float(numbers[numbers > 0].sum())
-        first = names != self.names or not self._values.any()
-        self.names, self._values = names, numbers
         if low or high:
-            self._lines = plotting.steady_grid((low, high), None if first else self._lines)
-        if first:
-            self._arrive()
+            fresh = self._parts.keys() != before.keys() or not any(before.values())
+            self._lines = plotting.steady_grid((low, high), None if fresh else self._lines)
 
     def hover(self, point: Point | None) -> None:
         """Highlight the part under a point of the canvas; None for none."""
         self._pointer = point
 
-    def update(self, at_once: bool = False) -> None:
-        """Advance by 1/60 s: the parts ease towards their values, or take them `at_once`."""
-        if at_once:
-            self._arrive()
-        self._shown = self._shown + (self._values - self._shown) * _EASE
-        self._limits = self._limits + (self._goal - self._limits) * _EASE
-        wide = self._limits[1] - self._limits[0]
-        away = np.concatenate([self._shown - self._values, self._limits - self._goal])
-        if not np.abs(away).max() > _NEAR * wide:
-            self._arrive()
-
-    @property
-    def _goal(self) -> npt.NDArray[np.float64]:
-        return np.array([min(self._lines[0], 0.0), max(self._lines[-1], 0.0)])
-
-    def _arrive(self) -> None:
-        self._shown, self._limits = self._values, self._goal
-
     def _across(self, value: float) -> float:
-        low, high = self._limits.tolist()
+        low, high = min(float(self._lines[0]), 0.0), max(float(self._lines[-1]), 0.0)
         return float(self.box.x + self.box.width * (value - low) / (high - low))
 
     def pieces(self) -> list[RewardPiece]:
-        """Return the parts at their current places: outwards from zero, always in the same order."""
+        """Return the parts at their places: outwards from zero, always in the same order."""
         sums = {False: 0.0, True: 0.0}
         pieces = []
-        for number, (name, value) in enumerate(zip(self.names, self._shown.tolist(), strict=True)):
+        for name, value in self._parts.items():
             start = sums[value > 0]
             sums[value > 0] = end = start + value
             left, right = sorted((self._across(start), self._across(end)))
-            colour = PART_COLOURS.get(name) or _OTHERS[number % len(_OTHERS)]
-            pieces.append(RewardPiece(name, float(self._values[number]), left, right, colour))
+            pieces.append(RewardPiece(name, value, left, right, PART_COLOURS[name]))
         return pieces
 
     def piece_at(self, point: Point) -> RewardPiece | None:
@@ -132,36 +102,31 @@ class RewardBar:
         pieces = self.pieces()
         hovered = self.piece_at(self._pointer) if self._pointer else None
         box = self.box.inflate(2 * _MARGIN, 2 * _MARGIN)
-        shows = self.label, tuple(pieces), hovered and hovered.name
-        self._cache.draw(canvas, box, shows, lambda sheet: self._paint(sheet, pieces, hovered))
+        shows = tuple(pieces), hovered and hovered.name
+        self._cache.draw(canvas, box, shows, partial(self._paint, pieces=pieces, hovered=hovered))
 
     def _paint(self, sheet: Canvas, pieces: Sequence[RewardPiece], hovered: RewardPiece | None) -> None:
         left, right, top = _MARGIN, _MARGIN + self.box.width, _MARGIN + _BAR_TOP
-        self._paint_header(sheet, hovered)
-        if not self._values.any():
+        total = sum(piece.value for piece in pieces)
+        title, colour = (_word(hovered.name), hovered.colour) if hovered else (texts.REWARD_BAR_LABEL, MUTE)
+        sheet.text(title, (left, _MARGIN + 12), size=LABEL, colour=colour, weight="medium")
+        if not any(piece.value for piece in pieces):
             middle = (left + self.box.width / 2, top + 14)
             sheet.text(texts.REWARD_BAR_EMPTY, middle, size=SMALL, colour=MUTE, align="centre", room=self.box.width)
             return
+        figure, colour = (hovered.value, hovered.colour) if hovered else (total, INK)
+        sheet.text(signed(figure), (right, _MARGIN + 13), size=TEXT, colour=colour, align="right", tabular=True)
         sheet.line((left, top + _BAR_HEIGHT / 2), (right, top + _BAR_HEIGHT / 2), LINE)
         for piece in pieces:
             _paint_piece(sheet, piece, self.box.x - left, top, faded=hovered is not None and hovered.name != piece.name)
-        zero, total = (self._across(value) - self.box.x + left for value in (0.0, float(self._shown.sum())))
+        zero, mark = (self._across(value) - self.box.x + left for value in (0.0, total))
         sheet.line((zero, top - 3), (zero, top + _BAR_HEIGHT + 3), INK)
-        sheet.marker("triangle_down", (total, top - 5), 8, INK)
+        sheet.marker("triangle_down", (mark, top - 5), 8, INK)
         if hovered:
             words = texts.REWARD_PARTS.get(hovered.name, ("", ""))[1]
             sheet.text(words, (left, _MARGIN + _NAMES), size=LABEL, colour=MUTE)
         else:
             self._paint_names(sheet, pieces)
-
-    def _paint_header(self, sheet: Canvas, hovered: RewardPiece | None) -> None:
-        y = _MARGIN + 12
-        title, colour = (_word(hovered.name), hovered.colour) if hovered else (self.label, MUTE)
-        sheet.text(title, (_MARGIN, y), size=LABEL, colour=colour, weight="medium")
-        if self._values.any():
-            figure, colour = (hovered.value, colour) if hovered else (float(self._values.sum()), INK)
-            right = (_MARGIN + self.box.width, y + 1)
-            sheet.text(signed(figure), right, size=TEXT, colour=colour, align="right", tabular=True)
 
     def _paint_names(self, sheet: Canvas, pieces: Sequence[RewardPiece]) -> None:
         """Name the parts below them, the widest first, as far as there is room."""

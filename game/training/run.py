@@ -47,6 +47,7 @@ class TrainingRun(OneAfterAnother):
     Attributes:
         name: of the run, to tell it from others.
         runs: number of runs so far.
+        pay: the player's own file that pays the runs that begin from now on; None for the usual pay.
         config, seed, steps: of the current or last run; `steps` are 0 before it has reported them, or without end.
         history: of the current or last run.
         swarm_state, network_state, in_force, lesson, confusion: the latest message of each kind; None before the first.
@@ -66,6 +67,7 @@ class TrainingRun(OneAfterAnother):
         super().__init__()
         self.kind, self.collection, self._keeps = kind, collection, keeps
         self.name, self.runs = "", 0
+        self.pay: Path | None = None
         self.config: Any = kind.config
         self.seed = 0
         self.earlier: list[EarlierRun] = []
@@ -154,7 +156,8 @@ class TrainingRun(OneAfterAnother):
                 self.collection.discard_rescued()  # from where it can still be restored
         except (ModelFormatError, LibraryError) as error:
             notes.append(str(error))
-        self._worker = Worker(self.kind.live, config, seed, keep=keep, resume=resume)
+        pay = {"pay": self.pay} if self.pay and resume is None else {}
+        self._worker = Worker(self.kind.live, config, seed, keep=keep, resume=resume, **pay)
         self._worker.patience = self.kind.patience
         self._worker.set_pace(PACES[self.pace])
         return " ".join(notes)

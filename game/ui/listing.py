@@ -123,8 +123,8 @@ class Listing(Widget):
         self.first = min(max(first, 0), max(0, len(self.rows) - self.room))
 
     def paint(self, canvas: Canvas) -> None:
-        super().paint(canvas)
         box = self.box
+        canvas.cover(canvas.rect(*box))  # the row that it stands in draws the ring
         if not self.rows:
             canvas.text(self._empty, (box.left, self.baseline(self.first)), size=self._size, colour=MUTE)
         for number, row in enumerate(self.rows[self.first : self.first + self.room], self.first):

@@ -12,6 +12,7 @@ from typing import Final, NamedTuple
 import pygame
 
 from ai.agent.agent import DeepQAgent
+from ai.pilots.shelf import Shelf
 from ai.training.loop import Training
 from game.core import texts
 from game.core.scene import Route, Transition, push
@@ -19,6 +20,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, SMALL, TITLE
 from game.flight import networks
+from game.flight import own as own_pilots
 from game.flight.logbook import Records
 from game.panels.figures import percent
 from game.scenes.learn.chapter import Chapter, Code
@@ -28,7 +30,8 @@ from game.ui.context import Context
 from game.ui.panel import Column
 
 # Where each step is done; a race is begun here.
-STEPS: Final = {"train": "train", "land": "runs", "choose": "runs", "hand": "play", "race": ""}
+STEPS: Final = {"train": "train", "land": "runs", "choose": "runs", "hand": "play", "race": "", "file": ""}
+LANDS: Final = 0.9  # share of its starts that a file of one's own is to land
 _LOOK: Final = 60  # updates between two looks at the player's files
 _INDENT: Final = 32.0
 
@@ -53,6 +56,7 @@ class OwnChapter(Chapter):
     def __init__(self, context: Context) -> None:
         super().__init__(context)
         self._library, self._records = Library(context.user_dir), Records(context.user_dir)
+        self._shelf = Shelf(context.user_dir)
         self.restart()
 
     def restart(self) -> None:
@@ -62,7 +66,11 @@ class OwnChapter(Chapter):
 
     def controls(self, column: Column) -> None:
         for name, route in STEPS.items():
-            column.button(texts.LEARN_OWN_DOORS[name], partial(push, route) if route else self.race)
+            press = partial(push, route) if route else self._open_files if name == "file" else self.race
+            column.button(texts.LEARN_OWN_DOORS[name], press)
+
+    def _open_files(self) -> Transition:
+        return push("pilots", partial(own_pilots.take, self.context))
 
     def update(self) -> None:
         self._wait = (self._wait + 1) % _LOOK
@@ -95,7 +103,12 @@ class OwnChapter(Chapter):
 
     def _dates(self) -> Iterator[float]:
         """Yield what tells whether the player's files have changed: dates, and the logbook's size."""
-        for path in (self.context.user_dir / networks.PLAYERS, self._library.unsaved, self._records.logbook):
+        for path in (
+            self.context.user_dir / networks.PLAYERS,
+            self._library.unsaved,
+            self._records.logbook,
+            self._shelf.results,
+        ):
             with suppress(OSError):
                 yield from path.stat()[6:9:2]
 
@@ -127,6 +140,13 @@ class OwnChapter(Chapter):
 
         done = type(raced_at) is int and any(entry.when >= raced_at for entry in flown)
         yield "race", (done, told["raced" if done else "unraced"])
+
+        files = []
+        with suppress(OSError):
+            files = own_pilots.own(self._shelf.measured())
+        pilot = max(files, key=lambda each: each.landed, default=None)
+        values = {"name": pilot.name, "share": percent(pilot.landed)} if pilot else {}
+        yield "file", (bool(pilot and pilot.landed >= LANDS), told["flown" if pilot else "unwritten"].format(**values))
 
     # What it tells
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 from typing import Final
 
 import pygame
@@ -12,7 +13,7 @@ import pygame
 from game.core import texts
 from game.core.scene import Pop, Push, Scene, Transition, push
 from game.drawing.canvas import Canvas
-from game.flight import networks
+from game.flight import networks, own
 from game.flight.credit import eased
 from game.flight.flight import StickHolder
 from game.flight.logbook import Records, best_alone
@@ -136,6 +137,7 @@ class PlayScene(Scene):
         """Advance by 1/60 s: fly a step, unless the craft waits or slowed time makes none due."""
         self.flown.breathe()
         self.explained.update()
+        own.flying(self.context)
         self._away += self._away > 0
         if self._away > _AWAY_STEPS and not self.flight.over:
             return self.pause()
@@ -242,7 +244,8 @@ class PlayScene(Scene):
     def _pause_words(self) -> list[tuple[str, OnPress]]:
         name = networks.word(self.network.name)
         words: list[tuple[str, OnPress]] = [
-            (texts.PAUSE_NETWORK.format(name=name), lambda: push("runs", choose=self.choose_network))
+            (texts.PAUSE_NETWORK.format(name=name), lambda: push("runs", choose=self.choose_network)),
+            (texts.PILOTS_OPEN, lambda: push("pilots", self._choose_own)),
         ]
         if self.challenge.next_hint:
             words.append((texts.TUTORIAL_LEAVE, self._leave_challenge))
@@ -256,7 +259,14 @@ class PlayScene(Scene):
     def choose_network(self, name: str) -> None:
         """Change the network to hand over to, also during a flight."""
         self._settings.model = name
+        if self.context.pilot:
+            self.context.pilot.chosen = False
         self.context.apply_settings()
+        self._load_network()
+        self.flown.change_network(self.network)
+
+    def _choose_own(self, path: Path | None) -> None:
+        own.take(self.context, path)
         self._load_network()
         self.flown.change_network(self.network)
 
@@ -302,7 +312,9 @@ class PlayScene(Scene):
     def _load_network(self) -> None:
         context, self._loaded_for = self.context, self._elsewhere
         settings = context.settings
-        self.network = networks.chosen(context.models_dir, context.user_dir, settings.model, self._elsewhere)
+        self.network = own.flying(context) or networks.chosen(
+            context.models_dir, context.user_dir, settings.model, self._elsewhere
+        )
         if self.network.problem:
             context.note(texts.NO_NETWORK.format(problem=self.network.problem))
         elif self.network.stands_in:

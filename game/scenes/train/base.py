@@ -43,6 +43,7 @@ _TITLE: Final = (24.0, 16.0)  # corner of the title over the display
 _WIDEST: Final = 372.0
 _FIGURE: Final = (30.0, 60.0, 0.14)  # size at least, at most, and as a share of the picture's height
 _COVER: Final = 0.82  # of the panel behind the title: landers are many, and bright
+_LEAST: Final = 80.0  # points of height for the title above the charts
 _FOOT: Final = 0.8  # share of the panel that its foot takes at most
 MORE: Final = "more"  # what a player can open: the words for all else, every chart, every knob, the network
 CHARTS: Final = "charts"
@@ -163,7 +164,6 @@ class TrainingScene(FormScene, ABC):
 
     def _show_opened(self) -> None:
         self.knobs.every = self.opened(KNOBS)
-        self.charts.show(more=self.opened(CHARTS))
 
     def switch(self, column: Column, name: str) -> None:
         """Add the word that opens a part, or closes it."""
@@ -225,7 +225,11 @@ class TrainingScene(FormScene, ABC):
     def lay_out(self) -> None:
         """Lay everything out for the window as it is."""
         canvas = self.context.reading()
-        place = layout(canvas.view, len(self.charts.charts))
+        for more in (self.opened(CHARTS), False):
+            self.charts.show(more=more)
+            place = layout(canvas.view, len(self.charts.charts))
+            if place.swarm.height >= _LEAST:  # or else there is no room for every chart
+                break
         if place != self._layout:
             self._layout = place
             self.charts.place(place.charts)

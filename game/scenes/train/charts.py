@@ -198,10 +198,10 @@ class TrainingCharts(Charts):
             chart.read_x = texts.TRAIN_AXIS[axis].format
         self.zoom.reset()
 
-    def look(self, history: History, beside: Beside = Beside(), say: Callable[[str], str] = lambda _: "") -> None:
-        """Read new points of a run and of those beside it; call it once a frame.
+    def look(self, history: History, beside: Beside = Beside(), say: Callable[[str], str] = lambda _: "") -> bool:
+        """Read new points of a run and of those beside it, for one chart; call it once a frame.
 
-        `say` returns the caption of a chart for the same points.
+        `say` returns the caption of a chart for the same points. Return whether there was anything new.
         """
         self._turn = (self._turn + 1) % _TURNS
         number, odd = divmod(self._turn, 2)
@@ -209,18 +209,19 @@ class TrainingCharts(Charts):
         if self.moment is not None:
             self._mark(self.moment)
         if odd or number >= len(self.charts):
-            return
-        runs = [
-            each for each in (EarlierRun(beside.name or texts.TRAIN_THIS, history, 0), *beside.runs) if len(each.run)
-        ]
+            return False
+        this = EarlierRun(beside.name or texts.TRAIN_THIS, history, 0)
+        runs = [each for each in (this, *beside.runs) if len(each.run)]
         shown = [(each.name, each.style) for each in runs]
         told = (len(history), len(history.validations), shown, beside.emphasised, self.axis, self.zoom.shown,
                 len(history.setting_changes))  # fmt: skip
-        if self._told[number] != told:
-            self._told[number] = told
-            name = list(self._kinds)[number]
-            compared = runs[:1] if name == SCORE and beside.paid_otherwise else runs
-            self._set(name, self.charts[number], compared, beside.emphasised, say(name))
+        if self._told[number] == told:
+            return False
+        self._told[number] = told
+        name = list(self._kinds)[number]
+        compared = runs[:1] if name == SCORE and beside.paid_otherwise else runs
+        self._set(name, self.charts[number], compared, beside.emphasised, say(name))
+        return True
 
     def _set(self, name: str, chart: Chart, runs: Sequence[EarlierRun], emphasised: int | None, said: str) -> None:
         kind, across = self._kinds[name], AXES[self.axis]

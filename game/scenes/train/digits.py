@@ -183,8 +183,8 @@ class DigitTrainingScene(TrainingScene):
             rate, before = float(history["learning_rate"][-1]), self.knobs.settings.in_force
             if before is None or before.values["learning_rate"] != rate or before.idle != run.config.unused():
                 self.knobs.show_in_force(InForce({"learning_rate": rate}, run.config.unused()))
-        self.charts.look(history, Beside(run.earlier))
-        self.charts.update(at_once=self._settings.reduced_motion)
+        looked = self.charts.look(history, Beside(run.earlier))
+        self.charts.update(at_once=self._settings.reduced_motion, turn=not looked)
         return self._finish_update() or self.lessons.update()
 
     # The run

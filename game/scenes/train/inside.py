@@ -104,7 +104,6 @@ class Inside:
         self.editing.update()
         if self.opened:
             self.view.update(at_once=at_once)
-            self.reward_bar.update(at_once=at_once)
 
     def describe(self, column: Column) -> None:
         """Add what the lines show, and what can be done to the network."""

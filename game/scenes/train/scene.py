@@ -10,6 +10,7 @@ from typing import Final
 
 import pygame
 
+from ai.pilots.child import PAY
 from ai.training.config import PRESETS, Config
 from ai.training.experiments import Experiment, differences
 from game.core import texts
@@ -163,6 +164,8 @@ class TrainScene(TrainingScene):
             self.switch(column, name)
         column.button(texts.TRAIN_EXPERIMENTS, self.laboratory.open).pad = 3.0
         column.button(texts.TRAIN_RUNS, self._open_runs).pad = 3.0
+        pay = self.run.pay.name if self.run.pay else ""
+        column.button(texts.PILOTS_WORDS["pay"][0], self._open_pays, figure=pay).pad = 3.0
         column.gap(8)
         column.line()
         column.words([
@@ -235,7 +238,7 @@ class TrainScene(TrainingScene):
         else:
             self.knobs.show_in_force(run.in_force)
         self._go_to(self.moment)
-        self.charts.look(run.history, self._beside, self._caption)
+        looked |= self.charts.look(run.history, self._beside, self._caption)
         self.swarm.update(still)
         self.split_view.update(still, self.moment)
         self._frame += 1
@@ -316,6 +319,13 @@ class TrainScene(TrainingScene):
         if not self.run.alive:
             self._begin(self.knobs.config, self.knobs.seed)
         self.run.teach(folder / FILE_NAME)
+
+    def _open_pays(self) -> Transition:
+        def choose(path: Path | None) -> None:
+            self.run.pay, self._laid = path, None
+            self.context.note(texts.PILOTS_PAYS)
+
+        return push("pilots", choose, PAY, self.run.pay)
 
     def _open_runs(self) -> Transition:
         def go_on(folder: Path) -> Transition:

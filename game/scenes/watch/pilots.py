@@ -8,10 +8,10 @@ from functools import partial
 from pathlib import Path
 from typing import Final
 
-from ai.pilots.child import ACT
+from ai.pilots.child import ACT, PAY
 from ai.pilots.shelf import Measured, Shelf, edit
 from game.core import texts
-from game.core.scene import Pop, Transition
+from game.core.scene import Pop, Transition, push
 from game.core.worker import Worker, WorkerState
 from game.drawing.tokens import HUMAN, INK, MUTE, TEXT
 from game.flight import networks, own
@@ -28,14 +28,14 @@ class PilotsScene(PanelScene):
     """The files of one kind, and all about the one that is chosen.
 
     Args:
-        choose: called with the file that is to fly, or to pay; the scene then closes.
+        choose: called with the file that is to fly, or to pay, None for the usual pay; the scene then closes.
         kind: `ACT` or `PAY`.
         now: the file that flies or pays already.
 
     """
 
     def __init__(
-        self, context: Context, choose: Callable[[Path], None], kind: str = ACT, now: Path | None = None
+        self, context: Context, choose: Callable[[Path | None], None], kind: str = ACT, now: Path | None = None
     ) -> None:
         super().__init__(context)
         self._choose, self._words = choose, texts.PILOTS_WORDS[kind]
@@ -79,6 +79,8 @@ class PilotsScene(PanelScene):
                 colour=INK if name == self._name else MUTE,
             )
         left.button(new, self._new)
+        if self._shelf.kind == PAY:
+            left.button(texts.PILOTS_USUAL, self._use_none)
         if self._said:
             left.gap()
             left.text(self._said, size=TEXT, colour=HUMAN)
@@ -90,7 +92,8 @@ class PilotsScene(PanelScene):
         column.text(self._name, size=22.0, weight="light")
         column.aside(str(path))
         measuring = [] if self._shelf.kind != ACT or self._worker else [(texts.PILOTS_MEASURE, self._measure)]
-        column.words([(self._words[3], self._use), (texts.PILOTS_EDIT, self._edit), *measuring])
+        race = [(texts.PILOTS_RACE, self._race)] if self._shelf.kind == ACT else []
+        column.words([(self._words[3], self._use), (texts.PILOTS_EDIT, self._edit), *measuring, *race])
         if self._shelf.kind != ACT:
             return
         if self._worker:
@@ -146,6 +149,14 @@ class PilotsScene(PanelScene):
     def _use(self) -> Transition:
         self._choose(self._files[self._name])
         return Pop()
+
+    def _use_none(self) -> Transition:
+        self._choose(None)
+        return Pop()
+
+    def _race(self) -> Transition:
+        own.take(self.context, self._files[self._name])
+        return push("play", rival=self.context.pilot, rival_name=self._name)
 
     def _measure(self) -> None:
         context, self._share, self._said = self.context, 0.0, ""

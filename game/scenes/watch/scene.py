@@ -92,7 +92,7 @@ class WatchScene(FormScene):
         if self.problem:
             self.network = self.policies.first_fit()
             self._begin()
-        if context.pilot and not guest:
+        if context.pilot and context.pilot.chosen and not guest:
             self._wanted = context.pilot.path.name
             self._look_again()
 
@@ -296,9 +296,10 @@ class WatchScene(FormScene):
         return push("runs", choose=self._want)
 
     def _open_pilots(self) -> Transition:
-        def choose(path: Path) -> None:
-            own.take(self.context, path)
-            self._want(path.name)
+        def choose(path: Path | None) -> None:
+            if path:
+                own.take(self.context, path)
+                self._want(path.name)
 
         return push("pilots", choose, now=self.context.pilot.path if self.context.pilot else None)
 
@@ -330,7 +331,10 @@ class WatchScene(FormScene):
     def _fly(self, network: networks.Network) -> None:
         self.network, self._awaited = network, None
         values = isinstance(network.policy, networks.QPolicy)
-        if network.name not in self._guests and not isinstance(network.policy, OwnPilot):
+        own_flies = isinstance(network.policy, OwnPilot)
+        if self.context.pilot:
+            self.context.pilot.chosen = own_flies
+        if network.name not in self._guests and not own_flies:
             self._settings.model = network.name
         if not values:
             self.world.policy_map.kind = min(self.world.policy_map.kind, ACTION)

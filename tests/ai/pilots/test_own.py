@@ -9,9 +9,12 @@ import pytest
 
 from ai.lander.environment import LanderEnv
 from ai.pilots import own
-from ai.pilots.own import MeasuredPilot, OwnPay, OwnPilot
+from ai.pilots.own import MeasuredPilot, OwnPilot, pay_by
 from ai.pilots.process import PilotError
 from ai.pilots.shelf import TEMPLATES
+from ai.training.config import Config
+from ai.training.history import Point
+from ai.training.lander_session import live
 
 OBSERVATION = np.zeros((1, 9), np.float32)
 HELD = np.array([5])
@@ -197,10 +200,22 @@ def test_measuring_raises_what_is_wrong(tmp_path: Path):
 def test_landers_are_paid_by_a_file(tmp_path: Path):
     path = tmp_path / "pay.py"
     path.write_text("def pay(before, action, after):\n    return after.steps * 2.0 + action")
-    env, usual = OwnPay(path, 3, 5), LanderEnv(3, 5)
+    env, usual = LanderEnv(3, 5), LanderEnv(3, 5)
+    close = pay_by(env, path)
     for each in (env, usual):
         each.reset()
     result, other = env.step([0, 3, 4]), usual.step([0, 3, 4])
     assert result.reward.tolist() == [8.0, 11.0, 12.0]
     assert np.array_equal(result.observation, other.observation)
-    env.close()
+    close()
+    with pytest.raises(PilotError, match="ended"):
+        env.step([0, 0, 0])
+
+
+def test_a_run_learns_by_a_file_from_nothing(tmp_path: Path):
+    path = tmp_path / "pay.py"
+    path.write_text("def pay(before, action, after):\n    return 3.0 * (after.steps - before.steps)")
+    turns = live(Config(num_envs=8, hidden=(8,), learning_starts=32, batch_size=16, gradient_steps=1), 1, pay=path)
+    points = [message for _ in range(400) for message in next(turns) if isinstance(message, Point)]
+    turns.close()
+    assert points[-1].mean_return > 200  # three points for each step in the air

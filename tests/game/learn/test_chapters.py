@@ -280,7 +280,7 @@ def test_the_flights_after_a_run_are_those_of_its_network(made: Made, monkeypatc
     assert (env.outcome == Outcome.FLYING).all()
 
 
-def broken(*_: object) -> Iterator[tuple[()]]:
+def broken(*_: object, **__: object) -> Iterator[tuple[()]]:
     yield ()
     raise FloatingPointError("it diverged")
 

@@ -12,6 +12,7 @@ from ai.pilots import shelf
 from ai.pilots.own import OwnPilot
 from game.core import texts
 from game.flight import own
+from game.scenes.play.scene import PlayScene
 from game.scenes.watch import pilots
 from game.scenes.watch.pilots import PilotsScene
 from game.scenes.watch.scene import WatchScene
@@ -138,3 +139,38 @@ def test_each_key_tells_what_it_did_while_all_stands_still(watching: Driver):
         assert watch._told not in said.values(), pygame.key.name(key)
         said[key] = watch._told
     assert np.all([said.values()])
+
+
+def test_play_hands_over_to_it_and_it_is_no_record(open_game: Open, context: Context):
+    path = shelf.Shelf(context.user_dir).new()
+    driver = open_game(PlayScene, 3)
+    driver.keys(pygame.K_ESCAPE)
+    driver.press_on(texts.PILOTS_OPEN)
+    driver.press_on(texts.PILOTS_WORDS["act"][3])
+    driver.keys(pygame.K_ESCAPE)
+    play = driver.top
+    assert isinstance(play, PlayScene)
+    assert play.network.name == "pilot.py"
+    assert play.flight.copilot is None  # it has no values to share the stick by
+    driver.wait(lambda: context.pilot and context.pilot.ready, 60)
+    driver.key(pygame.K_TAB)
+    driver.wait(lambda: play.flight.over, 60)
+    assert play.flight.guard is None
+    assert play.credit.bar == "handed_over"
+    path.write_text("def act(:")
+    driver.wait(lambda: "SyntaxError" in driver.said, 30)
+    play.choose_network("modern")
+    assert play.network.name == "modern"
+
+
+def test_it_is_raced_as_a_ghost(open_game: Open, context: Context):
+    shelf.Shelf(context.user_dir).new()
+    driver = open_game(WatchScene, seed=2)
+    driver.key(pygame.K_o)
+    driver.press_on(texts.PILOTS_RACE)
+    play = driver.top
+    assert isinstance(play, PlayScene)
+    assert play.flown.ghost is not None
+    driver.key(pygame.K_UP)
+    driver.frames(30)
+    assert driver.top is play

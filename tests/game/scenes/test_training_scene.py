@@ -21,7 +21,13 @@ from game.ui.widgets import TextButton
 from tests.support.driver import Driver
 from tests.support.written import Written
 
-WINDOWS = (((1280, 720), "normal"), ((1280, 720), "largest"), ((800, 600), "normal"), ((720, 1280), "normal"))
+WINDOWS = (
+    ((1280, 720), "normal"),
+    ((1280, 720), "largest"),
+    ((800, 600), "normal"),
+    ((800, 600), "largest"),
+    ((720, 1280), "normal"),
+)
 MOST_WORDS, MOST_CHOICES = 60, 7
 SCENES = (TrainScene, DigitTrainingScene)
 

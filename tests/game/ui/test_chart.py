@@ -500,7 +500,6 @@ PARTS = ("distance", "feet", "time", "terminal")
 def test_parts_grow_outwards_from_zero_in_their_order() -> None:
     reward_bar = RewardBar((40, 30, 380, 60))
     reward_bar.set(PARTS, [40.0, 30.0, -90.0, 120.0])
-    reward_bar.update(at_once=True)
     distance, feet, time, terminal = reward_bar.pieces()
     assert time.right == distance.left
     assert distance.right == feet.left
@@ -544,7 +543,6 @@ def test_ugly_parts_are_drawn(canvas: Canvas, values: list[float]) -> None:
     for _ in range(3):
         reward_bar.set(PARTS, values)
         reward_bar.hover((200.0, 62.0))
-        reward_bar.update()
         reward_bar.draw(canvas)
 
 
@@ -556,12 +554,10 @@ def test_a_reward_bar_that_rests_is_not_painted_again(canvas: Canvas, monkeypatc
     reward_bar.set(PARTS, [1.0, 2.0, 3.0, 4.0])
     reward_bar.set(PARTS, [2.0, 2.0, 3.0, 4.0])
     for _ in range(200):
-        reward_bar.update()
         reward_bar.draw(canvas)
     assert painted
     painted.clear()
     for _ in range(20):
-        reward_bar.update()
         reward_bar.draw(canvas)
     assert not painted
 
