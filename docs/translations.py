@@ -122,7 +122,8 @@ def merged(translated: Catalog, english_texts: Catalog) -> Catalog:
     """Return all texts with their translations; one that was made from other English is fuzzy, and keeps that."""
     before = {_name(message): message for message in translated if message.id}
     for message in english_texts:
-        if message.id and (known := before.get(_name(message))) and any(_forms(known.string)):
+        known = translated.get(message.id, message.context) or before.get(_name(message))
+        if message.id and known and any(_forms(known.string)):
             message.flags |= known.flags & {"fuzzy"}
             message.previous_id = known.previous_id
             if known.id != message.id:
