@@ -188,10 +188,10 @@ def follow(language: str, folder: Path = catalogue.LOCALE) -> None:
         path = folder / language / "LC_MESSAGES" / f"{domain}.po"
         path.parent.mkdir(parents=True, exist_ok=True)
         texts = template(domain, folder, language)
+        if path.exists():
+            texts = merged(translations(path), texts)
         with path.open("wb") as file:
-            write_po(
-                file, merged(translations(path), texts) if path.exists() else texts, width=120, include_previous=True
-            )
+            write_po(file, texts, width=120, include_previous=True)
 
 
 def compile_all(folder: Path = catalogue.LOCALE) -> None:
