@@ -7,7 +7,7 @@ import re
 from typing import Final
 
 from game.drawing import typeface
-from game.drawing.canvas import Canvas, Point, least
+from game.drawing.canvas import Canvas, Point
 from game.drawing.tokens import MUTE, Colour
 
 _FIGURES: Final = re.compile(r"([0-9][0-9.]*)")
@@ -30,7 +30,7 @@ def write_figures(
     runs = [(run, bool(_FIGURES.fullmatch(run))) for run in _FIGURES.split(text) if run]
     widths = [canvas.text_width(run, size=size, tabular=tabular) for run, tabular in runs]
     if sum(widths) > room:
-        size *= max(room / sum(widths), least() * size / typeface.grown(size))
+        size *= max(room / sum(widths), canvas.least(size) / typeface.grown(size))
         widths = [canvas.text_width(run, size=size, tabular=tabular) for run, tabular in runs]
     start = x = position[0] - (sum(widths) / 2 if centred else 0.0)
     for (run, tabular), width in zip(runs, widths, strict=True):

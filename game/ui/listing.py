@@ -10,7 +10,7 @@ from typing import Final
 import pygame
 
 from game.core.scene import Transition
-from game.drawing.canvas import Canvas, least
+from game.drawing.canvas import Canvas
 from game.drawing.tokens import FAINT, INK, LINE, MUTE, NET, SMALL, TEXT
 from game.input.controls import Command, translate
 from game.ui.widget import PointsManager, Widget, mix
@@ -171,7 +171,7 @@ class Listing(Widget):
 
 def shortened(canvas: Canvas, text: str, size: float, room: float) -> str:
     """Return a text, cut with an ellipsis if necessary, that `Canvas.text` can write within the room in points."""
-    room /= least()
+    room *= size / canvas.least(size)
     if canvas.text_width(text, size=size) <= room:
         return text
     lengths = range(len(text))
