@@ -122,7 +122,8 @@ def merged(translated: Catalog, english_texts: Catalog) -> Catalog:
     """Return all texts with their translations; one that was made from other English is fuzzy, and keeps that."""
     before = {_name(message): message for message in translated if message.id}
     for message in english_texts:
-        if message.id and (known := before.get(_name(message))) and any(_forms(known.string)):
+        known = translated.get(message.id, message.context) or before.get(_name(message))
+        if message.id and known and any(_forms(known.string)):
             message.flags |= known.flags & {"fuzzy"}
             message.previous_id = known.previous_id
             if known.id != message.id:
@@ -187,10 +188,10 @@ def follow(language: str, folder: Path = catalogue.LOCALE) -> None:
         path = folder / language / "LC_MESSAGES" / f"{domain}.po"
         path.parent.mkdir(parents=True, exist_ok=True)
         texts = template(domain, folder, language)
+        if path.exists():
+            texts = merged(translations(path), texts)
         with path.open("wb") as file:
-            write_po(
-                file, merged(translations(path), texts) if path.exists() else texts, width=120, include_previous=True
-            )
+            write_po(file, texts, width=120, include_previous=True)
 
 
 def compile_all(folder: Path = catalogue.LOCALE) -> None:

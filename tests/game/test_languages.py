@@ -11,13 +11,11 @@ import pytest
 from game.core import catalogue
 
 ROOT = Path(__file__).parents[2]
-LANGUAGES = [code for code in catalogue.languages(catalogue.LOCALE) if code != catalogue.ENGLISH]
 WINDOWS = "1280x720", "1920x1080", "800x600", "720x1280"
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("language", LANGUAGES)
-def test_every_text_of_a_language_fits_and_meets_no_other(language: str):
+def walked(language: str) -> dict[str, dict[str, str]]:
+    """Walk through all screens in a language; return what was seen, and what was misplaced, each with where."""
     done = subprocess.run(
         [sys.executable, "-m", "tests.support.pseudo_walk", str(catalogue.LOCALE), *WINDOWS],
         cwd=ROOT,
@@ -28,6 +26,17 @@ def test_every_text_of_a_language_fits_and_meets_no_other(language: str):
         timeout=1800,
     )
     assert done.returncode == 0, done.stderr
-    walk = json.loads(done.stdout)
-    assert len(walk["seen"]) > 500
-    assert not walk["wrong"], "\n".join(map(str, walk["wrong"].items()))
+    walk: dict[str, dict[str, str]] = json.loads(done.stdout)
+    return walk
+
+
+@pytest.mark.slow
+def test_no_text_of_a_language_is_misplaced_where_english_is_not(subtests: pytest.Subtests):
+    """Where English has too little room as well, the screen is to be mended, and not the translation."""
+    known = set(walked(catalogue.ENGLISH)["wrong"].values())
+    for language in sorted({*catalogue.languages(catalogue.LOCALE)} - {catalogue.ENGLISH}):
+        with subtests.test(language=language):
+            walk = walked(language)
+            assert len(walk["seen"]) > 500
+            wrong = {text: place for text, place in walk["wrong"].items() if place not in known}
+            assert not wrong, "\n".join(map(str, wrong.items()))

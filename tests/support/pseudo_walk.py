@@ -371,16 +371,16 @@ class Walk:
                 rest(driver)
                 self._note(driver, f"{name}, {size}, {window}")
             driver.resize(VIEW_SIZE)
-            for widget in list(self._widgets(driver)):
+            for place, widget in enumerate(list(self._widgets(driver))):
                 if widget not in self._widgets(driver):
                     break
                 driver.form.focus(widget)
                 rest(driver)
-                self._note(driver, f"{name}, {widget.label}, {size}")
+                self._note(driver, f"{name}, widget {place}, {size}")
                 for number in range(len(widget.options)) if isinstance(widget, Choice) else ():
                     widget.choose(number)
                     rest(driver)
-                    self._note(driver, f"{name}, {widget.label} {number}, {size}")
+                    self._note(driver, f"{name}, widget {place}, option {number}, {size}")
         finally:
             driver.app.close()
 

@@ -323,3 +323,11 @@ def test_a_language_is_begun_and_brought_up_to_date(tmp_path: Path):
     landers = polish.get("one lander", "WATCH_LANDERS")
     assert isinstance(landers, Message)
     assert len(landers.string) == 3  # Polish has a form for few
+    begun.write_text(
+        begun.read_text("utf-8").replace('msgid "Paused"\nmsgstr ""', 'msgid "Paused"\nmsgstr "Pauza"'), "utf-8"
+    )
+    for _ in range(2):
+        translations.follow("pl", tmp_path)  # what was translated stays
+    paused = translations.translations(begun).get("Paused", "PAUSE_TITLE")
+    assert isinstance(paused, Message)
+    assert paused.string == "Pauza"
