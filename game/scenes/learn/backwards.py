@@ -40,7 +40,6 @@ class BackwardsChapter(Chapter):
     """The shipped network of fully connected layers, a copy of it that learns, and one digit that it misreads.
 
     Attributes:
-        problem: why there is nothing to show; empty if there is.
         chosen: number of the test image.
         label: the digit that it is.
         reached: how many layers the error has reached: 0 none, 1 the answers, 4 the image.
@@ -54,7 +53,7 @@ class BackwardsChapter(Chapter):
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
-        self._cache, self.problem, self._digit = PaintCache(most=6), "", 0
+        self._cache = PaintCache(most=6)
         try:
             self._shipped = classifier_in(context.models_dir / "digits" / _MODEL)
             self._pixels, self._labels = mnist_test(context.assets_dir)
@@ -67,8 +66,7 @@ class BackwardsChapter(Chapter):
 
     def restart(self) -> None:
         self._digit, self.tried = 0, False
-        if not self.problem:
-            self._begin()
+        self._begin()
 
     def _begin(self) -> None:
         self.chosen = self.misread[self._digit % len(self.misread)]
@@ -86,10 +84,8 @@ class BackwardsChapter(Chapter):
         return self.classifier.network
 
     def controls(self, column: Column) -> None:
-        if not self.problem:
-            label = texts.LEARN_BACKWARDS_BACK if self.reached < 4 else texts.LEARN_BACKWARDS_STEP
-            column.button(label, self.go_on)
-            column.button(texts.LEARN_BACKWARDS_OTHER, self.another)
+        column.button(texts.LEARN_BACKWARDS_BACK if self.reached < 4 else texts.LEARN_BACKWARDS_STEP, self.go_on)
+        column.button(texts.LEARN_BACKWARDS_OTHER, self.another)
 
     def go_on(self) -> None:
         """Send the error back one layer, or take a learning step once it has reached the image."""
@@ -151,8 +147,6 @@ class BackwardsChapter(Chapter):
         ) if self.steps else texts.LEARN_BACKWARDS_AGAIN  # fmt: skip
 
     def code(self) -> Sequence[Code]:
-        if self.problem:
-            return [Code(NeuralNetwork.backward_propagate)]
         shapes = " ← ".join(str(blame.size) for blame in self.blames[1:])
         weights = " x ".join(map(str, (self.blames[2].size, DIGITS)))
         return [
@@ -163,11 +157,9 @@ class BackwardsChapter(Chapter):
         ]  # fmt: skip
 
     def below(self, column: Column) -> None:
-        column.text(lambda: self.problem or texts.LEARN_BACKWARDS_COLOURS[self.reached > 0], size=SMALL, colour=MUTE)
+        column.text(lambda: texts.LEARN_BACKWARDS_COLOURS[self.reached > 0], size=SMALL, colour=MUTE)
 
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
-        if self.problem:
-            return
         for stage, links in enumerate(self.links):
             for start, end, slope in links if self.reached >= 4 - stage else ():
                 line = _spot(box, stage, start).center, _spot(box, stage + 1, end).midleft
@@ -197,7 +189,7 @@ class BackwardsChapter(Chapter):
         odds, blame, y = float(self.odds[digit]), float(self.blames[-1][digit]), box.centery
         colour = canvas.palette.good if digit == self.label else INK
         canvas.text(str(digit), (box.left + 6, y + 5), size=SMALL, colour=colour, weight="medium")
-        canvas.bar((box.left + 24, y - 2, 0.45 * box.width, 4), odds, NET)
+        canvas.bar((box.left + 24, y - 2, max(box.width - 100, 20), 4), odds, NET)
         canvas.text(percent(odds), (box.right - 26, y + 5), size=SMALL, colour=colour, align="right", tabular=True)
         canvas.explain(box, self.unit(len(_BOXES), digit))
         if self.reached:

@@ -42,6 +42,7 @@ class Chapter(ABC):
         door: where the same can be done freely.
         shape: height of the picture, as a share of its width.
         tried: whether the player has done what the chapter is about, so that `why` has something to tell.
+        problem: why there is nothing to show or to try; empty if there is.
         changed: set when there are other controls than before; the scene describes them anew.
 
     """
@@ -50,6 +51,7 @@ class Chapter(ABC):
     answer: ClassVar[int | None] = None
     door: ClassVar[Route]
     shape: ClassVar[float] = 0.52
+    problem = ""
 
     def __init__(self, context: Context) -> None:
         self.context = context

@@ -36,7 +36,7 @@ DARING: Final = (0.0, 0.05, 0.2, 1.0)  # shares of random actions, to choose fro
 PAY: Final = RewardWeights(distance=0.0, speed=0.0, alignment=0.0, tilt=0.0)
 _TOP: Final = 10.0  # points of the scale of values that are linear; beyond, it is logarithmic
 _HIGHEST, _LOWEST = 1e7, -1e2
-_TICKS: Final = ((-100.0, "−100"), (0.0, "0"), (1e3, "1,000"), (1e5, "100,000"), (1e7, "10,000,000"))
+_TICKS: Final = ((0.0, "0"), (1e3, "1,000"), (1e5, "100,000"), (1e7, "10,000,000"))
 _MORE: Final = 0.2  # share of landings by which one agent is better than another
 _LEARNED: Final = 0.5  # share of flights that land, from which an agent has learned it
 
@@ -44,7 +44,7 @@ _LEARNED: Final = 0.5  # share of flights that land, from which an agent has lea
 class DuelChapter(RunsChapter):
     """Two agents; the right one is as the player chooses. A chart of one quantity stands below each."""
 
-    door, shape = Route("train"), 0.56
+    door, shape = Route("train"), 0.6
 
     @property
     @abstractmethod
@@ -78,7 +78,7 @@ class DuelChapter(RunsChapter):
         for run, colour in enumerate((NET, HUMAN)):
             left = box.left + run * (half + 32)
             canvas.text(self.name(run, shown), (left, box.top + 14), size=SMALL + 1, colour=colour, room=half)
-            sky = pygame.FRect(left, box.top + 22, half, 0.42 * box.height)
+            sky = pygame.FRect(left, box.top + 22, half, 0.36 * box.height)
             state = self.states[-1][run] if self.states else None
             draw_landers(canvas, sky, state.flown if state else None, len(self.states))
             chart = pygame.FRect(left + 72, sky.bottom + 34, half - 72, box.bottom - sky.bottom - 44)

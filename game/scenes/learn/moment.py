@@ -74,7 +74,7 @@ class MomentChapter(Chapter):
     """A frozen moment of a flight of the shipped network; it flies on, and is paid as it was in training.
 
     Attributes:
-        agent: the network; None if it could not be read, and `problem` then says why.
+        agent: the network.
         guess: the player's, in points.
         value: the network's value of the moment, in points.
         came, plain: pay since the moment, with and without the discount.
@@ -84,14 +84,17 @@ class MomentChapter(Chapter):
 
     key, door, shape = "moment", Route("watch"), 0.52
     sky: float = 0.72  # share of the picture's height for the flight
+    flying = False
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
         network = networks.chosen(context.models_dir, context.user_dir)
-        self.agent = network.policy if isinstance(network.policy, DeepQAgent) else None
-        self.problem = network.problem
         self.judged: list[Came] = []
-        self.restart()
+        if isinstance(network.policy, DeepQAgent):
+            self.agent = network.policy
+            self.restart()
+        else:
+            self.problem = network.problem
 
     def restart(self) -> None:
         self._number, self.tried = 0, False
@@ -102,9 +105,6 @@ class MomentChapter(Chapter):
         """Fly to the moment, and stop there."""
         self.guess = self.came = self.plain = self.value = 0.0
         self.flying, self._steps = False, 0
-        self.values: Floats = np.zeros(NUM_ACTIONS, np.float32)
-        if self.agent is None:
-            return
         seed, spawn, decisions = MOMENTS[self._number]
         self.env = LanderEnv(1, seed, spawn, frame_skip=1, weights=Config.of(self.agent).reward_weights)
         self.env.reset()
@@ -115,12 +115,11 @@ class MomentChapter(Chapter):
         self._decide()
         self._first = self.decision
         assert self.decision.points is not None
-        self.values = self.decision.points[0].copy()
+        self.values: Floats = self.decision.points[0].copy()
         self.value = float(self.values.max())
         self._lander, self._path = DrawnLander(self.env), [self.env.position[0].copy()]
 
     def _decide(self) -> None:
-        assert self.agent is not None
         self.decision: Decision = self.agent.decide(self.env.observe(), held=self.env.actions)
 
     @property
@@ -140,7 +139,7 @@ class MomentChapter(Chapter):
     def controls(self, column: Column) -> None:
         if self.flying:
             column.button(texts.LEARN_MOMENT_NEXT, self.turn, colour=INK)
-        elif self.agent is not None:
+        else:
             column.slider(texts.LEARN_MOMENT_GUESS, self.guess, SCALE, self.set_guess, step=5,
                           figure=lambda guess: points(guess, 0))  # fmt: skip
             column.button(texts.LEARN_MOMENT_GO, self.go, colour=INK)
@@ -160,7 +159,7 @@ class MomentChapter(Chapter):
         self.changed = True
 
     def update(self) -> None:
-        if self.agent is None or not self.running:
+        if not self.running:
             return
         if self._steps % DECISION_STEPS == 0 and self._steps:
             self._decide()
@@ -192,7 +191,6 @@ class MomentChapter(Chapter):
 
     def why(self) -> str:
         """Return the last moment's numbers, and how far off both judges were on average."""
-        assert self.agent is not None
         last = self.judged[-1]
         told = texts.LEARN_MOMENT_WHY.format(
             guess=points(last.guess, 1), value=points(last.value, 1), came=points(last.came, 1),
@@ -206,8 +204,6 @@ class MomentChapter(Chapter):
         return f"{told} {texts.LEARN_MOMENT_MISSED.format(count=len(self.judged), yours=yours, its=its)}"
 
     def code(self) -> Sequence[Code]:
-        if self.agent is None:
-            return [Code(DeepQAgent.q_values), Code(in_points), Code(DeepQAgent.targets)]
         config, told = self.agent.config, self.judged[-1].decision if self.judged else self._first
         assert told.values is not None
         assert told.points is not None
@@ -221,10 +217,7 @@ class MomentChapter(Chapter):
         ]
 
     def below(self, column: Column) -> None:
-        if self.agent is None:
-            column.text(self.problem, colour=MUTE)
-        else:
-            column.add(formula(self._figures))
+        column.add(formula(self._figures))
 
     def _figures(self) -> list[Part]:
         """Return the figures of the three judges."""
@@ -239,8 +232,6 @@ class MomentChapter(Chapter):
     # The picture
 
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
-        if self.agent is None:
-            return
         world = pygame.FRect(box.left, box.top, box.width, self.sky * box.height)
         view = view_in(world, _MIDDLE, _METRES, canvas.scale)
         with inside(canvas, world):
@@ -304,13 +295,12 @@ class ChoiceChapter(MomentChapter):
         super().turn()
 
     def controls(self, column: Column) -> None:
-        for action, name in enumerate(ACTION_NAMES if self.agent else ()):
+        for action, name in enumerate(ACTION_NAMES):
             colour = NET if action == self.best else INK
             column.button(
                 texts.said(name).capitalize(), partial(self.begin_with, action), size=SMALL + 1, colour=colour
             )
-        if self.agent:
-            column.button(texts.LEARN_MOMENT_NEXT, self.turn)
+        column.button(texts.LEARN_MOMENT_NEXT, self.turn)
 
     def begin_with(self, action: int) -> None:
         """Go back to the moment, and let the flight begin with an action for one decision."""
@@ -360,7 +350,7 @@ class ChoiceChapter(MomentChapter):
         return [Code(DeepQAgent.q_values, NeuralNetwork.predict, best), Code(DeepQAgent.decide)]
 
     def below(self, column: Column) -> None:
-        column.aside(texts.LEARN_CHOICE_LEGEND if self.agent else self.problem)
+        column.aside(texts.LEARN_CHOICE_LEGEND)
 
     def draw_worth(self, canvas: Canvas, box: pygame.FRect) -> None:
         """Draw the six values, and on the same scale what came of each."""

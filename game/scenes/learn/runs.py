@@ -90,7 +90,7 @@ class RunsChapter(Chapter):
         return len(self.states) > self.LENGTH
 
     @property
-    def problem(self) -> str:
+    def fault(self) -> str:
         """Why the worker failed; empty if it did not."""
         return self._worker.problem if self._worker is not None else ""
 
@@ -126,7 +126,7 @@ class RunsChapter(Chapter):
     def _status(self) -> str:
         key = "over" if self.over else "learning" if self.states else "starting" if self.running else "ready"
         done = self.states[-1][0].decisions if self.states else 0
-        return self.problem or texts.LEARN_RUNS[key].format(done=done, all=self.LENGTH)
+        return self.fault or texts.LEARN_RUNS[key].format(done=done, all=self.LENGTH)
 
 
 def draw_landers(canvas: Canvas, box: pygame.FRect, flown: Flown | None, flicker: int, count: int = 16) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from functools import partial
 from typing import Final
@@ -29,7 +28,7 @@ PREDICT, TRY, WHY, CODE = range(len(PAGES))
 _SHARES, _LEAST, _APART = (1.0, 1.8), 240.0, 36.0  # of the columns of words and of the picture
 _BODY: Final = SMALL + 1.5
 _OPEN: Final[Colour] = (190, 198, 214)  # an answer that was not given
-_AROUND, _LOWEST = 250.0, 0.42  # points above and below the picture; its least height, as a share of its width
+_AROUND, _LOWEST = 250.0, 0.85  # points above and below the picture; the least share of its height
 _LISTING, _NOTES = 420.0, 230.0  # height of a listing, and width of what stands beside its lines
 _INDENT: Final = 18.0  # of a verdict, behind its line
 
@@ -71,7 +70,7 @@ class ChapterScene(PanelScene):
             self._progress.note(self.key, done=True)
         self._told = self.chapter.why() if self.chapter.tried else ""
         # Of what runs on, the numbers of this moment: they could not be read otherwise.
-        self._code = list(self.chapter.code()) if page == CODE else []
+        self._code = list(self.chapter.code()) if page == CODE and not self.chapter.problem else []
         self.context.apply_settings()
         self.panel.scrolled = 0.0
         self.build()
@@ -80,8 +79,9 @@ class ChapterScene(PanelScene):
 
     def _restart(self) -> None:
         """Begin the chapter's picture anew."""
-        self.chapter.restart()
-        self.build()
+        if not self.chapter.problem:
+            self.chapter.restart()
+            self.build()
 
     def actions(self) -> Table:
         again = [Action(Command.RETRY, self._restart, texts.LEARN_AGAIN)] if self.page == TRY else []
@@ -102,7 +102,7 @@ class ChapterScene(PanelScene):
         return None if self.explained.handle_event(event) else super().handle_event(event)
 
     def update(self) -> Transition | None:
-        if self.page != PREDICT:
+        if self.page != PREDICT and not self.chapter.problem:
             self.chapter.update()
         if self.page == WHY and self.chapter.tried and (self.chapter.changed or not self._told):
             self.turn_to(WHY)  # what was begun on the page before has come to its end
@@ -139,7 +139,10 @@ class ChapterScene(PanelScene):
         left, right = panel.beside(_SHARES, _LEAST, _APART)
         [self._describe_predict, self._describe_try, self._describe_why, self._describe_code][self.page](left)
         self._picture: Row | None = None
-        if self.page == CODE:
+        self._high = 0.0
+        if self.chapter.problem:
+            right.text(self.chapter.problem, colour=MUTE)
+        elif self.page == CODE:
             self._describe_listing(right)
         else:
             self._picture = right.add(self._leave_room)
@@ -152,8 +155,10 @@ class ChapterScene(PanelScene):
 
     def _leave_room(self, cursor: Cursor) -> None:
         """Leave room for the picture: as high as it should be, or as all else leaves room for in the window."""
-        wide, room = cursor.width, cursor.seen.height - _AROUND if cursor.seen else math.inf
-        cursor.take(min(self.chapter.shape * wide, max(room, _LOWEST * wide)))
+        if cursor.canvas is None and cursor.seen:
+            whole = self.chapter.shape * cursor.width
+            self._high = min(whole, max(cursor.seen.height - _AROUND, _LOWEST * whole))
+        cursor.take(self._high)
 
     def _describe_predict(self, column: Column) -> None:
         column.text(self.chapter.words["lead"], size=_BODY, colour=MUTE)
@@ -166,7 +171,8 @@ class ChapterScene(PanelScene):
     def _describe_try(self, column: Column) -> None:
         column.text(lambda: self.chapter.words["task"], size=_BODY)
         column.gap(6)
-        self.chapter.controls(column)
+        if not self.chapter.problem:
+            self.chapter.controls(column)
 
     def _describe_why(self, column: Column) -> None:
         guess = self._progress.guess(self.key)

@@ -20,11 +20,11 @@ from game.scenes.lesson.frame import Frame
 from game.scenes.lesson.step import LearningStep
 from game.ui.panel import Column
 
-_HEIGHT: Final = 250.0  # of the way, and of the six values
+_HEIGHT: Final = 220.0  # of the way, and of the six values
 _PACE: Final = 4  # frames between two steps, while it goes on by itself
 _SPAN: Final = 24  # steps that the way has room for at least
 _MOST: Final = 120  # steps, with which any has arrived
-_LEAST: Final = 300.0  # width of a column
+_LEAST: Final = 240.0  # width of a column
 _NAMES: Final = 108.0  # points for the name of an action
 _FIGURES: Final = 60.0
 

@@ -133,6 +133,7 @@ class GradientFrame(NetworkFrame):
         whose = [words.format(count=self.step.examples) for words in texts.LESSON_WHOSE]
         column.choice("", whose, int(self.alone), self.show_alone, SMALL)
         super().describe(column)
+        column.gap(8)
         left, right = column.beside((2, 3), _LEAST)
         left.caption(texts.LESSON_SHARE)
         left.add(table((), self._share))

@@ -27,7 +27,7 @@ from game.ui.rows import RowWidget
 from game.ui.widget import PointsManager
 
 _CARD: Final = 132.0  # the least width of a card, in points
-_HIGH, _GAP = 64.0, 8.0
+_HIGH, _GAP = 54.0, 8.0
 _LEAST: Final = 420.0  # width of a column, where the code stands beside the frame
 
 
@@ -90,7 +90,7 @@ class Cards(RowWidget):
         x, colour = box.left + 10, INK if lit else MUTE
         canvas.text(str(place + 1), (x, box.top + 22), size=CAPTION, colour=NET if lit else MUTE)
         canvas.text(frame.name, (x + 15, box.top + 22), size=SMALL, colour=colour, room=box.width - 30)
-        canvas.text(frame.figure, (x, box.top + 50), size=SMALL, colour=colour, tabular=True,
+        canvas.text(frame.figure, (x, box.top + 43), size=SMALL, colour=colour, tabular=True,
                     room=box.width - 20)  # fmt: skip
 
 

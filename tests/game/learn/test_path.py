@@ -173,3 +173,17 @@ def test_without_source_code_the_page_says_so(open_game: Open, context: Context,
     driver = open_game(ChapterScene, "neuron")
     driver.top.turn_to(CODE)
     assert texts.LEARN_NO_SOURCE in written(driver, monkeypatch)
+
+
+def test_what_cannot_be_read_is_said_and_the_chapter_stays_usable(
+    open_game: Open, context: Context, monkeypatch, tmp_path
+):
+    settle(context)
+    for key, missing in (("backwards", "models_dir"), ("backwards", "assets_dir"), ("choice", "models_dir")):
+        with monkeypatch.context() as patch:
+            patch.setattr(context, missing, tmp_path)
+            driver = open_game(ChapterScene, key)
+            for page in (TRY, WHY, CODE, TRY):
+                driver.top.turn_to(page)
+                assert driver.top.chapter.problem.split()[0] in written(driver, monkeypatch)
+                driver.key(pygame.K_r)
