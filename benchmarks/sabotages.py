@@ -24,9 +24,9 @@ from typing import Final
 
 from ai.files import write_text
 from ai.training.config import PRESETS
-from ai.training.experiments import MEASURED, sabotaged
+from ai.training.experiments import MEASURED, SABOTAGES, sabotaged
 from ai.training.loop import Training
-from game.scenes.train.cards import CARDS, FILE
+from game.scenes.train.cards import FILE
 
 DECISIONS: Final = 100_000
 
@@ -55,7 +55,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seeds", type=int, default=4)
     seeds = parser.parse_args().seeds
-    names = (MEASURED, *CARDS)
+    names = (MEASURED, *SABOTAGES)
     with Pool() as pool:
         landed = pool.starmap(share, [(name, seed) for name in names for seed in range(seeds)], chunksize=1)
     shares = {}

@@ -231,6 +231,8 @@ class RunSettings:
             self._on_change(SEED, seed)
 
     def _different(self, a: Configuration, b: Configuration) -> list[str]:
+        if a == b:  # as nearly always; this is asked in every frame
+            return []
         return [name for name, knob in self.knob_descriptions.items() if knob.read(a) != knob.read(b)]
 
 

@@ -6,11 +6,10 @@ from functools import cache
 from typing import Final
 
 from ai.files import read_json
-from ai.training.experiments import MEASURED, SABOTAGES
+from ai.training.experiments import MEASURED
 from game.core import texts
 from game.core.assets import ASSETS_DIR
 
-CARDS: Final = tuple(SABOTAGES)
 FILE: Final = ASSETS_DIR / "sabotages.json"
 
 

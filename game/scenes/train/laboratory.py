@@ -10,6 +10,7 @@ from typing import Literal, NamedTuple
 from ai.training.config import PRESETS, Config
 from ai.training.experiments import (
     MEASURED,
+    SABOTAGES,
     VERDICTS,
     Experiment,
     Flown,
@@ -22,7 +23,7 @@ from ai.training.experiments import (
 )
 from game.core import texts
 from game.drawing.tokens import HUMAN, INK, MUTE, NET, SMALL, TITLE
-from game.scenes.train.cards import CARDS, measured
+from game.scenes.train.cards import measured
 from game.scenes.train.knobs import KnobsPanel
 from game.training.knob_descriptions import KnobDescription, figure, label
 from game.training.run import TrainingRun
@@ -106,7 +107,7 @@ class Laboratory:
     def _picks(self, column: Column) -> None:
         column.text(texts.TRAIN_EXPERIMENTS, size=TITLE)
         column.aside(texts.LAB_INTRODUCED)
-        for name in CARDS:
+        for name in SABOTAGES:
             word, told = texts.SABOTAGES[name]
             column.button(word, partial(self._ask, name, word), told, colour=INK)
         for knob in (each for each in LANDER.knob_descriptions if each.name in self._knobs.first):

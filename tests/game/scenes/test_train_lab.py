@@ -11,13 +11,13 @@ import pytest
 
 from ai.files import read_json
 from ai.training.config import Config, in_force
-from ai.training.experiments import VERDICTS, experiment_of
+from ai.training.experiments import SABOTAGES, VERDICTS, experiment_of
 from ai.training.history import History
 from ai.training.loop import Training
 from game.core import texts
 from game.core.worker import WorkerState
 from game.scenes.train.base import KNOBS
-from game.scenes.train.cards import CARDS, FILE, measured
+from game.scenes.train.cards import FILE, measured
 from game.scenes.train.knob import Knob
 from game.scenes.train.laboratory import came_words, why
 from game.scenes.train.scene import TrainScene
@@ -305,7 +305,7 @@ def test_each_card_says_what_was_measured_of_it(train: Driver) -> None:
     train.frames(2)
     shown = [each.label for each in train.form.widgets]
     shares = read_json(FILE)["shares"]
-    for name in CARDS:
+    for name in SABOTAGES:
         assert texts.SABOTAGES[name][0] in shown
         assert texts.SABOTAGE_WHY[name]
         (other, low, high), (healthy, least, most) = (
