@@ -210,9 +210,9 @@ def rows() -> dict[str, Row]:
 def plotted(context: Context, exhibit: str, *, measuring: bool = False) -> PhysicsScene:
     """Open the gallery with the plot of law and measurement; `measuring` its whole range at once."""
     scene = PhysicsScene(context, exhibit)
-    scene.bench.toggle()
+    scene.toggle_plot()
     if measuring:
-        scene.bench.measure()
+        scene.measure()
     return scene
 
 

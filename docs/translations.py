@@ -6,26 +6,35 @@ python -m docs.translations de    begin German, or bring it up to date with the 
 
 from __future__ import annotations
 
+import os
 import string
 import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import fields
 from datetime import UTC, datetime
+from functools import cache
 from pathlib import Path
 
 from babel.messages.catalog import Catalog, Message
 from babel.messages.mofile import write_mo
 from babel.messages.pofile import read_po, write_po
+from font_manrope import font_files
 
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))
+os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
+
+from pygame import freetype
 
 from ai.digits.config import DigitConfig
 from ai.lander.rules import ACTION_NAMES
 from ai.training.config import Config
+from game.cli import speak
 from game.core import catalogue
+from tranquility.__main__ import _parser as parser
 
 DOMAINS = (catalogue.DOMAIN, catalogue.AI_DOMAIN)
+CONTROL = "\n"
 STUB = ROOT / "game" / "core" / "texts.pyi"
 _HEAD = '''"""Names and shapes of all texts, made by docs/translations.py from tranquility.pot: do not edit."""
 
@@ -72,13 +81,21 @@ def english(folder: Path = catalogue.LOCALE) -> Catalog:
 
 
 def of_ai() -> Catalog:
-    """Return what `ai` says in English and a player reads: the names of actions, and what knobs are for."""
+    """Return what `ai` says in English and a player reads: names of actions, what knobs are for, and commands' help."""
     found = Catalog(locale=catalogue.ENGLISH)
     for name in ACTION_NAMES:
         found.add(name, auto_comments=["An action: which engines fire."])
     for config in (Config, DigitConfig):
         for field in fields(config):
             found.add(field.metadata["help"], auto_comments=[f"The knob {field.name}."])
+    own = {str(message.id).partition(" (")[0] for message in template(catalogue.DOMAIN)}
+
+    def gathered(said: str) -> str:
+        if said.partition(" (")[0] not in own:  # the game's own commands speak the language already
+            found.add(said, auto_comments=["Of a command's --help."])
+        return said
+
+    speak(parser(), gathered)
     return found
 
 
@@ -129,7 +146,7 @@ def untranslated(translated: Catalog, english_texts: Catalog) -> list[str]:
 
 
 def faults(translated: Catalog) -> Iterator[str]:
-    """Yield what is wrong with translations: other braces than the English, missing forms."""
+    """Yield what is wrong with translations: other braces than the English, missing forms, letters without pictures."""
     for message in translated:
         told, forms = _forms(message.string), _forms(message.id)
         if not message.id or not any(told) or message.fuzzy:
@@ -140,6 +157,15 @@ def faults(translated: Catalog) -> Iterator[str]:
         wanted, may_miss = set.union(*map(braces, forms)), {"count"} if len(forms) > 1 else set()
         if any(not wanted - may_miss <= braces(form) <= wanted for form in told if form):
             yield f"{_name(message)}: {told} has other braces than {forms}"
+        if missing := [letter for form in told for letter in form if letter not in CONTROL and not drawn(letter)]:
+            yield f"{_name(message)}: Manrope has no {', '.join(map(repr, missing))}"
+
+
+@cache
+def drawn(letter: str) -> bool:
+    """Whether the game's type has a picture of a letter."""
+    freetype.init()
+    return freetype.Font(font_files["Manrope"], 16).get_metrics(letter)[0] is not None
 
 
 def braces(text: str) -> set[str]:

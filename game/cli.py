@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Final
 
@@ -25,6 +26,20 @@ def add_commands(commands: Any) -> None:
     verify.add_argument("files", nargs="+", type=Path, metavar="FILE", help=texts.CLI_VERIFY_FILES)
     verify.add_argument("--json", action="store_true", help=texts.CLI_VERIFY_JSON)
     verify.set_defaults(run=_verify)
+
+
+def speak(parser: argparse.ArgumentParser, said: Callable[[str], str]) -> None:
+    """Put what a parser and its sub-commands say of themselves into other words."""
+    parser.description = parser.description and said(parser.description)
+    for group in parser._action_groups:
+        group.title = group.title and said(group.title)
+    for action in parser._actions:
+        action.help = action.help and said(action.help)
+        if isinstance(action, argparse._SubParsersAction):
+            for named in action._choices_actions:
+                named.help = named.help and said(named.help)
+            for each in action.choices.values():
+                speak(each, said)
 
 
 def open_physics(arguments: argparse.Namespace) -> int:

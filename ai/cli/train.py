@@ -16,10 +16,8 @@ from ai.cli import command_line as cli
 
 if TYPE_CHECKING:
     from ai.digits.config import DigitConfig
-    from ai.digits.training import DigitProgress
     from ai.run import Run
     from ai.training.config import Config
-    from ai.training.loop import Progress
     from ai.training.run import Limit
 
 _RANGES: Final = {
@@ -60,29 +58,15 @@ def add_commands(commands: Any) -> None:
 
 
 def _train(arguments: argparse.Namespace) -> int:
-    from ai.training.config import ANYWHERE, LANDER
     from ai.training.loop import Training
 
-    def shown(progress: Progress) -> str:
-        best = f" best {progress.best.figure}" if progress.best else ""
-        lander = progress.env in (LANDER, ANYWHERE)
-        recent = f"landed {progress.success_rate:.0%}" if lander else f"return {progress.mean_return:.1f}, mean"
-        return f"{recent} of the last 100, ε {progress.epsilon:.2f}, {progress.decisions:,} decisions{best}"
-
-    return _run(arguments, Training, lander_config, shown, lambda training, _: str(training.best))
+    return _run(arguments, Training, lander_config)
 
 
 def _train_digits(arguments: argparse.Namespace) -> int:
     from ai.digits.training import DigitTraining
 
-    def shown(progress: DigitProgress) -> str:
-        best = f", held out {progress.best:.2%}" if progress.best is not None else ""
-        return f"epoch {progress.epoch:.1f}, loss {progress.loss:.3f}{best}"
-
-    def verdict(_: Run, described: dict[str, Any]) -> str:
-        return f"{described['test']:.2%} of MNIST's test images read right"
-
-    return _run(arguments, DigitTraining, digit_config, shown, verdict)
+    return _run(arguments, DigitTraining, digit_config)
 
 
 def lander_config(arguments: argparse.Namespace, begun: Config | None = None) -> Config:
@@ -114,15 +98,8 @@ def _preset(named: str | None, presets: Mapping[str, Preset], begun: Preset | No
     return begun if begun and named is None else presets[named or "modern"]
 
 
-def _run(
-    arguments: argparse.Namespace, kind: type[Run], config: Callable[..., Any], shown: Callable[[Any], str],
-    verdict: Callable[[Any, dict[str, Any]], str],
-) -> int:  # fmt: skip
-    """Train a run that is begun or resumed, keep what comes of it, and return the exit code.
-
-    `config` returns its settings, `shown` is what is written of the progress behind the bar, `verdict` how good the
-    saved run is.
-    """
+def _run(arguments: argparse.Namespace, kind: type[Run], config: Callable[..., Any]) -> int:
+    """Train a run with the settings of `config`, begun or resumed, keep what comes of it, and return the exit code."""
     from ai.files import claimed_folder
     from ai.training.run import Limit, resume
 
@@ -151,7 +128,7 @@ def _run(
                 raise ValueError(f"{output} holds an earlier run: --resume {output} goes on with it, --replace ends it")
         except cli.REFUSED as error:
             return cli.fail(cli.reason(error))
-        return _train_and_keep(training, output, limit, shown, verdict)
+        return _train_and_keep(training, output, limit)
 
 
 def _go_on(training: Run, wanted: Any, arguments: argparse.Namespace) -> None:
@@ -166,14 +143,12 @@ def _go_on(training: Run, wanted: Any, arguments: argparse.Namespace) -> None:
     training.apply_live(wanted)
 
 
-def _train_and_keep(
-    training: Run, output: Path, limit: Limit, shown: Callable[[Any], str], verdict: Callable[[Any, Any], str]
-) -> int:  # fmt: skip
+def _train_and_keep(training: Run, output: Path, limit: Limit) -> int:
     stopped, saved = "", False
     try:
         with cli.stoppable() as stop:
             try:
-                _advance(training, output, limit, shown, stop)
+                _advance(training, output, limit, stop)
             except FloatingPointError as error:
                 stopped = f"training stopped: {error}. "
                 training.restore_best()
@@ -189,11 +164,13 @@ def _train_and_keep(
     if stopped:
         what = "What was best until then" if training.best else "The last network, which has not been measured,"
         return cli.fail(f"{stopped}{what} is kept in {output}.")
-    cli.say(f"kept in {output}: {verdict(training, described)}")
+    read = described.get("test")  # of digits alone
+    verdict = training.best if read is None else f"{read:.2%} of MNIST's test images read right"
+    cli.say(f"kept in {output}: {verdict}")
     return cli.exit_code(stop)
 
 
-def _advance(training: Run, output: Path, limit: Limit, shown: Callable[[Any], str], stop: list[int]) -> None:
+def _advance(training: Run, output: Path, limit: Limit, stop: list[int]) -> None:
     """Train until the limit or the user, who adds to `stop`, says so; keep the run now and then, and show how it goes.
 
     That is a progress bar on a terminal, and elsewhere a line now and then. That the run could not be kept is told
@@ -204,7 +181,7 @@ def _advance(training: Run, output: Path, limit: Limit, shown: Callable[[Any], s
     keeper, line_at = Keeper(training, output), time.monotonic() + _LINE_SECONDS
     with cli.progress_bar(_PARTS, "training", bar_format=_BAR) as bar:
         for progress in limit.run(training):
-            share, words = limit.share(training), shown(progress)
+            share, words = limit.share(training), str(progress)
             bar.update(int(_PARTS * share) - bar.n)
             bar.set_postfix_str(words, refresh=False)
             if bar.disable and time.monotonic() >= line_at:

@@ -52,6 +52,10 @@ class DigitProgress:
     held_out: float | None = None  # accuracy on the images held out, when an epoch ends
     best: float | None = None  # the highest of those
 
+    def __str__(self) -> str:
+        best = f", held out {self.best:.2%}" if self.best is not None else ""
+        return f"epoch {self.epoch:.1f}, loss {self.loss:.3f}{best}"
+
 
 class DigitTraining(Run):
     """Digit training run: all state that changes as it goes on. `data` are images and labels in place of MNIST's.
@@ -93,12 +97,10 @@ class DigitTraining(Run):
 
     @property
     def steps(self) -> int:
-        """Learning steps in the whole run."""
         return self.config.epochs * self.steps_per_epoch
 
     @property
     def moment(self) -> int:
-        """Learning steps so far."""
         return self.step
 
     @property
@@ -111,7 +113,6 @@ class DigitTraining(Run):
         return rise * (config.final_learning_rate + (config.learning_rate - config.final_learning_rate) * fall)
 
     def apply_live(self, config: DigitConfig) -> None:
-        """Take over the live knobs of another configuration."""
         self.config = self.config.with_live(config)
 
     def advance(self) -> DigitProgress:
@@ -196,7 +197,6 @@ class DigitTraining(Run):
         self.optimizer = OPTIMIZERS[self.config.optimizer](self.config.learning_rate)
 
     def restore_best(self) -> None:
-        """Restore the best network so far."""
         if self.best_values is not None:
             self.restore(self.best_values)
 
@@ -226,7 +226,6 @@ class DigitTraining(Run):
 
     @classmethod
     def begun(cls, folder: Path, *, data: tuple[Images, Labels] | None = None, **_: Any) -> Self:
-        """Return the run that a folder describes, without its state; raises ModelFormatError."""
         config, seed, step = read_settings(folder)
         try:
             run = cls(config, seed, data)

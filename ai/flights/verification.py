@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from datetime import date
 from functools import lru_cache
@@ -64,9 +63,7 @@ def begun(start: Recording, seeds: Sequence[int] = ()) -> LanderEnv:
 
 def day_of(seed: int) -> date | None:
     """Return the day whose start has this seed; None if no day has."""
-    with suppress(ValueError, OverflowError):
-        return date.fromordinal(seed)
-    return None
+    return date.fromordinal(seed) if 1 <= seed <= date.max.toordinal() else None
 
 
 def in_its_place(flight: SharedFlight) -> bool:
@@ -155,9 +152,8 @@ def _together(recording: Recording) -> object:
 
 def fly_again(recordings: Sequence[Recording]) -> list[Earned]:
     """Fly recordings of one ground and gravity again at once; return what each earned."""
-    like = recordings[0]
+    like, lengths = recordings[0], np.array([len(each.actions) for each in recordings])
     env = begun(like, [each.seed for each in recordings])
-    lengths = np.array([len(each.actions) for each in recordings])
     actions = np.zeros((lengths.max(), len(recordings)), dtype=np.intp)
     for slot, each in enumerate(recordings):
         actions[: lengths[slot], slot] = each.actions

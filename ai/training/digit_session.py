@@ -54,12 +54,10 @@ class DigitSession(Session[DigitTraining]):
         self._looking = 0.0  # seconds
 
     def state(self) -> State:
-        """Return what this goes on from, besides the run."""
         best = self._best
         return {} if best is None else {"accuracy": best[0], "values": best[1].copy()}
 
     def load_state(self, state: State) -> None:
-        """Go on from what `state` gave; raises KeyError, TypeError or ValueError for anything else."""
         values = array_like(self.training.average, state["values"], "the best network")
         self._best = float(number_of(state["accuracy"], 0)), values
 
@@ -71,7 +69,6 @@ class DigitSession(Session[DigitTraining]):
         self.messages.append(FilterMoment(training.seconds, training.step, images))
 
     def tell(self, progress: DigitProgress) -> None:
-        """Tell of the batch that was learnt from, and read some of the images held out."""
         training = self.training
         self._batches.append((progress.loss, progress.accuracy))
         if training.seconds >= self._point_at:

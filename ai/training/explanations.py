@@ -7,8 +7,7 @@ it a thousandth of its time. A lesson is made from these only when one is asked 
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -25,8 +24,7 @@ _MOST_BYTES: Final = 32 << 20  # of them all, at the end of a long run with a la
 _FIRST_EVERY: Final = 16  # decisions of each lander between two of the first that are kept
 
 
-@dataclass(frozen=True, eq=False)
-class _Decided:
+class _Decided(NamedTuple):
     """One decision of all landers: decisions of the run and observations (n, features) before it, and actions (n,)."""
 
     decisions: int
@@ -35,8 +33,7 @@ class _Decided:
     result: StepResult
 
 
-@dataclass(frozen=True, eq=False)
-class _Moment:
+class _Moment(NamedTuple):
     """Moment of a run that can be explained: the last decisions, oldest first, and the step that follows."""
 
     decided: tuple[_Decided, ...]
@@ -61,7 +58,7 @@ class Explanations:
     def keep(self) -> None:
         """Keep the present moment, if one is due."""
         agent = self._training.agent
-        if agent.decisions < self._keep_at or not self._learns:
+        if agent.decisions < self._keep_at or not agent.ready:
             return
         self._moments.append(self._now())
         most = max(4, min(_MOST_KEPT, _MOST_BYTES // _size(self._moments[-1])))
@@ -78,17 +75,13 @@ class Explanations:
         """
         if not 0 <= slot < self._training.env.num_envs:
             raise ValueError(f"there is no lander {slot}: {self._training.env.num_envs} fly")
-        if not self._learns or not self._decided:
+        if not self._training.agent.ready or not self._decided:
             raise ValueError("the network has not begun to learn: its replay buffer holds too few transitions")
         kept = self._moments if decisions is not None else []
         moment = min(kept, key=lambda each: abs(each.before.decisions - (decisions or 0)), default=None)
         moment = moment or self._now()
         cell, flown = _memory(moment, slot)
         return explain(moment.before, cell, self._training.agent, flown)
-
-    @property
-    def _learns(self) -> bool:
-        return self._training.agent.ready
 
     def _now(self) -> _Moment:
         agent = self._training.agent
@@ -100,10 +93,9 @@ class Explanations:
 def _memory(moment: _Moment, slot: int) -> tuple[Transition, Flown]:
     """Return a lander's latest memory that is complete, or of a flight's end the one that sums up most."""
     config, decided = moment.before.config, list(moment.decided)
-    last = next(
-        (place for place in reversed(range(len(decided))) if decided[place].result.ended[slot]), len(decided) - 1
-    )
-    first = 1 + max((place for place in range(last) if decided[place].result.ended[slot]), default=-1)
+    ends = [place for place, each in enumerate(decided) if each.result.ended[slot]]
+    last = ends[-1] if ends else len(decided) - 1
+    first = 1 + max((place for place in ends if place < last), default=-1)
     decided = decided[first : last + 1]
     mine, n_step = slice(slot, slot + 1), NStep(len(decided), config.discount)
     for each in decided:

@@ -41,12 +41,10 @@ class GymScore(Score):
     mean_length: float  # decisions
 
     def better_than(self, other: GymScore | None) -> bool:
-        """Whether the mean return is higher."""
         return other is None or self.mean_return > other.mean_return
 
     @property
     def figure(self) -> str:
-        """Mean return, as text."""
         return f"{self.mean_return:.1f}"
 
     def __str__(self) -> str:
@@ -84,7 +82,6 @@ class GymEnv:
         self._actions: list[list[int]] = [[] for _ in range(num_envs)]
 
     def reset(self, mask: Bools | None = None) -> Floats:
-        """Begin a new episode in the slots of `mask`, or in all; return every slot's observation."""
         for slot in range(self.num_envs) if mask is None else np.flatnonzero(mask).tolist():
             # Seeded once; from then on each environment goes on with its own stream.
             seed, self._seeds[slot] = self._seeds[slot], None
@@ -135,7 +132,6 @@ class GymEnv:
         return same
 
     def step(self, actions: Ints) -> StepResult:
-        """Take one action in every slot that has not ended."""
         reward = np.zeros(self.num_envs, dtype=np.float32)
         for slot in np.flatnonzero(self.outcome == GOING_ON).tolist():
             reward[slot] = self._step_one(slot, int(actions[slot]))
@@ -201,16 +197,13 @@ class GymTask(Task[GymScore]):
         return env
 
     def make_env(self, rng: np.random.Generator) -> GymEnv:
-        """Make the environments to train with."""
         make = partial(self._make, PATIENCE.get(self.config.env))
         return GymEnv(make, self.config.num_envs, rng, self.threshold, self.config.frame_skip)
 
     def env_state(self, env: GymEnv) -> State:
-        """Return all that the environments go on from."""
         return env.state()
 
     def restore_env(self, env: GymEnv, state: State) -> str:
-        """Let new environments go on from what `env_state` gave, as far as they can be restored."""
         if env.restore(state):
             return ""
         return f"{self.config.env} cannot be brought back to a moment, so its episodes begin anew"

@@ -83,30 +83,25 @@ class LanderSession(Session[Training]):
         return self.training.agent.paused
 
     def state(self) -> State:
-        """Return what this goes on from, besides the run."""
         return {
             "point_at": self._point_at, "checkpoint_at": self._checkpoint_at, "began_learning": self._began_learning,
             "learned_from": sorted(self._learned_from),
         }  # fmt: skip
 
     def load_state(self, state: State) -> None:
-        """Go on from what `state` gave; raises KeyError, TypeError or ValueError for anything else."""
         self._point_at, self._checkpoint_at = count_of(state["point_at"]), count_of(state["checkpoint_at"])
         self._began_learning = count_of(state["began_learning"])
         self._learned_from = set(state["learned_from"])
 
     def show(self) -> None:
-        """Tell how the landers and the network stand."""
         self.messages += (self._swarm_state, *self._state_messages())
         if not self.history.checkpoints:
             self.record(self._checkpoint(0.0))
 
     def turned(self) -> None:
-        """Tell the settings in force."""
         self.messages.append(self._state_messages()[1])
 
     def tell(self, progress: Progress) -> None:
-        """Tell of the decision that all landers took."""
         training, now = self.training, self.training.clock()
         self._tell_validation(progress.evaluation)
         self.messages.append(self._swarm_state)
@@ -129,7 +124,6 @@ class LanderSession(Session[Training]):
             self.record(Validation(evaluated, score.success, score.mean_return, best, training.seconds))
 
     def finish_measuring(self) -> None:
-        """Fly what is left of a validation."""
         self._tell_validation(self.training.validate())
 
     def go_back(self) -> None:

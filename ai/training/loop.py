@@ -56,6 +56,12 @@ class Progress:
     best: Score | None = None
     env: str = LANDER
 
+    def __str__(self) -> str:
+        best = f" best {self.best.figure}" if self.best else ""
+        lander = self.env in (LANDER, ANYWHERE)
+        recent = f"landed {self.success_rate:.0%}" if lander else f"return {self.mean_return:.1f}, mean"
+        return f"{recent} of the last 100, ε {self.epsilon:.2f}, {self.decisions:,} decisions{best}"
+
 
 class Training(Run):
     """Training run of the lander, or of another task: all state that changes as it goes on.
@@ -111,7 +117,6 @@ class Training(Run):
 
     @property
     def moment(self) -> int:
-        """Decisions so far, of single landers."""
         return self.agent.decisions
 
     @property
@@ -221,7 +226,6 @@ class Training(Run):
         return agent
 
     def restore_best(self) -> None:
-        """Restore the best networks so far."""
         self.diverged = True
         if self.best_values is not None:
             self.agent.restore(self.best_values, deepcopy(self.best_normalizer))
@@ -257,7 +261,6 @@ class Training(Run):
 
     @classmethod
     def begun(cls, folder: Path, *, env: str | None = None, **_: Any) -> Self:
-        """Return the run that a folder describes, without its state; raises ModelFormatError, as `load_agent`."""
         best = load_agent(folder, env=env)[0]
         try:
             last, config = load_agent(inside(folder, LAST), env=env)
@@ -290,12 +293,10 @@ class Training(Run):
 
     @property
     def buffers(self) -> dict[str, ReplayBuffer]:
-        """Replay buffers that belong to its state."""
         agent = self.agent
         return {name: getattr(agent, name) for name in ("replay", "successes") if name in vars(agent)}
 
     def state(self) -> State:
-        """Return copies of what it goes on from, besides its replay buffers."""
         best, validated = None, self._validated
         if self.best is not None and self.best_values is not None:
             best = {"score": self.best.to_json(), **_network(self.best_values, self.best_normalizer)}
@@ -309,7 +310,6 @@ class Training(Run):
         }  # fmt: skip
 
     def load_state(self, state: State | None, folder: Path) -> bool:
-        """Go on from a state that lies beside `folder`; a state of other networks is that of another run."""
         agent, env = self.agent, self.env
         if state is None or not np.array_equal(state["agent"]["online"], agent.online.values):
             self.lost = "its state is not there, so it goes on with an empty memory"

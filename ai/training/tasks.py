@@ -233,13 +233,11 @@ class LanderTask(Task[Evaluation]):
         self.action_chances = _action_chances(config)
 
     def make_env(self, rng: np.random.Generator) -> LanderEnv:
-        """Make the landers to train with."""
         config = self.config
         spawn = CURRICULA.get(config.spawn, config.spawn)
         return self.landers(config.num_envs, rng, spawn, config.frame_skip, weights=config.reward_weights)
 
     def apply_live(self, config: Config, env: LanderEnv) -> None:
-        """Take over the live knobs of another configuration, here and in the landers."""
         self.config, self.action_chances = config, _action_chances(config)
         env.weights = config.reward_weights
 
@@ -248,7 +246,6 @@ class LanderTask(Task[Evaluation]):
         env.limits = LIMITS.stricter(touchdown_limits(self.config, decisions))
 
     def env_state(self, env: LanderEnv) -> State:
-        """Return all that the landers go on from."""
         snapshot = env.snapshot()
         return {
             "flights": {name: snapshot[name] for name in _CHANGED},
@@ -256,7 +253,6 @@ class LanderTask(Task[Evaluation]):
         }
 
     def restore_env(self, env: LanderEnv, state: State) -> str:
-        """Let new landers go on from what `env_state` gave; they can be restored whole."""
         new = env.snapshot()
         told, flying = state["flights"], {name: new[name] for name in _CHANGED if name != "contacts"}
         flights = {name: rebuilt(template, told[name]) for name, template in flying.items()}
@@ -306,7 +302,6 @@ class AnywhereTask(LanderTask):
         return super().restore_env(env, state)
 
     def trial(self, pilot: Pilot, episodes: int, seed: int) -> Trial[Evaluation]:
-        """Fly so many flights at once from random spawns, one decision at a time."""
         env = AnywhereEnv(episodes, seed, "random", self.config.frame_skip, sites=tuple(SITES))
         env.reset()
         return Evaluation.of((yield from flown(pilot, env)))

@@ -58,7 +58,7 @@ class Settings:
     untimed: bool = False  # whether a flight may take as long as it likes
     keys: dict[str, Any] = field(default_factory=dict)  # changed keys, as game.input.bindings writes them
     buttons: dict[str, Any] = field(default_factory=dict)  # the same for gamepads
-    opened: str = ""  # names of what stays open in Train, with spaces between: see game.scenes.train.base
+    opened: str = ""  # names of parts of screens that stay open, with spaces between
     tutored: bool = False  # whether the tutorial flight was flown or skipped, so it is not offered again
     first_flown: bool = False  # whether the tutorial flight was flown to its landing
     rung: Annotated[int, Within(-1, TOP_RUNG)] = -1  # place on the ladder of starts, from 0; -1 before it is known
@@ -66,6 +66,14 @@ class Settings:
     chapter: str = ""  # key of the chapter last opened
     unknown: dict[str, Any] = field(default_factory=dict)  # values written by a newer version; kept unchanged
     unread: bool = field(default=False, compare=False)  # whether the file exists but could not be read; not saved
+
+    def is_open(self, part: str) -> bool:
+        """Whether a part of a screen stays open."""
+        return part in self.opened.split()
+
+    def open(self, part: str) -> None:
+        """Open a part of a screen from now on, or close it."""
+        self.opened = " ".join(sorted({part}.symmetric_difference(self.opened.split())))
 
     def to_dict(self) -> dict[str, Any]:
         """Return the values as the file holds them."""

@@ -54,7 +54,6 @@ class ConfusionMatrix(Widget):
             self.cell = (row, column)
 
     def take(self, event: pygame.event.Event) -> bool:
-        """Go to the next cell; beyond the last one, the focus goes on."""
         command = translate(event)
         if command not in _ARROWS:
             return False
@@ -65,7 +64,6 @@ class ConfusionMatrix(Widget):
         return True
 
     def process_event(self, event: pygame.event.Event) -> bool:
-        """Choose the cell under the mouse."""
         if event.type == pygame.MOUSEMOTION and self.hover_point(*event.pos):
             across, down = event.pos[0] - self.box.left, event.pos[1] - self.box.top
             self._choose(*(min(int(way / self.pitch), _DIGITS - 1) for way in (down, across)))
@@ -75,7 +73,6 @@ class ConfusionMatrix(Widget):
         self.cell, self._chosen = (row, column), True
 
     def paint(self, canvas: Canvas) -> None:
-        """Draw the cells, cached until they change, and the edge of the chosen one."""
         super().paint(canvas)
         if self._sheet is None or self._of != (self.confusion, canvas.scale):
             self._of = (self.confusion, canvas.scale)

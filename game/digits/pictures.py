@@ -51,12 +51,6 @@ def mosaic(
     return surface
 
 
-def height_of(count: int, columns: int, shape: tuple[int, int], width: float, gap: float) -> float:
-    """Return the height of a mosaic with square cells, in the unit of `width`."""
-    tile = (width + gap) / columns - gap
-    return -(-count // columns) * (tile * shape[0] / shape[1] + gap) - gap
-
-
 def tiling(
     count: int, shape: tuple[int, ...], room: tuple[float, float], gap: float
 ) -> tuple[int, tuple[float, float]]:

@@ -14,9 +14,10 @@ import pygame
 from game.core import texts
 from game.core.catalogue import ENGLISH
 from game.drawing import shapes, typeface
-from game.drawing.tokens import FAINT, INK, NIGHT0, PALETTE, PANEL, PANEL_ALPHA, TEXT, VIEW_SIZE, Colour, Palette
+from game.drawing.tokens import FAINT, INK, LABEL, NIGHT0, PALETTE, PANEL, PANEL_ALPHA, TEXT, VIEW_SIZE, Colour, Palette
 from game.drawing.typeface import Weight
 
+_LEAST: Final = 0.7  # share of a size
 _MOST_WORDS: Final = 256  # text boxes noted in a frame, at most
 _MOST_SEEN: Final = 16  # pads and craft likewise
 _FAINT_WORDS: Final = 0.4  # alpha below which text is not noted
@@ -227,6 +228,16 @@ class Canvas:
         finally:
             self._covered = covered
 
+    @contextmanager
+    def clipped(self, box: pygame.typing.RectLike) -> Iterator[None]:
+        """Draw within a box alone, in points; a context manager."""
+        before = self.surface.get_clip()
+        self.surface.set_clip(self.rect(*pygame.FRect(box)).clip(before))
+        try:
+            yield
+        finally:
+            self.surface.set_clip(before)
+
     def turn_page(self) -> None:
         """Begin a new frame: move the noted areas to `words`."""
         around = 2 * self.px(_AROUND)
@@ -270,11 +281,11 @@ class Canvas:
         of different sizes stand on one line when given the same y. `tabular` gives every digit the same
         width and takes digits from a cache one by one: use it for every figure that changes. Text that is
         made larger for those who want it grows no further than `room`, in points; a translation that is longer than
-        the English shrinks to it, to seven tenths of its size at least.
+        the English shrinks to it, but never below the smallest text of the game.
         """
         scale, (left, top) = self.scale, self.origin
         parts, width, above, below = typeface.line(
-            string, self.grown(size), weight, colour, tabular, scale, room, least() * size
+            string, self.grown(size), weight, colour, tabular, scale, room, self.least(size)
         )
         x, y = left + position[0] * scale - _SHIFT[align] * width, top + round(position[1] * scale)
         if alpha >= 1:
@@ -292,6 +303,10 @@ class Canvas:
         """Return the width in points of `text` with the same arguments."""
         pixels = typeface.fitting(string, self.grown(size), weight, tabular, self.scale, math.inf, size)
         return typeface.span(string, pixels, weight, tabular) / self.scale
+
+    def least(self, size: float) -> float:
+        """Return the least size of a text with too little room, in points: English always fits, others are longer."""
+        return size if texts.LANGUAGE == ENGLISH else max(_LEAST * size, min(size, LABEL / max(self.scale, 1.0)))
 
     def grown(self, size: float) -> float:
         """Return the size at which a text of this size is written here, both in points."""
@@ -441,14 +456,6 @@ class Canvas:
         surface = shapes.glow(pixels if pixels < 24 else 4 * round(pixels / 4), colour, level)
         half, (left, top), scale = surface.width // 2, self.origin, self.scale
         return surface, (round(centre[0] * scale) + left - half, round(centre[1] * scale) + top - half)
-
-
-def least() -> float:
-    """Return the least size of a text that has too little room, as a share of the size it is laid out in.
-
-    English always fits; other languages take a third more letters.
-    """
-    return 1.0 if texts.LANGUAGE == ENGLISH else 0.7
 
 
 def moved(view: pygame.FRect, across: int, down: int) -> Point:

@@ -15,7 +15,7 @@ import pygame
 from game.drawing import typeface
 from game.drawing.canvas import Align, Canvas
 from game.drawing.prose import lines
-from game.drawing.tokens import CAPTION, FAINT, INK, LINE, MUTE, NET, SMALL, STEP, TEXT, Colour
+from game.drawing.tokens import CAPTION, FAINT, INK, LINE, MUTE, NET, PALETTE, SMALL, STEP, TEXT, Colour, Palette
 from game.drawing.typeface import Weight
 
 # Height of a line, and of its baseline below its top, in sizes of the type.
@@ -54,6 +54,11 @@ class Cursor:
         """Right end of the column."""
         return self.left + self.width
 
+    @property
+    def palette(self) -> Palette:
+        """The player's colours for within and beyond limits."""
+        return self.canvas.palette if self.canvas else PALETTE
+
     def in_style(self, size: float | None = None, colour: Colour | None = None, weight: Weight | None = None) -> Cursor:
         """Return a cursor at the same place that writes in another style."""
         return replace(self, size=size or self.size, colour=colour or self.colour, weight=weight or self.weight)
@@ -63,16 +68,18 @@ class Cursor:
         pixels = round((size or self.size) * self.scale, 2)
         return typeface.span(words, pixels, self.weight, tabular) / self.scale
 
-    def text(self, words: str, align: Align = "left", alpha: float = 1.0) -> pygame.FRect:
-        """Write words on as many lines as they need, and go on below; return the box of all of them."""
+    def text(self, words: str, align: Align = "left", alpha: float = 1.0, *, tabular: bool = False) -> pygame.FRect:
+        """Write words on as many lines as they need, and go on below; return the box of all of them.
+
+        `tabular` is for words with figures that change: see `Canvas.text`.
+        """
         top = self.y
         shift = {"left": 0.0, "centre": 0.5, "right": 1.0}[align]
         for line in lines(words, self.size, self.weight, self.width, self.scale):
             if self.canvas:
                 place = (self.left + shift * self.width, self.baseline)
-                self.canvas.text(
-                    line, place, size=self.size, colour=self.colour, weight=self.weight, align=align, alpha=alpha
-                )
+                self.canvas.text(line, place, size=self.size, colour=self.colour, weight=self.weight, align=align,
+                                 alpha=alpha, tabular=tabular)  # fmt: skip
             self.y += LEADING * self.size
         return pygame.FRect(self.left, top, self.width, self.y - top)
 
@@ -81,17 +88,32 @@ class Cursor:
         """The y of the baseline of a line that begins here."""
         return self.y + BASELINE * self.size
 
+    def styled(
+        self,
+        words: str,
+        size: float | None = None,
+        colour: Colour | None = None,
+        weight: Weight | None = None,
+        *,
+        align: Align = "left",
+        tabular: bool = False,
+        indent: float = 0.0,
+    ) -> pygame.FRect:
+        """Write words in another style, as `text` does, in the column from `indent` on."""
+        other = self.in_style(size, colour, weight)
+        other.left, other.width = self.left + indent, self.width - indent
+        box = other.text(words, align, tabular=tabular)
+        self.y = other.y
+        return box
+
     def caption(self, words: str) -> None:
         """Write the words that stand over a group of rows."""
-        small = self.in_style(CAPTION, MUTE, "medium")
-        small.text(words)
-        self.y = small.y + STEP / 2
+        self.styled(words, CAPTION, MUTE, "medium")
+        self.gap(STEP / 2)
 
     def aside(self, words: str) -> None:
         """Write small muted words that explain what stands above."""
-        small = self.in_style(SMALL, MUTE)
-        small.text(words)
-        self.y = small.y
+        self.styled(words, SMALL, MUTE)
 
     def pair(self, words: str, figure: str, colour: Colour | None = None) -> None:
         """Write words on the left, and a figure at the right end; below them, if there is no room beside them."""

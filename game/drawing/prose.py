@@ -19,11 +19,6 @@ def wrapped(canvas: Canvas, text: str, size: float, width: float) -> list[str]:
     return _broken(text, width, lambda line: canvas.text_width(line, size=size))
 
 
-def line_count(text: str, size: float, width: float) -> int:
-    """Return the number of lines of a wrapped text, for layout before there is a canvas."""
-    return len(_broken(text, width, lambda line: typeface.width(line, size, "regular")))
-
-
 def _broken(text: str, width: float, measure: Callable[[str], float]) -> list[str]:
     lines = [""]
     for word in text[:_LONGEST].split():

@@ -49,7 +49,6 @@ class Entry(Widget):
         self._pressed: int | None = None  # the caret's index where the mouse was pressed
 
     def kill(self) -> None:
-        """Remove the entry from its manager."""
         self.line.kill()  # type: ignore[no-untyped-call]
         super().kill()  # type: ignore[no-untyped-call]
 
@@ -70,7 +69,6 @@ class Entry(Widget):
             self.line.set(self.line.text)
 
     def press(self) -> Transition | None:
-        """Start typing, or accept the text."""
         if not self.typing:
             self.begin()
             return None
@@ -81,7 +79,6 @@ class Entry(Widget):
         return self._on_accept(self.line.text.strip())
 
     def take(self, event: pygame.event.Event) -> bool:
-        """Handle every event while typing, except those that leave the entry."""
         if not self.typing:
             return False
         if event.type == pygame.TEXTINPUT and self._fresh:
@@ -118,7 +115,6 @@ class Entry(Widget):
         self.outcome = self._on_cancel()
 
     def process_event(self, event: pygame.event.Event) -> bool:
-        """Start typing on a click; while typing, place the caret, select by dragging, and select a word by two."""
         if event.type == pygame.MOUSEMOTION and self.typing and self._pressed is not None:
             letter = self._letter(event.pos[0])
             self.line.selection_in_progress |= letter != self._pressed
@@ -158,7 +154,6 @@ class Entry(Widget):
         return first + min(range(len(lefts)), key=lambda number: abs(self.start[0] + lefts[number] - x))
 
     def ease(self, at_once: bool) -> None:
-        """Keep the caret in sight, and stop typing once the focus is elsewhere."""
         super().ease(at_once)
         self._fresh = False
         self._first = self._first_shown()
@@ -168,7 +163,6 @@ class Entry(Widget):
             self.line.rest()
 
     def paint(self, canvas: Canvas) -> None:
-        """Draw the label, the text and the line under it."""
         box = self.box
         canvas.text(self.label, (box.left, box.top - 6), size=LABEL, weight="medium", colour=MUTE)
         if self.typing and pygame.display.get_init():  # an input method shows its suggestions below

@@ -191,7 +191,12 @@ class Form:
     def _handle_mouse(self, event: pygame.event.Event) -> Transition | None:
         moves = event.type == pygame.MOUSEMOTION and self.typing  # a nudge of the mouse must not end typing
         for index, widget in enumerate(self.widgets):
-            if widget.hover_point(*event.pos) and not moves and not any(other.held for other in self.widgets):
+            if (
+                widget.follows_mouse
+                and widget.hover_point(*event.pos)
+                and not moves
+                and not any(other.held for other in self.widgets)
+            ):
                 self._index = index
         self._show_focus()
         self._pressed = event.type == pygame.MOUSEBUTTONUP and any(

@@ -44,25 +44,20 @@ class FormScene(Scene):
         return self.form.typing
 
     def actions(self) -> Table:
-        """Return what each key does at this moment; an action that is left out does nothing."""
         return [self.form.confirms(texts.HINT_CHOOSE), self.form.goes_back(texts.HINT_BACK)]
 
     @property
     def hints(self) -> list[Hint]:
-        """The hints at this moment: of the actions, or of a widget that takes every key."""
         return self.form.hints or hints_of(self.actions(), self.context.controls)
 
     def hint_rows(self, canvas: Canvas) -> Sequence[HintRow]:  # noqa: ARG002
-        """Return the rows of hints."""
         return [HintRow(self.hints, FOOT)]
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Pass the event to the widget in focus, the actions and the form."""
         moves = tab(event) != 0 and not self.takes_tab
         return self.form.handle_event(event, () if moves else self.actions())
 
     def update(self) -> Transition | None:
-        """Animate the widgets."""
         return self.form.update()
 
     def draw_hints(self, canvas: Canvas) -> None:

@@ -10,7 +10,7 @@ from typing import Final
 import pygame
 
 from game.core.scene import Transition
-from game.drawing.canvas import Canvas, least
+from game.drawing.canvas import Canvas
 from game.drawing.tokens import FAINT, INK, LINE, MUTE, NET, SMALL, TEXT
 from game.input.controls import Command, translate
 from game.ui.widget import PointsManager, Widget, mix
@@ -81,11 +81,9 @@ class Listing(Widget):
         self._show_chosen()
 
     def press(self) -> Transition | None:
-        """Open the chosen row."""
         return self._on_press(self.index) if self.rows else None
 
     def take(self, event: pygame.event.Event) -> bool:
-        """Move the choice; false at either end, so that the focus moves on."""
         steps = {Command.UP: -1, Command.DOWN: 1, Command.PREVIOUS: -self.room, Command.NEXT: self.room}
         if event.type == pygame.KEYDOWN and event.key in (pygame.K_HOME, pygame.K_END):
             self.choose(0 if event.key == pygame.K_HOME else len(self.rows) - 1)
@@ -98,12 +96,10 @@ class Listing(Widget):
         return self.index != before or abs(step) > 1
 
     def scroll(self, rows: int) -> bool:
-        """Scroll by rows without changing the choice."""
         self._look(self.first - rows)
         return len(self.rows) > self.room
 
     def process_event(self, event: pygame.event.Event) -> bool:
-        """Choose the row that is clicked, or open it if it was chosen already."""
         row = self._row_at(event.pos) if event.type in (pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP) else None
         if row is None or event.button != 1:
             return False
@@ -127,7 +123,6 @@ class Listing(Widget):
         self.first = min(max(first, 0), max(0, len(self.rows) - self.room))
 
     def paint(self, canvas: Canvas) -> None:
-        """Draw the visible rows, and the scroll bar."""
         super().paint(canvas)
         box = self.box
         if not self.rows:
@@ -171,7 +166,7 @@ class Listing(Widget):
 
 def shortened(canvas: Canvas, text: str, size: float, room: float) -> str:
     """Return a text, cut with an ellipsis if necessary, that `Canvas.text` can write within the room in points."""
-    room /= least()
+    room *= size / canvas.least(size)
     if canvas.text_width(text, size=size) <= room:
         return text
     lengths = range(len(text))

@@ -8,7 +8,6 @@ the room that there is.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
 from types import MappingProxyType
@@ -23,8 +22,6 @@ from game.ui.rows import ButtonRow, ChoiceRow, EntryRow, ListRow, RowWidget, Sli
 from game.ui.widget import Widget
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from game.core.scene import Transition
     from game.drawing.canvas import Canvas, Now
     from game.ui.form import Form, Part
@@ -32,7 +29,7 @@ if TYPE_CHECKING:
     from game.ui.widget import OnPress
 
 W = TypeVar("W", bound=RowWidget)
-Write = Callable[[Cursor], None]
+Write = Callable[[Cursor], object]
 Words = str | Callable[[], str]  # a function for words that change
 _ABOVE: Final = 24.0  # points kept above and below the widget in focus while the panel scrolls
 _WORDS: Final = 28.0  # points between two words side by side
@@ -61,6 +58,10 @@ class Column:
         self.rows.append(Row(write, what, now))
         return self.rows[-1]
 
+    def explain(self, what: str) -> None:
+        """Say what the last row is, for whoever asks."""
+        self.rows[-1].what = what
+
     def clear(self) -> None:
         """Take all rows away with their widgets, which are the last of the form, to describe others."""
         self._form.replace(self._widgets, ())
@@ -73,9 +74,17 @@ class Column:
         """Add a title."""
         self.text(words, size=size, weight=weight)
 
-    def text(self, words: Words, *, size: float = TEXT, colour: Colour = INK, weight: Weight = "regular") -> None:
-        """Add a paragraph."""
-        self.add(lambda cursor: _write(cursor, cursor.in_style(size, colour, weight), words))
+    def text(
+        self,
+        words: Words,
+        *,
+        size: float = TEXT,
+        colour: Colour = INK,
+        weight: Weight = "regular",
+        tabular: bool = False,
+    ) -> None:
+        """Add a paragraph; `tabular` if its figures change."""
+        self.add(lambda cursor: cursor.styled(_said(words), size, colour, weight, tabular=tabular))
 
     def aside(self, words: Words) -> None:
         """Add small muted words that explain what stands above."""
@@ -93,11 +102,11 @@ class Column:
         """Add a bar."""
         self.add(lambda cursor: cursor.bar(share(), colour))
 
-    def picture(self, height: float, draw: Callable[[Canvas, pygame.FRect], None]) -> None:
-        """Add a drawing of its own, over the whole column."""
+    def picture(self, height: float | Callable[[float], float], draw: Callable[[Canvas, pygame.FRect], None]) -> None:
+        """Add a drawing of its own, over the whole column; its height may follow from the width."""
 
         def write(cursor: Cursor) -> None:
-            box = cursor.take(height)
+            box = cursor.take(height(cursor.width) if callable(height) else height)
             if cursor.canvas:
                 draw(cursor.canvas, box)
 
@@ -226,7 +235,6 @@ class Panel(Column):
         return self.height > self.box.height + 1
 
     def lay_out(self, box: pygame.FRect, scale: float) -> None:
-        """Lay the rows out in their room, at so many pixels a point, and scroll to the widget that got the focus."""
         same, self.box = box == self.box, box
         self._measure(scale)
         focused = self._form.focused
@@ -258,7 +266,6 @@ class Panel(Column):
         self.scroll(0.0)
 
     def scroll(self, points: float) -> bool:
-        """Scroll down by so many points, as far as there is more; return whether it moved."""
         before = self.scrolled
         self.scrolled = min(max(before + points, 0.0), max(0.0, self.height - self.box.height))
         return self.scrolled != before
@@ -268,28 +275,17 @@ class Panel(Column):
         return self.scroll(-_WHEEL * notches)
 
     def draw(self, canvas: Canvas) -> None:
-        """Draw the rows that are seen, and how far the panel is scrolled."""
         if not self.overflows:
             self.write(replace(self._cursor(canvas.scale, canvas), seen=None))
             return
-        with _clipped(canvas, self.box):
+        # Rings around widgets at its sides are seen.
+        with canvas.clipped((0, self.box.top, canvas.view.width, self.box.height)):
             self.write(self._cursor(canvas.scale, canvas))
         share = self.box.height / self.height
         top = self.box.top + self.box.height * self.scrolled / self.height
         right = self.box.right + 12
         canvas.pill((right, self.box.top, 3, self.box.height), FAINT, 0.4)
         canvas.pill((right, top, 3, self.box.height * share), MUTE)
-
-
-@contextmanager
-def _clipped(canvas: Canvas, box: pygame.FRect) -> Iterator[None]:
-    """Draw within a box alone; rings around widgets at its sides are seen."""
-    before = canvas.surface.get_clip()
-    canvas.surface.set_clip(canvas.rect(0, box.top, canvas.view.width, box.height).clip(before))
-    try:
-        yield
-    finally:
-        canvas.surface.set_clip(before)
 
 
 def _write_words(buttons: Sequence[ButtonRow], cursor: Cursor) -> None:
@@ -306,8 +302,3 @@ def _write_words(buttons: Sequence[ButtonRow], cursor: Cursor) -> None:
 
 def _said(words: Words) -> str:
     return words if isinstance(words, str) else words()
-
-
-def _write(cursor: Cursor, styled: Cursor, words: Words) -> None:
-    styled.text(_said(words))
-    cursor.y = styled.y

@@ -78,7 +78,6 @@ class PanelScene(FormScene, ABC):
         return pygame.FRect(left, view.top + end, min(width, self.most), foot - view.top - 1.5 * end)
 
     def hint_rows(self, canvas: Canvas) -> Sequence[HintRow]:
-        """Return the hints at the foot, on as many lines as they need."""
         view, (left, width) = canvas.view, self._between(canvas)
         return hint_lines(self.hints, canvas, (left, view.bottom - min(40.0, _ENDS * view.height)), width)
 
@@ -89,32 +88,30 @@ class PanelScene(FormScene, ABC):
         return view.left + side, view.width - 2 * side
 
     def lay_out(self) -> None:
-        """Lay the rows out for the window as it is."""
         canvas = self.context.reading()
         self.panel.lay_out(self.room(canvas), canvas.scale)
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Scroll by the wheel and by pages; everything else is the form's."""
+        form = self.form
         outcome = super().handle_event(event)
-        if event.type == pygame.MOUSEWHEEL and not self.form.used:
+        if form.used or self.form is not form:  # an action has described other rows
+            return outcome
+        if event.type == pygame.MOUSEWHEEL:
             self.form.used = self.panel.turn_wheel(event.y)
-        elif not self.form.used and (command := translate(event)) in (Command.NEXT, Command.PREVIOUS):
+        elif (command := translate(event)) in (Command.NEXT, Command.PREVIOUS):
             page = self.panel.box.height * 0.8
             self.form.used = self.panel.scroll(page if command is Command.NEXT else -page)
         return outcome
 
     def update(self) -> Transition | None:
-        """Animate the widgets, and lay the rows out."""
         outcome = self.form.update()
         self.lay_out()
         return outcome
 
     def draw_behind(self, canvas: Canvas, alpha: float) -> None:  # noqa: ARG002
-        """Draw what is behind the panel."""
         self._sky.draw(canvas)
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the panel and the hints."""
         self.draw_behind(canvas, alpha)
         self.panel.draw(canvas)
         self.draw_hints(canvas)

@@ -12,6 +12,7 @@ from game.core.clock import TimeScale
 from game.drawing.tokens import SMALL
 from game.input.controls import Command
 from game.ui.actions import Action
+from game.ui.panel import Column
 from game.ui.widget import PointsManager
 from game.ui.widgets import Choice
 
@@ -35,6 +36,7 @@ class Playback:
     def __init__(self, clock: TimeScale, speeds: Sequence[float], advance: Callable[[], None]) -> None:
         self._clock, self._speeds, self._advance = clock, speeds, advance
         self.stopped = False
+        self._row: Choice | None = None
 
     @property
     def words(self) -> list[str]:
@@ -44,10 +46,15 @@ class Playback:
     def row(self, manager: PointsManager, box: pygame.typing.RectLike) -> Choice:
         """Return the row of speeds, a widget to be added to a form."""
         now = self._speeds.index(self._clock.rate)
-        self._row = Choice(
+        self._row = row = Choice(
             manager, box, texts.WATCH_SPEED, self.words, now, self._choose, label_width=LABEL_WIDTH, size=SMALL
         )
-        return self._row
+        return row
+
+    def describe(self, column: Column) -> None:
+        """Add the row of speeds."""
+        now = self._speeds.index(self._clock.rate)
+        self._row = column.choice(texts.WATCH_SPEED, self.words, now, self._choose, SMALL)
 
     def actions(
         self,
@@ -70,9 +77,16 @@ class Playback:
         return [
             Action(pygame.K_SPACE, stop or self.toggle, go, gamepad=gamepad),
             Action(Command.STEP, self.step, step_hint),
-            Action(Command.SLOWER, lambda: self._shift(-1)),
-            Action(Command.FASTER, lambda: self._shift(1)),
+            Action(Command.SLOWER, lambda: self.shift(-1)),
+            Action(Command.FASTER, lambda: self.shift(1)),
         ]
+
+    def shift(self, direction: int) -> None:
+        """Choose the next lower speed, or the next higher."""
+        at = self._speeds.index(self._clock.rate) + direction
+        self._choose(min(max(at, 0), len(self._speeds) - 1))
+        if self._row:
+            self._row.index = self._speeds.index(self._clock.rate)
 
     def toggle(self) -> None:
         """Stop, or go on."""
@@ -90,9 +104,6 @@ class Playback:
     def between(self, alpha: float) -> float:
         """Interpolation between the last two steps, 0 to 1, once the fraction `alpha` of an update has passed."""
         return 1.0 if self.stopped else self._clock.between(alpha)
-
-    def _shift(self, direction: int) -> None:
-        self._row.shift(direction)
 
     def _choose(self, index: int) -> None:
         self._clock.begin()

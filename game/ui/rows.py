@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
@@ -17,8 +18,8 @@ from game.ui.entry import Entry
 from game.ui.listing import Listing, Row
 from game.ui.series import run_style
 from game.ui.tooltip import draw_swatch
-from game.ui.widget import OnPress, PointsManager, Widget, mix
-from game.ui.widgets import Choice, Slider, TextButton, Toggle, draw_switch
+from game.ui.widget import EASE, OnPress, PointsManager, Widget, mix
+from game.ui.widgets import Choice, TextButton, draw_switch
 
 if TYPE_CHECKING:
     from game.drawing.canvas import Canvas
@@ -27,7 +28,7 @@ _NOWHERE: Final = (0, 0, 1, 1)  # until it is laid out
 _PAD: Final = 8.0  # points above and below what a row says
 _SWITCH: Final = (32.0, 16.0)
 _LABELS: Final = 150.0  # points for the label before a slider or a choice
-_FIGURES: Final = 56.0
+_FIGURES: Final = 66.0
 _TRACK: Final = 120.0  # the shortest track beside its label
 _WORDS: Final = 24.0  # between two options
 _ROWS: Final = 8  # of a list, at most
@@ -48,7 +49,6 @@ class RowWidget(Widget):
     seen: pygame.FRect | None = None
 
     def lay(self, cursor: Cursor) -> None:
-        """Lay it out, or paint it: the first time without a canvas."""
         top = cursor.y
         if cursor.canvas and self.ringed and self.warmth > 0.02:
             ring = pygame.Rect(self.box.topleft, (round(self.reach) or self.box.width, self.box.height))
@@ -64,7 +64,6 @@ class RowWidget(Widget):
             self.rect = self.relative_rect = box
 
     def write(self, cursor: Cursor) -> None:
-        """Write what it says, and go on below."""
         raise NotImplementedError
 
     def hover_point(self, hover_x: float, hover_y: float) -> bool:
@@ -99,7 +98,6 @@ class ButtonRow(RowWidget, TextButton):
         return cursor.in_style(self._size, weight=self._weight).measured(self.label) + 1
 
     def write(self, cursor: Cursor) -> None:
-        """Write the words, the line under them, the figure and the explanation."""
         label, top = cursor.in_style(self._size, self.tint(), self._weight), cursor.y
         wide, figure = min(label.measured(self.label), cursor.width), self._figure()
         label.text(self.label)
@@ -121,7 +119,6 @@ class ButtonRow(RowWidget, TextButton):
             cursor.aside(aside)
 
     def lay(self, cursor: Cursor) -> None:
-        """Lay it out without a ring, as its line shows the focus, and no wider than what it says."""
         ringed, self.ringed = self.ringed, False
         super().lay(cursor)
         self.ringed = ringed
@@ -145,7 +142,6 @@ class RunRow(ButtonRow):
         self.pad = 3.0
 
     def write(self, cursor: Cursor) -> None:
-        """Draw the piece of the line, and write the name beside it."""
         if cursor.canvas:
             middle = cursor.y + LEADING * self._size / 2
             draw_swatch(cursor.canvas, (cursor.left, middle), *run_style(self.style))
@@ -154,16 +150,33 @@ class RunRow(ButtonRow):
         cursor.y = name.y
 
 
-class ToggleRow(RowWidget, Toggle):
+class ToggleRow(RowWidget):
     """Switch at the right end, its label and an explanation on the left."""
 
     def __init__(
         self, manager: PointsManager, label: str, value: bool, change: Callable[[bool], None], aside: str = ""
     ) -> None:
-        super().__init__(manager, _NOWHERE, label, value, change, hint=aside)
+        super().__init__(manager, _NOWHERE, label)
+        self.value, self._on_change, self._aside = value, change, aside
+        self._slid = float(value)
+
+    def press(self) -> None:
+        self.value = not self.value
+        self._on_change(self.value)
+
+    def shift(self, direction: int) -> bool:
+        """Switch off with left, on with right; false if it is so already, so that the focus moves on."""
+        if self.value == (direction > 0):
+            return False
+        self.press()
+        return True
+
+    def ease(self, at_once: bool) -> None:
+        super().ease(at_once)
+        target = float(self.value)
+        self._slid = target if at_once else self._slid + (target - self._slid) * 1.4 * EASE
 
     def write(self, cursor: Cursor) -> None:
-        """Write the label, the explanation, and draw the switch."""
         words = replace(cursor, width=cursor.width - _SWITCH[0] - 2 * STEP)
         words.colour = mix(mix(MUTE, INK, 0.6), INK, self.warmth)
         if cursor.canvas:
@@ -172,14 +185,19 @@ class ToggleRow(RowWidget, Toggle):
             draw_switch(cursor.canvas, box, self._slid)
             cursor.canvas.cover(cursor.canvas.rect(*box))
         words.text(self.label)
-        if self._hint:
+        if self._aside:
             words.gap(2)
-            words.aside(self._hint)
+            words.aside(self._aside)
         cursor.y = words.y
 
 
-class SliderRow(RowWidget, Slider):
-    """Slider: its label on the left or above, the figure at the right end, an explanation below."""
+class SliderRow(RowWidget):
+    """Slider: its label on the left or above, the figure at the right end, an explanation below.
+
+    `ticks` are values that have a name; it stops at them as well as after each `step`.
+    """
+
+    by_arrows = True
 
     def __init__(
         self,
@@ -193,11 +211,49 @@ class SliderRow(RowWidget, Slider):
         aside: str = "",
         ticks: Mapping[float, str] = MappingProxyType({}),
     ) -> None:
-        super().__init__(manager, _NOWHERE, label, value, limits, change, step=step, figure=figure, ticks=ticks)
-        self._aside = aside
+        super().__init__(manager, _NOWHERE, label)
+        self.value, self.limits, self._on_change = value, limits, change
+        self._step, self._figure, self._aside, self._ticks = step, figure, aside, ticks
+        self._track = (0.0, 1.0)
+
+    @property
+    def fraction(self) -> float:
+        """Position of the handle on its track, 0 to 1."""
+        return self._fraction_of(self.value)
+
+    def _fraction_of(self, value: float) -> float:
+        low, high = self.limits
+        return min(max((value - low) / (high - low), 0.0), 1.0)
+
+    def set(self, value: float) -> None:
+        """Set the value, clipped to the limits and rounded to a step or a tick."""
+        low, high = self.limits
+        stops = low + round((value - low) / self._step) * self._step, *self._ticks
+        value = min(max(min(stops, key=lambda stop: abs(stop - value)), low), high)
+        if value != self.value:
+            self.value = value
+            self._on_change(value)
+
+    def shift(self, direction: int) -> bool:
+        """Move to the next step or tick."""
+        low, value = self.limits[0], self.value
+        steps = math.floor(direction * (value - low) / self._step + 1e-6) + 1
+        stops = low + direction * steps * self._step, *self._ticks
+        self.set(min((stop for stop in stops if direction * (stop - value) > 0), key=lambda stop: abs(stop - value)))
+        return True
+
+    def advance(self) -> None:
+        """Move the handle one step to the right, or from the right end to the left one."""
+        if self.value >= self.limits[1]:
+            self.set(self.limits[0])
+        else:
+            self.shift(1)
+
+    def drag(self, x: float) -> None:
+        (left, right), (low, high) = self._track, self.limits
+        self.set(low + min(max((x - left) / (right - left), 0.0), 1.0) * (high - low))
 
     def write(self, cursor: Cursor) -> None:
-        """Write the label and the figure, and draw the track and its handle."""
         words = replace(cursor, colour=mix(mix(MUTE, INK, 0.6), INK, self.warmth))
         left = cursor.left
         if cursor.width - _LABELS - _FIGURES >= _TRACK and cursor.measured(self.label) <= _LABELS - STEP:
@@ -207,14 +263,14 @@ class SliderRow(RowWidget, Slider):
             words.text(self.label)
         middle, right = words.y + LEADING * cursor.size / 2, cursor.right - _FIGURES
         if canvas := cursor.canvas:
-            canvas.bar((left, middle - 1, right - left, 2), self.fraction, self._colour)
+            canvas.bar((left, middle - 1, right - left, 2), self.fraction, NET)
             canvas.cover(canvas.rect(left, middle - 8, right - left, 16))
             for value in self._ticks:
                 x = left + self._fraction_of(value) * (right - left)
                 canvas.line((x, middle - 5), (x, middle + 5), MUTE)
             canvas.dot((left + self.fraction * (right - left), middle), 5 + self.warmth, INK)
             place = (cursor.right, words.baseline)
-            canvas.text(self._figure(self.value), place, colour=self._colour, align="right", tabular=True)
+            canvas.text(self._figure(self.value), place, colour=NET, align="right", tabular=True)
         else:
             self._track = (left, right)
         cursor.y = words.y + LEADING * cursor.size
@@ -251,7 +307,6 @@ class ChoiceRow(RowWidget, Choice):
         self._places: list[pygame.FRect] = []
 
     def press(self) -> Transition | None:
-        """Choose the word under the mouse; without a mouse, the next one."""
         if self.ringed:
             self.choose((self.index + 1) % len(self.options))
             return None
@@ -262,7 +317,6 @@ class ChoiceRow(RowWidget, Choice):
         return None
 
     def write(self, cursor: Cursor) -> None:
-        """Write the label and the words, with a line under the chosen one."""
         words = cursor.in_style(self._size, mix(mix(MUTE, INK, 0.6), INK, self.warmth))
         widths = [words.measured(option) for option in self.options]
         left = cursor.left
@@ -307,7 +361,6 @@ class EntryRow(RowWidget, Entry):
         super().__init__(manager, _NOWHERE, "", text, accept, on_cancel=cancel, limit=limit, fits=fits)
 
     def write(self, cursor: Cursor) -> None:
-        """Draw the line."""
         cursor.take(28.0)
         if cursor.canvas:
             Entry.paint(self, cursor.canvas)
@@ -334,14 +387,12 @@ class ListRow(RowWidget, Listing):
         self._around, self._most, self.first = around, _ROWS, first
 
     def lay(self, cursor: Cursor) -> None:
-        """Lay it out, with the chosen row in view once the height is another."""
         before = self.room
         super().lay(cursor)
         if self.room != before:
             self._show_chosen()
 
     def write(self, cursor: Cursor) -> None:
-        """Draw the rows."""
         if self._around and cursor.seen and cursor.canvas is None:
             self._most = max(4, int((cursor.seen.height - self._around) / self._pitch))
         cursor.take(self._pitch * min(max(len(self.rows), 1), self._most))

@@ -45,16 +45,13 @@ class Scrubber(Widget):
         return self._charts.box.collidepoint(hover_x, hover_y)
 
     def press(self) -> Transition | None:
-        """Call `on_press`, except for a mouse, which only moves the marker."""
         return self._on_press() if self.ringed else None
 
     def shift(self, direction: int) -> bool:
-        """Move the marker one step."""
         self._on_move(direction)
         return True
 
     def take(self, event: pygame.event.Event) -> bool:
-        """Zoom by the keys + and -; 0 shows the whole axis."""
         steps = _ZOOMS.get(event.key) if event.type == pygame.KEYDOWN else None
         if steps is None:
             return False
@@ -62,18 +59,15 @@ class Scrubber(Widget):
         return True
 
     def process_event(self, event: pygame.event.Event) -> bool:
-        """Follow the mouse: a drag stays with the chart that it has begun on."""
         if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
             self._charts.grip(event.pos)
         return super().process_event(event)
 
     def drag(self, x: float) -> None:
-        """Move the marker to the mouse."""
         place = self._charts.gripped(x)
         if place is not None:
             self._on_move(float(place))
 
     def paint(self, canvas: Canvas) -> None:
-        """Draw the focus ring only."""
         if self.ringed and self.warmth > 0.02:
             canvas.outline(self._charts.box.inflate(*_RING), 8, INK, 1, 0.4 * self.warmth)

@@ -111,7 +111,6 @@ class TextLine(UITextEntryLine):
         self.place(low + len(text))
 
     def process_event(self, event: pygame.event.Event) -> bool:
-        """Handle a letter, an editing key or a click at `edit_position`; false for any other event."""
         if event.type == pygame.TEXTINPUT:
             self.composition = ""
             self.insert(event.text)
@@ -130,7 +129,6 @@ class TextLine(UITextEntryLine):
         return known
 
     def update(self, time_delta: float) -> None:
-        """Advance by one step: repeat a held key."""
         super().update(time_delta)
         if self._held:
             self._held_steps += 1

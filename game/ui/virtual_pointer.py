@@ -1,9 +1,9 @@
-"""Virtual mouse pointer, moved by the arrow keys or a gamepad's stick within a part of the screen."""
+"""Virtual mouse pointer, moved by the arrow keys or a gamepad's stick, and pictures that are pointed at with it."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Final
+from typing import TYPE_CHECKING, Any, Final
 
 import pygame
 
@@ -13,7 +13,11 @@ from game.drawing.tokens import HUMAN, NIGHT0
 from game.input.controls import Command, Controls, presses_main, translate
 from game.ui.held_directions import DIRECTIONS, HeldDirections
 from game.ui.hints import Hint
+from game.ui.rows import RowWidget
 from game.ui.widget import PointsManager, Widget
+
+if TYPE_CHECKING:
+    from game.drawing.cursor import Cursor
 
 _EDGE: Final = 2.0
 _NOWHERE: Final = (-1.0, -1.0)
@@ -52,23 +56,21 @@ class VirtualPointer(Widget):
         self._pressed_by: int | None = None  # the key or gamepad button that holds the mouse button down
 
     def press(self) -> None:
-        """Activate the pointer, unless a real mouse is in use."""
         self.typing = self.ringed
         if self.typing:
+            if not self.box.collidepoint(self.place):
+                self.place.update(self.box.center)
             self._tell(pygame.MOUSEMOTION)
 
     def process_event(self, event: pygame.event.Event) -> bool:  # noqa: ARG002
-        """Ignore real mouse events, which are for the widgets below."""
         return False
 
     def hints(self, controls: Controls) -> list[Hint]:
-        """Return the hints for the active pointer."""
         hold = [Hint(controls.word(Command.CONFIRM), self._hold)] if self._hold else []
         leave = Hint(controls.word(Command.BACK), self._leave, self._lay_aside)
         return [Hint(controls.arrows, texts.HINT_MOVE), *hold, leave]
 
     def take(self, event: pygame.event.Event) -> bool:
-        """Move, press or end the active pointer; false if it is inactive."""
         if not self.typing:
             return False
         code = getattr(event, "key", getattr(event, "button", None))
@@ -100,7 +102,6 @@ class VirtualPointer(Widget):
         return True
 
     def ease(self, at_once: bool) -> None:
-        """Move on in the direction that is held."""
         super().ease(at_once)
         if self.typing and not self.focused:
             self._lay_aside()
@@ -132,11 +133,73 @@ class VirtualPointer(Widget):
         self._hear(pygame.Event(kind, pos=(self.place.x, self.place.y), button=1, rel=(0, 0), buttons=(0, 0, 0)))
 
     def paint(self, canvas: Canvas) -> None:
-        """Draw the focus ring, and the pointer while it is active."""
         super().paint(canvas)
+        self.draw_pointer(canvas)
+
+    def draw_pointer(self, canvas: Canvas) -> None:
+        """Draw the pointer while it is active."""
         if self.typing:
             x, y = self.place
             canvas.dot((x, y), 9, NIGHT0, 0.6)  # visible on bright ink, too
             canvas.marker("ring", (x, y), 14, HUMAN)
             for across, down in DIRECTIONS.values():
                 canvas.line((x + 9 * across, y + 9 * down), (x + 15 * across, y + 15 * down), HUMAN, 1.5)
+
+
+class PictureRow(RowWidget, VirtualPointer):
+    """Picture that is pointed at, by the mouse or a virtual pointer: `tell` gets their events, in points.
+
+    Args:
+        manager: the form's manager.
+        label: what it is called.
+        height: of the picture in points, given the width.
+        tell: receives the events: all motion, and each press within the picture until it is released.
+        draw: draws it; without, whoever draws behind the panel does.
+        square: whether it is as wide as high, instead of as its column.
+        more: as for a `VirtualPointer`.
+
+    Attributes:
+        picture: where it is, in points.
+
+    """
+
+    pad, follows_mouse = 0.0, False
+
+    def __init__(
+        self,
+        manager: PointsManager,
+        label: str,
+        height: Callable[[float], float],
+        tell: Callable[[pygame.event.Event], object],
+        draw: Callable[[Canvas, pygame.FRect], None] = lambda *_: None,
+        *,
+        square: bool = False,
+        **more: Any,
+    ) -> None:
+        super().__init__(manager, (0, 0, 1, 1), tell, **more)
+        self.label, self._height, self._draw, self._square = label, height, draw, square
+        self.picture = pygame.FRect(self.box)
+
+    def write(self, cursor: Cursor) -> None:
+        box = cursor.take(self._height(cursor.width))
+        if self._square:
+            box.width = box.height
+        if cursor.canvas is None:
+            self.picture = box
+        else:
+            self._draw(cursor.canvas, box)
+            self.draw_pointer(cursor.canvas)
+
+    def lay(self, cursor: Cursor) -> None:
+        super().lay(cursor)
+        if cursor.canvas is None:
+            self.rect.width = round(self.picture.width)
+
+    def process_event(self, event: pygame.event.Event) -> bool:
+        down, up = event.type == pygame.MOUSEBUTTONDOWN, event.type == pygame.MOUSEBUTTONUP
+        if (down or up) and event.button != 1:
+            return False
+        ends, self.held = up and self.held, (self.held and not up) or (down and self.hover_point(*event.pos))
+        if event.type == pygame.MOUSEMOTION or ends or (down and self.held):
+            self._hear(event)
+        return self.held or ends

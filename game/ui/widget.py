@@ -68,6 +68,7 @@ class Widget(UIElement):
         typing: whether this widget takes every key and button, so that none gives a command.
         by_arrows: whether only left and right change it, and a press does nothing.
         spells: whether text is typed into it.
+        follows_mouse: whether the focus comes to it with the mouse; not to a picture that only keys need the focus for.
         warmth: 0 to 1, follows `focused` smoothly.
         help: a sentence about it, for screens that explain the focused widget.
         ringed: whether the focus ring is drawn; not while a mouse is in use.
@@ -75,6 +76,7 @@ class Widget(UIElement):
     """
 
     spells = by_arrows = False
+    follows_mouse = True
 
     def __init__(self, manager: PointsManager, box: pygame.typing.RectLike, label: str) -> None:
         super().__init__(pygame.Rect(box), manager, None, starting_height=1, layer_thickness=1)

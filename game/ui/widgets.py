@@ -1,23 +1,23 @@
-"""Basic widgets: words, toggles, sliders and choices."""
+"""Words and choices with a place of their own, for screens over a world; the rows of panels are in `game.ui.rows`."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping, Sequence
-from types import MappingProxyType
+from collections.abc import Callable, Sequence
+from itertools import accumulate, pairwise
 from typing import Final
 
 import pygame
 
 from game.core.scene import Transition
+from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import FAINT, INK, MUTE, NET, SMALL, TEXT, Colour
 from game.drawing.typeface import Weight
-from game.ui.widget import EASE, OnPress, PointsManager, Widget, mix
-from game.ui.words import GAP as CHOICE_GAP
-from game.ui.words import TextButtonRow
+from game.ui.widget import OnPress, PointsManager, Widget, mix
 
-_SWITCH: Final = 46  # points that a switch takes of its box
+GAP: Final = 24  # points between two words
+_ARROW: Final = 24  # points for an arrow on either side
+_BESIDE: Final = 20.0  # points between a row and the word that opens a list
 
 
 class TextButton(Widget):
@@ -43,15 +43,12 @@ class TextButton(Widget):
         return self.box.centery + 0.36 * self._size
 
     def press(self) -> Transition | None:
-        """Call the button's action."""
         return self._on_press()
 
     def tint(self) -> Colour:
-        """Return the word's colour: its own, or ink when in focus."""
         return mix(self._colour, INK, self.warmth)
 
     def paint(self, canvas: Canvas) -> None:
-        """Draw the word, and the growing line under it."""
         left, baseline = self.box.left, self.baseline
         box = canvas.text(
             self.label, (left, baseline), size=self._size, weight=self._weight, colour=self.tint(), room=self.box.width
@@ -60,157 +57,6 @@ class TextButton(Widget):
         if length > 1:
             y = baseline + 0.42 * self._size
             canvas.line((left, y), (left + length, y), NET, 2, self.warmth)
-
-
-class Toggle(Widget):
-    """On-off switch: a label on the left, a switch at the right end of the box."""
-
-    def __init__(
-        self,
-        manager: PointsManager,
-        box: pygame.typing.RectLike,
-        label: str,
-        value: bool,
-        on_change: Callable[[bool], None],
-        *,
-        hint: str = "",
-    ) -> None:
-        super().__init__(manager, box, label)
-        self.value, self._on_change, self._hint = value, on_change, hint
-        self._slid = float(value)
-
-    def press(self) -> None:
-        """Change to the other state."""
-        self.value = not self.value
-        self._on_change(self.value)
-
-    def shift(self, direction: int) -> bool:
-        """Switch off with left, on with right; false if it is so already, so that the focus moves on."""
-        if self.value == (direction > 0):
-            return False
-        self.press()
-        return True
-
-    def ease(self, at_once: bool) -> None:
-        """Animate the switch's knob."""
-        super().ease(at_once)
-        target = float(self.value)
-        self._slid = target if at_once else self._slid + (target - self._slid) * 1.4 * EASE
-
-    def paint(self, canvas: Canvas) -> None:
-        """Draw the label, the hint under it and the switch."""
-        super().paint(canvas)
-        box = self.box
-        middle = box.centery
-        baseline = middle + 5 if not self._hint else middle - 4
-        canvas.text(self.label, (box.left, baseline), colour=mix(mix(MUTE, INK, 0.6), INK, self.warmth))
-        if self._hint:
-            canvas.text(self._hint, (box.left, baseline + 21), size=SMALL, colour=MUTE, room=box.width - _SWITCH)
-        draw_switch(canvas, (box.right - 32, middle - 8, 32, 16), self._slid)
-
-
-class Slider(Widget):
-    """Slider for a number: a thin track with a round handle, the label on the left, the figure on the right.
-
-    `ticks` are values that have a name; it stops at them as well as after each `step`.
-    """
-
-    by_arrows = True
-
-    def __init__(
-        self,
-        manager: PointsManager,
-        box: pygame.typing.RectLike,
-        label: str,
-        value: float,
-        limits: tuple[float, float],
-        on_change: Callable[[float], None],
-        *,
-        step: float = 0.0,
-        ticks: Mapping[float, str] = MappingProxyType({}),
-        logarithmic: bool = False,
-        label_width: float = 142,
-        figure_width: float = 62,
-        figure: Callable[[float], str] = "{:.2f}".format,
-        colour: Colour = NET,
-    ) -> None:
-        super().__init__(manager, box, label)
-        self.value, self.limits, self._on_change = value, limits, on_change
-        self._step, self._ticks, self._logarithmic = step, ticks, logarithmic
-        self._figure, self._colour = figure, colour
-        self._track = (self.box.left + label_width, self.box.right - figure_width)
-
-    @property
-    def fraction(self) -> float:
-        """Position of the handle on its track, 0 to 1."""
-        return self._fraction_of(self.value)
-
-    def _fraction_of(self, value: float) -> float:
-        low, high, value = map(self._scale, (*self.limits, value))
-        return min(max((value - low) / (high - low), 0.0), 1.0)
-
-    def set(self, value: float) -> None:
-        """Set the value, clipped to the limits and rounded to a step or a tick."""
-        low, high = self.limits
-        if self._step:
-            stops = low + round((value - low) / self._step) * self._step, *self._ticks
-            value = min(stops, key=lambda stop: abs(stop - value))
-        value = min(max(value, low), high)
-        if value != self.value:
-            self.value = value
-            self._on_change(value)
-
-    def shift(self, direction: int) -> bool:
-        """Move to the next step or tick, or by a twentieth of the track."""
-        if self._step:
-            low, value = self.limits[0], self.value
-            steps = math.floor(direction * (value - low) / self._step + 1e-6) + 1
-            stops = low + direction * steps * self._step, *self._ticks
-            self.set(
-                min((stop for stop in stops if direction * (stop - value) > 0), key=lambda stop: abs(stop - value))
-            )
-        else:
-            self._set_fraction(self.fraction + direction / 20)
-        return True
-
-    def advance(self) -> None:
-        """Move the handle one step to the right, or from the right end to the left one."""
-        if self.value >= self.limits[1]:
-            self.set(self.limits[0])
-        else:
-            self.shift(1)
-
-    def drag(self, x: float) -> None:
-        """Move the handle to the mouse."""
-        left, right = self._track
-        self._set_fraction((x - left) / (right - left))
-
-    def _set_fraction(self, fraction: float) -> None:
-        low, high = map(self._scale, self.limits)
-        value = low + min(max(fraction, 0.0), 1.0) * (high - low)
-        self.set(math.exp(value) if self._logarithmic else value)
-
-    def _scale(self, value: float) -> float:
-        return math.log(value) if self._logarithmic else value
-
-    def paint(self, canvas: Canvas) -> None:
-        """Draw label, track, handle and figure."""
-        super().paint(canvas)
-        box, (left, right) = self.box, self._track
-        baseline, middle = box.centery + 5, box.centery
-        canvas.text(self.label, (box.left, baseline), size=SMALL + 1, colour=self.tint(), room=left - box.left - 12)
-        canvas.bar((left, middle - 1, right - left, 2), self.fraction, self._colour)
-        handle = (left + self.fraction * (right - left), middle)
-        canvas.dot(handle, 5 + self.warmth, INK)
-        canvas.text(
-            self._figure(self.value),
-            (box.right, baseline),
-            size=SMALL + 1,
-            colour=self._colour,
-            align="right",
-            tabular=True,
-            room=box.right - right - 10,
-        )
 
 
 class Choice(Widget):
@@ -230,7 +76,7 @@ class Choice(Widget):
         *,
         label_width: float = 0,
         size: float = TEXT,
-        gap: float = CHOICE_GAP,
+        gap: float = GAP,
     ) -> None:
         super().__init__(manager, box, label)
         self.options, self.index, self._on_change, self._size = options, index, on_change, size
@@ -245,22 +91,131 @@ class Choice(Widget):
             self._on_change(index)
 
     def press(self) -> Transition | None:
-        """Choose the option under the mouse; without a mouse, the next option."""
         self.choose(self.row.pressed(self.mouse_x, self.index))
         return None
 
     def shift(self, direction: int) -> bool:
-        """Choose the option to the left or right; false at either end, so that the focus moves on."""
         before = self.index
         self.choose(self.index + direction)
         return self.index != before
 
     def paint(self, canvas: Canvas) -> None:
-        """Draw the label and the options."""
         super().paint(canvas)
         baseline = self.box.centery + 0.36 * self._size
         canvas.text(self.label, (self.box.left, baseline), size=self._size, colour=self.tint(), room=self._label_room)
         self.row.paint(canvas, baseline, self.index)
+
+
+class ChoiceOrList(Choice):
+    """Choice that can also be made from a list: Enter, a gamepad's A or a click on `all_word` calls `on_open`.
+
+    The word is shown at the right end if not all options fit into the row.
+    """
+
+    def __init__(
+        self,
+        manager: PointsManager,
+        box: pygame.typing.RectLike,
+        label: str,
+        options: Sequence[str],
+        index: int,
+        on_change: Callable[[int], None],
+        on_open: OnPress,
+        all_word: str,
+        *,
+        label_width: float = 0,
+        size: float = SMALL,
+    ) -> None:
+        super().__init__(manager, box, label, options, index, on_change, label_width=label_width, size=size)
+        self._on_open, self._all_word = on_open, all_word
+        self._open_left = float(self.box.right)
+        if len(self.row.pages) > 1:
+            self._open_left -= typeface.width(all_word, size, "regular")
+            self.row = TextButtonRow(options, self.box.left + label_width, self._open_left - _BESIDE, size)
+
+    def press(self) -> Transition | None:
+        x = self.mouse_x
+        return self._on_open() if x is None or x >= self._open_left - 4 else super().press()
+
+    def paint(self, canvas: Canvas) -> None:
+        super().paint(canvas)
+        if len(self.row.pages) > 1:
+            baseline = self.box.centery + 0.36 * self._size
+            canvas.text(self._all_word, (self._open_left, baseline), size=self._size, colour=self.tint())
+
+
+class TextButtonRow:
+    """Row of words from `left` to `right`, in points. One page is shown at a time, between arrows.
+
+    Attributes:
+        pages: the numbers of the words on each page.
+        lefts: the left end of each word, in points.
+        right: the right end of the row, in points.
+
+    """
+
+    def __init__(self, words: Sequence[str], left: float, right: float, size: float, gap: float = GAP) -> None:
+        self.words, self._size, self._gap, self._left, self.right = words, size, gap, left, right
+        self._growth = 0.0
+        self._lay_out()
+
+    def _lay_out(self) -> None:
+        """Lay out the words again if the size of text has changed."""
+        if self._growth == typeface.growth():
+            return
+        self._growth = typeface.growth()
+        left, gap = self._left, self._gap
+        widths = [typeface.width(word, self._size, "regular") for word in self.words]
+        room = self.right - left
+        if sum(widths) + gap * (len(widths) - 1) > room + 1:
+            room -= 2 * _ARROW
+        self.pages = _pages(widths, room, gap)
+        self.lefts = [
+            left + (_ARROW if page.start else 0) + place
+            for page in self.pages
+            for place in accumulate((widths[number] + gap for number in page[:-1]), initial=0.0)
+        ]
+
+    def _page(self, chosen: int) -> range:
+        self._lay_out()
+        return next(page for page in self.pages if chosen in page)
+
+    def at(self, x: float, chosen: int) -> int:
+        """Return the number of the word at x on the chosen word's page, or of the word that an arrow there leads to."""
+        page = self._page(chosen)
+        if page.stop < len(self.words) and x > self.right - _ARROW:
+            return page.stop
+        if page.start and self.lefts[page.start] - _ARROW <= x < self.lefts[page.start] - 4:
+            return page.start - 1
+        return max((number for number in page if self.lefts[number] - self._gap / 2 <= x), default=chosen)
+
+    def pressed(self, x: float | None, chosen: int) -> int:
+        """Return the number that a press chooses: that of the word at x, or without a mouse that of the next word."""
+        return (chosen + 1) % len(self.words) if x is None else self.at(x, chosen)
+
+    def paint(self, canvas: Canvas, baseline: float, chosen: int) -> None:
+        """Draw the page of the chosen word, with a line under it."""
+        page, size = self._page(chosen), self._size
+        if page.start:
+            canvas.text("‹", (self.lefts[page.start] - 16, baseline), size=size, colour=INK)
+        if page.stop < len(self.words):
+            canvas.text("›", (self.right, baseline), size=size, colour=INK, align="right")
+        for number in page:
+            left, colour = self.lefts[number], INK if number == chosen else MUTE
+            box = canvas.text(self.words[number], (left, baseline), size=size, colour=colour)
+            if number == chosen:
+                canvas.line((left, baseline + 8), (left + box.width, baseline + 8), NET, 2)
+
+
+def _pages(widths: Sequence[float], room: float, gap: float) -> list[range]:
+    """Return the numbers of the words on each page; a page has at least one word."""
+    starts, x = [0], 0.0
+    for number, width in enumerate(widths):
+        if x and x + width > room:
+            starts.append(number)
+            x = 0.0
+        x += width + gap
+    return [range(start, stop) for start, stop in pairwise([*starts, len(widths)])]
 
 
 def draw_switch(canvas: Canvas, rect: tuple[float, float, float, float], slid: float, colour: Colour = NET) -> None:

@@ -60,6 +60,13 @@ class View:
     origin: tuple[int, int] = (0, 0)
     lower: float = 0.0
 
+    @classmethod
+    def within(cls, box: pygame.FRect, scale: float, centre: npt.ArrayLike, per_metre: float) -> View:
+        """Return the view with a place in the middle of a box of the canvas, at so many points a metre."""
+        aside = np.array((VIEW_SIZE[0] / 2 - box.centerx, box.centery - VIEW_SIZE[1] / 2)) / per_metre
+        x, y = (np.asarray(centre) + aside).tolist()
+        return cls(scale, (x, y), per_metre / POINTS_PER_METRE)
+
     def filling(self, canvas: Canvas) -> View:
         """Return this view as it fills that canvas."""
         lower = canvas.view.bottom - VIEW_SIZE[1]

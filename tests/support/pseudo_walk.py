@@ -1,6 +1,6 @@
 """Walks through every scene with other catalogues, and writes what it saw as JSON.
 
-A program, because texts are read when the game is imported: python -m tests.support.pseudo_walk FOLDER
+A program, because texts are read when the game is imported: python -m tests.support.pseudo_walk FOLDER WINDOW...
 """
 
 from __future__ import annotations
@@ -32,6 +32,7 @@ from game.core.scene import Scene
 from game.core.settings import Settings
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
+from game.drawing.tokens import VIEW_SIZE
 from game.scenes import scene_of
 from game.scenes.digits.inside import DigitInsideScene
 from game.scenes.error_screen import ErrorScene
@@ -222,7 +223,8 @@ def tried(*labels: str, steps: int) -> Happens:
 def switched(driver: Driver) -> None:
     """Draw a seven, and switch the last step of its preprocessing off."""
     drawn(driver)
-    driver.click(driver.widget(texts.DIGITS_STAGES[4]).box.center)
+    driver.press_on(texts.DIGITS_SEES)
+    driver.press_on(texts.DIGITS_STAGES["centre"])
     driver.frames(2)
 
 
@@ -342,8 +344,9 @@ STATES: dict[str, tuple[str, dict[str, object], Happens]] = {
 class Walk:
     """One walk; `seen` is what was written, `wrong` what met or left its place, each with where that was first."""
 
-    def __init__(self, user_dir: Path) -> None:
+    def __init__(self, user_dir: Path, windows: Sequence[str] = ()) -> None:
         self.user_dir = user_dir
+        self._windows = [tuple(map(int, each.split("x"))) for each in windows]
         self.seen: dict[str, str] = {}
         self.wrong: dict[str, str] = {}
         self._written = Written(setattr)
@@ -363,6 +366,11 @@ class Walk:
             if others:
                 driver.write_in(size)
                 rest(driver)
+            for window in self._windows:
+                driver.resize(window)
+                rest(driver)
+                self._note(driver, f"{name}, {size}, {window}")
+            driver.resize(VIEW_SIZE)
             for widget in list(self._widgets(driver)):
                 if widget not in self._widgets(driver):
                     break
@@ -397,7 +405,7 @@ class Walk:
             if note.code:
                 continue
             self.seen.setdefault(note.text, place)
-        for text, how in misplaced(page):
+        for text, how in misplaced(page, driver.app.canvas.view):
             if how != "is cut short" or text not in self._whole:
                 self.wrong.setdefault(f"{text} {how}", place)
 
@@ -419,7 +427,7 @@ def main() -> None:
     for chapter in (TargetChapter, MemoryChapter, DaringChapter):
         chapter.LENGTH = SHORT_RUN
     with TemporaryDirectory() as folder:
-        walk = Walk(Path(folder))
+        walk = Walk(Path(folder), sys.argv[2:])
         stock(Context(Path(folder), Settings(), rng=np.random.default_rng(1)))
         for name in (*SCREENS, *FLOWN, *OVER_OTHERS):
             walk.visit(name, SIZES, {}, lambda _: None)

@@ -31,7 +31,8 @@ from game.scenes.menus.dialogs import ListDialog, NameDialog, QuestionDialog
 from game.scenes.menus.keys import BindingsScene
 from game.scenes.menus.menu import FlightsScene, MenuScene
 from game.scenes.menus.settings import SettingsScene
-from game.scenes.physics.exhibits import EXHIBITS, Exhibit
+from game.scenes.physics.exhibit import Exhibit
+from game.scenes.physics.exhibits import EXHIBITS
 from game.scenes.physics.scene import PhysicsScene
 from game.scenes.physics.step_scene import PhysicsStepScene
 from game.scenes.play.challenge import FlownMission

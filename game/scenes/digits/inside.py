@@ -7,38 +7,38 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import pygame
 
-from ai.nn import ActivationLayer, ConvolutionLayer, MaxPoolingLayer
+from ai.explain.unit_sums import Place
+from ai.nn import ConvolutionLayer, FullyConnectedLayer
 from game.core import texts
 from game.core.scene import Transition, push
-from game.drawing import typeface
+from game.digits.cells import CellPicker
+from game.digits.pictures import GREY, SIGNED, Numbers, picture
 from game.drawing.canvas import Canvas
-from game.drawing.sky import NightSky
-from game.drawing.tokens import MUTE, SMALL, TEXT, TITLE
+from game.drawing.paint_cache import PaintCache
+from game.drawing.prose import draw_wrapped
+from game.drawing.tokens import HUMAN, LINE, TITLE
 from game.input.controls import Command
-from game.scenes.digits.patch_pictures import PatchPictures
-from game.scenes.digits.patch_sums import PatchSums
-from game.scenes.digits.stage_row import StageRow
-from game.scenes.digits.unit_walk import UnitWalk, draw_code
+from game.panels.code_listing import draw_listing
+from game.scenes.digits.sums import describe_sum, figure
+from game.scenes.digits.unit_walk import UnitWalk, arrays_of, code_of, deed_of
 from game.ui.actions import Action, Table
 from game.ui.context import Context
-from game.ui.form_scene import FormScene
-from game.ui.hints import HintRow
-from game.ui.widgets import TextButton
+from game.ui.panel import Column, Panel
+from game.ui.panel_scene import PanelScene
 
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier
     from ai.digits.preprocessing import Image
 
-_LEFT: Final = 40
-_RIGHT: Final = 1240.0
-_ROW: Final = (_LEFT, 58, 1200, 52)
-_SAYS: Final = (float(_LEFT), 140.0)
-_HINTS: Final = (float(_LEFT), 690.0)
+_LEAST: Final = 280.0
+_READ, _GIVEN, _TILES, _SEEN = 250.0, 170.0, 76.0, 110.0  # heights of pictures
+_CODE: Final = 340.0
+_MOST_WEIGHTS: Final = 400_000  # of a stage whose weights are shown as pictures
 _FIRST: Final = 120  # updates before the window slides
 _PACE: Final = 8  # updates that the sliding window stays where it is
 
 
-class DigitInsideScene(FormScene):
+class DigitInsideScene(PanelScene):
     """A digit (28, 28) on its way through a network.
 
     Attributes:
@@ -52,19 +52,11 @@ class DigitInsideScene(FormScene):
         super().__init__(context)
         self._classifier, self._image = classifier, np.asarray(image, np.float32)
         self.walk = UnitWalk(classifier, self._image)
-        self.in_code = False
-        self._steps = 0
-        self._sky = NightSky(np.random.default_rng(14), ember=0.2, stars=24)
-        self._sums = PatchSums()
-        self._stages = self.form.add(StageRow(self.form.manager, _ROW, self.walk, self._choose))
-        self._pictures = PatchPictures(self.form.manager, self.walk, self._image, self._stop)
-        for picker in self._pictures.pickers:
-            self.form.add(picker)
-        self._add_words()
+        self.in_code, self._steps, self._seen = False, 0, PaintCache()
         self.sliding = self._slides and not context.settings.reduced_motion
+        self.build()
 
     def actions(self) -> Table:
-        """Go through the stages; let the window slide; show the code; go back."""
         slide = texts.HINT_STOP if self.sliding else texts.PATCH_SLIDE
         return [
             Action(Command.NEXT, lambda: self._choose(self.walk.number + 1), texts.PATCH_ON),
@@ -74,30 +66,12 @@ class DigitInsideScene(FormScene):
             self.form.goes_back(texts.HINT_BACK),
         ]
 
-    def hint_rows(self, canvas: Canvas) -> list[HintRow]:
-        """Return the hints at the foot."""
-        return [HintRow(self.hints, _HINTS, room=_RIGHT - _LEFT)]
-
     def update(self) -> Transition | None:
-        """Let the window slide, after a moment to look."""
         self._steps += 1
         if self.sliding and self._steps > _FIRST and self._steps % _PACE == 0:
             self.walk.slide()
-            self._pictures.follow()
-        return self.form.update()
-
-    def draw(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the stages, the sum of the unit looked at, and the pictures around it."""
-        self._sky.draw(canvas)
-        canvas.text(texts.PATCH_TITLE, (_LEFT, 45), size=TITLE)
-        canvas.text(self._says(), _SAYS, size=SMALL, colour=MUTE, room=_RIGHT - _LEFT)
-        self._sums.draw(canvas, self.walk)
-        if self.in_code:
-            draw_code(canvas, self.walk)
-        else:
-            self._pictures.draw(canvas)
-        self.form.draw(canvas)
-        self.draw_hints(canvas)
+            self._follow()
+        return super().update()
 
     # What is looked at
 
@@ -108,49 +82,187 @@ class DigitInsideScene(FormScene):
 
     def _choose(self, number: int) -> None:
         if 0 <= number <= len(self.walk.stages) and number != self.walk.number:
-            self._stop()
+            self.sliding = False
             self.walk.choose(number)
-            self._remake()
-
-    def _remake(self) -> None:
-        """Make the pictures of another stage."""
-        old = self._pictures.pickers
-        self._pictures = PatchPictures(self.form.manager, self.walk, self._image, self._stop, in_code=self.in_code)
-        self.form.replace([self._stages, *old], [self._stages, *self._pictures.pickers])
+            self.build()
 
     def _show_code(self) -> None:
         """Show the code, or the maps again."""
         self.in_code = not self.in_code
-        self._remake()
-
-    def _stop(self) -> None:
-        self.sliding = False
+        self.build()
 
     def _toggle(self) -> None:
         self.sliding = not self.sliding
 
-    # Words
+    def _look_at(self, place: Place) -> None:
+        self.sliding = False
+        channel, stage = self.walk.channel, self.walk.stage
+        self.walk.look_at(place)
+        if stage.kind in ("convolution", "connected") and place[2] == self.walk.place[2] and self._reads:
+            self.walk.channel = channel  # the map that was looked into stays
+        self._follow()
 
-    def _says(self) -> str:
-        """Return what the stage does, in a sentence."""
-        walk, says = self.walk, texts.PATCH_SAYS
+    def _look_into(self, row: int, column: int) -> None:
+        assert self._read_maps
+        self.sliding = False
+        self.walk.look_into(row * self._read_maps.columns + column)
+        self._follow()
+
+    def _point_at_input(self, row: int, column: int) -> None:
+        """Put the window's middle on a pixel, as nearly as it goes."""
+        stage, step = self.walk.stage, self._step
+        height, width, _ = stage.outputs.shape
+        _, _, bottom, right = stage.read_by((0, 0, 1, 1))
+        at = (row - bottom // 2) // step, (column - right // 2) // step
+        self._look_at((min(max(at[0], 0), height - 1), min(max(at[1], 0), width - 1), self.walk.place[2]))
+
+    def _map_of(self, row: int, column: int, picker: CellPicker) -> None:
+        self._look_at((*self.walk.place[:2], row * picker.columns + column))
+
+    @property
+    def _step(self) -> int:
+        """Pixels of the input from one window to the next."""
+        return self.walk.stage.window[2]
+
+    # Rows
+
+    def describe(self, panel: Panel) -> None:
+        self._reads: CellPicker | None = None
+        self._read_maps: CellPicker | None = None
+        self._gives: CellPicker | None = None
+        self._filters: CellPicker | None = None
+        self._given_maps: CellPicker | None = None
+        walk = self.walk
+        panel.text(texts.PATCH_TITLE, size=TITLE)
+        self._tabs = panel.choice("", self._stages(), walk.number, self._choose)
+        panel.aside(deed_of(walk))
+        panel.gap()
+        left, middle, right = panel.beside((30, 40, 36), least=_LEAST)
         if walk.at_answer:
-            return says["answer"]
-        match walk.stage.layer:
-            case ConvolutionLayer(kernel=kernel):
-                return says["convolution" if walk.number == 0 else "deeper"].format(size=kernel)
-            case MaxPoolingLayer(size=size):
-                return says["pooling"].format(size=size)
-            case ActivationLayer(activation=activation):
-                return texts.PATCH_BENDS.get(activation.name or "", texts.PATCH_BENDS["other"])
-        return says[walk.stage.kind]
+            left.caption(texts.PATCH_PICTURES["digit"].format(height=28, width=28))
+            left.picture(_READ, self._draw_digit)
+        else:
+            self._describe_read(left)
+        describe_sum(middle, walk)
+        if self.in_code:
+            right.picture(_CODE, self._draw_code)
+            right.aside(lambda: arrays_of(walk))
+        elif not walk.at_answer:
+            self._describe_given(right)
+        right.words([(texts.WHY_NOT_WORD, lambda: push("why_not", self._classifier, self._image))])
+        self._follow()
 
-    def _add_words(self) -> None:
-        """Add the word that leads to the question why it is no other digit."""
-        word = texts.WHY_NOT_WORD
-        width = round(typeface.width(word, TEXT, "medium"))
-        box = (_RIGHT - width, 24, width, 28)
-        self.form.add(TextButton(self.form.manager, box, word, self._why_not, weight="medium"))
+    def _stages(self) -> list[str]:
+        """Return the name of each stage, with what the followed unit gave there."""
+        names = [*(texts.PATCH_STAGES[stage.kind] for stage in self.walk.stages), texts.PATCH_STAGES["answer"]]
+        values = [self.walk.value(number) for number in range(len(names))]
+        told = ["" if value is None else figure(value) for value in values]
+        if values[-1] is not None:
+            told[-1] = f"{100 * values[-1]:.1f}%"
+        return [f"{name} {value}".rstrip() for name, value in zip(names, told, strict=True)]
 
-    def _why_not(self) -> Transition:
-        return push("why_not", self._classifier, self._image)
+    def _describe_read(self, column: Column) -> None:
+        inputs, first = self.walk.stage.inputs, self.walk.number == 0
+        self._inputs: Numbers = np.moveaxis(inputs if first else _signed(inputs), 2, 0)
+        manager, spatial = self.form.manager, max(inputs.shape[:2]) > 1
+        if spatial:
+            shades = GREY if first else SIGNED
+            self._reads = column.widget(CellPicker(manager, self._point_at_input, _READ, shades))
+            column.gap()
+        if len(self._inputs) > 1:
+            most = _TILES if spatial else _READ
+            self._read_maps = column.widget(CellPicker(manager, self._look_into, most))
+            column.gap()
+        if not first:
+            column.caption(texts.PATCH_PICTURES["sees"])
+            column.picture(_SEEN, self._draw_digit)
+
+    def _describe_given(self, column: Column) -> None:
+        stage, manager = self.walk.stage, self.form.manager
+        self._outputs: Numbers = np.moveaxis(_signed(stage.outputs), 2, 0)
+        if max(stage.outputs.shape[:2]) > 1:
+            self._gives = column.widget(CellPicker(
+                manager, lambda row, across: self._look_at((row, across, self.walk.place[2])), _GIVEN
+            ))  # fmt: skip
+            column.gap()
+        if (weights := self._filters_of(self.walk.channel)) is not None:
+            self._weights, self._weights_of = weights, self.walk.channel
+            self._filters = self._tiles(column)
+            column.gap()
+        self._given_maps = self._tiles(column, _TILES if self._gives else _GIVEN)
+
+    def _tiles(self, column: Column, most: float = _TILES) -> CellPicker:
+        picker = CellPicker(self.form.manager, lambda row, across: self._map_of(row, across, picker), most)
+        return column.widget(picker)
+
+    def _follow(self) -> None:
+        """Show the unit that is looked at now."""
+        walk, names = self.walk, texts.PATCH_PICTURES
+        self._tabs.options = self._stages()
+        if walk.at_answer:
+            return
+        (row, column, channel), stage = walk.place, walk.stage
+        height, width, count = stage.inputs.shape
+        if self._reads:
+            window = stage.read_by((row, column, row + 1, column + 1))
+            name = names["map" if walk.number else "digit"]
+            label = name.format(number=walk.channel + 1, count=count, height=height, width=width)
+            self._reads.show_map(self._inputs[walk.channel], label, window)
+            self._reads.cell = (window[0] + window[2]) // 2, (window[1] + window[3]) // 2
+            self._reads.stride = self._step
+        if self._read_maps:
+            name = names["maps" if max(height, width) > 1 else "inputs"]
+            label = name.format(count=count, number=walk.channel + 1)
+            self._read_maps.show_tiles(self._inputs, label, walk.channel)
+        height, width, count = stage.outputs.shape
+        if self._gives:
+            label = names["map"].format(number=channel + 1, count=count, height=height, width=width)
+            self._gives.show_map(self._outputs[channel], label, (row, column, row + 1, column + 1))
+            self._gives.cell = (row, column)
+        if self._filters:
+            if self._weights_of != walk.channel and (weights := self._filters_of(walk.channel)) is not None:
+                self._weights, self._weights_of = weights, walk.channel
+            self._filters.show_tiles(self._weights, names["filters"].format(count=count), channel)
+        if self._given_maps:
+            last = walk.number == len(walk.stages) - 1
+            name = names["maps" if self._gives else "scores" if last else "units"]
+            label = name.format(count=count, number=channel + 1, digit=channel)
+            self._given_maps.show_tiles(self._outputs, label, channel)
+
+    def _filters_of(self, channel: int) -> Numbers | None:
+        """Return each filter's weights for one map of the input, (filters, height, width); None for too many."""
+        match self.walk.stage.layer:
+            case ConvolutionLayer() as layer:
+                return _signed(layer.kernels[:, :, channel].transpose(2, 1, 0))
+            case FullyConnectedLayer() as layer:
+                order = self.walk.stage.order[:, :, channel]
+                if order.size * layer.weights.shape[1] <= _MOST_WEIGHTS:
+                    return _signed(layer.weights[order].transpose(2, 0, 1))
+        return None
+
+    # Pictures
+
+    def _draw_digit(self, canvas: Canvas, box: pygame.FRect) -> None:
+        """Draw the digit, and which part of it the unit depends on."""
+        side = min(box.size)
+        self._seen.draw(canvas, (*box.topleft, side, side), side, self._paint_digit)
+        if not self.walk.at_answer:
+            pixel, (above, beside, below, right) = side / self._image.shape[0], self.walk.field
+            corner = (box.left + beside * pixel, box.top + above * pixel)
+            canvas.outline((*corner, (right - beside) * pixel, (below - above) * pixel), 1, HUMAN, 1.5)
+
+    def _paint_digit(self, sheet: Canvas) -> None:
+        area = sheet.surface.get_rect()
+        sheet.surface.blit(picture(self._image, area.size), area)
+        pygame.draw.rect(sheet.surface, LINE, area, 1)
+
+    def _draw_code(self, canvas: Canvas, box: pygame.FRect) -> None:
+        if found := code_of(self.walk):
+            draw_listing(canvas, box, *found)
+        else:
+            draw_wrapped(canvas, texts.PATCH_NO_CODE, (box.left, box.top + 16), box.width)
+
+
+def _signed(values: Numbers) -> Numbers:
+    """Return values in -1 to 1."""
+    return np.asarray(values / max(float(np.abs(values).max(initial=0.0)), 1e-9), np.float32)

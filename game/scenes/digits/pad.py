@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Final
 
 import numpy as np
@@ -15,31 +14,34 @@ from ai.digits.strokes import draw_segments
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK, LINE, NIGHT0, Colour
-from game.ui.virtual_pointer import VirtualPointer
+from game.ui.virtual_pointer import PictureRow
 from game.ui.widget import PointsManager
 
+SIDE: Final = 520  # units along a side of every pad, whatever its size on the screen
+_LARGEST: Final = 480.0
 _RADIUS: Final = 12.0
+_PACE: Final = 4.5  # points in a step of 1/60 s: slow enough for a digit
 _MOST_UNDONE: Final = 100
 
 
 class DrawingPad:
-    """Drawing pad. Pass it events with `handle_event`; it ignores those outside `rect`.
+    """Drawing pad of SIDE by SIDE units. Pass it events with `handle_event`; it ignores those outside `rect`.
 
     Attributes:
-        rect: box of the pad, in points.
+        rect: box of the pad, in points of the canvas.
         revision: counter, raised by every change of the drawing.
         drawing: whether the pen is down.
 
     """
 
-    def __init__(self, rect: pygame.typing.RectLike) -> None:
-        self.rect = pygame.Rect(rect)
+    def __init__(self) -> None:
+        self.rect = pygame.FRect(0, 0, SIDE, SIDE)
         self.revision = 0
         self.drawing = False
         self._outside = False
         self._strokes: tuple[Stroke, ...] = ()
         self._history: list[tuple[Stroke, ...]] = []
-        self._ink = _Layer((self.rect.width // 2, self.rect.height // 2), 0.5)
+        self._ink = _Layer((SIDE // 2, SIDE // 2), 0.5)
         self._layer: _Layer | None = None
         self._sheet = pygame.Surface((1, 1), pygame.SRCALPHA)
         self._paper: Canvas
@@ -51,12 +53,12 @@ class DrawingPad:
 
     @property
     def strokes(self) -> list[npt.NDArray[np.float64]]:
-        """The strokes, each as (n, 2) points from the pad's upper left corner, y down. Cached: do not modify."""
+        """The strokes, each as (n, 2) units from the pad's upper left corner, y down. Cached: do not modify."""
         return [stroke.points for stroke in self._strokes]
 
     @property
     def ink(self) -> Ink:
-        """The drawing as an image (height, width), 0 to 1, ink bright, two points a pixel. Cached: do not modify."""
+        """The drawing as an image (height, width), 0 to 1, ink bright, two units a pixel. Cached: do not modify."""
         self._ink.follow(self._strokes)
         return self._ink.cover
 
@@ -95,8 +97,8 @@ class DrawingPad:
     def draw(self, canvas: Canvas, colour: Colour = INK) -> None:
         """Draw the pad and what is on it, in the window's own pixels."""
         area = canvas.rect(*self.rect)
-        if self._layer is None or self._layer.scale != canvas.scale or self._sheet.get_size() != area.size:
-            self._layer = _Layer(area.size, canvas.scale)
+        if self._layer is None or self._sheet.get_size() != area.size:
+            self._layer = _Layer(area.size, area.width / SIDE)
             self._sheet = pygame.Surface(area.size, pygame.SRCALPHA)
             self._sheet.fill((*colour, 0))
             self._paper = canvas.sheet(*self.rect.size)
@@ -127,7 +129,7 @@ class DrawingPad:
         self.drawing, self._outside = True, False
 
     def _go_on(self, position: Point) -> None:
-        if not self.rect.inflate(PEN_WIDTH, PEN_WIDTH).collidepoint(position):
+        if not self.rect.inflate(*2 * [PEN_WIDTH * self.rect.width / SIDE]).collidepoint(position):
             self._outside = True
         elif self._outside:  # the pen is back inside; nothing is drawn for its way outside
             self._outside = False
@@ -137,7 +139,8 @@ class DrawingPad:
             self.revision += 1
 
     def _place(self, position: Point) -> Point:
-        return float(position[0] - self.rect.left), float(position[1] - self.rect.top)
+        units = SIDE / self.rect.width
+        return (position[0] - self.rect.left) * units, (position[1] - self.rect.top) * units
 
     def _remember(self) -> None:
         self._history = [*self._history[1 - _MOST_UNDONE :], self._strokes]
@@ -149,7 +152,7 @@ class DrawingPad:
 
 
 class _Layer:
-    """Raster image of strokes, painted incrementally as they grow.
+    """Raster image of strokes, with `scale` pixels to a unit, painted incrementally as they grow.
 
     Attributes:
         cover: ink coverage of each pixel, 0 to 1, (height, width).
@@ -196,18 +199,18 @@ class _Layer:
         return list(zip(points, points[1:], widths[1:], strict=False))
 
 
-PEN_WIDTH: Final = 28.0  # points, of a pen that moves at a middling speed
+PEN_WIDTH: Final = 28.0  # units, of a pen that moves at a middling speed
 _SLOW, _FAST = 1.12, 0.72  # times that width
-_FASTEST: Final = 40.0  # points from one event to the next
+_FASTEST: Final = 40.0  # units from one event to the next
 _EASE: Final = 0.2
-_CHORD: Final = 7.0  # points: longer segments between two events are curved
+_CHORD: Final = 7.0  # units: longer segments between two events are curved
 _CORNER: Final = 0.3  # cosine of a turn from which it counts as a corner, and stays sharp
 
 Point = tuple[float, float]
 
 
 class Stroke:
-    """Stroke that grows point by point; positions in points from the pad's upper left corner, at full precision.
+    """Stroke that grows point by point; positions in units from the pad's upper left corner, at full precision.
 
     Attributes:
         path: the curve, as closely spaced points; it passes through every added point.
@@ -287,10 +290,14 @@ def _tangent(arriving: Point, leaving: Point) -> Point:
     return _direction((0.0, 0.0), (arriving[0] + leaving[0], arriving[1] + leaving[1]))
 
 
-_PACE: Final = 4.5  # points in a step of 1/60 s: slow enough for a digit
+def side_in(width: float) -> float:
+    """Return the side, in points, of a pad, or of a picture of one digit, in a column of that width."""
+    return min(width, _LARGEST)
 
 
-def make_pen(manager: PointsManager, pad: Callable[[], DrawingPad]) -> VirtualPointer:
-    """Return a virtual pointer that draws on the pad that `pad` returns at that moment."""
-    return VirtualPointer(manager, pad().rect, lambda event: pad().handle_event(event), hold=texts.PEN_HOLD,
-                   leave=texts.PEN_LEAVE, pace=_PACE)  # fmt: skip
+def pen_row(manager: PointsManager, pad: DrawingPad, colour: Colour = INK) -> PictureRow:
+    """Return the row of a pad, for the mouse and for a virtual pointer."""
+    return PictureRow(
+        manager, texts.POINTER, side_in, pad.handle_event,
+        lambda canvas, _: pad.draw(canvas, colour), square=True, hold=texts.PEN_HOLD, leave=texts.PEN_LEAVE, pace=_PACE,
+    )  # fmt: skip

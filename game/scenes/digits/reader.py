@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import numpy.typing as npt
 
+from ai.digits.classifier import DIGITS
 from ai.digits.preprocessing import SIDE, Image, Stages, redrawn, stages, stroke_stages
 from ai.files import brief
 from game.digits.kept import classifier_in
@@ -180,12 +181,12 @@ class LiveReading:
         self.catch_up()
         return None if self.reading.verdict(self.chosen) is Verdict.EMPTY else self.reading.probabilities[self.chosen]
 
-    def bars(self, digit: int) -> tuple[tuple[float, float], bool]:
-        """Return both networks' probabilities for a digit, and whether it is the chosen one's answer."""
-        drawn = bool(self.reading.stages.centred.any())
-        values = [self.reading.probabilities.get(name) for name in (self.chosen, self.other)]
-        one, other = (float(value[digit]) if drawn and value is not None else 0.0 for value in values)
-        return (one, other), drawn and values[0] is not None and int(values[0].argmax()) == digit
+    def bars(self) -> tuple[list[tuple[float, float]], int | None]:
+        """Return both networks' probabilities digit by digit, and the chosen one's answer; zeros and None without."""
+        drawn, nothing = bool(self.reading.stages.centred.any()), np.zeros(DIGITS)
+        values = [self.reading.probabilities.get(name, nothing) * drawn for name in (self.chosen, self.other)]
+        best = int(values[0].argmax()) if values[0].any() else None
+        return list(zip(*(value.tolist() for value in values), strict=True)), best
 
     def update(self) -> None:
         """Read the drawing if it has changed, a part per frame."""

@@ -1,4 +1,4 @@
-"""Digits scene: a drawing pad, the networks' live readings of it, and their explanation."""
+"""Digits scene: a drawing pad, what the networks read in it, and why."""
 
 from __future__ import annotations
 
@@ -10,47 +10,34 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import pygame
 
+from ai.digits.preprocessing import Image
 from game.core import texts
 from game.core.scene import Push, Transition, push
-from game.drawing import typeface
+from game.digits import percent
+from game.digits.pictures import AMBER, picture
 from game.drawing.canvas import Canvas
-from game.drawing.prose import draw_wrapped
-from game.drawing.sky import NightSky
-from game.drawing.tokens import SMALL, TEXT, TITLE
+from game.drawing.cursor import Cursor
+from game.drawing.paint_cache import PaintCache
+from game.drawing.tokens import HUMAN, LABEL, LINE, MUTE, NIGHT0, SMALL, TITLE
 from game.input.controls import Command
-from game.scenes.digits.answer import (
-    END,
-    FIX_TOP,
-    LEFT,
-    STEPS,
-    DigitRow,
-    Explanation,
-    StageSwitch,
-    draw_answer,
-    draw_fix,
-)
+from game.scenes.digits.answer import DigitBars, write_answer
 from game.scenes.digits.fixing import FixRunner
-from game.scenes.digits.pad import DrawingPad, make_pen
-from game.scenes.digits.reader import LiveReading, Numbers, Reading, Verdict
+from game.scenes.digits.pad import DrawingPad, pen_row
+from game.scenes.digits.reader import LiveReading, Numbers, Reading, Verdict, best_two
 from game.training.digit_models import NAMES, called
 from game.ui.actions import Action, Table
 from game.ui.context import Context
-from game.ui.form_scene import FOOT, FormScene
-from game.ui.hints import HintRow
-from game.ui.pick import ChoiceOrList
-from game.ui.widget import OnPress
-from game.ui.widgets import Choice, TextButton
+from game.ui.panel import Column, Panel
+from game.ui.panel_scene import PanelScene
 
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier
 
-PAD: Final = pygame.Rect(40, 70, 520, 520)
-_BELOW: Final = 602  # top of the buttons under the pad
-_TABS: Final = (LEFT, 26, 252, 24)  # above the chosen one's answer
+COLUMNS: Final = (48, 60)  # shares of a page: the pad, and what is said of it
+LEAST: Final = 280.0
 _LONGEST: Final = 16  # letters of a network's name
-_PROBLEMS: Final = 650.0  # baseline of what is wrong with networks
-_APART: Final = 26.0  # points between two words
-_WHY_NOT: Final = (LEFT, 233, 120, 20)  # of the word below the answer
+_WHY: Final = 300.0  # side of a picture
+_TILE: Final = 52.0
 _DIGITS: Final = {
     **{pygame.K_0 + digit: digit for digit in range(10)},
     **{pygame.K_KP1 + digit - 1: digit for digit in range(1, 10)},
@@ -58,54 +45,41 @@ _DIGITS: Final = {
 }
 
 
-class DigitsScene(FormScene):
+class DigitsScene(PanelScene):
     """Digits scene. `chosen` is the name of the network that is explained first.
 
     Attributes:
         pad: the drawing pad.
         live: reads and explains the drawing.
         fixing: teaches a network a drawing that it misreads.
+        prepared: whether it is shown how a drawing is prepared for the networks.
 
     """
 
     def __init__(self, context: Context, chosen: str = NAMES[0]) -> None:
         super().__init__(context)
-        self.pad = DrawingPad(PAD)
+        self.pad, self.prepared = DrawingPad(), False
         self.live = LiveReading(self.pad, chosen, self._show_bars)
-        self._explanation = Explanation()
-        self._unfix: TextButton | None = None
+        self._bars = DigitBars(self.form.manager, self._correct)
+        self._why, self._stages = PaintCache(), PaintCache()
         self._fix_of = -1  # revision of the drawing that was fixed last
-        self._sky = NightSky(np.random.default_rng(11), ember=0.2, stars=40)
         self.fixing = FixRunner(context.user_dir, context.models_dir)
         for name in dict.fromkeys((*NAMES, chosen)):
             self._load(name)
         if not self.live.known:
             self.live.chosen = next(iter(self.live.reader.classifiers), chosen)
-        self._tabs = self.form.add(self._make_tabs())
-        self._pen = self.form.add(make_pen(self.form.manager, lambda: self.pad))
-        self._add_words()
-        self.live.anew()
-        self._offer_undo()
+        self._take_anew()
 
     def enter(self) -> None:
-        """Refresh the list of networks."""
-        before = set(self.fixing.networks)
         self.fixing.refresh()
-        if set(self.fixing.networks) == before:
-            return
         if self.chosen not in self.fixing.networks:
             self.live.chosen = NAMES[0]
-            self.live.anew()
-        tabs = self._make_tabs()
-        self.form.replace([self._tabs], [tabs])
-        self._tabs = tabs
+        self._take_anew()
 
     def exit(self) -> None:
-        """End the current stroke."""
         self.pad.lift()
 
     def close(self) -> None:
-        """End the process that learns."""
         self.fixing.close()
 
     @property
@@ -121,7 +95,7 @@ class DigitsScene(FormScene):
     @property
     def canvas_rect(self) -> pygame.Rect:
         """The drawing area, in the window's pixels."""
-        return self.context.in_window(self.pad.rect)
+        return self.context.reading().rect(*self.pad.rect)
 
     @property
     def probabilities(self) -> Numbers | None:
@@ -129,11 +103,11 @@ class DigitsScene(FormScene):
         return self.live.probabilities
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Handle drawing, and pass any other event to the actions and the widgets."""
-        return None if self.pad.handle_event(event) else super().handle_event(event)
+        if event.type == pygame.WINDOWFOCUSLOST:
+            self.pad.lift()
+        return super().handle_event(event)
 
     def actions(self) -> Table:
-        """Choose another network, go back; undo and clear; correct by a digit's key."""
         return [
             Action(Command.NEXT, lambda: self._turn(1), texts.DIGITS_HINT_NETWORK),
             Action(Command.PREVIOUS, lambda: self._turn(-1)),
@@ -144,43 +118,151 @@ class DigitsScene(FormScene):
             *(Action(key, partial(self._correct, digit)) for key, digit in _DIGITS.items()),
         ]
 
-    def hint_rows(self, canvas: Canvas) -> list[HintRow]:
-        """Return the hints below the pad."""
-        return [HintRow(self.hints, (PAD.left, FOOT[1]))]
+    def lay_out(self) -> None:
+        super().lay_out()
+        self.pad.rect = self._pen.picture
 
     def update(self) -> Transition | None:
-        """Read the drawing if it changed, and see whether a fix is done."""
         self.live.update()
-        self._follow_fix()
-        return self.form.update()
+        if self.fixing.poll():
+            self._load(self.fixing.name)
+            self._take_anew()
+        return super().update()
 
-    def draw(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the pad, the answer and its explanation."""
-        self._sky.draw(canvas)
-        canvas.text(texts.DIGITS_TITLE, (PAD.left, 45), size=TITLE)
-        self.pad.draw(canvas)
+    # Rows
+
+    def describe(self, panel: Panel) -> None:
+        left, right = panel.beside(COLUMNS, least=LEAST, apart=40.0)
+        left.text(texts.DIGITS_TITLE, size=TITLE)
+        left.gap()
+        self._pen = left.widget(pen_row(self.form.manager, self.pad))
+        left.words([
+            (texts.DIGITS_UNDO, self.pad.undo),
+            (texts.DIGITS_CLEAR, self.pad.clear),
+            (texts.DIGITS_QUIZ, lambda: self._with_chosen(partial(push, "quiz"))),
+            (texts.DIGITS_TRAIN, partial(push, "digit_training")),
+            (texts.DIGITS_DREAM, self._dream),
+        ])  # fmt: skip
+        answer, why = right.beside((22, 33), least=160.0)
+        self._describe_answer(answer)
+        self._describe_why(why)
+
+    def _describe_answer(self, column: Column) -> None:
+        names = [name for name in self.fixing.networks if name in (*NAMES, self.chosen)]
+        words = [word if len(word) <= _LONGEST else word[:_LONGEST] + "…" for word in map(called, names)]
+        column.choice("", words, names.index(self.chosen) if self.chosen in names else 0,
+                      lambda index: self._choose(names[index]))  # fmt: skip
+        if len(self.fixing.networks) > len(NAMES):
+            column.button(texts.DIGITS_ALL.format(count=len(self.fixing.networks)), self._pick, size=SMALL)
+        column.add(self._write_answer)
+        column.words([
+            (texts.WHY_NOT_WORD, partial(self._ask, "why_not")),
+            (texts.PATCH_WORD, partial(self._ask, "digit_inside")),
+        ])  # fmt: skip
+        shown = self._bars.shown
+        self._bars = column.widget(DigitBars(self.form.manager, self._correct))
+        self._bars.shown = shown
+        self._show_bars()
+        column.add(self._write_fix)
+        if self.chosen in self.fixing.networks and self.fixing.count(self.chosen):
+            column.button(texts.DIGITS_UNDO_FIX, self._undo_fix, size=SMALL)
+
+    def _describe_why(self, column: Column) -> None:
+        column.add(self._write_why)
+        column.toggle(texts.DIGITS_SEES, self.prepared, self._show_prepared)
+        if self.prepared:
+            column.picture(_TILE, self._draw_stages)
+            for step, on in asdict(self.live.switches).items():
+                column.toggle(texts.DIGITS_STAGES[step], on, partial(self._switch, step))
+
+    def _show_bars(self) -> None:
+        self._bars.values, self._bars.best = self.live.bars()
+
+    def _show_prepared(self, shown: bool) -> None:
+        self.prepared = shown
+        self.build()
+
+    def _switch(self, step: str, on: bool) -> None:
+        """Switch a step of the preprocessing on or off."""
+        self.live.switches = replace(self.live.switches, **{step: on})
+        self.live.anew()
+
+    def _write_answer(self, cursor: Cursor) -> None:
         if self.chosen in self.reading.probabilities:
-            draw_answer(canvas, self.reading, self.chosen)
-        steps = list(asdict(self.live.switches).values())
-        self._explanation.draw(canvas, self.reading, self.chosen, self.live.why, steps)
-        self.form.draw(canvas)
-        self._draw_words(canvas)
+            write_answer(cursor, self.reading, self.chosen)
+        for name, problem in self.live.reader.problems.items():
+            cursor.styled(texts.DIGITS_PROBLEM.format(name=called(name), problem=problem), SMALL, cursor.palette.warn)
 
-    # Reading
+    def _write_fix(self, cursor: Cursor) -> None:
+        if self.reading.verdict(self.chosen) is not Verdict.EMPTY:
+            first, second = fix_lines(self.fixing, same=self._fix_of == self.pad.revision)
+            cursor.styled(first, SMALL, HUMAN)
+            cursor.aside(second)
+
+    def _write_why(self, cursor: Cursor) -> None:
+        why, drawn = self.live.why, self.reading.verdict(self.chosen) is not Verdict.EMPTY
+        words = texts.DIGITS_WHY_EMPTY
+        if drawn:
+            first, second = best_two(self.reading.probabilities[self.chosen])
+            words = texts.DIGITS_WHY.format(digit=first, other=second)
+        cursor.caption(words)
+        size = min(cursor.width, _WHY)
+        box = cursor.take(size)
+        if (canvas := cursor.canvas) is None or why is None:
+            cursor.gap(20)
+            return
+        self._why.draw(canvas, (box.left, box.top, size, size), why.tobytes(), partial(_paint, why))
+        if drawn:
+            x, y = cursor.left, cursor.y + 15
+            for word, colour in zip(texts.DIGITS_WHY_LEGEND, (HUMAN, MUTE), strict=True):
+                canvas.rounded((x, y - 7, 7, 7), 1.5, colour)
+                x += 24 + canvas.text(word, (x + 12, y), size=LABEL, colour=MUTE).width
+        cursor.gap(20)
+
+    def _draw_stages(self, canvas: Canvas, box: pygame.FRect) -> None:
+        taken = (True, *asdict(self.live.switches).values())
+        reading, tile = self.reading, min(_TILE, box.width / 6)
+        self._stages.draw(canvas, box, (reading, taken), lambda sheet: _paint_stages(sheet, reading, taken, tile))
+
+    # Networks
 
     def _load(self, name: str) -> None:
         """Load a network with the player's fixes, or with fewer of them if some are damaged."""
         if network := self.fixing.networks.get(name):
             self.live.reader.load(name, *network.versions())
 
-    def _show_bars(self) -> None:
-        for row in self._rows:
-            row.values, row.best = self.live.bars(row.digit)
-
-    def _switch(self, step: str, on: bool) -> None:
-        """Switch a step of the preprocessing on or off."""
-        self.live.switches = replace(self.live.switches, **{step: on})
+    def _take_anew(self) -> None:
+        """Read the drawing with networks that have changed, and show what can be done with them."""
         self.live.anew()
+        self.build()
+
+    def _choose(self, name: str) -> None:
+        """Choose another network; if it can't be loaded, the last one stays."""
+        if name not in self.live.reader.classifiers:
+            self._load(name)
+        if name in self.live.reader.classifiers:
+            self.live.chosen = name
+        self._take_anew()
+
+    def _turn(self, direction: int) -> None:
+        """Choose the next network that can be loaded."""
+        names = list(self.fixing.networks)
+        at = names.index(self.chosen) if self.chosen in names else 0
+        for distance in range(1, len(names)):
+            self._choose(name := names[(at + direction * distance) % len(names)])
+            if self.chosen == name:
+                return
+
+    def _pick(self) -> Transition:
+        """Open a list of all networks with their accuracy."""
+        from game.scenes.menus.dialogs import ListDialog
+
+        damaged, names = self.live.reader.problems, list(self.fixing.networks)
+        rows = [
+            (called(name), texts.DIGIT_MODEL_DAMAGED if name in damaged else network.said)
+            for name, network in self.fixing.networks.items()
+        ]
+        return Push(ListDialog(self, texts.DIGITS_PICK, rows, lambda index: self._choose(names[index])))
 
     # Fixing a wrong answer
 
@@ -194,95 +276,10 @@ class DigitsScene(FormScene):
 
     def _undo_fix(self) -> None:
         if self.fixing.undo(self.chosen):
-            self._take_anew(self.chosen)
+            self._load(self.chosen)
+            self._take_anew()
 
-    def _follow_fix(self) -> None:
-        if self.fixing.poll():
-            self._take_anew(self.fixing.name)
-
-    def _take_anew(self, name: str) -> None:
-        """Reload a network after a fix or its undo."""
-        self._load(name)
-        self.live.anew()
-        self._offer_undo()
-
-    def _offer_undo(self) -> None:
-        """Show the button that undoes a fix while there is one."""
-        wanted = self.fixing.count(self.chosen) > 0
-        if wanted and self._unfix is None:
-            box = (LEFT, FIX_TOP + 48, 96, 24)
-            self._unfix = TextButton(self.form.manager, box, texts.DIGITS_UNDO_FIX, self._undo_fix, size=SMALL + 1)
-            self.form.replace([], [self._unfix])
-        elif self._unfix and not wanted:
-            self.form.replace([self._unfix], [])
-            self._unfix = None
-
-    # Words
-
-    def _add_words(self) -> None:
-        manager, add = self.form.manager, self.form.add
-        below = (texts.DIGITS_UNDO, self.pad.undo), (texts.DIGITS_CLEAR, self.pad.clear)
-        self._add_row(PAD.left, _BELOW, *below, at=0.0)
-        train = (texts.DIGITS_TRAIN, partial(push, "digit_training"))
-        self._add_row(PAD.right, 24, (texts.DIGITS_QUIZ, self._quiz), train, (texts.DIGITS_DREAM, self._dream))
-        self._add_row(END, 24, (texts.PATCH_WORD, partial(self._ask, "digit_inside")))
-        why = self.form.manager, _WHY_NOT, texts.WHY_NOT_WORD, partial(self._ask, "why_not")
-        add(TextButton(*why, size=SMALL + 1))
-        self._rows = [add(DigitRow(manager, digit, self._correct)) for digit in range(10)]
-        for number, step in enumerate(STEPS):
-            add(StageSwitch(manager, number, partial(self._switch, step)))
-
-    def _add_row(self, x: float, top: float, *words: tuple[str, OnPress], at: float = 1.0) -> None:
-        """Add words to press, in a row of which x is that share: 0 its left end, 1 its right one."""
-        widths = [typeface.width(word, TEXT, "medium") for word, _ in words]
-        left = x - at * (sum(widths) + _APART * (len(widths) - 1))
-        for (word, press), width in zip(words, widths, strict=True):
-            self.form.add(TextButton(self.form.manager, (left, top, width, 28), word, press, weight="medium"))
-            left += width + _APART
-
-    def _make_tabs(self) -> Choice:
-        """Return the row of networks; with networks of the player's own, it also leads to a list of all."""
-        names = list(self.fixing.networks)
-        words = [word if len(word) <= _LONGEST else word[:_LONGEST] + "…" for word in map(called, names)]
-        index = names.index(self.chosen) if self.chosen in names else 0
-        row = self.form.manager, _TABS, "", words, index, self._choose
-        if len(names) == len(NAMES):
-            return Choice(*row)
-        return ChoiceOrList(*row, self._pick, texts.DIGITS_ALL.format(count=len(names)), size=TEXT)
-
-    def _choose(self, index: int) -> None:
-        """Choose another network; if it can't be loaded, say so and keep the last one."""
-        names = list(self.fixing.networks)
-        if names[index] not in self.live.reader.classifiers:
-            self._load(names[index])
-        if names[index] not in self.live.reader.classifiers:
-            self._tabs.index = names.index(self.chosen)
-            return
-        self.live.chosen = names[index]
-        self.live.anew()
-        self._offer_undo()
-
-    def _turn(self, direction: int) -> None:
-        """Choose the next network that can be loaded."""
-        index, count = self._tabs.index, len(self._tabs.options)
-        for distance in range(1, count):
-            self._tabs.choose((index + direction * distance) % count)
-            if self._tabs.index != index:
-                return
-
-    def _pick(self) -> Transition:
-        """Open a list of all networks with their accuracy."""
-        from game.scenes.menus.dialogs import ListDialog
-
-        damaged = self.live.reader.problems
-        rows = [
-            (called(name), texts.DIGIT_MODEL_DAMAGED if name in damaged else network.said)
-            for name, network in self.fixing.networks.items()
-        ]
-        return Push(ListDialog(self, texts.DIGITS_PICK, rows, self._tabs.choose))
-
-    def _quiz(self) -> Transition | None:
-        return self._with_chosen(partial(push, "quiz"))
+    # Other screens
 
     def _dream(self) -> Transition | None:
         """Open the dream scene with the drawing."""
@@ -302,13 +299,49 @@ class DigitsScene(FormScene):
         classifier = self.live.reader.classifiers.get(self.chosen)
         return lead(classifier) if classifier else None
 
-    def _draw_words(self, canvas: Canvas) -> None:
-        if self.reading.verdict(self.chosen) is not Verdict.EMPTY:
-            draw_fix(canvas, self.fixing, same=self._fix_of == self.pad.revision)
-        problems = [
-            texts.DIGITS_PROBLEM.format(name=called(name), problem=problem)
-            for name, problem in reversed(self.live.reader.problems.items())
-        ]
-        colour = canvas.palette.warn
-        draw_wrapped(canvas, "  ".join(problems), (LEFT, _PROBLEMS), _TABS[2], colour=colour, leading=17, most=4)
-        self.draw_hints(canvas)
+
+def fix_lines(fixing: FixRunner, *, same: bool) -> tuple[str, str]:
+    """Return how to correct an answer, or a fix's progress or result; `same`: whether its drawing is unchanged."""
+    step, fixed = fixing.step, fixing.fixed
+    if fixing.busy:
+        now = texts.DIGITS_FIXING_NOW.format(percent=percent(step.probability)) if step else ""
+        return texts.DIGITS_FIXING.format(digit=fixing.digit), now
+    if fixing.problem and same:
+        return texts.DIGITS_NOT_FIXED, fixing.problem
+    if fixed is None or not same:
+        return texts.DIGITS_FIX_HOW, ""
+    if not fixed.steps:
+        return texts.DIGITS_FIX_NEEDLESS.format(digit=fixed.digit), ""
+    before, now = map(percent, fixed.probability)
+    first = texts.DIGITS_FIXED.format(digit=fixed.digit, before=before, now=now)
+    return first, texts.DIGITS_FIX_COST.format(before=fixed.accuracy[0], after=fixed.accuracy[1])
+
+
+def _paint(why: Image, sheet: Canvas) -> None:
+    sheet.surface.blit(picture(why, sheet.surface.get_size(), AMBER), (0, 0))
+
+
+def _paint_stages(sheet: Canvas, reading: Reading, taken: tuple[bool, ...], tile: float) -> None:
+    for number, image in enumerate(reading.stages):
+        area = sheet.rect(1.2 * number * tile, 0, tile, tile)
+        stage = _fitted(image, area.width)
+        stage.set_alpha(None if taken[number] else 90)  # an alpha of 255 would take forty times as long
+        sheet.surface.blit(stage, area)
+        pygame.draw.rect(sheet.surface, LINE, area, 1)
+
+
+def _fitted(image: Image, side: int) -> pygame.Surface:
+    """Return an image of any shape fitted into a square; small images keep sharp pixels."""
+    coarse = max(image.shape) // side
+    if coarse > 1:
+        rows, columns = (max(1, length // coarse) for length in image.shape)
+        part = np.pad(image, [(0, max(0, coarse - length)) for length in image.shape])
+        part = part[: rows * coarse, : columns * coarse].reshape(rows, coarse, -1).mean(axis=1)
+        image = part.reshape(rows, columns, coarse) @ np.full(coarse, 1 / coarse, np.float32)
+    height, width = image.shape
+    scale = side / max(height, width)
+    size = (max(1, round(width * scale)), max(1, round(height * scale)))
+    surface = pygame.Surface((side, side))
+    surface.fill(NIGHT0)
+    surface.blit(picture(image, size), ((side - size[0]) // 2, (side - size[1]) // 2))
+    return surface

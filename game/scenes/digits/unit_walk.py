@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from types import FunctionType
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pygame
 
 from ai.digits.classifier import DigitClassifier
 from ai.explain.unit_sums import Box, Place, Stage, UnitSum, receptive_field, stages
@@ -14,10 +13,6 @@ from ai.nn import ActivationLayer, ConvolutionLayer, FullyConnectedLayer, MaxPoo
 from ai.nn.costs import softmax
 from game.core import texts
 from game.core.source import Source, source_of
-from game.drawing.canvas import Canvas
-from game.drawing.prose import draw_wrapped
-from game.drawing.tokens import MUTE, SMALL
-from game.panels.code_listing import draw_listing
 
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier
@@ -137,10 +132,6 @@ class UnitWalk:
         return row, column, channel
 
 
-_BOX: Final = pygame.FRect(844, 150, 396, 420)
-_BELOW: Final = 600.0  # first baseline of what the case at hand is
-
-
 def code_of(walk: UnitWalk) -> tuple[Source, int] | None:
     """Return the code of the stage looked at, and the number of its line that computes the sum; None without source."""
     function, *line = _function(walk)
@@ -167,20 +158,8 @@ def _function(walk: UnitWalk) -> tuple[Any, ...]:
     return (type(walk.stage.layer).predict,)
 
 
-def draw_code(canvas: Canvas, walk: UnitWalk) -> None:
-    """Draw the code of the stage looked at, and which of its numbers are on the left."""
-    found = code_of(walk)
-    if found is None:
-        draw_wrapped(canvas, texts.PATCH_NO_CODE, (_BOX.left, 176), _BOX.width, size=SMALL, colour=MUTE)
-        return
-    source, line = found
-    draw_listing(canvas, _BOX, source, line)
-    if words := _said(walk):
-        draw_wrapped(canvas, words, (_BOX.left, _BELOW), _BOX.width, size=SMALL, colour=MUTE, most=4)
-
-
-def _said(walk: UnitWalk) -> str:
-    """Return what the lit line's arrays are in the case at hand."""
+def arrays_of(walk: UnitWalk) -> str:
+    """Return what the arrays of that line are in the case at hand; empty where that goes without saying."""
     match walk.stage.layer:
         case _ if walk.at_answer:
             return ""
@@ -192,3 +171,17 @@ def _said(walk: UnitWalk) -> str:
             inputs, units = layer.weights.shape
             return texts.PATCH_CODE["connected"].format(inputs=inputs, units=units, number=walk.place[2] + 1)
     return ""
+
+
+def deed_of(walk: UnitWalk) -> str:
+    """Return what the stage looked at does, in a sentence."""
+    if walk.at_answer:
+        return texts.PATCH_SAYS["answer"]
+    match walk.stage.layer:
+        case ConvolutionLayer(kernel=kernel):
+            return texts.PATCH_SAYS["deeper" if walk.number else "convolution"].format(size=kernel)
+        case MaxPoolingLayer(size=size):
+            return texts.PATCH_SAYS["pooling"].format(size=size)
+        case ActivationLayer(activation=activation):
+            return texts.PATCH_BENDS.get(activation.name or "", texts.PATCH_BENDS["other"])
+    return texts.PATCH_SAYS[walk.stage.kind]

@@ -15,167 +15,27 @@ from game.core import texts
 from game.core.scene import Transition, push
 from game.digits import percent
 from game.digits.pictures import SIGNED, Numbers, picture
-from game.drawing import typeface
 from game.drawing.canvas import Canvas
+from game.drawing.cursor import Cursor
 from game.drawing.paint_cache import PaintCache
-from game.drawing.prose import draw_wrapped
-from game.drawing.sky import NightSky
-from game.drawing.tokens import HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL, TEXT, TITLE, Colour
+from game.drawing.tokens import LABEL, LINE, MUTE, NET, SMALL, TITLE
 from game.input.controls import Command
-from game.scenes.digits.answer import LEFT, DigitRow
-from game.scenes.digits.patch_sums import figure
+from game.scenes.digits.answer import DigitBars, write_large
+from game.scenes.digits.pad import side_in
 from game.scenes.digits.reader import best_two
+from game.scenes.digits.scene import COLUMNS, LEAST
+from game.scenes.digits.sums import figure
 from game.ui.actions import Action, Table, one_of_ten
 from game.ui.context import Context
-from game.ui.form_scene import FOOT, FormScene
-from game.ui.hints import HintRow
-from game.ui.widgets import TextButton
+from game.ui.panel import Column, Panel
+from game.ui.panel_scene import PanelScene
 
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier
-    from ai.digits.preprocessing import Image
 
-
-_DIGITS: Final = 10
-_FRAME: Final = pygame.Rect(40, 86, 504, 504)  # eighteen points to a pixel
-_BELOW: Final = 604
-SAID_LEFT: Final = 900.0
-_WIDTH: Final = 344.0
-_SAID: Final = 122.0  # first baseline of the sentences
-_LEADING: Final = 18.0
-_MAPS: Final = (SAID_LEFT, 266.0, 160.0)
-_SECOND_MAP: Final = 184.0  # from the left of the first map
+_MAP: Final = 150.0
 _EVERY: Final = 8  # updates from one picture of what is being measured to the next
-
-
-class WhyNotScene(FormScene):
-    """A digit (28, 28), the network's answer, and the question why it is not another.
-
-    Attributes:
-        image: the digit as it is now.
-        asked: the digit that is asked about.
-        contrast: the evidence; None for a network that cannot be asked.
-        seen: what is shown of it; None likewise, and without ink.
-
-    """
-
-    def __init__(self, context: Context, classifier: DigitClassifier, image: Image) -> None:
-        super().__init__(context)
-        self._classifier, self._first = classifier, np.asarray(image, np.float32)
-        self._sky = NightSky(np.random.default_rng(15), ember=0.2, stars=24)
-        self._view, self._painted = ContrastView(), PaintCache()
-        self._steps = 0
-        self._rows = [self.form.add(DigitRow(self.form.manager, digit, self.ask)) for digit in range(_DIGITS)]
-        self._add_words()
-        self.asked = best_two(classifier.predict(self._first)[0])[1]
-        self._set_image(self._first)
-        self.form.focus(self._rows[self.asked])
-
-    def ask(self, digit: int) -> None:
-        """Ask about another digit."""
-        self.asked = digit
-        self._show()
-
-    def actions(self) -> Table:
-        """Ask about a digit by its key, or the next one; change the ink; go back."""
-        return [
-            *one_of_ten(self.context.controls, self.ask, lambda: self.asked),
-            Action(Command.RETRY, self._restore, texts.WHY_NOT_UNDO.lower()),
-            self.form.goes_back(texts.HINT_BACK),
-        ]
-
-    def hint_rows(self, canvas: Canvas) -> list[HintRow]:
-        """Return the hints below the picture."""
-        return [HintRow(self.hints, (_FRAME.left, FOOT[1]))]
-
-    def update(self) -> Transition | None:
-        """Measure the effect of the next squares of ink."""
-        if self.contrast and not self.contrast.done:
-            self.contrast.advance()
-            self._steps += 1
-            if self._steps % _EVERY == 0 or self.contrast.done:
-                self._show()
-        return self.form.update()
-
-    def draw(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the digit, the answer, and the evidence."""
-        self._sky.draw(canvas)
-        canvas.text(texts.WHY_NOT_TITLE.format(digit=self.asked), (_FRAME.left, 45), size=TITLE)
-        canvas.text(texts.WHY_NOT_LINE, (_FRAME.left, 70), size=SMALL, colour=MUTE, room=1200)
-        self._painted.draw(canvas, _FRAME, self.image.tobytes(), self._paint_image)
-        if self.seen:
-            self._view.draw(canvas, self.seen)
-            self._view.draw_marks(canvas, self.seen, (*_FRAME.topleft, *_FRAME.size))
-        else:
-            words = texts.WHY_NOT_STRANGE if self.contrast is None else texts.WHY_NOT_EMPTY
-            draw_wrapped(canvas, words, (SAID_LEFT, 122), _WIDTH, size=TEXT, colour=MUTE, leading=22)
-        if self.image.any():
-            self._draw_answer(canvas)
-        self.form.draw(canvas)
-        self.draw_hints(canvas)
-
-    def _paint_image(self, sheet: Canvas) -> None:
-        area = sheet.rect(0, 0, *_FRAME.size)
-        sheet.surface.blit(picture(self.image, area.size), area)
-        pygame.draw.rect(sheet.surface, LINE, area, 1)
-
-    def _draw_answer(self, canvas: Canvas) -> None:
-        answer, probability = int(self.probabilities.argmax()), float(self.probabilities.max())
-        canvas.text(str(answer), (LEFT - 6, 200), size=124, weight="extralight", colour=INK)
-        words = texts.WHY_NOT_READS.format(digit=answer, percent=percent(probability))
-        if self.contrast:
-            words += texts.WHY_NOT_SCORE.format(score=figure(float(self.contrast.scores[answer])))
-        canvas.text(words, (LEFT, 232), size=TEXT, colour=MUTE, tabular=True)
-        canvas.marker("triangle", (LEFT - 16, self._rows[self.asked].box.centery), 8, HUMAN)
-
-    # The picture
-
-    def _set_image(self, image: Image) -> None:
-        self.image = image
-        self.probabilities = self._classifier.predict(image)[0]
-        best = int(self.probabilities.argmax())
-        for row in self._rows:
-            row.values, row.best = (float(self.probabilities[row.digit]), 0.0), row.digit == best
-        try:
-            self.contrast: Contrast | None = Contrast(self._classifier, image)
-        except ValueError:
-            self.contrast = None
-        self._show()
-
-    def _show(self) -> None:
-        known = self.contrast is not None and bool(self.image.any())
-        self.seen: Shown | None = shown(self.contrast, self.asked) if known and self.contrast else None
-
-    def _take(self) -> None:
-        self._change(0)
-
-    def _put(self) -> None:
-        self._change(1)
-
-    def _change(self, ink: int) -> None:
-        """Take the ink away that is in the asked digit's way, or put the ink that it lacks."""
-        if self.contrast and self.seen and self.seen.measured and self.asked != self.contrast.answer:
-            change = self.seen.put if ink else self.seen.take
-            if change:
-                self._set_image(self.contrast.changed(change.row, change.column, ink))
-
-    def _restore(self) -> None:
-        if self.image is not self._first:
-            self._set_image(self._first)
-
-    def _inside(self) -> Transition:
-        return push("digit_inside", self._classifier, self.image)
-
-    def _add_words(self) -> None:
-        left = float(_FRAME.left)
-        for word, press in ((texts.WHY_NOT_TAKE_IT, self._take), (texts.WHY_NOT_PUT_IT, self._put),
-                            (texts.WHY_NOT_UNDO, self._restore)):  # fmt: skip
-            width = typeface.width(word, TEXT, "regular")
-            self.form.add(TextButton(self.form.manager, (left, _BELOW, width, 28), word, press))
-            left += width + 26
-        width = typeface.width(texts.WHY_NOT_INSIDE, TEXT, "medium")
-        box = (SAID_LEFT + _WIDTH - width, 24, width, 28)
-        self.form.add(TextButton(self.form.manager, box, texts.WHY_NOT_INSIDE, self._inside, weight="medium"))
+_INDENT: Final = 16.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -199,6 +59,170 @@ class Shown:
     there: Numbers
     missing: Numbers
     measured: bool
+
+
+class WhyNotScene(PanelScene):
+    """A digit (28, 28), the network's answer, and the question why it is not another.
+
+    Attributes:
+        image: the digit as it is now.
+        asked: the digit that is asked about.
+        contrast: the evidence; None for a network that cannot be asked.
+        seen: what is shown of it; None likewise, and without ink.
+
+    """
+
+    def __init__(self, context: Context, classifier: DigitClassifier, image: Image) -> None:
+        super().__init__(context)
+        self._classifier, self._first = classifier, np.asarray(image, np.float32)
+        self._painted, self._maps = PaintCache(), (PaintCache(), PaintCache())
+        self._steps = 0
+        self.asked = best_two(classifier.predict(self._first)[0])[1]
+        self._bars = DigitBars(self.form.manager, self.ask)
+        self._set_image(self._first)
+        self.form.focus(self._bars)
+
+    def ask(self, digit: int) -> None:
+        """Ask about another digit."""
+        self.asked = digit
+        self._show()
+        self.build()
+
+    def actions(self) -> Table:
+        return [
+            *one_of_ten(self.context.controls, self.ask, lambda: self.asked),
+            Action(Command.RETRY, self._restore, texts.WHY_NOT_UNDO.lower()),
+            self.form.goes_back(texts.HINT_BACK),
+        ]
+
+    def update(self) -> Transition | None:
+        if self.contrast and not self.contrast.done:
+            self.contrast.advance()
+            self._steps += 1
+            if self._steps % _EVERY == 0 or self.contrast.done:
+                self._show()
+        return super().update()
+
+    # The digit and its evidence
+
+    def _set_image(self, image: Image) -> None:
+        self.image = image
+        self.probabilities = self._classifier.predict(image)[0]
+        try:
+            self.contrast: Contrast | None = Contrast(self._classifier, image)
+        except ValueError:
+            self.contrast = None
+        self._show()
+        self.build()
+
+    def _show(self) -> None:
+        known = self.contrast is not None and bool(self.image.any())
+        self.seen: Shown | None = shown(self.contrast, self.asked) if known and self.contrast else None
+
+    def _change(self, ink: int) -> None:
+        """Take the ink away that is in the asked digit's way (0), or put the ink that it lacks (1)."""
+        if self.contrast and self.seen and self.seen.measured and self.asked != self.contrast.answer:
+            change = self.seen.put if ink else self.seen.take
+            if change:
+                self._set_image(self.contrast.changed(change.row, change.column, ink))
+
+    def _restore(self) -> None:
+        if self.image is not self._first:
+            self._set_image(self._first)
+
+    # Rows
+
+    def describe(self, panel: Panel) -> None:
+        left, right = panel.beside(COLUMNS, least=LEAST, apart=40.0)
+        left.text(texts.WHY_NOT_TITLE.format(digit=self.asked), size=TITLE)
+        left.aside(texts.WHY_NOT_LINE)
+        left.gap()
+        left.picture(lambda width: min(side_in(width), 440.0), self._draw_image)
+        left.words([
+            (texts.WHY_NOT_TAKE_IT, lambda: self._change(0)),
+            (texts.WHY_NOT_PUT_IT, lambda: self._change(1)),
+            (texts.WHY_NOT_UNDO, self._restore),
+        ])  # fmt: skip
+        answer, evidence = right.beside((22, 33), least=160.0)
+        answer.add(self._write_answer)
+        eased = self._bars.shown
+        self._bars = answer.widget(DigitBars(self.form.manager, self.ask, self.asked))
+        self._bars.shown, self._bars.best = eased, int(self.probabilities.argmax())
+        self._bars.values = [(value, 0.0) for value in self.probabilities.tolist()]
+        self._describe_evidence(evidence)
+        evidence.words([(texts.WHY_NOT_INSIDE, lambda: push("digit_inside", self._classifier, self.image))])
+
+    def _describe_evidence(self, column: Column) -> None:
+        if self.seen is None:
+            column.text(texts.WHY_NOT_STRANGE if self.contrast is None else texts.WHY_NOT_EMPTY, colour=MUTE)
+            return
+        column.add(self._write_sentences)
+        if self.asked == self.seen.answer:
+            return
+        column.gap()
+        for number, (part, words) in enumerate(
+            zip(column.beside((1, 1), least=100.0, apart=20.0), (texts.WHY_NOT_INK, texts.WHY_NOT_ROOM), strict=True)
+        ):
+            part.caption(words)
+            part.picture(lambda width: min(width, _MAP), lambda canvas, box, n=number: self._draw_map(canvas, box, n))  # type: ignore[misc]
+        column.add(self._write_legend)
+
+    def _write_answer(self, cursor: Cursor) -> None:
+        answer = int(self.probabilities.argmax())
+        write_large(cursor, str(answer))
+        words = texts.WHY_NOT_READS.format(digit=answer, percent=percent(float(self.probabilities[answer])))
+        if self.contrast:
+            words += texts.WHY_NOT_SCORE.format(score=figure(float(self.contrast.scores[answer])))
+        cursor.styled(words, colour=MUTE, tabular=True)
+
+    def _write_sentences(self, cursor: Cursor) -> None:
+        assert self.seen
+        marked = self.seen.measured and self.asked != self.seen.answer
+        for words, colour in zip(sentences(self.seen), (cursor.palette.warn, NET), strict=False):
+            if marked and cursor.canvas:
+                cursor.canvas.rounded((cursor.left, cursor.y + 5, 8, 8), 2, colour)
+            cursor.styled(words, SMALL, indent=_INDENT * marked)
+            cursor.gap(4)
+
+    def _write_legend(self, cursor: Cursor) -> None:
+        if canvas := cursor.canvas:
+            x, y = cursor.left, cursor.y + 15
+            for words, colour in zip(texts.WHY_NOT_LEGEND, (NET, canvas.palette.warn), strict=True):
+                canvas.rounded((x, y - 7, 7, 7), 1.5, colour)
+                x += 24 + canvas.text(words.format(asked=self.asked), (x + 12, y), size=LABEL, colour=MUTE).width
+        cursor.gap(24)
+
+    # Pictures
+
+    def _draw_image(self, canvas: Canvas, box: pygame.FRect) -> None:
+        """Draw the digit, with both squares of ink in it."""
+        side = box.height
+        self._painted.draw(canvas, (*box.topleft, side, side), self.image.tobytes(), self._paint_image)
+        if (seen := self.seen) is None or not seen.measured or seen.asked == seen.answer:
+            return
+        pixel = side / SIDE
+        for change, colour in ((seen.take, canvas.palette.warn), (seen.put, NET)):
+            if change:
+                left = box.left + (change.column - SQUARE // 2) * pixel
+                top = box.top + (change.row - SQUARE // 2) * pixel
+                canvas.outline((left, top, SQUARE * pixel, SQUARE * pixel), 3, colour, 2)
+                canvas.text("+" if change.ink else "−", (left + SQUARE * pixel + 6, top + 14), colour=colour)
+
+    def _paint_image(self, sheet: Canvas) -> None:
+        area = sheet.surface.get_rect()
+        sheet.surface.blit(picture(self.image, area.size), area)
+        pygame.draw.rect(sheet.surface, LINE, area, 1)
+
+    def _draw_map(self, canvas: Canvas, box: pygame.FRect, number: int) -> None:
+        if seen := self.seen:
+            values = (seen.there, seen.missing)[number]
+
+            def paint(sheet: Canvas) -> None:
+                area = sheet.surface.get_rect()
+                sheet.surface.blit(picture(values, area.size, SIGNED), area)
+                pygame.draw.rect(sheet.surface, LINE, area, 1)
+
+            self._maps[number].draw(canvas, (*box.topleft, box.height, box.height), seen, paint)
 
 
 def shown(contrast: Contrast, asked: int) -> Shown:
@@ -248,55 +272,3 @@ def _region(change: InkChange, ink: tuple[tuple[int, int], tuple[int, int]]) -> 
         for at, (first, last) in zip((change.row, change.column), ink, strict=True)
     )
     return 3 * row + column
-
-
-class ContrastView:
-    """Draws what is shown of a contrast; pictures are kept until that changes."""
-
-    def __init__(self) -> None:
-        self._painted = PaintCache()
-
-    def draw(self, canvas: Canvas, seen: Shown) -> None:
-        """Draw sentences and both maps."""
-        self._painted.draw(canvas, (SAID_LEFT, 0, _WIDTH + 30, 720), seen, lambda sheet: _paint(sheet, seen))
-
-    def draw_marks(self, canvas: Canvas, seen: Shown, box: tuple[float, float, float, float]) -> None:
-        """Mark both squares in a picture of the digit."""
-        if not seen.measured or seen.asked == seen.answer:
-            return
-        pixel = box[2] / SIDE
-        for change, colour in ((seen.take, canvas.palette.warn), (seen.put, NET)):
-            if change:
-                left, top = (
-                    box[0] + (change.column - SQUARE // 2) * pixel,
-                    box[1] + (change.row - SQUARE // 2) * pixel,
-                )
-                canvas.outline((left, top, SQUARE * pixel, SQUARE * pixel), 3, colour, 2)
-                sign = "+" if change.ink else "−"
-                canvas.text(sign, (left + SQUARE * pixel + 6, top + 14), colour=colour)
-
-
-def _paint(sheet: Canvas, seen: Shown) -> None:
-    y = _SAID
-    colours: tuple[Colour, ...] = (sheet.palette.warn, NET)
-    for words, colour in zip(sentences(seen), colours, strict=False):
-        indent = 16 if seen.measured and seen.asked != seen.answer else 0
-        if indent:
-            sheet.rounded((0, y - 8, 8, 8), 2, colour)
-        y = draw_wrapped(sheet, words, (indent, y), _WIDTH - indent, size=SMALL, leading=_LEADING, most=4) + 6
-    if seen.asked != seen.answer:
-        _paint_maps(sheet, seen)
-
-
-def _paint_maps(sheet: Canvas, seen: Shown) -> None:
-    left, top, size = _MAPS
-    for number, (values, words) in enumerate(((seen.there, texts.WHY_NOT_INK), (seen.missing, texts.WHY_NOT_ROOM))):
-        x = left - SAID_LEFT + number * _SECOND_MAP
-        area = sheet.rect(x, top, size, size)
-        sheet.surface.blit(picture(values, area.size, SIGNED), area)
-        sheet.outline((x, top, size, size), 0, LINE)
-        sheet.text(words, (x, top - 10), size=LABEL, colour=MUTE, weight="medium", room=size)
-    x, y = 0.0, top + size + 18
-    for words, colour in zip(texts.WHY_NOT_LEGEND, (NET, sheet.palette.warn), strict=True):
-        sheet.rounded((x, y - 7, 7, 7), 1.5, colour)
-        x += 12 + sheet.text(words.format(asked=seen.asked), (x + 12, y), size=LABEL, colour=MUTE).width + 12

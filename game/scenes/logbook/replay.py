@@ -43,8 +43,7 @@ from game.ui.form_scene import FormScene
 from game.ui.hints import HintRow
 from game.ui.playback import LABEL_WIDTH, Playback
 from game.ui.widget import OnPress
-from game.ui.widgets import TextButton
-from game.ui.words import GAP
+from game.ui.widgets import GAP, TextButton
 from game.world.camera import ClearArea, View
 from game.world.path_preview import draw_futures
 from game.world.paths import draw_faint

@@ -1,39 +1,36 @@
-"""Base of the exhibits: a room, bodies with their sprites, and live labels."""
+"""What an exhibit is: a law, a room with bodies, live labels, and a number that is measured."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar, Final, Literal
+from typing import Any, ClassVar, Final
 
 import numpy as np
-import pygame
 
 from engine import DT, Body, Circle, Polygon, Shape, Sprite, World
 from engine.shapes import Point
 from engine.vector import Array
 from game.drawing.canvas import Canvas
-from game.drawing.figures import write_figures
-from game.drawing.tokens import INK, SMALL
+from game.drawing.tokens import INK, MUTE, SMALL
 from game.world.camera import View
 from game.world.grip import Grip
 
-# Clear height above the ground, below the text at the top, as a share of the view's width.
-CLEAR: Final = 0.35
+CLEAR: Final = 0.35  # height that is seen above the ground, as a share of the room's width
+BELOW: Final = 0.05  # and below it
 _WALL: Final = 4.0
 _WALL_HEIGHT: Final = 200.0
 _GAUGE: Final = 64.0
-_AROUND: Final = 180  # points: labels are written around their places
 _FIXED, _BOXES, _DISCS = range(3)  # layers
 
 
 @dataclass(frozen=True)
 class Label:
-    """A label in the world, centred on a place in metres, or at that offset from a body.
+    """Words in the room, centred on a place in metres, or at that offset from a body.
 
     Attributes:
-        within: whether the value is within its limit, shown by a mark beside the text; None for no mark.
-        fill: filled share of a bar under the text, 0 to 1; None for no bar.
+        within: whether the value is within its limit, shown by a mark beside the words; None for no mark.
+        fill: filled share of a bar under the words, 0 to 1; None for no bar.
         limit: place of a tick on that bar, 0 to 1.
 
     """
@@ -45,21 +42,17 @@ class Label:
     fill: float | None = None
     limit: float | None = None
 
-    def draw(self, canvas: Canvas, view: View, poses: Array, covered: pygame.Rect | None) -> None:
-        """Draw it, with its mark and its bar, unless a panel has it `covered`; `poses` (bodies, 3) are as drawn."""
+    def draw(self, canvas: Canvas, view: View, poses: Array) -> None:
+        """Draw it with its mark and its bar; `poses` (bodies, 3) are as drawn."""
         place = np.asarray(self.place)
         if self.body is not None:
             place = place + poses[self.body.index, :2]
         x, y = view.points(place).tolist()
-        if covered and covered.inflate(_AROUND, 24).collidepoint(x, y):
-            return
-        left, _ = write_figures(canvas, self.text, (x, y + 4), size=SMALL, centred=True)
-        palette = canvas.palette
-        if self.within is not None:
-            if self.within:
-                canvas.dot((left - 10, y), 2.5, palette.good)
-            else:
-                canvas.marker("triangle", (left - 10, y), 9, palette.warn)
+        left = canvas.text(self.text, (x, y + 4), size=SMALL, colour=MUTE, align="centre", tabular=True).left - 10
+        if self.within:
+            canvas.dot((left, y), 2.5, canvas.palette.good)
+        elif self.within is not None:
+            canvas.marker("triangle", (left, y), 9, canvas.palette.warn)
         if self.fill is not None:
             canvas.bar((x - _GAUGE / 2, y + 11, _GAUGE, 2), self.fill, INK)
         if self.limit is not None:
@@ -93,15 +86,15 @@ class Quantity:
 class Exhibit:
     """One law of the engine, in a room of its own: a floor at y = 0, and walls at the edges of the view.
 
-    A subclass builds its bodies in `build` and says in `figures` what the law predicts and what is measured. Which
-    sentence quotes them depends on its `state`: one that was true before an impact, or before a hand came in, may
-    not be so after it.
-
     Attributes:
-        plot_side: side on which the plot covers nothing that bears on the measurement.
-        result: the number that this run has measured; None until then, and if a hand has come in before.
-        width: width of the view, in metres.
+        name: its name in `texts.EXHIBITS` and `texts.LAWS`.
+        patience: steps after which a run has measured, or will not.
+        points: values for which the whole range is measured, at most.
+        tolerance: share of the law's greatest value by which a measurement may differ from it.
+        width: width of the room, in metres.
         weightless: whether there is no gravity, whatever was chosen.
+        values: the quantities, by name.
+        result: the number that this run has measured; None until then, and if a hand has come in before.
         sprites: all that is drawn, by the image keys of `game.world.bodies`.
         bodies: the movable bodies.
         rules: reference lines at known heights or places, as start and end in metres.
@@ -114,14 +107,12 @@ class Exhibit:
     patience: ClassVar[int]
     points: ClassVar[int] = 9
     tolerance: ClassVar[float] = 0.01
-    plot_side: ClassVar[Literal["left", "right"]] = "right"
-    width = 28.0
-    weightless = False
+    width: ClassVar[float] = 28.0
+    weightless: ClassVar[bool] = False
 
-    def __init__(self, gravity: float, values: Mapping[str, float] | None = None, *, lean: bool = False) -> None:
+    def __init__(self, gravity: float, values: Mapping[str, float] | None = None) -> None:
         self.gravity = 0.0 if self.weightless else gravity
-        self.values = self.start_values() | dict(values or {})
-        self.lean = lean
+        self.values = {each.name: each.start for each in self.quantities} | dict(values or {})
         self.result: float | None = None
         self.world = World((0.0, -self.gravity))
         self.sprites: list[Sprite] = []
@@ -135,38 +126,37 @@ class Exhibit:
         self.build()
         self.touched = np.zeros(self.world.state.pose.shape[1], dtype=bool)
 
-    def build(self) -> None:
-        """Add the bodies."""
-        raise NotImplementedError
-
-    @classmethod
-    def start_values(cls) -> dict[str, float]:
-        """Return the values of its quantities at first, by their names."""
-        return {quantity.name: quantity.start for quantity in cls.quantities}
+    # What each exhibit says
 
     @classmethod
     def law(cls, gravity: float, values: Mapping[str, float]) -> float:
         """Return the number that the law gives for `result`, in closed form, with all quantities given."""
         raise NotImplementedError
 
-    @property
-    def state(self) -> str:
-        """Key of the sentence in `texts.EXHIBITS` that is true now."""
-        return "always"
-
-    def figures(self) -> dict[str, float]:
-        """Return the figures quoted in the exhibit's live line, by their names there."""
+    def build(self) -> None:
+        """Add the bodies."""
         raise NotImplementedError
-
-    def labels(self) -> list[Label]:
-        """Return the current labels."""
-        return []
 
     def prepare(self) -> None:
         """Apply the exhibit's own impulses before the next step."""
 
     def observe(self) -> None:
         """Take the exhibit's measurements after a step; set `result` once it is known."""
+
+    @property
+    def state(self) -> str:
+        """Key of the sentence in `texts.EXHIBITS` that is true now: what was true before an impact may not be after."""
+        return "always"
+
+    def figures(self) -> dict[str, float]:
+        """Return the figures quoted in that sentence, by their names there."""
+        raise NotImplementedError
+
+    def labels(self) -> list[Label]:
+        """Return the current labels."""
+        return []
+
+    # What they share
 
     def step(self, grip: Grip | None = None) -> None:
         """Advance by 1/60 s, during which a grip may pull at a body."""
@@ -194,13 +184,15 @@ class Exhibit:
         """Add a visible body, its shape's middle at `position`; `physics` are keyword arguments of `World.add`."""
         body = self.world.add(shape, position, **physics)
         disc = isinstance(shape, Circle)
-        layer = _FIXED if body.static else _DISCS if disc else _BOXES
-        self.sprites.append(Sprite(body, image, extent(shape), layer))
+        wide, high = (2 * shape.radius,) * 2 if isinstance(shape, Circle) else np.ptp(shape.vertices, axis=0).tolist()
+        self.sprites.append(Sprite(body, image, (wide, high), _FIXED if body.static else _DISCS if disc else _BOXES))
         if not body.static:
             self.bodies.append(body)
         return body
 
-    # Measurements of every exhibit
+    def is_touched(self, *bodies: Body) -> bool:
+        """Whether a hand has come to any of these bodies."""
+        return bool(self.touched[[body.index for body in bodies]].any())
 
     @property
     def poses(self) -> Array:
@@ -235,14 +227,6 @@ class Exhibit:
             return 0.0
         rows = np.all([(contacts.body == body.index).any(axis=1) for body in bodies], axis=0)
         return float(contacts.impulse[rows, :2].sum()) / DT
-
-
-def extent(shape: Shape) -> tuple[float, float]:
-    """Return the width and height of a shape, in metres."""
-    if isinstance(shape, Circle):
-        return 2 * shape.radius, 2 * shape.radius
-    wide, high = np.ptp(shape.vertices, axis=0).tolist()
-    return wide, high
 
 
 def height(body: Body) -> float:

@@ -12,24 +12,21 @@ from engine import DT, Body, Circle, Polygon
 from game.core import texts
 from game.scenes.physics.exhibit import Exhibit, Label, Quantity, height, speed
 
-# Baseline of the columns' names below the ground line; points become metres by an exhibit's width.
-_BELOW: Final = -0.014
+_FOOT: Final = -0.014  # shares of a room's width above the ground, for the names of columns
 _TOUCH: Final = 0.005  # gap in metres below which a body counts as landed
 _SLID: Final = 0.1  # metres from its place from which a box counts as having slid
-_DISC: Final = 0.42  # metres, the radius of a disc of 1 kg
+_DISC: Final = 0.42  # metres, the radius of a disc of 1 kg: all have the same density
 _WALL: Final = 0.1  # a face whose normal points up by less is a wall
 
 
 class Slopes(Exhibit):
     """Five boxes on one slope: those slide whose coefficient of friction is less than tan θ."""
 
-    name = "slopes"
+    name, patience, width = "slopes", 40, 32.0
     quantities = (Quantity("degrees", (5.0, 36.0), 30.0, 1.0), Quantity("friction", (0.0, 1.0), 0.5, 0.05))
-    patience = 40
-    width = 32.0
     size = (1.4, 0.9)
     length = 16.0 / math.cos(math.pi / 6)  # metres along the slope
-    which: int = 2  # the box whose friction can be changed, and whose acceleration is measured
+    which = 2  # the box whose friction can be changed, and whose acceleration is measured
     timed = (10, 40)  # steps between which it is measured
 
     @classmethod
@@ -40,61 +37,52 @@ class Slopes(Exhibit):
 
     def build(self) -> None:
         """Place the slipperiest box lowest, so that none runs into another."""
-        self.degrees = self.values["degrees"]
-        self.frictions: tuple[float, ...] = (0.2, 0.35, self.values["friction"], 0.65, 0.8)
-        slope = math.radians(self.degrees)
+        self.frictions = (0.2, 0.35, self.values["friction"], 0.65, 0.8)
+        slope = math.radians(self.values["degrees"])
         right, top = 5.0, self.length * math.sin(slope)
         left = right - self.length * math.cos(slope)
         middle = np.array([(left + right) / 2, top / 2])
         corners = np.array([(left, 0.0), (right, 0.0), (left, top)]) - middle
-        self.slope = self.add(Polygon(corners), middle, "slope", static=True)
-        self.down = np.array([math.cos(slope), -math.sin(slope)])
-        along, away = np.array([-math.cos(slope), math.sin(slope)]), np.array([math.sin(slope), math.cos(slope)])
+        self.add(Polygon(corners), middle, "slope", static=True)
+        self.down, away = np.array([math.cos(slope), -math.sin(slope)]), np.array([math.sin(slope), math.cos(slope)])
         self.boxes: list[Body] = []
         for number, friction in enumerate(self.frictions):
-            if self.lean and number != self.which:
-                continue
-            place = np.array([right, 0.0]) + (3.4 + 3.3 * number) * along + self.size[1] / 2 * away
+            place = np.array([right, 0.0]) - (3.4 + 3.3 * number) * self.down + self.size[1] / 2 * away
             image = "bright-box" if number == self.which else "box"
-            box = self.add(Polygon.box(*self.size), place, image, angle=-slope, friction=friction)
-            self.boxes.append(box)
+            self.boxes.append(self.add(Polygon.box(*self.size), place, image, angle=-slope, friction=friction))
         self.places = [box.position[0].copy() for box in self.boxes]
         self.slid: set[int] = set()
-        self._pace = 0.0
 
     def observe(self) -> None:
         """Record the boxes that have slid without the hand's help, by their numbers, and time one of them."""
         for number, (box, place) in enumerate(zip(self.boxes, self.places, strict=True)):
-            if not self.touched[box.index] and np.hypot(*(box.position[0] - place)) > _SLID:
+            if not self.is_touched(box) and np.hypot(*(box.position[0] - place)) > _SLID:
                 self.slid.add(number)
-        box, (first, last) = self.boxes[0 if self.lean else self.which], self.timed
+        box, (first, last) = self.boxes[self.which], self.timed
+        pace = float(box.velocity[0] @ self.down)
         if self.steps == first:
-            self._pace = float(box.velocity[0] @ self.down)
-        if self.steps == last and not self.touched[box.index]:
-            self.result = (float(box.velocity[0] @ self.down) - self._pace) / ((last - first) * DT)
+            self._pace = pace
+        if self.steps == last and not self.is_touched(box):
+            self.result = (pace - self._pace) / ((last - first) * DT)
 
     def figures(self) -> dict[str, float]:
-        """Return the slope, its tangent, and the number of boxes that have slid."""
-        tangent = math.tan(math.radians(self.degrees))
-        return {"degrees": self.degrees, "tangent": tangent, "slid": len(self.slid)}
+        degrees = self.values["degrees"]
+        return {"degrees": degrees, "tangent": math.tan(math.radians(degrees)), "slid": len(self.slid)}
 
     def labels(self) -> list[Label]:
-        """Label each box with the slope it lies on, and whether that exceeds its friction."""
         labels = []
         for box, friction in zip(self.boxes, self.frictions, strict=True):
-            tangent = self.steepness(box)
-            if tangent is None:
-                labels.append(Label(texts.SLOPE_FRICTION.format(friction=friction), (0.45, 1.0), box))
-                continue
-            sign = ">" if tangent > friction else "<"
-            text = texts.SLOPE_LABEL.format(tangent=tangent, sign=sign, friction=friction)
-            labels.append(Label(text, (0.45, 1.0), box, within=tangent <= friction))
+            tangent, words, within = self.steepness(box), texts.SLOPE_FRICTION.format(friction=friction), None
+            if tangent is not None:
+                within = tangent <= friction
+                words = texts.SLOPE_LABEL.format(tangent=tangent, sign="<" if within else ">", friction=friction)
+            labels.append(Label(words, (0.45, 1.0), box, within))
         return labels
 
     def steepness(self, box: Body) -> float | None:
         """Return tan θ of the ground that a box lies flat on; None in the air, on an edge, or on a movable body."""
         if not self.steps:
-            return math.tan(math.radians(self.degrees))
+            return math.tan(math.radians(self.values["degrees"]))
         contacts = self.world.contacts
         if contacts is None:
             return None
@@ -110,14 +98,10 @@ class Slopes(Exhibit):
 class Bounce(Exhibit):
     """Five balls dropped from one height h: each bounces back to e² h."""
 
-    name = "bounce"
+    name, patience, width, tolerance = "bounce", 420, 22.0, 0.03
     quantities = (Quantity("restitution", (0.1, 1.0), 0.75, 0.05), Quantity("drop", (1.0, 6.5), 6.0, 0.5))
-    plot_side = "left"
-    patience = 420
-    tolerance = 0.03
-    width = 22.0
     radius = 0.4
-    which: int = 3  # the ball that the live line is about, and whose restitution can be changed
+    which = 3  # the ball that the live line is about, and whose restitution can be changed
 
     @classmethod
     def law(cls, gravity: float, values: Mapping[str, float]) -> float:  # noqa: ARG003
@@ -126,18 +110,17 @@ class Bounce(Exhibit):
 
     def build(self) -> None:
         """Place the balls, and mark the height to which each will bounce."""
-        self.drop = self.values["drop"]
-        self.restitutions: tuple[float, ...] = (0.0, 0.25, 0.5, self.values["restitution"], 1.0)
-        if self.lean:
-            self.restitutions, self.which = (self.values["restitution"],), 0
+        drop = self.values["drop"]
+        self.restitutions = np.array((0.0, 0.25, 0.5, self.values["restitution"], 1.0))
+        self.expected, self.columns = self.restitutions**2 * drop, -8.4 + 4.0 * np.arange(len(self.restitutions))
         self.balls: list[Body] = []
-        for number, restitution in enumerate(self.restitutions):
-            x = self._column(number)
-            place = (x, self.drop + self.radius)
+        for number, restitution in enumerate(self.restitutions.tolist()):
+            x, y = float(self.columns[number]), float(self.expected[number])
             image = "bright-disc" if number == self.which else "ember-disc"
+            place = (x, drop + self.radius)
             self.balls.append(self.add(Circle(self.radius), place, image, restitution=restitution))
             if restitution:
-                self.rules.append(((x - 0.9, restitution**2 * self.drop), (x + 0.9, restitution**2 * self.drop)))
+                self.rules.append(((x - 0.9, y), (x + 0.9, y)))
         self.peaks = np.zeros(len(self.balls))
         self.bounced, self.rising, self.measured = np.zeros((3, len(self.balls)), dtype=bool)
 
@@ -156,50 +139,36 @@ class Bounce(Exhibit):
 
     @property
     def state(self) -> str:
-        """Phase of the ball whose restitution can be changed: falling, rising, measured or touched."""
+        """Phase of the ball whose restitution can be changed."""
         if self.measured[self.which]:
             return "measured"
-        if self.touched[self.balls[self.which].index]:
+        if self.is_touched(self.balls[self.which]):
             return "touched"
         return "rising" if self.rising[self.which] else "falling"
 
     def figures(self) -> dict[str, float]:
-        """Return the bounce height that the law predicts for one ball, and the measured one."""
-        which = self.which
-        restitution = self.restitutions[which]
-        return {
-            "restitution": restitution,
-            "drop": self.drop,
-            "expected": restitution**2 * self.drop,
-            "peak": float(self.peaks[which]),
-        }
+        expected, peak = float(self.expected[self.which]), float(self.peaks[self.which])
+        return {**self.values, "expected": expected, "peak": peak}
 
     def labels(self) -> list[Label]:
-        """Label the columns, and each mark with the predicted and the measured height."""
         labels = []
-        for number, restitution in enumerate(self.restitutions):
-            x, expected = self._column(number), restitution**2 * self.drop
-            labels.append(Label(texts.BOUNCE_COLUMN.format(restitution=restitution), (x, _BELOW * self.width)))
+        for number, restitution in enumerate(self.restitutions.tolist()):
+            x, expected = float(self.columns[number]), float(self.expected[number])
+            labels.append(Label(texts.BOUNCE_COLUMN.format(restitution=restitution), (x, _FOOT * self.width)))
             if restitution:
                 words = texts.BOUNCE_PEAK if self.measured[number] else texts.BOUNCE_MARK
                 text = words.format(expected=expected, peak=self.peaks[number])
                 labels.append(Label(text, (x + 2.0, expected - 0.02)))
         return labels
 
-    def _column(self, number: int) -> float:
-        return -8.4 + 4.0 * number
-
 
 class DragRace(Exhibit):
     """Discs fall side by side without drag, with linear and with quadratic drag: each has its own terminal speed."""
 
-    name = "drag"
+    name, patience, width, tolerance = "drag", 1200, 40.0, 0.02
     quantities = (Quantity("linear_drag", (0.5, 2.0), 1.0, 0.1), Quantity("mass", (0.5, 2.0), 1.0, 0.1))
-    patience = 1200
-    tolerance = 0.02
-    width = 40.0
     top = 13.0
-    which: int = 1  # the disc that the live line is about, and whose mass can be changed
+    which = 1  # the disc that the live line is about, and whose mass can be changed
 
     @classmethod
     def law(cls, gravity: float, values: Mapping[str, float]) -> float:
@@ -209,7 +178,7 @@ class DragRace(Exhibit):
         which rises with s: the share for the height of the fall is found by bisection.
         """
         ease = values["linear_drag"] / values["mass"]
-        far = (cls.top - disc_radius(values["mass"])) * ease**2 / gravity
+        far = (cls.top - _DISC * math.sqrt(values["mass"])) * ease**2 / gravity
         low, high = 0.0, 1.0
         for _ in range(60):
             share = (low + high) / 2
@@ -218,49 +187,43 @@ class DragRace(Exhibit):
 
     def build(self) -> None:
         """Place the discs in a row."""
-        drag, mass = self.values["linear_drag"], self.values["mass"]
+        drag = self.values["linear_drag"]
         # Name of the column, mass, linear drag in kg/s, quadratic drag in kg/m.
-        self.lanes: tuple[tuple[str, float, float, float], ...] = (
+        self.lanes = (
             ("none", 1.0, 0.0, 0.0),
-            ("linear", mass, drag, 0.0),
+            ("linear", self.values["mass"], drag, 0.0),
             ("linear", 2.0, drag, 0.0),
             ("quadratic", 1.0, 0.0, 0.5),
             ("quadratic", 2.0, 0.0, 0.5),
         )
-        if self.lean:
-            self.lanes, self.which = self.lanes[1:2], 0
-        self.discs: list[Body] = []
-        for number, (_, mass, linear, quadratic) in enumerate(self.lanes):
-            image = "disc" if not linear + quadratic else "bright-disc" if linear else "ember-disc"
-            disc = self.add(
-                Circle(disc_radius(mass)),
+        self.discs = [
+            self.add(
+                Circle(_DISC * math.sqrt(mass)),
                 (self._lane(number), self.top),
-                image,
+                {"none": "disc", "linear": "bright-disc", "quadratic": "ember-disc"}[name],
                 mass=mass,
                 linear_drag=linear,
                 quadratic_drag=quadratic,
             )
-            self.discs.append(disc)
-        self.landed = False
-        self.speed = 0.0
+            for number, (name, mass, linear, quadratic) in enumerate(self.lanes)
+        ]
+        self.followed, self.speed = self.discs[self.which], 0.0
 
     def observe(self) -> None:
         """Follow the light disc with linear drag down to the floor, as long as no hand interferes."""
-        disc = self.discs[self.which]
-        if self.landed or self.touched[disc.index]:
+        if self.result is not None or self.is_touched(self.followed):
             return
-        self.landed = height(disc) - disc_radius(disc.mass) <= _TOUCH
-        if not self.landed:
-            self.speed = speed(disc)
-        else:
+        if height(self.followed) - _DISC * math.sqrt(self.followed.mass) <= _TOUCH:
             self.result = self.speed
+        else:
+            self.speed = speed(self.followed)
 
     @property
     def state(self) -> str:
-        """Phase of the light disc with linear drag: falling, landed or touched."""
-        if self.landed:
+        """Phase of the light disc with linear drag."""
+        if self.result is not None:
             return "landed"
-        return "touched" if self.touched[self.discs[self.which].index] else "falling"
+        return "touched" if self.is_touched(self.followed) else "falling"
 
     def terminal(self, number: int) -> float:
         """Return the terminal speed, at which drag balances the weight, in metres per second; infinite without drag."""
@@ -270,12 +233,9 @@ class DragRace(Exhibit):
         return math.sqrt(mass * self.gravity / quadratic) if quadratic else math.inf
 
     def figures(self) -> dict[str, float]:
-        """Return the terminal speed of the light disc with linear drag, and its current or last speed."""
-        mass = self.values["mass"]
-        return {"mass": mass, "terminal": self.terminal(self.which), "speed": self.speed}
+        return {"mass": self.values["mass"], "terminal": self.terminal(self.which), "speed": self.speed}
 
     def labels(self) -> list[Label]:
-        """Put a gauge beside each disc, the terminal speed marked; name the lanes."""
         labels = []
         fastest = math.sqrt(2 * self.gravity * self.top)
         for number, (disc, (name, mass, _, _)) in enumerate(zip(self.discs, self.lanes, strict=True)):
@@ -284,13 +244,9 @@ class DragRace(Exhibit):
             text = texts.DRAG_SPEED.format(speed=now)
             labels.append(Label(text, (2.0, 0.1), disc, fill=min(1.0, now / fastest), limit=limit))
             words = texts.DRAG_LANES[name].format(mass=mass, terminal=terminal)
-            labels.append(Label(words, (self._lane(number), _BELOW * self.width)))
+            below = _FOOT * self.width * (1 + 1.4 * (number % 2))  # in two rows: they are long
+            labels.append(Label(words, (self._lane(number), below)))
         return labels
 
     def _lane(self, number: int) -> float:
         return -15.2 + 7.2 * number
-
-
-def disc_radius(mass: float) -> float:
-    """Return the radius, in metres, of a disc of so many kilograms: all have the same density."""
-    return _DISC * math.sqrt(mass)

@@ -2,31 +2,42 @@
 
 from __future__ import annotations
 
+import math
 from typing import Final
 
+import numpy as np
 import pygame
 
+from engine.vector import Array, right_of
 from game.core import texts
 from game.core.source import source_of
-from game.drawing.canvas import Canvas
+from game.drawing.canvas import Canvas, Point
 from game.drawing.cursor import Cursor
 from game.drawing.prose import draw_wrapped
-from game.drawing.tokens import INK, MUTE, SMALL
+from game.drawing.tokens import INK, LINE, MUTE, NET, SMALL, TEXT, Colour
 from game.input.controls import Command
 from game.panels.code_listing import draw_listing
-from game.scenes.physics.exhibits import Exhibit
-from game.scenes.physics.step_pieces import Piece, pieces_of, rows, sentence
-from game.scenes.physics.step_record import Pair, StepRecord
-from game.scenes.physics.step_view import StepView
+from game.scenes.physics.exhibit import Exhibit
+from game.scenes.physics.step import Axis, Impulse, Pair, Piece, StepRecord, written
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.panel import Panel
 from game.ui.panel_scene import PanelScene
+from game.world.bodies import Outlines
+from game.world.camera import View
 from game.world.grip import Grip
 
-_PICTURE, _LISTING = 410.0, 320.0  # heights
+_PICTURE, _LISTING = 344.0, 400.0  # heights
 _NOTES: Final = 164.0  # points for the numbers beside the code
 _LEAST: Final = 420.0  # width of a column
+_SHARE: Final = 0.42  # of the picture's height that the two bodies fill
+_WIDER: Final = 2.6  # how much more is shown where all boxes are
+_LARGE: Final = 60.0  # metres: a box beyond that is the floor's or a wall's
+_ARROW: Final = 84.0  # points of the longest arrow
+_NORMAL: Final = 46.0  # points of a normal
+_HEAD: Final = 6.0
+_INSIDE: Final = 44.0  # points from a contact to the letter of a body that cannot move
+Legend = list[tuple[Colour, float, str]]  # colour and length in points of an arrow, and what it means
 
 
 class PhysicsStepScene(PanelScene):
@@ -37,16 +48,15 @@ class PhysicsStepScene(PanelScene):
         pair: the shapes that are followed through it; None if none is near another.
         pieces: what happens to them, one after the other.
         place: number of the piece that is shown.
-        in_code: whether its code and its figures stand beside the picture.
+        in_code: whether its code, with its numbers, stands beside the picture.
 
     """
 
     def __init__(self, context: Context, exhibit: Exhibit, grip: Grip | None = None) -> None:
         super().__init__(context)
         self.record = StepRecord(exhibit, grip)
-        self._view, self.in_code = StepView(self.record), False
-        self.pair = max(self.record.pairs, key=self._push, default=None)
-        self._follow(self.pair)
+        self._outlines, self.in_code = Outlines(self.record.exhibit.sprites), False
+        self._follow(max(self.record.pairs, key=self._push, default=None))
         self.form.focus(self._slider)
 
     def _push(self, pair: Pair) -> float:
@@ -55,22 +65,21 @@ class PhysicsStepScene(PanelScene):
         return -1.0 if contacts is None or pair.contact is None else float(contacts.impulse[pair.contact, :2].sum())
 
     def describe(self, panel: Panel) -> None:
-        """Add the kinds of pieces, what happens, the slider, and the picture, with its code and figures if wanted."""
         panel.aside(texts.STEP_TITLE)
         self._kinds = list(dict.fromkeys(piece.kind for piece in self.pieces))
         words, chosen = [texts.STEP_PIECES[kind][0] for kind in self._kinds], self._kinds.index(self.piece.kind)
         self._tabs = panel.choice("", words, chosen, self._turn_to_kind)
-        panel.text(lambda: sentence(self.record, self.piece, self.pair))
+        panel.text(lambda: self.record.sentence(self.piece, self.pair))
         last = len(self.pieces) - 1
         self._slider = panel.slider(
             texts.STEP_PIECE, self.place, (0, last), self._turn_to, step=1,
             figure=lambda value: texts.STEP_PLACE.format(count=value + 1, total=last + 1),
         )  # fmt: skip
         left, *right = panel.beside((1, 1) if self.in_code else (1,), least=_LEAST, apart=40.0)
-        left.picture(_PICTURE, lambda canvas, box: self._view.draw(canvas, box, self.piece, self.pair))
+        left.picture(_PICTURE, self._draw_picture)
+        left.add(self._write_legend)
         for column in right:
             column.picture(_LISTING, self._draw_code)
-            column.add(self._write_figures)
 
     # What is chosen
 
@@ -81,7 +90,7 @@ class PhysicsStepScene(PanelScene):
 
     def _follow(self, pair: Pair | None, kind: str = "") -> None:
         """Follow a pair, from the first piece of a kind on, if it has one."""
-        self.pair, self.pieces = pair, pieces_of(self.record, pair)
+        self.pair, self.pieces = pair, self.record.pieces(pair)
         self.place = next((place for place, piece in enumerate(self.pieces) if piece.kind == kind), 0)
         self.build()
 
@@ -104,7 +113,6 @@ class PhysicsStepScene(PanelScene):
         self.build()
 
     def actions(self) -> Table:
-        """Next piece; another pair; the code; back to the gallery."""
         pairs = [
             Action(Command.NEXT, lambda: self._other_pair(1), texts.HINT_NEXT_PAIR),
             Action(Command.PREVIOUS, lambda: self._other_pair(-1)),
@@ -125,8 +133,172 @@ class PhysicsStepScene(PanelScene):
             return
         draw_listing(canvas, box, source, piece.line, piece.notes, notes_width=_NOTES if piece.notes else 0.0)
 
-    def _write_figures(self, cursor: Cursor) -> None:
-        for words, lit in rows(self.record, self.piece, self.pair):
-            row = cursor.in_style(SMALL, INK if lit else MUTE)
+    # The picture: the bodies near a contact, and what the engine has found out about them there
+
+    def _draw_picture(self, canvas: Canvas, box: pygame.FRect) -> None:
+        record, pair, kind = self.record, self.pair, self.piece.kind
+        view = self._view(canvas.scale, box)
+        poses = record.after[0] if kind in ("motion", "end") else record.before[0]
+        with canvas.clipped(box):
+            self._draw_walls(canvas, view)
+            self._outlines.draw(canvas, view, poses, None, held=False)
+            if kind == "boxes":
+                self._draw_boxes(canvas, view)
+            if pair is None:
+                return
+            if kind == "axes":
+                self._draw_axes(canvas, view, box, pair)
+            if kind in ("contact", "impulses"):
+                self._draw_contact(canvas, view, pair, with_normal=kind == "contact")
+            for letter, body, way in zip("AB", pair.bodies, (-pair.to_b, pair.to_b), strict=True):
+                x, y = view.points(poses[body, :2]).tolist()
+                if not record.can_move(body):  # its middle may be far away
+                    (x, y), (right, up) = view.points(self._middle(pair)).tolist(), way.tolist()
+                    x, y = x + _INSIDE * right, y - _INSIDE * up
+                canvas.text(letter, (x - 14, y + 5), size=TEXT, colour=INK, align="centre")
+            if self.piece.impulse and (scale := self._impulse_scale(self.piece.impulse)):
+                self._draw_impulse(canvas, view, self.piece.impulse, pair, scale)
+            if (motion := record.motion(self.piece, pair)) and (scale := self._motion_scale(pair)):
+                for which, body in enumerate(pair.bodies):
+                    for velocity, colour, width in zip(motion, (MUTE, INK), (3, 1.5), strict=True):
+                        if record.can_move(body):
+                            reach = velocity[which, :2] * scale[1] / scale[0]
+                            _arrow_from(canvas, view, poses[body, :2], reach, colour, width)
+
+    def _view(self, scale: float, box: pygame.FRect) -> View:
+        record, pair, boxes = self.record, self.pair, self.record.boxes
+        if pair is None:
+            wide = record.exhibit.width
+            return View.within(box, scale, (0.0, 4.0), box.width / wide)
+        small = [body for body in pair.bodies if (boxes[body, 2:] - boxes[body, :2]).max() < _LARGE]
+        both = boxes[[body for body in pair.bodies if record.can_move(body)] or small]
+        low, high = both[:, :2].min(axis=0), both[:, 2:].max(axis=0)
+        wider = _WIDER if self.piece.kind == "boxes" else 1.0
+        return View.within(box, scale, (low + high) / 2, box.height * _SHARE / float((high - low).max()) / wider)
+
+    def _draw_walls(self, canvas: Canvas, view: View) -> None:
+        wide = self.record.exhibit.width / 2
+        for start, end in (((-wide, 0), (wide, 0)), ((-wide, 0), (-wide, 50)), ((wide, 0), (wide, 50))):
+            (x0, y0), (x1, y1) = view.points((start, end)).tolist()
+            canvas.line((max(x0, -9), min(y0, 9e3)), (min(x1, 9e3), max(y1, -9)), MUTE, 1)
+
+    def _draw_boxes(self, canvas: Canvas, view: View) -> None:
+        near = {body for each in self.record.pairs for body in each.bodies}
+        for body, (left, low, right, high) in enumerate(self.record.boxes.tolist()):
+            if right - left > _LARGE or high - low > _LARGE:
+                continue
+            (x, y), (end, bottom) = view.points(((left, high), (right, low))).tolist()
+            followed = self.pair is not None and body in self.pair.bodies
+            colour = NET if followed else MUTE if body in near else LINE
+            canvas.outline((x, y, end - x, bottom - y), 0, colour)
+
+    def _draw_axes(self, canvas: Canvas, view: View, box: pygame.FRect, pair: Pair) -> None:
+        for number, axis in enumerate(pair.axes):
+            if number != pair.chosen:
+                _arrow(canvas, *_reach(view, axis, axis.start), MUTE)
+        chosen = pair.axes[pair.chosen]
+        start, end = _reach(view, chosen, chosen.start)
+        if not box.collidepoint(start):  # a long face, such as the ground's
+            start, end = _reach(view, chosen, self._middle(pair))
+        _arrow(canvas, start, end, NET, 2)
+        canvas.text(str(pair.chosen + 1), (end[0] + 8, end[1] + 4), size=SMALL, colour=NET)
+
+    def _draw_contact(self, canvas: Canvas, view: View, pair: Pair, *, with_normal: bool) -> None:
+        contacts, row = self.record.contacts, pair.contact
+        assert contacts is not None
+        assert row is not None
+        for number in np.flatnonzero(contacts.valid[row]).tolist():
+            x, y = view.points(contacts.points[row, number]).tolist()
+            if with_normal:
+                _arrow_from(canvas, view, contacts.points[row, number], _NORMAL * contacts.normal[row], NET)
+            canvas.dot((x, y), 3.5, NET)
+            canvas.text(str(number + 1), (x + 8, y + 15), size=SMALL, colour=NET)
+
+    def _middle(self, pair: Pair) -> Array:
+        """Return the middle of the points of contact, or of the face nearest to the other shape."""
+        contacts = self.record.contacts
+        if contacts is None or pair.contact is None:
+            return pair.axes[pair.chosen].start
+        middle: Array = contacts.points[pair.contact][contacts.valid[pair.contact]].mean(axis=0)
+        return middle
+
+    def _draw_impulse(
+        self, canvas: Canvas, view: View, impulse: Impulse, pair: Pair, scale: tuple[float, float]
+    ) -> None:
+        """Draw the accumulated impulses on B, or on A if B cannot move."""
+        contacts, row = self.record.contacts, impulse.contact
+        assert contacts is not None
+        size, length = scale
+        parts = impulse.after * (length / size if self.record.can_move(pair.bodies[1]) else -length / size)
+        for number in np.flatnonzero(contacts.valid[row]).tolist():
+            _arrow_from(canvas, view, contacts.points[row, number], contacts.normal[row] * parts[number], NET)
+        _arrow_from(canvas, view, self._middle(pair), right_of(contacts.normal[row]) * parts[2], NET)
+
+    # Scales, one for all pieces of a kind
+
+    def _impulse_scale(self, impulse: Impulse) -> tuple[float, float] | None:
+        return _scale([each.after for each in self.record.impulses if each.contact == impulse.contact])
+
+    def _motion_scale(self, pair: Pair) -> tuple[float, float] | None:
+        record, bodies = self.record, list(pair.bodies)
+        every = [each[bodies, :2] for each in (record.before[1], record.fallen, record.warm, record.after[1])]
+        return _scale([np.hypot(*each.T) for each in every])
+
+    def _legend(self) -> Legend:
+        if self.pair is None:
+            return []
+        legend: Legend = []
+        if self.piece.impulse and (scale := self._impulse_scale(self.piece.impulse)):
+            on = "B" if self.record.can_move(self.pair.bodies[1]) else "A"
+            legend.append((NET, scale[1], texts.STEP_SCALE["impulse"].format(size=written(scale[0]), body=on)))
+        if self.record.motion(self.piece, self.pair) and (scale := self._motion_scale(self.pair)):
+            legend.append((MUTE, scale[1], texts.STEP_SCALE["before"].format(size=written(scale[0]))))
+            legend.append((INK, 24.0, texts.STEP_SCALE["after"]))
+        return legend
+
+    def _write_legend(self, cursor: Cursor) -> None:
+        for colour, length, words in self._legend():
+            row = cursor.in_style(SMALL, MUTE)
+            if cursor.canvas:
+                y = row.baseline - 4
+                _arrow(cursor.canvas, (row.left, y), (row.left + length, y), colour, 2)
+            row.left, row.width = row.left + _ARROW + 12, row.width - _ARROW - 12
             row.text(words)
             cursor.y = row.y
+
+
+def _scale(values: list[Array]) -> tuple[float, float] | None:
+    """Return a round number up to the greatest of some values, and how long it is drawn, so that that has full length.
+
+    None if all are next to nothing.
+    """
+    most = max(float(np.abs(each).max()) for each in values)
+    if most < 1e-4:
+        return None
+    power = 10.0 ** math.floor(math.log10(most))
+    size = next(factor * power for factor in (5.0, 2.0, 1.0) if factor * power <= most * (1 + 1e-9))
+    return size, _ARROW * size / most
+
+
+def _reach(view: View, axis: Axis, place: Array) -> tuple[Point, Point]:
+    x, y = view.points(place).tolist()
+    right, up = axis.direction.tolist()
+    return (x, y), (x + _NORMAL * right, y - _NORMAL * up)
+
+
+def _arrow_from(canvas: Canvas, view: View, place: Array, reach: Array, colour: Colour, width: float = 2) -> None:
+    """Draw an arrow from a place in metres, `reach` in points, y up."""
+    x, y = view.points(place).tolist()
+    right, up = reach.tolist()
+    if math.hypot(right, up) > 1:
+        _arrow(canvas, (x, y), (x + right, y - up), colour, width)
+
+
+def _arrow(canvas: Canvas, start: Point, end: Point, colour: Colour, width: float = 1) -> None:
+    canvas.line(start, end, colour, width)
+    way = pygame.Vector2(end) - pygame.Vector2(start)
+    size = min(_HEAD, way.length() / 2)
+    for degrees in (150, -150):
+        side = way.rotate(degrees)
+        side.scale_to_length(size)
+        canvas.line(end, (end[0] + side.x, end[1] + side.y), colour, width)

@@ -153,11 +153,11 @@ class TrainingScene(FormScene, ABC):
 
     def opened(self, name: str) -> bool:
         """Whether a part is open."""
-        return name in self._settings.opened.split()
+        return self._settings.is_open(name)
 
     def open(self, name: str) -> None:
         """Open a part, or close it; it stays so for this player."""
-        self._settings.opened = " ".join(sorted({*self._settings.opened.split()} ^ {name}))
+        self._settings.open(name)
         self.context.apply_settings()
         self._show_opened()
 

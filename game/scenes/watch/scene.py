@@ -32,11 +32,9 @@ from game.ui.actions import Action, Run, Table
 from game.ui.context import Context
 from game.ui.form_scene import FormScene
 from game.ui.hints import HintRow
-from game.ui.pick import ChoiceOrList
 from game.ui.playback import LABEL_WIDTH
 from game.ui.widget import OnPress
-from game.ui.widgets import Choice
-from game.ui.words import GAP
+from game.ui.widgets import GAP, Choice, ChoiceOrList
 from game.world.camera import Camera
 from game.world.policy_map import ACTION
 

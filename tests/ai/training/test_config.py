@@ -39,33 +39,25 @@ def test_classic_is_the_agent_first_described():
 def test_a_setting_out_of_range_is_named(subtests):
     for changes, message in [
         ({"learning_rate": -1.0}, "learning_rate lies between"),
-        ({"replay_size": 500, "replay_prune": 501}, "replay_prune is at most replay_size"),
         ({"learning_rate": float("nan")}, "learning_rate lies between"),
-        ({"optimizer": "magic"}, "optimizer is one of"),
-        ({"n_step": 2.5}, "n_step is a whole number"),
-        ({"double": 1}, "double is a yes or no"),
-        ({"n_step": True}, "n_step is not a yes or no"),
-        ({"hidden": ()}, "hidden lies between"),
-        ({"spawn": "mars"}, "spawn is one of"),
-        ({"hidden": (64.5, 64)}, r"hidden is a list of whole numbers, not \[64.5, 64\]"),
-        ({"hidden": (64.0,)}, "hidden is a list of whole numbers"),
-        ({"hidden": (True,)}, "hidden is a list of whole numbers"),
-        ({"hidden": (np.True_, 8)}, "hidden is a list of whole numbers"),
-        ({"hidden": ("64",)}, "hidden is a list of whole numbers"),
-        ({"hidden": (64, 0)}, "hidden lies between"),
-        ({"num_envs": np.float64(4.5)}, "num_envs is a whole number"),
-        ({"num_envs": np.True_}, "num_envs is not a yes or no"),
         ({"learning_rate": np.float32("inf")}, "learning_rate lies between"),
         ({"learning_rate": "fast"}, "learning_rate lies between"),
+        ({"replay_size": 500, "replay_prune": 501}, "replay_prune is at most replay_size"),
+        ({"n_step": 2.5}, "n_step is a whole number"),
+        ({"num_envs": np.True_}, "num_envs is not a yes or no"),
+        ({"double": 1}, "double is a yes or no"),
+        ({"hidden": ()}, "hidden lies between"),
+        ({"hidden": (64.5, 64)}, r"hidden is a list of whole numbers, not \[64.5, 64\]"),
+        ({"hidden": (np.True_, 8)}, "hidden is a list of whole numbers"),
+        ({"hidden": ("64",)}, "hidden is a list of whole numbers"),
         ({"schedule_decisions": 10**400}, r"schedule_decisions is a whole number, not 1000+…"),
         ({"schedule_decisions": 10**5000}, "schedule_decisions is a whole number, not a number of very many digits"),
         ({"env": None}, "env is a text, not null"),
-        ({"env": 5}, "env is a text"),
         ({"spawn": "x" * 100_000}, "spawn is one of .*x{20}…$"),
         ({"reward_weights": RewardWeights(time=True)}, r"reward_weights\.time is a finite number"),
         ({"reward_weights": RewardWeights(time=10**400)}, r"reward_weights\.time is a finite number"),
     ]:
-        with subtests.test(changes=changes, message=message), pytest.raises(ValueError, match=message):
+        with subtests.test(changes=changes), pytest.raises(ValueError, match=message):
             Config().changed(**changes)
     for values, message in [
         ({"warp": 9}, "unknown settings: warp"),
@@ -78,20 +70,8 @@ def test_a_setting_out_of_range_is_named(subtests):
 
 def test_numbers_of_numpy_are_plain_numbers():
     weights = RewardWeights(time=np.float32(-0.5), switch=np.int64(0))
-    given = {
-        "num_envs": np.int64(8),
-        "learning_rate": np.float32(0.5),
-        "double": np.False_,
-        "hidden": (np.int32(16), 8),
-        "reward_weights": weights,
-    }
-    plain = {
-        "num_envs": 8,
-        "learning_rate": 0.5,
-        "double": False,
-        "hidden": (16, 8),
-        "reward_weights": RewardWeights(time=-0.5, switch=0),
-    }
-    config = Config().changed(**given)
-    assert config == Config().changed(**plain)
+    config = Config().changed(num_envs=np.int64(8), learning_rate=np.float32(0.5), double=np.False_,
+                              hidden=(np.int32(16), 8), reward_weights=weights)  # fmt: skip
+    assert config == Config().changed(num_envs=8, learning_rate=0.5, double=False, hidden=(16, 8),
+                                      reward_weights=RewardWeights(time=-0.5, switch=0))  # fmt: skip
     assert Config.from_json(json.loads(json.dumps(config.to_json()))) == config

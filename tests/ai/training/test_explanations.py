@@ -75,14 +75,14 @@ def test_a_moment_in_the_past_has_the_network_of_that_time():
     assert not np.array_equal(early.step.values_before, middle.step.values_before)
 
 
-@pytest.mark.parametrize(("turns", "slot", "why"), [(60, 6, "no lander 6"), (60, -1, "no lander"), (3, 0, "not begun")])
-def test_what_cannot_be_explained_is_refused(turns, slot, why):
-    session = run()
-    for _ in range(turns):
-        next(session)
-    answer = ask(session, slot)
-    assert isinstance(answer, Refused)
-    assert why in answer.problem
+def test_what_cannot_be_explained_is_refused():
+    for turns, slot, why in ((60, 6, "no lander 6"), (60, -1, "no lander"), (3, 0, "not begun")):
+        session = run()
+        for _ in range(turns):
+            next(session)
+        answer = ask(session, slot)
+        assert isinstance(answer, Refused)
+        assert why in answer.problem
 
 
 def test_a_network_that_has_diverged_is_refused_and_not_lost():

@@ -10,7 +10,7 @@ from ai.files import remove_state
 from ai.lander.environment import Outcome
 from ai.nn import ModelFormatError
 from ai.training import run as keeping
-from ai.training.config import Config
+from ai.training.config import Config, gym_config
 from ai.training.history import PARTS, REVERTED, Checkpoint, History, Point, SettingChange, Validation
 from ai.training.lander_session import CAREFUL, live
 from ai.training.loop import Training
@@ -118,7 +118,6 @@ def test_sights_and_points_tell_flights_as_they_were_and_can_be_sent_to_another_
 
 def test_the_careful_lander_acts_at_random_the_least():
     spread = exploration_of_each(TINY.changed(epsilon_spread=0.7), 0.3, TINY.num_envs)
-    assert spread.argmin() == CAREFUL
     assert (spread[CAREFUL] < np.delete(spread, CAREFUL)).all()
 
 
@@ -302,15 +301,10 @@ def test_no_checkpoint_and_no_save_holds_what_is_not_finite(begin, tmp_path):
     assert np.isfinite(resume(Training, tmp_path / "keep").agent.network.values).all()
 
 
-def test_there_must_be_a_run_to_go_on_with(begin, tmp_path):
+def test_there_must_be_a_run_to_go_on_with_and_it_must_be_of_landers(begin, tmp_path):
     with pytest.raises(ModelFormatError):
         next(begin(resume=tmp_path / "nothing"))
-
-
-def test_only_landers_can_be_looked_into(begin):
     pytest.importorskip("gymnasium")
-    from ai.training.config import gym_config
-
     with pytest.raises(ValueError, match="CartPole"):
         next(begin(gym_config("CartPole-v1")))
 

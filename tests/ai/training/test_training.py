@@ -5,7 +5,7 @@ from itertools import count, islice
 import numpy as np
 import pytest
 
-from ai.agent.schedule import geometric, linear
+from ai.agent.schedule import linear
 from ai.lander.environment import LIMITS, LanderEnv, Outcome
 from ai.lander.pilots import NoPilot, ScriptedPilot
 from ai.training.config import PRESETS, Config
@@ -26,13 +26,6 @@ def advanced(config=SMALL, decisions=30, **options):
     return training, progress
 
 
-def test_schedules():
-    assert [linear(1.0, 0.0, done, 4) for done in (0, 1, 4, 9)] == [1.0, 0.75, 0.0, 0.0]
-    assert linear(1.0, 0.2, 0, 0) == 0.2
-    assert geometric(1.0, 0.05, 0.5, 2) == 0.25
-    assert geometric(1.0, 0.05, 0.5, 10) == 0.05
-
-
 def test_evaluating_changes_nothing_about_the_training():
     quiet, _ = advanced(SMALL, 40)
     measured, progress = advanced(SMALL, 40, evaluate_every=80)
@@ -41,19 +34,16 @@ def test_evaluating_changes_nothing_about_the_training():
 
 
 def test_progress_counts_what_happened():
-    training, progress = advanced(SMALL, 80)
+    training = Training(SMALL, 0, **QUICK)
+    training.clock = map(float, count(0, 0.5)).__next__
+    progress = [training.advance() for _ in range(80)][-1]
+    assert progress.steps_per_second == 8 * 4 / 0.5, "by the clock it is given"
     assert progress.decisions == 80 * 8
     assert progress.steps == 80 * 8 * 4
     assert progress.updates == training.agent.gradient_steps
     assert progress.episodes == training.episodes > 0
     assert 0.0 <= progress.success_rate <= 1.0
     assert progress.epsilon == pytest.approx(linear(1.0, 0.05, 79 * 8, SMALL.epsilon_decisions))
-
-
-def test_progress_tells_the_pace_by_the_clock_it_is_given():
-    training = Training(SMALL, 0, **QUICK)
-    training.clock = map(float, count(0, 0.5)).__next__
-    assert [training.advance() for _ in range(10)][-1].steps_per_second == 8 * 4 / 0.5
 
 
 def test_a_run_is_a_generator_that_takes_live_knobs():
@@ -67,24 +57,17 @@ def test_a_run_is_a_generator_that_takes_live_knobs():
     assert next(running).loss == training.advance().loss
 
 
-@pytest.mark.parametrize("prioritised", [False, True])
-def test_what_was_paid_otherwise_is_forgotten(prioritised):
-    training, _ = advanced(SMALL.changed(prioritised=prioritised), 30)
-    training.apply_live(training.config.changed(learning_rate=1e-4))
-    assert len(training.agent.replay) > 100
-    training.apply_live(training.config.turned("reward_weights.time", 5.0))
-    assert len(training.agent.replay) == 0
-    for _ in range(20):
-        progress = training.advance()
-    assert np.isfinite(progress.loss)
-    assert 0 < len(training.agent.replay) <= (20 + SMALL.n_step) * 8  # and what was open
-
-
-def test_live_knobs_act_at_once():
-    training = Training(SMALL, 0, **QUICK)
-    training.advance()
-    training.apply_live(SMALL.changed(epsilon_decisions=8, epsilon_end=0.0))
-    assert training.advance().epsilon == 0.0
+def test_what_was_paid_otherwise_is_forgotten():
+    for prioritised in (False, True):
+        training, _ = advanced(SMALL.changed(prioritised=prioritised), 30)
+        training.apply_live(training.config.changed(learning_rate=1e-4))
+        assert len(training.agent.replay) > 100
+        training.apply_live(training.config.turned("reward_weights.time", 5.0))
+        assert len(training.agent.replay) == 0
+        for _ in range(20):
+            progress = training.advance()
+        assert np.isfinite(progress.loss)
+        assert 0 < len(training.agent.replay) <= (20 + SMALL.n_step) * 8  # and what was open
 
 
 def test_a_change_of_what_cannot_change_while_a_run_goes_on_changes_nothing():
@@ -147,15 +130,7 @@ def test_a_run_is_kept_with_what_it_is(tmp_path):
     described = json.loads((tmp_path / "run" / "training.json").read_text())
     assert described["decisions"] == 240
     assert described["preset"] == "modern"
-    assert described["changes"] == {
-        "hidden": [16],
-        "batch_size": 16,
-        "gradient_steps": 1,
-        "learning_starts": 32,
-        "replay_size": 2000,
-        "num_envs": 8,
-        "spawn": "near",
-    }
+    assert Config.from_json(PRESETS["modern"].to_json() | described["changes"]) == SMALL
     assert described["evaluation"]["episodes"] == 1000
 
 

@@ -147,6 +147,7 @@ def test_a_language_matches_the_english(path: Path):
         ({"SCREENSHOT_SAVED": "Bild gespeichert"}, "braces"),
         ({"WATCH_LANDERS": ("eine Fähre",)}, "plural forms"),
         ({"WATCH_LANDERS": ("eine Fähre", "")}, "plural forms"),
+        ({"SCREENSHOT_SAVED": "画像を保存: {path}"}, "Manrope has no '画'"),
         ({"WATCH_LANDERS": ("eine Fähre", "{count} Fähren"), "SCREENSHOT_SAVED": "Bild: {path}"}, ""),
     ],
 )

@@ -15,14 +15,12 @@ from ai.digits.mnist import load_part
 from ai.nn import CostFunctions, FullyConnectedLayer, LayerNormalisation, NeuralNetwork
 from game.core import source, texts
 from game.core.assets import MODELS_DIR
-from game.drawing import typeface
+from game.digits.cells import CellPicker
 from game.drawing.canvas import Canvas
 from game.scenes.digits import unit_walk as patch_code
-from game.scenes.digits.answer import DigitRow
+from game.scenes.digits.answer import DigitBars
 from game.scenes.digits.inside import DigitInsideScene
-from game.scenes.digits.patch_sums import figure
-from game.scenes.digits.pickers import MapPicker, TilesPicker
-from game.scenes.digits.stage_row import StageRow
+from game.scenes.digits.sums import figure
 from game.scenes.digits.unit_walk import UnitWalk, code_of
 from game.scenes.digits.why_not import WhyNotScene, sentences
 from game.ui.context import Context
@@ -57,8 +55,12 @@ def scene(driver: Driver) -> DigitInsideScene:
     return driver.top
 
 
-def pickers(driver: Driver, kind):
-    return [each for each in driver.form.widgets if isinstance(each, kind)]
+def maps(driver: Driver) -> list[CellPicker]:
+    return [each for each in driver.form.widgets if isinstance(each, CellPicker) and len(each.tiles) == 1]
+
+
+def tiles(driver: Driver) -> list[CellPicker]:
+    return [each for each in driver.form.widgets if isinstance(each, CellPicker) and len(each.tiles) > 1]
 
 
 def test_the_unit_that_is_followed_leads_from_a_patch_to_the_answer(inside: Driver, modern, nine):
@@ -98,23 +100,21 @@ def test_all_figures_of_the_sum_are_written(inside: Driver, monkeypatch, number:
 
 def test_the_mouse_moves_the_window_and_lights_maps_and_patches(inside: Driver):
     walk = scene(inside).walk
-    digit, given = pickers(inside, MapPicker)
+    digit, given = maps(inside)
     inside.move(digit.place(10, 12).center)
     assert walk.unit.corner == (8, 10), "the window's middle is where the mouse is"
     assert digit.window == (8, 10, 13, 15)
     inside.move(given.place(20, 3).center)
     assert walk.place[:2] == (20, 3)
     assert digit.window == (20, 3, 25, 8), "the patch of the pixel that is pointed at lights"
-    filters, maps = pickers(inside, TilesPicker)
+    filters, given_maps = tiles(inside)
     inside.move(filters.place(1, 4).center)
     assert walk.place == (20, 3, filters.columns + 4)
-    assert maps.cell == filters.cell == (1, 4)
-    assert given.values is not None
-    np.testing.assert_array_equal(np.sign(given.values), np.sign(walk.stage.outputs[:, :, walk.place[2]]))
-    row = inside.the(StageRow)
-    inside.click((row.box.left + 3.3 * row.pitch, row.box.centery))
+    assert given_maps.cell == filters.cell == (1, 4)
+    np.testing.assert_array_equal(np.sign(given.tiles[0]), np.sign(walk.stage.outputs[:, :, walk.place[2]]))
+    inside.click(scene(inside)._tabs._places[3].center)
     assert walk.number == 3
-    read_maps = pickers(inside, TilesPicker)[0]
+    read_maps = tiles(inside)[0]
     inside.move(read_maps.place(0, 5).center)
     assert walk.channel == 5
 
@@ -122,7 +122,7 @@ def test_the_mouse_moves_the_window_and_lights_maps_and_patches(inside: Driver):
 @pytest.mark.parametrize("device", ["keys", "pad"])
 def test_arrows_take_hold_of_the_window_and_let_go(inside: Driver, device: str):
     walk, player = scene(inside).walk, Player(inside, device)
-    digit = pickers(inside, MapPicker)[0]
+    digit = maps(inside)[0]
     inside.form.focus(digit)
     player.press("down", "up")  # from now on there is no mouse in use
     inside.form.focus(digit)
@@ -135,7 +135,7 @@ def test_arrows_take_hold_of_the_window_and_let_go(inside: Driver, device: str):
     player.hold("up", down=False)
     assert walk.place[0] < row - 5
     player.press("back")
-    assert not digit.typing
+    assert not inside.form.typing
     assert inside.top_name == "DigitInsideScene"
     at = walk.place
     player.press("down")
@@ -148,7 +148,7 @@ def test_arrows_move_any_window_and_back(inside: Driver, stage: int):
     walk = scene(inside).walk
     inside.keys(*[pygame.K_n] * stage)
     walk.look_at((3, 3, walk.place[2]))
-    inside.form.focus(pickers(inside, MapPicker)[0])
+    inside.form.focus(maps(inside)[0])
     inside.keys(pygame.K_RETURN, pygame.K_RIGHT)
     inside.keys(pygame.K_LEFT, pygame.K_LEFT)
     there = walk.place
@@ -171,7 +171,7 @@ def test_the_window_slides_by_itself_until_it_is_touched(open_game: Open, modern
     assert walk.place == before
     driver.button(pygame.CONTROLLER_BUTTON_Y)
     assert scene(driver).sliding
-    driver.move(pickers(driver, MapPicker)[1].place(3, 3).center)
+    driver.move(maps(driver)[1].place(3, 3).center)
     assert not scene(driver).sliding
     assert walk.place[:2] == (3, 3)
 
@@ -186,26 +186,30 @@ def test_the_window_begins_on_ink_and_slides_over_ink_alone(modern, nine):
 
 
 def test_figures_in_a_matrix_do_not_touch_at_any_size_of_text(inside: Driver, monkeypatch):
-    written: list[tuple[pygame.FRect, str]] = []
+    written: dict[tuple[pygame.Surface, float], list[pygame.FRect]] = {}  # a matrix's rows
     plain = Canvas.text
 
     def text(canvas: Canvas, string: str, position: Any, **how: Any) -> pygame.FRect:
-        width = canvas.text_width(string, size=how["size"], tabular=True)
         if how.get("align") == "centre" and how.get("tabular"):
-            written.append((pygame.FRect(position[0] - width / 2, position[1], width, 1), string))
+            width = canvas.text_width(string, size=how["size"], tabular=True)
+            box = pygame.FRect(position[0] - width / 2, position[1], width, 1)
+            written.setdefault((canvas.surface, position[1]), []).append(box)
         return plain(canvas, string, position, **how)
 
     monkeypatch.setattr(Canvas, "text", text)
-    for factor in (1.6, 1.0):
+    for size in ("largest", "normal"):
+        inside.write_in(size)
+        inside.frames(2)
         written.clear()
-        typeface.grow(factor)
-        inside.frames(1)
-        rows = [[box for box, _ in written if box.top == top] for top in {box.top for box, _ in written}]
-        assert sum(map(len, rows)) == 75
-        for row in rows:
+        scene(inside).build()  # paints all anew
+        inside.app.draw()
+        while scene(inside).panel.scroll(150.0):
+            scene(inside).lay_out()
+            inside.app.draw()
+        assert sum(map(len, written.values())) == 75
+        for row in written.values():
             boxes = sorted(row, key=lambda box: box.left)
-            assert all(one.right + 3 < other.left for one, other in pairwise(boxes)), factor
-    typeface.grow(1.0)
+            assert all(one.right + 3 < other.left for one, other in pairwise(boxes)), size
 
 
 def test_with_reduced_motion_nothing_slides_unasked(inside: Driver):
@@ -262,7 +266,7 @@ def test_networks_of_other_shapes_can_be_gone_through(open_game: Open, context: 
         driver.key(pygame.K_c)
         driver.frames(1)
         driver.key(pygame.K_c)
-        for picker in pickers(driver, (MapPicker, TilesPicker)):
+        for picker in [*maps(driver), *tiles(driver)]:
             driver.move(picker.place(0, 0).center)
         assert (walk.unit is None) == (walk.stage.kind == "other")
         driver.key(pygame.K_n)
@@ -293,8 +297,7 @@ def test_another_digit_is_asked_about_and_its_ink_changed(why_not: Driver, moder
     if device == "keys":
         why_not.key(pygame.K_7)
     elif device == "mouse":
-        row = next(each for each in why_not.form.widgets if isinstance(each, DigitRow) and each.digit == 7)
-        why_not.click(row.box.center)
+        why_not.click(why_not.the(DigitBars).place(7).center)
     else:
         while why_not.top.asked != 7:
             why_not.button(pygame.CONTROLLER_BUTTON_RIGHTSHOULDER)

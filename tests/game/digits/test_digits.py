@@ -68,12 +68,14 @@ def test_the_guess_follows_every_event_without_a_frame_in_between(drawing: Drive
 
 
 def test_the_drawing_area_is_told_in_pixels_of_the_window(drawing: Driver):
-    assert scene(drawing).canvas_rect == (40, 70, 520, 520)
-    drawing.resize((900, 760))
-    scale = 900 / 1280
-    left, top, width, _ = scene(drawing).canvas_rect
-    assert (left, width) == (round(40 * scale), pytest.approx(520 * scale, abs=1))
-    assert top == pytest.approx(70 * scale + (760 - 900 * 9 / 16) / 2, abs=1)
+    for size, scale in (((1280, 720), 1.0), ((900, 760), 1.0), ((2560, 1440), 2.0)):
+        drawing.resize(size)
+        left, top, width, height = scene(drawing).canvas_rect
+        assert (left, top) == pytest.approx([scale * each for each in scene(drawing).pad.rect.topleft], abs=1)
+        assert width == height == pytest.approx(scale * scene(drawing).pad.rect.width, abs=1)
+        drawing.post(pygame.MOUSEBUTTONDOWN, pos=(left + 5, top + 5), button=1)
+        assert scene(drawing).pad.drawing
+        drawing.post(pygame.MOUSEBUTTONUP, pos=(left + 5, top + 5), button=1)
 
 
 def test_a_resized_window_keeps_the_drawing(drawing: Driver):
@@ -82,7 +84,7 @@ def test_a_resized_window_keeps_the_drawing(drawing: Driver):
     drawing.resize((1600, 900))
     assert np.array_equal(scene(drawing).probabilities, before)
     rect = scene(drawing).canvas_rect
-    scene(drawing).draw(drawing.app.canvas, 1.0)
+    drawing.app.draw()
     seen = pygame.surfarray.array3d(drawing.app.canvas.surface)[rect.left : rect.right, rect.top : rect.bottom]
     assert (np.abs(seen.astype(int) - INK).max(axis=2) < 8).mean() > 0.05
 
@@ -134,13 +136,13 @@ def test_undo_and_clear_by_keys_words_and_pad(drawing: Driver):
 def test_the_network_that_is_looked_into_is_chosen_by_mouse_keys_and_pad(drawing: Driver):
     draw(drawing, strokes(5))
     seen = {}
-    for press in (lambda: drawing.key(pygame.K_RIGHT), lambda: drawing.button(pygame.CONTROLLER_BUTTON_RIGHTSHOULDER)):
+    for press in (lambda: drawing.key(pygame.K_n), lambda: drawing.button(pygame.CONTROLLER_BUTTON_RIGHTSHOULDER)):
         press()
         seen[scene(drawing).chosen] = scene(drawing).live.why
     assert list(seen) == ["classic", "modern"]
     assert not np.array_equal(seen["classic"], seen["modern"])
     tabs = drawing.choice("Classic")
-    drawing.click((tabs.row.lefts[1] + 5, tabs.box.centery))
+    drawing.click(tabs._places[1].center)  # type: ignore[attr-defined]
     assert scene(drawing).chosen == "classic"
 
 
@@ -168,7 +170,8 @@ def test_a_step_that_is_switched_off_changes_what_is_seen_and_is_put_back(drawin
     draw(drawing, strokes(7, 0, 0.3, (0.05, 0.05)))
     drawing.frames(1)
     before = digits.reading.stages.centred
-    for step in ("cropped", "20 × 20", "pen", "centred"):
+    drawing.press_on(texts.DIGITS_SEES)
+    for step in texts.DIGITS_STAGES.values():
         switch = drawing.widget(step)
         drawing.click(switch.box.center)
         assert not np.array_equal(digits.reading.stages.centred, before), step

@@ -5,7 +5,7 @@ import pytest
 
 from game.scenes.digits.quiz import QuizScene
 from game.scenes.digits.scene import DigitsScene
-from game.ui.virtual_pointer import VirtualPointer
+from game.ui.virtual_pointer import PictureRow
 from tests.support.player import DEVICES, Player
 from tests.support.screens import reader
 
@@ -19,7 +19,7 @@ def player(request: pytest.FixtureRequest, open_game) -> Player:
 
 def take_the_pen(player: Player) -> None:
     for direction in ["left"] * 2 + ["down"] * 14 + ["left"] * 2:
-        if isinstance(player.form.focused, VirtualPointer):
+        if isinstance(player.form.focused, PictureRow):
             break
         player.press(direction)
     player.press("confirm")
@@ -68,19 +68,19 @@ def test_a_stick_moves_it_as_far_as_it_is_pushed(open_game):
     player = Player(open_game(DigitsScene), "pad")
     player.frames(3)
     take_the_pen(player)
-    before = player.the(VirtualPointer).place.x
+    before = player.the(PictureRow).place.x
     player.axis(pygame.CONTROLLER_AXIS_LEFTX, 32767)
     player.frames(10)
-    fast = player.the(VirtualPointer).place.x - before
+    fast = player.the(PictureRow).place.x - before
     player.axis(pygame.CONTROLLER_AXIS_LEFTX, 16000)
-    before = player.the(VirtualPointer).place.x
+    before = player.the(PictureRow).place.x
     player.frames(10)
-    assert 0.3 * fast < player.the(VirtualPointer).place.x - before < 0.7 * fast
+    assert 0.3 * fast < player.the(PictureRow).place.x - before < 0.7 * fast
     player.axis(pygame.CONTROLLER_AXIS_LEFTX, 2000)
-    before = player.the(VirtualPointer).place.x
+    before = player.the(PictureRow).place.x
     player.frames(10)
-    assert player.the(VirtualPointer).place.x == before
-    assert player.form.focused is player.the(VirtualPointer)
+    assert player.the(PictureRow).place.x == before
+    assert player.form.focused is player.the(PictureRow)
 
 
 def test_a_lost_focus_lifts_the_pen(player: Player):

@@ -11,13 +11,14 @@ from ai.digits.classifier import DigitClassifier
 from ai.digits.mnist import MnistError
 from game.core import texts
 from game.core.assets import MODELS_DIR
+from game.digits.cells import CellPicker
 from game.scenes.digits import quiz
-from game.scenes.digits.answer import DigitRow
-from game.scenes.digits.dream import DreamScene, DreamTile
+from game.scenes.digits.answer import DigitBars
+from game.scenes.digits.dream import DreamScene
 from game.scenes.digits.quiz import QuizScene
 from game.scenes.digits.quiz_rules import ROUNDS
+from game.ui.rows import SliderRow
 from game.ui.widget import Widget
-from game.ui.widgets import Slider
 from tests.support.driver import Driver
 from tests.support.pen import SEVEN, stroke
 
@@ -25,10 +26,6 @@ from tests.support.pen import SEVEN, stroke
 @pytest.fixture(scope="module")
 def classifier():
     return DigitClassifier.load(MODELS_DIR / "digits" / "classic")
-
-
-def tiles(driver: Driver) -> list[DreamTile]:
-    return [each for each in driver.form.widgets if isinstance(each, DreamTile)]
 
 
 def told(monkeypatch, driver: Driver) -> list[str]:
@@ -54,9 +51,9 @@ def test_keys_mouse_and_pad_choose_a_digit(open_game: Callable[..., Driver], cla
     game = open_game(DreamScene, classifier, 3)
     game.key(pygame.K_7)
     assert game.top.digit == 7
-    game.click(tiles(game)[2].box.center)
+    game.click(game.the(CellPicker).place(0, 2).center)
     assert game.top.digit == 2
-    game.click(next(row for row in game.form.widgets if isinstance(row, DigitRow) and row.digit == 9).box.center)
+    game.click(game.the(DigitBars).place(9).center)
     assert game.top.digit == 9
     game.button(pygame.CONTROLLER_BUTTON_RIGHTSHOULDER)
     assert game.top.digit == 0
@@ -69,7 +66,7 @@ def test_other_settings_begin_another_dream(open_game: Callable[..., Driver], cl
     drawing[5:23, 12:16] = 1
     game = open_game(DreamScene, classifier, 1, drawing)
     game.frames(30)
-    game.form.focus(game.the(Slider))
+    game.form.focus(game.the(SliderRow))
     before = game.top.dreams[1]
     game.key(pygame.K_LEFT)
     assert game.top.dreams[1] is not before
@@ -106,7 +103,7 @@ def test_a_drawing_is_read_and_a_strangers_digit_answered(open_game: Callable[..
     assert len(scene.pad.strokes) == 1, "what was read stays as it is"
     game.key(pygame.K_RETURN)
     assert scene.contest.round.kind == "read"
-    game.click(scene.form.widgets[scene.contest.round.digit].box.center)
+    game.click(game.widget(str(scene.contest.round.digit)).box.center)
     assert scene.contest.score("read") == (1, 1)
     game.button(pygame.CONTROLLER_BUTTON_A)
     assert scene.contest.place == 2
@@ -142,14 +139,13 @@ def test_ten_rounds_and_again(open_game: Callable[..., Driver], classifier):
     game = open_game(QuizScene, classifier)
     game.frames(2)
     scene = game.top
-    elements = scene.form.manager.get_sprite_group()
     while current := scene.contest.round:
         if current.kind == "draw":
             stroke(game, SEVEN)
             game.key(pygame.K_RETURN)
         else:
             game.key(pygame.K_0 + current.digit)
-        shown = {each for each in elements.sprites() if isinstance(each, Widget)}
+        shown = {each for each in scene.form.manager.get_sprite_group().sprites() if isinstance(each, Widget)}
         assert shown == {*scene.form.widgets}, "words that have done their work are gone"
         game.key(pygame.K_RETURN)
     assert scene.contest.score("read") == (5, 5)

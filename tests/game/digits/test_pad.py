@@ -21,9 +21,15 @@ def drag(pad: DrawingPad, *points: tuple[float, float]) -> None:
     mouse(pad, pygame.MOUSEBUTTONUP, (others or [first])[-1])
 
 
+def fresh_pad() -> DrawingPad:
+    pad = DrawingPad()
+    pad.rect = pygame.FRect(RECT)
+    return pad
+
+
 @pytest.fixture
 def pad() -> DrawingPad:
-    return DrawingPad(RECT)
+    return fresh_pad()
 
 
 def picture(pad: DrawingPad, size: tuple[int, int] = (1280, 720)) -> np.ndarray:
@@ -61,7 +67,7 @@ def test_a_slow_pen_is_thicker():
 
 def test_ink_lies_where_it_was_drawn_however_it_was_painted(pad: DrawingPad):
     points = [(100, 100), (150, 130), (170, 200), (140, 260), (300, 300)]
-    fresh = DrawingPad(RECT)
+    fresh = fresh_pad()
     drag(fresh, *points)
     mouse(pad, pygame.MOUSEBUTTONDOWN, (points[0][0] + RECT.left, points[0][1] + RECT.top))
     for x, y in points[1:]:

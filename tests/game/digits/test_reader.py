@@ -11,9 +11,11 @@ from ai.digits.preprocessing import redrawn
 from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.drawing.canvas import Canvas
-from game.scenes.digits.answer import draw_answer, draw_fix
+from game.drawing.cursor import Cursor
+from game.scenes.digits.answer import write_answer
 from game.scenes.digits.fixing import FixRunner
 from game.scenes.digits.reader import Reader, Reading, Switches, Verdict, best_two
+from game.scenes.digits.scene import fix_lines
 
 
 @pytest.fixture(scope="module")
@@ -84,7 +86,7 @@ def test_two_networks_have_to_agree_to_be_sure(reader: Reader):
 def test_who_is_surer_never_sounds_less_sure(reader: Reader, monkeypatch: pytest.MonkeyPatch):
     ring = 100 + 60 * np.stack([np.cos(np.linspace(0, 6.3, 60)), 1.3 * np.sin(np.linspace(0, 6.3, 60))], axis=1)
     stages = reader.read(Switches().prepare(redrawn([ring]), np.zeros((9, 9)))).stages
-    canvas = Canvas(pygame.Surface((1280, 720)))
+    cursor = Cursor(0, 0, 400, canvas=Canvas(pygame.Surface((1280, 720))))
     said: dict[str, list[float]] = {}
 
     def text(canvas: Canvas, string: str, *__: object, **___: object) -> pygame.FRect:
@@ -98,7 +100,7 @@ def test_who_is_surer_never_sounds_less_sure(reader: Reader, monkeypatch: pytest
         for share in np.linspace(0.5, 0.9999, 400):
             values = np.full(10, (1 - share) / 9)
             values[0] = share
-            draw_answer(canvas, Reading(stages, {"modern": values, "classic": np.eye(10)[other]}), "modern")
+            write_answer(cursor, Reading(stages, {"modern": values, "classic": np.eye(10)[other]}), "modern")
     sure, probably = (said[form.partition(",")[0]] for form in (texts.DIGITS_SURE, texts.DIGITS_LIKELY))
     assert max(probably) < min(sure)
     assert said[texts.DIGITS_DISPUTED.partition(",")[0]]  # where they disagree, it is called neither
@@ -106,14 +108,10 @@ def test_who_is_surer_never_sounds_less_sure(reader: Reader, monkeypatch: pytest
 
 def test_the_digit_that_is_being_learnt_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
     fixing = FixRunner(tmp_path, MODELS_DIR)
-    written: list[str] = []
-    monkeypatch.setattr(Canvas, "text", lambda _, string, *__, **___: written.append(string) or pygame.FRect())
     monkeypatch.setattr(
         "game.scenes.digits.fixing.Worker", lambda *_, **__: SimpleNamespace(poll=list, close=lambda _: None)
     )
     for digit in (7, 3):
         assert fixing.begin("modern", np.zeros((28, 28), np.float32), digit)
-        written.clear()
-        draw_fix(Canvas(pygame.Surface((1280, 720))), fixing, same=True)
-        assert texts.DIGITS_FIXING.format(digit=digit) in written
+        assert texts.DIGITS_FIXING.format(digit=digit) in fix_lines(fixing, same=True)
         fixing.close()

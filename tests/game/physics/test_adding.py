@@ -9,8 +9,8 @@ import pytest
 
 from engine import Circle
 from game.core import texts
-from game.scenes.physics.exhibit import height, speed
-from game.scenes.physics.exhibits import EXHIBITS, Exhibit, Quantity
+from game.scenes.physics.exhibit import Exhibit, Quantity, height, speed
+from game.scenes.physics.exhibits import EXHIBITS
 from game.scenes.physics.scene import PhysicsScene
 from tests.support.driver import Driver
 

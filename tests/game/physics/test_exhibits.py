@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from game.core import texts
-from game.scenes.physics.exhibits import EXHIBITS, Exhibit
+from game.scenes.physics.exhibit import Exhibit
+from game.scenes.physics.exhibits import EXHIBITS, Heap, Impacts, Stack
 from game.scenes.physics.falls import Bounce, DragRace
-from game.scenes.physics.momentum import Impacts
-from game.scenes.physics.piles import Heap, Stack
 from game.scenes.physics.scene import GRAVITIES
 
 MOON, EARTH = GRAVITIES
@@ -60,7 +59,7 @@ def test_a_heap_only_ever_loses_energy_and_comes_to_rest():
 @pytest.mark.parametrize("gravity", GRAVITIES)
 def test_those_boxes_slide_whose_friction_is_less_than_the_slope(gravity: float):
     slopes = after_five_seconds("slopes", gravity)
-    tangent = np.tan(np.radians(slopes.degrees))
+    tangent = np.tan(np.radians(slopes.values["degrees"]))
     assert slopes.slid == {number for number, friction in enumerate(slopes.frictions) if friction < tangent}
 
 
@@ -68,7 +67,7 @@ def test_those_boxes_slide_whose_friction_is_less_than_the_slope(gravity: float)
 def test_a_ball_comes_back_to_e_squared_of_its_height(gravity: float):
     bounce = Bounce(gravity)
     run(bounce, 6.0)
-    expected = np.square(bounce.restitutions) * bounce.drop
+    expected = np.square(bounce.restitutions) * bounce.values["drop"]
     assert bounce.peaks == pytest.approx(expected, rel=0.03, abs=0.02)
 
 

@@ -16,7 +16,7 @@ from game.scenes.train.networks import NetworksScene
 from game.scenes.watch.scene import WatchScene
 from game.training.library import Library
 from game.ui.context import Context
-from game.ui.pick import ChoiceOrList
+from game.ui.widgets import ChoiceOrList
 from game.world.camera import Camera
 from tests.support.driver import Driver
 

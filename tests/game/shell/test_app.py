@@ -21,8 +21,6 @@ from game.start import play
 from game.ui.context import Context
 from tests.support.driver import Driver
 
-SIZES = [(1280, 720), (1920, 1080), (1000, 800), (640, 360), (2000, 500)]
-
 
 class Probe(Scene):
     """A scene that records what it is given and does as it is told."""
@@ -106,42 +104,6 @@ def test_colours_change_with_the_setting(open_game):
     assert game.app.canvas.palette != usual
     game.click(switch)
     assert game.app.canvas.palette == usual
-
-
-@pytest.mark.parametrize("size", SIZES)
-def test_the_view_is_16_to_9_in_any_window_and_the_mouse_is_in_points(open_game, size: tuple[int, int]):
-    probe = Probe()
-    game = open_game(probe)
-    game.resize(size)
-    canvas = game.app.canvas
-    assert canvas.size[0] <= size[0]
-    assert canvas.size[1] <= size[1]
-    assert canvas.size[0] / canvas.size[1] == pytest.approx(16 / 9, rel=0.01)
-    assert size[0] - canvas.size[0] <= 1 or size[1] - canvas.size[1] <= 1
-    for corner in [(0, 0), (1280, 720), (640, 360)]:
-        game.move(corner)
-        assert probe.events[-1].pos == pytest.approx(corner, abs=1.2 / canvas.scale)
-
-
-@pytest.mark.parametrize("size", SIZES)
-def test_every_screen_works_at_every_size(game: Driver, size: tuple[int, int]):
-    game.resize(size)
-    game.press_on(texts.MENU["settings"][0])
-    assert game.top_name == "SettingsScene"
-    game.frames(3)
-    game.click(game.hints()[texts.HINT_BACK])
-    assert game.top_name == "MenuScene"
-
-
-def test_full_screen_ten_times_in_a_row(game: Driver, context: Context):
-    size = game.app.window.size
-    for _ in range(5):
-        game.key(pygame.K_F11)
-        assert context.settings.full_screen
-        game.key(pygame.K_RETURN, pygame.KMOD_LALT)
-        assert not context.settings.full_screen
-    assert game.app.window.size == size
-    assert game.top_name == "MenuScene"
 
 
 def test_a_mouse_at_rest_takes_nothing_from_the_keyboard(open_game, monkeypatch: pytest.MonkeyPatch):

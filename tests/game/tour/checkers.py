@@ -295,7 +295,8 @@ NOT_AT = {
 FLOWING = {
     "MenuScene", "FlightsScene", "SettingsScene", "BindingsScene", "QuestionDialog", "NameDialog",
     "ListDialog", "sound", "controls", "flights", "ChoicesScene", "PauseScene", "FlightPauseScene, of a flight",
-    "DaysScene", "MissionsScene", "LogbookScene", "PhysicsStepScene", "TrainScene", "DigitTrainingScene",
+    "DaysScene", "MissionsScene", "LogbookScene", "PhysicsScene", "PhysicsStepScene", "TrainScene",
+    "DigitTrainingScene",
 }  # fmt: skip
 IN_FLIGHT = {
     "Play, in flight", "mission, in flight", "descent, in flight", "daily, in flight", "tutorial, in flight",
@@ -304,7 +305,7 @@ IN_FLIGHT = {
 ONLY_AT = {
     # Whatever is laid out for a page is laid out alike in every window: the last of these stands for all.
     texts_fit_in_windows_of_any_shape: FLOWING | {
-        "WatchScene", "ReplayScene", "Play", "swarm", "mission", "TrainScene", "PhysicsScene", "Play, in flight",
+        "WatchScene", "ReplayScene", "Play", "swarm", "mission", "TrainScene", "Play, in flight",
         "tutorial", "mission, card",
     },
     at_first_sight_there_is_little_to_read_and_to_choose_from: FLOWING

@@ -66,19 +66,19 @@ def test_a_body_is_gripped_lifted_and_let_go(take: Take):
         return x, y
 
     bring(player, seen())
-    assert scene._hovered() == disc.index
+    assert scene._lit() == disc.index
     before = seen()
     player.hold("confirm", down=True)
     assert scene.grip is not None
     assert scene.grip.body is disc
-    bring(player, (before[0], before[1] - 150))
+    bring(player, (before[0], before[1] - 100))
     player.frames(60)
-    assert seen()[1] < before[1] - 120
+    assert seen()[1] < before[1] - 80
     player.hold("confirm", down=False)
     assert scene.grip is None
     player.press("back")
     assert not player.form.typing
-    assert scene._hovered() is None
+    assert scene._lit() is None
     player.press("pause")
     assert "PauseScene" in player.top_name
 

@@ -19,27 +19,30 @@ from game.ui.actions import hints_of
 from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.listing import shortened
+from game.ui.panel import Panel
+from game.ui.panel_scene import PanelScene
+from game.ui.rows import SliderRow
 from game.ui.widget import PointsManager
-from game.ui.widgets import Choice, Slider, TextButton, Toggle
-from game.ui.words import GAP
+from game.ui.widgets import GAP, Choice
 from tests.support.driver import Driver
-from tests.support.form_page import FormPage
 
 COLUMNS = [pygame.Rect(x, y, 80, 20) for x in (0, 200) for y in (0, 40, 80)]
 
 
-class Page(FormPage):
+class Page(PanelScene):
     """One of each widget."""
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
-        form, manager, log = self.form, self.form.manager, self.log
-        self.word = form.add(TextButton(manager, (64, 100, 120, 32), "Go", lambda: log.append("go")))
-        self.toggle = form.add(Toggle(manager, (64, 150, 400, 32), "Switch", False, log.append))
-        self.slider = form.add(
-            Slider(manager, (64, 200, 400, 24), "Rate", 0.5, (0.0, 1.0), log.append, step=0.1, figure_width=60)
-        )
-        self.choice = form.add(Choice(manager, (64, 250, 400, 32), "", ["one", "two", "three"], 0, log.append))
+        self.log: list[object] = []
+        self.build()
+
+    def describe(self, panel: Panel) -> None:
+        log = self.log
+        self.word = panel.button("Go", lambda: log.append("go"))
+        self.toggle = panel.toggle("Switch", False, log.append)
+        self.slider = panel.slider("Rate", 0.5, (0.0, 1.0), log.append, step=0.1, figure=str)
+        self.choice = panel.choice("", ["one", "two", "three"], 0, log.append)
 
 
 @pytest.fixture
@@ -94,24 +97,25 @@ def test_pad_works_every_widget(page: tuple[Driver, Page]):
 
 def test_mouse_works_every_widget(page: tuple[Driver, Page]):
     game, scene = page
-    game.click((80, 116))
-    game.click((450, 166))
-    game.click((64 + 142, 212))  # the left end of the track
-    game.click((64 + 60, 266))
+    game.click((scene.word.box.left + 6, scene.word.box.centery))
+    game.click(scene.toggle.box.center)
+    game.click((scene.slider._track[0], scene.slider.box.centery))
+    game.click(scene.choice._places[1].center)
     assert scene.log == ["go", True, 0.0, 1]
 
 
 def test_a_drag_goes_on_outside_and_a_press_let_go_outside_does_nothing(page: tuple[Driver, Page]):
     game, scene = page
-    down = {"button": 1}
-    game.post(pygame.MOUSEBUTTONDOWN, pos=game.to_window((300, 212)), **down)
-    game.move((1200, 600))
-    assert scene.slider.value == 1.0
-    game.post(pygame.MOUSEBUTTONUP, pos=game.to_window((1200, 600)), **down)
-    game.move((300, 212))
-    assert scene.slider.value == 1.0
-    game.post(pygame.MOUSEBUTTONDOWN, pos=game.to_window((80, 116)), **down)
-    game.post(pygame.MOUSEBUTTONUP, pos=game.to_window((600, 600)), **down)
+    (left, right), y = scene.slider._track, scene.slider.box.centery
+    for start, end in (
+        ((left + 50, y), (right + 60, 600)),
+        ((scene.word.box.left + 6, scene.word.box.centery), (600, 600)),
+    ):
+        game.post(pygame.MOUSEBUTTONDOWN, pos=game.to_window(start), button=1)
+        game.move(end)
+        game.post(pygame.MOUSEBUTTONUP, pos=game.to_window(end), button=1)
+        game.move((left + 50, y))
+        assert scene.slider.value == 1.0
     assert "go" not in scene.log
 
 
@@ -124,20 +128,10 @@ def test_a_held_direction_repeats(page: tuple[Driver, Page]):
     assert scene.slider.value == 1.0
 
 
-def test_a_logarithmic_slider_gives_every_decade_the_same_room(context: Context, open_game: Callable[..., Driver]):
-    open_game(Page)
-    form = Form(context)
-    slider = Slider(form.manager, (0, 0, 300, 24), "", 1e-4, (1e-5, 1e-1), lambda _: None, logarithmic=True)
-    assert slider.fraction == pytest.approx(0.25)
-    for _ in range(5):
-        slider.shift(1)
-    assert slider.value == pytest.approx(1e-3)
-
-
 def test_a_slider_stops_at_its_ticks_as_well_as_at_each_step(context: Context, open_game: Callable[..., Driver]):
     open_game(Page)
     form, ticks = Form(context), {0.0: "Off", 0.04: "Guard", 0.64: "Guide"}
-    slider = Slider(form.manager, (0, 0, 300, 24), "", 0.0, (0.0, 1.0), lambda _: None, step=0.1, ticks=ticks)
+    slider = SliderRow(form.manager, "", 0.0, (0.0, 1.0), lambda _: None, 0.1, str, ticks=ticks)
     up, down = [0.04, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.64, 0.7], [0.64, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1, 0.04, 0.0]
     for direction, stops in ((1, up), (-1, down)):
         for stop in stops:
@@ -153,7 +147,7 @@ def test_a_ring_shows_for_keys_and_not_for_the_mouse(page: tuple[Driver, Page]):
     game.key(pygame.K_DOWN)
     game.frames(2)
     assert scene.toggle.ringed
-    game.move((100, 212))
+    game.move(scene.slider.box.center)
     game.frames(2)
     assert scene.slider.focused
     assert not scene.slider.ringed
@@ -280,7 +274,7 @@ def test_the_hint_names_the_keys_that_change_what_is_in_focus(open_game: Callabl
     seen = set()
     for widget in form.widgets:
         form.focus(widget)
-        by_arrows = isinstance(widget, Slider)
+        by_arrows = isinstance(widget, SliderRow)
         seen.add(by_arrows)
         expected = texts.ARROWS_ASIDE if by_arrows else driver.app.context.controls.word(Command.CONFIRM)
         (hint,) = hints_of([form.changes], driver.app.context.controls)

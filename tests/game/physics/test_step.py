@@ -9,9 +9,9 @@ import pytest
 from engine import World
 from engine.contacts import MARGIN
 from game.core.source import source_of
-from game.scenes.physics.exhibits import EXHIBITS, Exhibit
-from game.scenes.physics.step_pieces import pieces_of, rows, sentence
-from game.scenes.physics.step_record import StepRecord
+from game.scenes.physics.exhibit import Exhibit
+from game.scenes.physics.exhibits import EXHIBITS
+from game.scenes.physics.step import StepRecord
 from game.world.grip import Grip
 
 EARTH = 9.81
@@ -62,9 +62,7 @@ def test_impulses_lead_from_one_to_the_next_and_end_as_the_solver_left_them(name
     # Iterations end once one has changed nothing.
     assert 0 < len(record.impulses) <= len(contacts) * record.exhibit.world.iterations
     assert len(record.impulses) % len(contacts) == 0
-    velocity = record.warm
-    assert velocity is not None
-    velocity = velocity.copy()
+    velocity = record.warm.copy()
     dynamic = record.exhibit.world.params.dynamic
     total: dict[int, np.ndarray] = {}
     for impulse in record.impulses:
@@ -120,7 +118,7 @@ def test_every_piece_has_words_figures_and_a_line_of_its_function(subtests: pyte
         with subtests.test(name=name):
             _, record = moment(name)
             for followed in (*record.pairs[:12], *([] if record.pairs else [None])):
-                pieces = pieces_of(record, followed)
+                pieces = record.pieces(followed)
                 kinds = list(dict.fromkeys(piece.kind for piece in pieces))
                 assert kinds[0] == "boxes"
                 assert kinds[-1] == "end"
@@ -135,9 +133,7 @@ def test_every_piece_has_words_figures_and_a_line_of_its_function(subtests: pyte
                     numbers = {number for number, _ in source.lines}
                     assert piece.function is World.step or piece.line in numbers
                     assert set(piece.notes or {}) <= numbers
-                    told = " ".join(
-                        [sentence(record, piece, followed), *(words for words, _ in rows(record, piece, followed))]
-                    )
+                    told = " ".join([record.sentence(piece, followed), *(piece.notes or {}).values()])
                     assert "nan" not in told
                     assert "{" not in told
 
@@ -150,7 +146,7 @@ def _size(record: StepRecord, contact: int) -> float:
 def test_a_rebound_begins_with_nothing_and_ends_with_an_impulse():
     _, record = moment("bounce")
     pair = max(record.pairs, key=lambda pair: -1 if pair.contact is None else _size(record, pair.contact))
-    pieces = {piece.kind: piece for piece in reversed(pieces_of(record, pair))}
+    pieces = {piece.kind: piece for piece in reversed(record.pieces(pair))}
     first = pieces["impulses"].impulse
     assert first is not None
     assert first.before[0] == 0

@@ -1,0 +1,163 @@
+"""Sum of one unit written out: patch, weights and products number by number, then what they add up to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Final
+
+import numpy as np
+import pygame
+
+from ai.explain.unit_sums import UnitSum
+from game.core import texts
+from game.digits.pictures import SIGNED, Numbers, mosaic, picture, tiling
+from game.drawing.canvas import Canvas
+from game.drawing.cursor import Cursor
+from game.drawing.paint_cache import PaintCache
+from game.drawing.tokens import HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL
+from game.scenes.digits.unit_walk import UnitWalk
+from game.ui.panel import Column
+
+_HEIGHT: Final = 140.0  # of a matrix
+_LEAST: Final = 150.0
+_MOST_WRITTEN: Final = 7  # cells along a side up to which figures fit into them
+_ALL: Final = 100.0
+_FULL: Final = 0.84  # of a cell's width for its figure: any wider, two of them would read as one
+_DIM: Final = 0.45  # of a cell's colour behind its figure
+_GAP: Final = 2.0
+_ROW: Final = 28.0  # of a digit of the answer
+
+
+def figure(value: float, digits: int = 2) -> str:
+    """Write a number with a true minus sign."""
+    words = f"{value:.{digits}f}"
+    return (words[1:] if float(words) == 0 and words.startswith("-") else words).replace("-", "−")
+
+
+def describe_sum(column: Column, walk: UnitWalk) -> None:
+    """Add the sum of the unit looked at, which may be another one of the same stage later."""
+    unit = walk.unit
+    if walk.at_answer:
+        column.add(lambda cursor: _write_answer(cursor, walk))
+        column.aside(texts.PATCH_SOFTMAX if walk.logits else texts.PATCH_CLIPPED)
+    elif unit is None:
+        column.text(texts.PATCH_OTHER.format(layer=type(walk.stage.layer).__name__))
+    elif unit.weights is None:
+        pooling = walk.stage.kind == "pooling"
+        first, second = column.beside((1, 1), least=_LEAST, apart=26.0)
+        _add_matrix(first, texts.PATCH_READS, lambda: _unit(walk).patch[:, :, 0], strongest=pooling)
+        second.gap(24)
+        word = texts.PATCH_LARGEST.format(count=unit.patch[:, :, 0].size) if pooling else texts.PATCH_BENT
+        second.pair(word, lambda: figure(_unit(walk).output, 3), NET)
+    else:
+        _describe_products(column, walk)
+
+
+def _unit(walk: UnitWalk) -> UnitSum:
+    assert walk.unit is not None
+    return walk.unit
+
+
+def _weights(walk: UnitWalk) -> Numbers:
+    weights = _unit(walk).weights
+    assert weights is not None
+    return weights
+
+
+def _describe_products(column: Column, walk: UnitWalk) -> None:
+    unit = _unit(walk)
+    first, second = column.beside((1, 1), least=_LEAST, apart=26.0)
+    _add_matrix(first, texts.PATCH_READS, lambda: _unit(walk).patch[:, :, walk.channel])
+    _add_matrix(second, texts.PATCH_WEIGHTS, lambda: _weights(walk)[:, :, walk.channel])
+    column.gap()
+    first, second = column.beside((1, 1), least=_LEAST, apart=26.0)
+    _add_matrix(first, texts.PATCH_PRODUCTS, lambda: _unit(walk).products[:, :, walk.channel])
+
+    def here() -> float:
+        return float(_unit(walk).products[:, :, walk.channel].sum(dtype=np.float64))
+
+    def others() -> float:
+        return float(_unit(walk).products.sum(dtype=np.float64)) - here()
+
+    count, maps = unit.patch[:, :, 0].size, unit.patch.shape[2]
+    second.pair(texts.PATCH_SUM.format(count=count) if count > 1 else texts.PATCH_ONE, lambda: figure(here(), 3))
+    if maps > 1:
+        second.pair(texts.PATCH_OTHERS.format(count=maps - 1), lambda: figure(others(), 3))
+    second.pair(texts.PATCH_BIAS, lambda: figure(_unit(walk).bias, 3))
+    second.line()
+    second.pair(texts.PATCH_TOTAL, lambda: figure(_unit(walk).total, 3), NET)
+    second.pair(texts.PATCH_GAVE, lambda: figure(_unit(walk).output, 3))
+    if maps > 1:
+        column.gap()
+        column.caption(texts.PATCH_ALL.format(count=maps))
+        painted = PaintCache()
+        column.picture(_ALL, lambda canvas, box: painted.draw(
+            canvas, box, (walk.place, walk.channel), partial(_paint_all, box.size, _unit(walk).products, walk.channel)
+        ))  # fmt: skip
+
+
+def _add_matrix(column: Column, words: str, values: Callable[[], Numbers], *, strongest: bool = False) -> None:
+    painted = PaintCache()
+
+    def draw(canvas: Canvas, box: pygame.FRect) -> None:
+        shown, room = values(), pygame.FRect((0, 0), box.size)
+        paint = partial(_paint_matrix, box=room, values=shown, strongest=strongest)
+        painted.draw(canvas, box, shown.tobytes(), paint)
+
+    column.caption(words)
+    column.picture(_HEIGHT, draw)
+
+
+def _paint_matrix(sheet: Canvas, box: pygame.FRect, values: Numbers, *, strongest: bool) -> None:
+    """Draw numbers in their cells, or as a picture alone where they would be too small to read."""
+    rows, columns = values.shape
+    written = max(rows, columns) <= _MOST_WRITTEN
+    width, height = (box.width, box.height) if written else (min(box.size),) * 2
+    if written and columns < 3:
+        width, height = min(64.0 * columns, width), min(44.0 * rows, height)
+    area = sheet.rect(box.left, box.top, width, height)
+    largest = float(np.abs(values).max())
+    shown = values / max(largest, 1e-9) * (_DIM if written else 1.0)
+    sheet.surface.blit(picture(shown, area.size, SIGNED), area)
+    pygame.draw.rect(sheet.surface, LINE, area, 1)
+    if not written:
+        return
+    across, down = width / columns, height / rows
+    size = LABEL * min(1.0, _FULL * across / sheet.text_width(figure(-largest), size=LABEL, tabular=True))
+    best = np.unravel_index(int(values.argmax()), values.shape)
+    for (row, column), value in np.ndenumerate(values):
+        lit = strongest and (row, column) == best
+        at = box.left + (column + 0.5) * across, box.top + (row + 0.5) * down + 0.36 * size
+        colour = NET if lit else INK if value else MUTE
+        sheet.text(figure(float(value)), at, size=size, align="centre", tabular=True, colour=colour)
+
+
+def _paint_all(room: tuple[float, float], products: Numbers, channel: int, sheet: Canvas) -> None:
+    """Draw the products of all maps, and an edge around those that are written out."""
+    tiles = np.moveaxis(products, 2, 0)
+    columns, size = tiling(len(tiles), products.shape[:2], room, _GAP)
+    area = sheet.rect(0, 0, *size)
+    shown = tiles / max(float(np.abs(tiles).max()), 1e-9)
+    sheet.surface.blit(mosaic(shown, columns, area.size, _GAP * sheet.scale), area)
+    row, column = divmod(channel, columns)
+    across, down = (size[0] + _GAP) / columns, (size[1] + _GAP) / -(-len(tiles) // columns)
+    sheet.outline((column * across - _GAP, row * down - _GAP, across + _GAP, down + _GAP), 1, INK)
+
+
+def _write_answer(cursor: Cursor, walk: UnitWalk) -> None:
+    """Write each digit's score and probability."""
+    outputs, answer = walk.stages[-1].outputs.reshape(-1), int(walk.probabilities.argmax())
+    box = cursor.take((len(outputs) + 1) * _ROW)
+    if (canvas := cursor.canvas) is None:
+        return
+    left, score, bar, right = box.left, box.left + 0.25 * box.width, box.left + 0.34 * box.width, box.right
+    canvas.text(texts.PATCH_SCORES, (score, box.top + 16), size=LABEL, colour=MUTE, weight="medium", align="right")
+    canvas.text(texts.PATCH_PROBABILITIES, (bar, box.top + 16), size=LABEL, colour=MUTE, weight="medium")
+    for digit, (value, probability) in enumerate(zip(outputs.tolist(), walk.probabilities.tolist(), strict=True)):
+        y, colour = box.top + 16 + _ROW * (digit + 1), INK if digit == answer else MUTE
+        canvas.text(str(digit), (left, y), colour=HUMAN if digit == walk.place[2] else colour, tabular=True)
+        canvas.text(figure(value), (score, y), size=SMALL, colour=colour, align="right", tabular=True)
+        canvas.bar((bar, y - 7, right - bar - 60, 4), probability, NET if digit == answer else MUTE)
+        share = f"{100 * probability:.1f}%"
+        canvas.text(share, (right, y), size=SMALL, colour=colour, align="right", tabular=True)
