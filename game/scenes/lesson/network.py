@@ -174,7 +174,7 @@ class GradientFrame(NetworkFrame):
     @property
     def uphill(self) -> bool:
         """Whether the picked weight moves up its slope."""
-        index, taken = self.weight.index, self.step.taken
+        index, taken = self.weight.place, self.step.taken
         return float(taken.gradient[index]) * float(taken.taken[index]) < 0
 
     def _title(self) -> str:
@@ -183,7 +183,7 @@ class GradientFrame(NetworkFrame):
 
     def _parts(self) -> list[Line]:
         """Return the way from the slope of the picked weight to its new value."""
-        step, index, words = self.step, self.weight.index, texts.LESSON_STEP_PARTS
+        step, index, words = self.step, self.weight.place, texts.LESSON_STEP_PARTS
         taken = step.taken
         slope, share, moved, old, new = (
             float(each[index])

@@ -25,7 +25,7 @@ class Weight(NamedTuple):
     link: int
     start: int
     end: int
-    index: int
+    place: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,10 +94,10 @@ class LearningStep:
                 slopes = np.abs(self.taken.gradient[first : first + inputs * outputs])
                 best = np.argsort(-np.nan_to_num(slopes, nan=np.inf), kind="stable")[:most].tolist()
                 if not isinstance(layer, DuelingLayer):
-                    found += [Weight(link, *divmod(place, outputs), first + place) for place in best]
+                    found += [Weight(link, at // outputs, at % outputs, first + at) for at in best]
                 link += 1
             first += sum(parameter.value.size for parameter in layer.parameters)
-        return sorted(found, key=lambda weight: -abs(float(self.taken.gradient[weight.index])))[:most]
+        return sorted(found, key=lambda weight: -abs(float(self.taken.gradient[weight.place])))[:most]
 
     def unit_name(self, column: int, unit: int) -> str:
         """Return the name of a unit of a column, by its number in the layer."""

@@ -246,7 +246,7 @@ def test_a_better_action_and_steps_uphill_are_given_their_reason(lesson: Lesson)
     assert (texts.LESSON_DOWNHILL[1] in gradient.sentence) == adam
     uphill = 0
     for gradient.rank in range(24):
-        index = gradient.weight.index
+        index = gradient.weight.place
         assert gradient.uphill == (lesson.step.gradient[index] * lesson.step.taken[index] < 0)
         uphill += gradient.uphill
     assert bool(uphill) == adam, "plain steps never go uphill, and some of Adam's do"
@@ -260,7 +260,7 @@ def test_the_gradient_and_the_step_of_any_weight_are_the_optimizers(driver: Driv
         driver.widget(texts.LESSON_PICK_WEIGHT).set(rank)
         words, frame = {word.lstrip("+") for word in shown(driver, GRADIENT)}, driver.top.frame
         assert isinstance(frame, GradientFrame)
-        weight, index = frame.weight, frame.weight.index
+        weight, index = frame.weight, frame.weight.place
         sizes = np.sort(np.abs(np.concatenate([each.weights.ravel() for each in links_of(frame)])))
         assert abs(float(step.gradient[index])) == pytest.approx(float(sizes[-rank]))
         weights = frame.step.weights[weight.link].weights
