@@ -19,7 +19,7 @@ from game.panels.network_plan import Show
 from game.panels.network_view import NetworkView
 from game.panels.tables import Line, table, told
 from game.scenes.lesson.frame import Frame
-from game.scenes.lesson.step import LearningStep, WeightPlace
+from game.scenes.lesson.step import LearningStep, Weight
 from game.ui.panel import Column
 
 _HEIGHTS: Final[dict[Show, float]] = {"weights": 370.0, "activations": 370.0, "gradients": 190.0}
@@ -76,7 +76,7 @@ class NetworkFrame(Frame):
                 name = self.step.unit_name(column, unit)
                 canvas.explain((x - 6, y - 6, 12, 12), name, partial(self.unit, column, unit))
 
-    def _ends(self, weight: WeightPlace) -> list[Point]:
+    def _ends(self, weight: Weight) -> list[Point]:
         """Return the two ends of a link, as far as they are shown."""
         ends = ((weight.link, weight.start), (weight.link + 1, weight.end))
         return [
@@ -116,7 +116,7 @@ class GradientFrame(NetworkFrame):
 
     Attributes:
         alone: whether this example's own share is shown, in place of the whole batch's gradient.
-        weight: the weight that is picked; None where none can be.
+        rank: which weight is picked, by the size of its slope: 0 for the steepest.
 
     """
 
@@ -126,8 +126,7 @@ class GradientFrame(NetworkFrame):
         length = texts.LESSON_LENGTH.format(length=number(step.taken.gradient_length))
         sentence = f"{words[1]} {texts.LESSON_DOWNHILL[step.carries_on]}"
         super().__init__(words, length, sentence, functions, step)
-        self.alone, self._ranked = False, step.strongest(step.taken.gradient, _RANKS)
-        self.weight = self._ranked[0] if self._ranked else None
+        self.alone, self.rank, self._steepest = False, 0, step.steepest(_RANKS)
 
     def describe(self, column: Column) -> None:
         whose = [words.format(count=self.step.examples) for words in texts.LESSON_WHOSE]
@@ -137,16 +136,20 @@ class GradientFrame(NetworkFrame):
         left, right = column.beside((2, 3), _LEAST)
         left.caption(texts.LESSON_SHARE)
         left.add(table((), self._share))
-        if len(self._ranked) > 1:
-            right.slider(texts.LESSON_PICK_WEIGHT, 1, (1, len(self._ranked)), self._pick_rank, step=1,
+        if self._steepest:
+            right.slider(texts.LESSON_PICK_WEIGHT, self.rank + 1, (1, len(self._steepest)), self._pick_rank, step=1,
                          figure=lambda rank: f"{rank:.0f}")  # fmt: skip
-        if self.weight is not None:
             right.text(self._title, size=SMALL, colour=HUMAN)
             right.add(table((), self._parts))
             right.text(lambda: texts.LESSON_UPHILL if self.uphill else "", size=SMALL)
 
     def _pick_rank(self, rank: float) -> None:
-        self.weight = self._ranked[round(rank) - 1]
+        self.rank = round(rank) - 1
+
+    @property
+    def weight(self) -> Weight:
+        """The weight that is picked."""
+        return self._steepest[self.rank]
 
     def show_alone(self, alone: int) -> None:
         """Show this example's own share of the gradient, or the whole batch's."""
@@ -169,26 +172,18 @@ class GradientFrame(NetworkFrame):
         return lines
 
     @property
-    def _index(self) -> int:
-        """Where the picked weight lies in the flat vectors."""
-        index = self.step.index(self.weight) if self.weight else None
-        assert index is not None
-        return index
-
-    @property
     def uphill(self) -> bool:
         """Whether the picked weight moves up its slope."""
-        taken = self.step.taken
-        return float(taken.gradient[self._index]) * float(taken.taken[self._index]) < 0
+        index, taken = self.weight.place, self.step.taken
+        return float(taken.gradient[index]) * float(taken.taken[index]) < 0
 
     def _title(self) -> str:
-        assert self.weight is not None
         optimizer = texts.LESSON_OPTIMIZERS.get(self.step.optimizer, self.step.optimizer)
         return texts.LESSON_STEP_OF.format(optimizer=optimizer, weight=self.step.weight_name(self.weight))
 
     def _parts(self) -> list[Line]:
         """Return the way from the slope of the picked weight to its new value."""
-        step, index, words = self.step, self._index, texts.LESSON_STEP_PARTS
+        step, index, words = self.step, self.weight.place, texts.LESSON_STEP_PARTS
         taken = step.taken
         slope, share, moved, old, new = (
             float(each[index])
@@ -210,7 +205,7 @@ class GradientFrame(NetworkFrame):
     def _draw(self, canvas: Canvas) -> None:
         """Draw the network, with the picked weight in amber where its ends are shown."""
         super()._draw(canvas)
-        if self.weight and len(ends := self._ends(self.weight)) == 2:
+        if self._steepest and len(ends := self._ends(self.weight)) == 2:
             canvas.line(ends[0], ends[1], HUMAN, 1.5)
 
 

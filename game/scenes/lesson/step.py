@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from ai.explain.inspection import Link, links
 from ai.explain.learning_step import Step
@@ -20,13 +19,13 @@ _SUM, _NORMALISED, _DROPPED = "sum", "normalised", "dropout"
 _RUNNING: Final = ("gradient_sum", "velocity")
 
 
-@dataclass(frozen=True)
-class WeightPlace:
-    """Place of a weight: the link it belongs to, from 0, and the units at its two ends."""
+class Weight(NamedTuple):
+    """A weight: the link it belongs to, from 0, the units at its two ends, and its place in flat vectors."""
 
     link: int
     start: int
     end: int
+    place: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,43 +85,26 @@ class LearningStep:
         twin.values = self.taken.values_before
         return [Link(link.weights.copy(), link.bias.copy(), link.gradient) for link in links(twin)]
 
-    @cached_property
-    def _indices(self) -> list[npt.NDArray[np.intp] | None]:
-        """For each link, where its weights lie in a flat vector; None where they are mixed, in a dueling layer."""
-        found: list[npt.NDArray[np.intp] | None] = []
-        first = 0
+    def steepest(self, most: int) -> list[Weight]:
+        """Return the weights with the steepest slopes, in order; none of a dueling layer, which mixes several."""
+        found, first, link = list[Weight](), 0, 0
         for layer in self.network.layers:
             if _joins_units(layer):
-                shape = layer.shapes["weights"]
-                whole = np.arange(first, first + int(np.prod(shape))).reshape(shape)
-                found.append(None if isinstance(layer, DuelingLayer) else whole)
+                inputs, outputs = layer.shapes["weights"]
+                slopes = np.abs(self.taken.gradient[first : first + inputs * outputs])
+                best = np.argsort(-np.nan_to_num(slopes, nan=np.inf), kind="stable")[:most].tolist()
+                if not isinstance(layer, DuelingLayer):
+                    found += [Weight(link, at // outputs, at % outputs, first + at) for at in best]
+                link += 1
             first += sum(parameter.value.size for parameter in layer.parameters)
-        return found[-len(self.weights) :]
-
-    def index(self, place: WeightPlace) -> int | None:
-        """Return where a weight lies in the flat vectors; None for one of a dueling layer, which mixes several."""
-        indices = self._indices[place.link]
-        return None if indices is None else int(indices[place.start, place.end])
-
-    def strongest(self, flat: Array, most: int) -> list[WeightPlace]:
-        """Return the places of the weights for which a flat vector is largest, the largest first."""
-        found = []
-        for link, indices in enumerate(self._indices):
-            if indices is None:
-                continue
-            sizes = np.nan_to_num(np.abs(flat[indices]), nan=np.inf)
-            best = np.argsort(-sizes, axis=None, kind="stable")[:most]
-            places = np.stack(np.unravel_index(best, sizes.shape), axis=1).tolist()
-            found += [(float(sizes[start, end]), WeightPlace(link, start, end)) for start, end in places]
-        found.sort(key=lambda each: -each[0])
-        return [place for _, place in found[:most]]
+        return sorted(found, key=lambda weight: -abs(float(self.taken.gradient[weight.place])))[:most]
 
     def unit_name(self, column: int, unit: int) -> str:
         """Return the name of a unit of a column, by its number in the layer."""
         names = self.inputs if column == 0 else self.outputs if column == len(self.weights) else ()
         return names[unit] if unit < len(names) else texts.NETWORK_VIEW_UNIT.format(layer=column, unit=unit + 1)
 
-    def weight_name(self, weight: WeightPlace) -> str:
+    def weight_name(self, weight: Weight) -> str:
         """Return the names of the units that a weight connects."""
         start, end = self.unit_name(weight.link, weight.start), self.unit_name(weight.link + 1, weight.end)
         return texts.LESSON_WEIGHT_NAME.format(start=start, end=end)

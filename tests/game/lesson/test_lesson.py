@@ -9,6 +9,7 @@ import pytest
 
 from ai.agent.decision import in_points
 from ai.explain.agent_lesson import Lesson
+from ai.explain.inspection import Link, links
 from ai.explain.learning_step import Value
 from ai.nn.costs import COSTS
 from game.core import texts
@@ -244,9 +245,8 @@ def test_a_better_action_and_steps_uphill_are_given_their_reason(lesson: Lesson)
     assert isinstance(gradient, GradientFrame)
     assert (texts.LESSON_DOWNHILL[1] in gradient.sentence) == adam
     uphill = 0
-    for weight in gradient.step.strongest(lesson.step.gradient, 200):
-        gradient.weight, index = weight, gradient.step.index(weight)
-        assert index is not None
+    for gradient.rank in range(24):
+        index = gradient.weight.place
         assert gradient.uphill == (lesson.step.gradient[index] * lesson.step.taken[index] < 0)
         uphill += gradient.uphill
     assert bool(uphill) == adam, "plain steps never go uphill, and some of Adam's do"
@@ -260,22 +260,28 @@ def test_the_gradient_and_the_step_of_any_weight_are_the_optimizers(driver: Driv
         driver.widget(texts.LESSON_PICK_WEIGHT).set(rank)
         words, frame = {word.lstrip("+") for word in shown(driver, GRADIENT)}, driver.top.frame
         assert isinstance(frame, GradientFrame)
-        assert frame.weight == frame.step.strongest(step.gradient, 5)[rank - 1]
-        index = frame.step.index(frame.weight)
+        weight, index = frame.weight, frame.weight.place
+        sizes = np.sort(np.abs(np.concatenate([each.weights.ravel() for each in links_of(frame)])))
+        assert abs(float(step.gradient[index])) == pytest.approx(float(sizes[-rank]))
+        weights = frame.step.weights[weight.link].weights
+        assert weights[weight.start, weight.end] == step.values_before[index]
         assert {number(float(step.gradient[index])), number(-float(step.taken[index]))} <= words
         assert number(float(step.values_after[index])) in words
         assert number(float(np.linalg.norm(step.share))) in words
         if lesson.config.optimizer == "adam":
             assert number(0.1 * float(step.optimizer_after["gradient_sum"][index])) in words
             assert number(0.001 * float(step.optimizer_after["square_sum"][index])) in words
-    place, inputs, units = frame.step.strongest(step.gradient, 1)[0], len(lesson.state), lesson.config.hidden[0]
-    norm = 2 * units if lesson.config.layer_normalisation else 0
-    place = type(place)(1, 2, 3)
-    assert frame.step.index(place) == inputs * units + units + norm + 2 * lesson.config.hidden[1] + 3
     whose = driver.choice(texts.LESSON_WHOSE[1])
     whose.choose(1)
     assert frame.alone
     assert frame._network.gradients == pytest.approx(step.share)
+
+
+def links_of(frame: GradientFrame) -> list[Link]:
+    """Return the slopes of the links between the network's stages."""
+    network = frame.step.network.copy()
+    network.values = frame.step.taken.gradient
+    return links(network)
 
 
 def test_after_the_step_the_value_and_its_pulls_are_told(driver: Driver, lesson: Lesson):
