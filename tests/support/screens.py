@@ -47,6 +47,7 @@ from game.scenes.train.digits import DigitTrainingScene
 from game.scenes.train.networks import NetworksScene
 from game.scenes.train.scene import TrainScene
 from game.scenes.train.study import StudyScene
+from game.scenes.watch.pilots import PilotsScene
 from game.scenes.watch.scene import WatchScene
 from game.ui.context import Context
 from tests.support.driver import Driver
@@ -97,6 +98,7 @@ SCREENS: dict[str, Make] = {
     "BindingsScene": BindingsScene,
     "NetworksScene": NetworksScene,
     "ReplayScene": lambda context: ReplayScene(context, flown(context)),
+    "PilotsScene": lambda context: PilotsScene(context, lambda file: None),
 }
 
 

@@ -38,6 +38,7 @@ from game.scenes.play.daily import DailyStart
 from game.scenes.play.descent import Descent
 from game.scenes.play.scene import PlayScene
 from game.scenes.play.starts import race
+from game.scenes.watch.pilots import PilotsScene
 from game.scenes.watch.scene import COUNTS, WatchScene
 from game.ui.context import Context
 from tests.support.lessons import lesson_of
@@ -98,6 +99,7 @@ def makers(context: Context) -> dict[str, Callable[[], Scene | None]]:
 
     return {
         **plain,
+        "PilotsScene": lambda: PilotsScene(context, lambda file: None),
         "WatchScene": lambda: WatchScene(context, int(rng.choice(COUNTS))),
         "ChapterScene": lambda: ChapterScene(context, str(rng.choice(list(PATH)))),
         "PhysicsScene": lambda: PhysicsScene(context, str(rng.choice(list(EXHIBITS)))),

@@ -179,9 +179,9 @@ def test_a_real_file_flies_as_it_is_saved(tmp_path: Path):
         path.write_text(source)
         for _ in range(100_000):
             pilot.look()
-            if flown(pilot) == action:
+            if (answer := flown(pilot)) == action:
                 break
-        assert flown(pilot) == action
+        assert answer == action
     pilot.close()
 
 

@@ -21,7 +21,7 @@ def test_sentences_name_the_players_own_keys_too(open_game, context: Context):
     context.settings.keys = bindings.to_dict()
     context.settings_file.save(context.settings)
     settings = open_game(SCREENS["SettingsScene"]).top
-    assert settings.form.widgets[1]._hint.startswith("F9 ")
+    assert settings.form.widgets[1]._aside.startswith("F9 ")
 
 
 def test_a_hint_is_clicked_where_it_is_written_whether_or_not_it_is_drawn():

@@ -9,6 +9,7 @@ import pytest
 
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS, build_digit_network
+from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.scenes.digits.reader import Reader
 from game.scenes.digits.scene import DigitsScene
@@ -68,7 +69,8 @@ def test_all_of_them_can_be_chosen_by_keys_and_from_the_list(open_game: Callable
     assert seen == ["classic", *own, "modern"]
     driver.key(pygame.K_b)
     assert driver.top.chosen == own[-1]
-    driver.key(pygame.K_RETURN)
+    words = texts.DIGITS_ALL.format(count=5)
+    driver.click(next(word for word in driver.top.form.widgets if word.label == words).box.center)
     assert driver.top_name == "ListDialog"
     driver.keys(pygame.K_DOWN, pygame.K_RETURN)
     assert driver.top.chosen == "classic"
