@@ -18,8 +18,8 @@ ROOT = Path(__file__).parents[2]
 # What is the same in every language: units, and keys that are named by their letter or number.
 UNITS = {"m", "s", "ms", "min", "k", "M"}
 KEY = re.compile(r"[A-Z]|F\d+")
-# Names of networks, of errors in Python, and of what the tests ask in their own dialogs.
-NAMES = {"modern", "classic", "anywhere", "mine", "ValueError", "a", "b", "yes", "no", "name"}
+# Names of languages, of networks, of errors in Python, and of what the tests ask in their own dialogs.
+NAMES = {"English", "modern", "classic", "anywhere", "mine", "ValueError", "a", "b", "yes", "no", "name"}
 FOLDERS = {"ai", "engine"}  # of our own code, whose lines some screens show
 PATH = re.compile(r"/\S*")
 TINY = re.compile(r"\d+e[-−]\d+")  # a number: 5e-05
