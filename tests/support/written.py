@@ -90,8 +90,9 @@ class Written:
             page, size = self.page(canvas), (laid.size[0] / laid.scale, laid.size[1] / laid.scale)
             for note in self.page(laid).notes:
                 within = pygame.FRect((0, 0), size) if note.within == laid.view else note.within
-                box, within = (on_whole(canvas, each.move(x, y)) for each in (note.box, within))
-                page.notes.append(replace(note, box=box, within=within))
+                if (ink := seen(canvas, note.box.move(x, y))).height > 1:
+                    box, within = on_whole(canvas, ink), on_whole(canvas, within.move(x, y))
+                    page.notes.append(replace(note, box=box, within=within))
             page.panels += [on_whole(canvas, each.move(x, y)) for each in self.page(laid).panels]
 
         for name, method in (("text", noted_text), ("panel", noted_panel), ("sheet", noted_sheet), ("lay", noted_lay)):

@@ -28,7 +28,7 @@ from game.ui.panel_scene import PanelScene
 from game.ui.widget import OnPress
 
 _LEAST: Final = 300.0  # points of a column
-_CELLS: Final = (196.0, 96.0, 0.0)  # from the right end of the list: where landed, decisions and date end
+_CELLS: Final = (224.0, 124.0, 0.0)  # from the right end of the list: where landed, decisions and date end
 _BAR: Final = 15.0  # points at the right of a list for its scroll bar
 _PITCH, _AROUND = 30.0, 190.0  # points of a row of the list, and of all around the list
 
