@@ -3,7 +3,7 @@
 from ai.training.config import gym_config
 from ai.training.loop import run
 
-DECISIONS = 40_000
+DECISIONS = 60_000
 
 if __name__ == "__main__":
     told = 0

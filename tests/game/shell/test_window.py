@@ -15,7 +15,7 @@ from tests.support.window import ROOT, Window, screen, skip_without_a_screen, st
 
 LESS_MOTION = texts.SETTINGS["reduced_motion"][0]
 TO_SETTINGS = (*["Down"] * 5, "Return")
-TO_LESS_MOTION = (*["Down"] * 3, "Return")
+TO_LESS_MOTION = (*["Down"] * 4, "Return")
 SHOWN = 2.0  # seconds after which a screen that was chosen is there, on a busy machine too
 
 
