@@ -25,9 +25,9 @@ def points(value: float, digits: int = 2) -> str:
     return decimal(value, digits, "+")
 
 
-def percent(share: float) -> str:
-    """Write a share in whole percent: 35 %."""
-    return f"{decimal(100 * share, 0)} %"
+def percent(share: float, digits: int = 0) -> str:
+    """Write a share in percent, with so many digits after the point: 35 %."""
+    return f"{decimal(100 * share, digits)} %"
 
 
 def number(value: float) -> str:

@@ -16,6 +16,7 @@ from game.core.worker import Worker, WorkerState
 from game.drawing.tokens import HUMAN, INK, MUTE, TEXT
 from game.flight import networks, own
 from game.flight.logbook import Records
+from game.panels.figures import percent
 from game.ui.context import Context
 from game.ui.panel import Column, Panel
 from game.ui.panel_scene import PanelScene
@@ -53,6 +54,7 @@ class PilotsScene(PanelScene):
             self._files, self._measured = self._shelf.files(), self._shelf.measured()
         except OSError as error:
             self._said = texts.PILOTS_UNREADABLE.format(path=self._shelf.folder, reason=error.strerror or error)
+        self._own = own.own(self._measured)
         if self._name not in self._files:
             self._name = next(iter(self._files), "")
         self.build()
@@ -71,11 +73,11 @@ class PilotsScene(PanelScene):
         panel.gap()
         left, right = panel.beside((1, 1.5), _LEAST)
         for name in self._files:
-            latest = next((each for each in own.own(self._measured) if each.name == name), None)
+            latest = next((each for each in self._own if each.name == name), None)
             left.button(
                 name,
                 partial(self._show, name),
-                figure=f"{latest.landed:.0%}" if latest else "",
+                figure=percent(latest.landed) if latest else "",
                 colour=INK if name == self._name else MUTE,
             )
         left.button(new, self._new)
@@ -99,14 +101,13 @@ class PilotsScene(PanelScene):
         if self._worker:
             column.aside(texts.PILOTS_MEASURING)
             column.bar(lambda: self._share)
-        mine = [each for each in own.own(self._measured) if each.name == self._name]
-        if mine:
-            self._describe_card(column, mine[0])
+        if mine := next((each for each in self._own if each.name == self._name), None):
+            self._describe_card(column, mine)
             column.gap()
             column.caption(texts.PILOTS_OVER_TIME)
-            for each in own.own(self._measured)[:_LATEST]:
+            for each in self._own[:_LATEST]:
                 when = time.strftime("%Y-%m-%d %H:%M", time.localtime(each.when))
-                column.pair(f"{when}   {each.name}", f"{each.landed:.1%}")
+                column.pair(f"{when}   {each.name}", percent(each.landed, 1))
 
     def _describe_card(self, column: Column, mine: Measured) -> None:
         """Add the card: this pilot beside those that come with the game, and the player's own hands."""
@@ -179,5 +180,5 @@ class PilotsScene(PanelScene):
 
 
 def _figures(measured: Measured) -> str:
-    landed, seconds, fuel = f"{measured.landed:.1%}", f"{measured.seconds:.1f}", f"{measured.fuel:.1f}"
-    return texts.PILOTS_FIGURES.format(landed=landed, seconds=seconds, fuel=fuel)
+    seconds, fuel = f"{measured.seconds:.1f}", f"{measured.fuel:.1f}"
+    return texts.PILOTS_FIGURES.format(landed=percent(measured.landed, 1), seconds=seconds, fuel=fuel)
