@@ -1,15 +1,25 @@
-"""The scenes that train, with small runs beside the window or within its process."""
+"""Watch, and the scenes that train, with small runs beside the window or within its process."""
 
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
 from game.core.scene import Scene
 from game.scenes.train.base import MORE
 from game.scenes.train.scene import TrainScene
+from game.scenes.watch.scene import WatchScene
+from game.ui.context import Context
 from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.small import LANDERS
+
+
+@pytest.fixture
+def watching(open_game: Callable[..., Driver], context: Context, tmp_path: Path) -> Driver:
+    """Watch, with the scripted pilot alone."""
+    context.models_dir = tmp_path / "models"
+    return open_game(WatchScene, seed=2)
 
 
 @pytest.fixture

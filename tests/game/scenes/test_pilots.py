@@ -32,12 +32,6 @@ def edited(monkeypatch: pytest.MonkeyPatch) -> list[Path]:
     return opened
 
 
-@pytest.fixture
-def watching(open_game: Open, context: Context, tmp_path: Path) -> Driver:
-    context.models_dir = tmp_path / "models"  # only the scripted pilot is here
-    return open_game(WatchScene, seed=2)
-
-
 def scene(driver: Driver) -> WatchScene:
     assert isinstance(driver.top, WatchScene)
     return driver.top
