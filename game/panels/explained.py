@@ -108,7 +108,7 @@ def _draw(canvas: Canvas, area: Explanation) -> None:
         foot = (each.box for each in canvas.explained if each.box.top > view.bottom - _FOOT)
         top = min(each.top for each in foot if each.left < box.right and box.left < each.right)  # and of all above it
         within.height, place = top - 6 - within.top, (box.left - _ASIDE, view.bottom)
-    elif box.right + _WIDTH + 60 > within.right:
+    elif box.right + _WIDTH + 40 > within.right:
         within.width, place = box.left - 6 - within.left, (box.left, box.centery)
     with canvas.unnoted():
         draw_tooltip(canvas, place, within, what, rows)

@@ -61,8 +61,10 @@ def _draw_swatches(canvas: Canvas, top: float, by_rules: bool) -> None:
     for action, colour in enumerate(COLOURS):
         middle = top + ROW * action + (-4 if by_rules else FIRST)
         canvas.rounded((PANEL.left + _LEFT - 12, middle - _SWATCH[1] / 2, *_SWATCH), 2, colour)
-    box = (PANEL.left, top - 10, _LEFT - 2, HEIGHT - 20)
-    canvas.explain(box, texts.EXPLAIN_MAP[ACTION - 1], lambda: texts.EXPLAIN_MAP_NOW)
+    # As wide as the panel: what is said of it stands beside that, and not on the values.
+    canvas.explain(
+        (PANEL.left, top - 10, PANEL.width, HEIGHT - 20), texts.EXPLAIN_MAP[ACTION - 1], lambda: texts.EXPLAIN_MAP_NOW
+    )
 
 
 def _draw_scale(canvas: Canvas, scale: tuple[float, float] | None) -> None:
