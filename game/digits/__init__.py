@@ -1,6 +1,6 @@
 """Handwritten digits, as several screens show them: pictures, what a run has learned, networks kept in memory."""
 
 
-def percent(value: float) -> str:
-    """Format a probability in percent, never as 100 %, since no answer is certain."""
+def certainty(value: float) -> str:
+    """Write how sure a network is, in percent: never 100 %, since no answer is certain."""
     return f"{min(100 * value, 99.9):.1f} %" if value > 0.995 else f"{100 * value:.0f} %"

@@ -10,7 +10,7 @@ import pygame
 from ai.digits.filters import FilterMoment
 from ai.training.history import History
 from game.core import texts
-from game.digits import percent
+from game.digits import certainty
 from game.digits.pictures import mosaic
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
@@ -98,7 +98,7 @@ class FilterFilm:
         scores = [score.success for score in self.history.validations if score.seconds <= moment.seconds]
         left, y = box.right - beside, top + _HEADING + 14
         if scores:
-            words = texts.DIGIT_RUN_FILTERS_READ.format(percent=percent(scores[-1]))
+            words = texts.DIGIT_RUN_FILTERS_READ.format(percent=certainty(scores[-1]))
             y = draw_wrapped(canvas, words, (left, y), beside, size=SMALL, leading=18) + 14
         draw_wrapped(canvas, texts.DIGIT_RUN_FILTERS_HOW, (left, y), beside, size=SMALL, colour=MUTE, leading=18)
 

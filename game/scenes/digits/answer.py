@@ -9,7 +9,7 @@ import pygame
 
 from game.core import texts
 from game.core.scene import Transition
-from game.digits import percent
+from game.digits import certainty
 from game.drawing.cursor import LEADING, Cursor
 from game.drawing.shapes import Shape
 from game.drawing.tokens import HUMAN, INK, LABEL, MUTE, NET, SMALL, TEXT, TITLE, Colour
@@ -117,7 +117,7 @@ def write_answer(cursor: Cursor, reading: Reading, name: str) -> None:
         cursor.y = top + _HEIGHT + LEADING * (TEXT + SMALL)  # what stands below stays where it is
         return
     first, second = best_two(reading.probabilities[name])
-    share, other = (percent(float(reading.probabilities[name][digit])) for digit in (first, second))
+    share, other = (certainty(float(reading.probabilities[name][digit])) for digit in (first, second))
     sure = verdict is not Verdict.UNSURE
     box = write_large(cursor, str(first) if sure else "?", INK if sure else MUTE)
     _write_others(cursor, box, reading, name)
@@ -145,7 +145,7 @@ def _write_others(cursor: Cursor, box: pygame.FRect, reading: Reading, name: str
     for other in reading.probabilities.keys() - {name}:
         first, _ = best_two(reading.probabilities[other])
         sure = reading.verdict(other) is not Verdict.UNSURE
-        words = percent(float(reading.probabilities[other][first])) if sure else texts.DIGITS_UNSURE
+        words = certainty(float(reading.probabilities[other][first])) if sure else texts.DIGITS_UNSURE
         label = canvas.text(called(other), (box.right, box.top + 34), size=LABEL, colour=MUTE, align="right")
         canvas.pill((label.left - 22, box.top + 29, 16, 2), MUTE)  # as thin as that network's bars below
         figure = str(first) if sure else "?"

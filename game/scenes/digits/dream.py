@@ -11,7 +11,7 @@ from ai.digits.dream import STEPS, ActivationMaximisation
 from ai.digits.preprocessing import SIDE
 from game.core import texts
 from game.core.scene import Transition
-from game.digits import percent
+from game.digits import certainty
 from game.digits.cells import CellPicker
 from game.digits.pictures import GREY, Numbers, picture
 from game.drawing.canvas import Canvas
@@ -125,7 +125,7 @@ class DreamScene(PanelScene):
         write_large(cursor, str(self.digit), NET)
         probabilities = self.dreams[self.digit].probabilities
         best = int(probabilities.argmax())
-        words = texts.DREAM_READS.format(numeral=texts.NUMERALS[best], percent=percent(float(probabilities[best])))
+        words = texts.DREAM_READS.format(numeral=texts.NUMERALS[best], percent=certainty(float(probabilities[best])))
         right, palette = best == self.digit, cursor.palette
         write_marked(cursor, "check" if right else "triangle", words, palette.good if right else palette.warn)
 

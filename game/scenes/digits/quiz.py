@@ -12,7 +12,7 @@ from ai.digits.mnist import MnistError
 from ai.digits.preprocessing import preprocess_strokes
 from game.core import texts
 from game.core.scene import Transition
-from game.digits import percent
+from game.digits import certainty
 from game.digits.kept import mnist_test
 from game.digits.pictures import picture
 from game.drawing.canvas import Canvas
@@ -219,7 +219,7 @@ def _write_verdict(current: QuizRound, cursor: Cursor) -> None:
     """Write what was read, and whether rightly."""
     assert current.probabilities is not None
     draws, best = current.kind == "draw", int(current.probabilities.argmax())
-    numeral, share = texts.NUMERALS, percent(float(current.probabilities[best]))
+    numeral, share = texts.NUMERALS, certainty(float(current.probabilities[best]))
     read = {"read": numeral[best], "percent": share, "digit": numeral[current.digit]}
     sign, colour = _mark(cursor, current)
     words = {

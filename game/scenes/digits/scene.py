@@ -13,7 +13,7 @@ import pygame
 from ai.digits.preprocessing import Image
 from game.core import texts
 from game.core.scene import Push, Transition, push
-from game.digits import percent
+from game.digits import certainty
 from game.digits.pictures import AMBER, picture
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
@@ -304,7 +304,7 @@ def fix_lines(fixing: FixRunner, *, same: bool) -> tuple[str, str]:
     """Return how to correct an answer, or a fix's progress or result; `same`: whether its drawing is unchanged."""
     step, fixed = fixing.step, fixing.fixed
     if fixing.busy:
-        now = texts.DIGITS_FIXING_NOW.format(percent=percent(step.probability)) if step else ""
+        now = texts.DIGITS_FIXING_NOW.format(percent=certainty(step.probability)) if step else ""
         return texts.DIGITS_FIXING.format(digit=fixing.digit), now
     if fixing.problem and same:
         return texts.DIGITS_NOT_FIXED, fixing.problem
@@ -312,7 +312,7 @@ def fix_lines(fixing: FixRunner, *, same: bool) -> tuple[str, str]:
         return texts.DIGITS_FIX_HOW, ""
     if not fixed.steps:
         return texts.DIGITS_FIX_NEEDLESS.format(digit=fixed.digit), ""
-    before, now = map(percent, fixed.probability)
+    before, now = map(certainty, fixed.probability)
     first = texts.DIGITS_FIXED.format(digit=fixed.digit, before=before, now=now)
     return first, texts.DIGITS_FIX_COST.format(before=fixed.accuracy[0], after=fixed.accuracy[1])
 

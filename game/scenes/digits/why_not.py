@@ -13,7 +13,7 @@ from ai.digits.preprocessing import SIDE, Image
 from ai.explain.contrast import SQUARE, Contrast, InkChange
 from game.core import texts
 from game.core.scene import Transition, push
-from game.digits import percent
+from game.digits import certainty
 from game.digits.pictures import SIGNED, Numbers, picture
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
@@ -170,7 +170,7 @@ class WhyNotScene(PanelScene):
     def _write_answer(self, cursor: Cursor) -> None:
         answer = int(self.probabilities.argmax())
         write_large(cursor, str(answer))
-        words = texts.WHY_NOT_READS.format(digit=answer, percent=percent(float(self.probabilities[answer])))
+        words = texts.WHY_NOT_READS.format(digit=answer, percent=certainty(float(self.probabilities[answer])))
         if self.contrast:
             words += texts.WHY_NOT_SCORE.format(score=figure(float(self.contrast.scores[answer])))
         cursor.styled(words, colour=MUTE, tabular=True)

@@ -10,7 +10,7 @@ import pytest
 from ai.lander.environment import Outcome
 from game.core import texts
 from game.core.worker import WorkerState
-from game.digits import percent
+from game.digits import certainty
 from game.flight import networks
 from game.scenes.digits.reader import best_two
 from game.scenes.digits.scene import DigitsScene
@@ -154,7 +154,7 @@ def check_digits(reading: Reading) -> set[str]:
     words, scene = reading.page(6).words, reading.driver.top
     assert texts.DIGITS_EMPTY not in words
     first, second = best_two(scene.probabilities)
-    share = percent(scene.probabilities[first])
+    share = certainty(scene.probabilities[first])
     verdicts = [word for word in words if any(says.match(word) for says in VERDICTS)]
     rivals = [word for word in words if pattern(texts.DIGITS_OR).match(word)]
     unsure = "?" in words and not verdicts
