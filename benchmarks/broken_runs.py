@@ -33,7 +33,7 @@ from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.training.config import PRESETS, Config
 from ai.training.experiments import SABOTAGES
 from ai.training.history import Point
-from ai.training.lander_session import live
+from ai.training.lander_session import LanderSession
 from ai.training.messages import NetworkState
 
 COLUMNS: Final = (
@@ -127,7 +127,9 @@ def record(case: Case) -> tuple[np.ndarray, dict[str, Any]]:
     turns = sorted(case.turns.items())
     done: list[tuple[int, str, Any]] = []
     problem, taken, began = "", 0, time.process_time()
-    going = live(config, case.seed, clock=_clock(ALONE if config.num_envs == 1 else MANY / config.num_envs))
+    going = LanderSession.live(
+        config, case.seed, clock=_clock(ALONE if config.num_envs == 1 else MANY / config.num_envs)
+    )
     try:
         told = next(going)
         while taken < case.decisions and time.process_time() - began < PATIENCE:

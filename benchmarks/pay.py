@@ -10,14 +10,14 @@ from __future__ import annotations
 import argparse
 
 from ai.training.history import Checkpoint
-from ai.training.lander_session import live
+from ai.training.lander_session import LanderSession
 from game.scenes.learn.pay import DECISIONS, ENDS, FLIGHTS, PAYS, Flown, Trial, config_of
 
 
 def flown(pay: str, seed: int) -> Flown:
     """Train on a pay as the chapter does, and fly what has been learnt to its end."""
     config = config_of(PAYS[pay])
-    for messages in live(config, seed):
+    for messages in LanderSession.live(config, seed):
         for message in messages:
             if isinstance(message, Checkpoint) and message.decisions >= DECISIONS:
                 trial = Trial(config, message)

@@ -33,7 +33,7 @@ from ai.training.config import PRESETS, Config
 from ai.training.edits import Edit
 from ai.training.hints import Adviser, Hint, RecentCurves
 from ai.training.history import Checkpoint, History, Point, SettingChange
-from ai.training.lander_session import live
+from ai.training.lander_session import LanderSession
 from ai.training.messages import NetworkState, RunStarted
 from benchmarks.broken_runs import WEAKENED
 
@@ -74,7 +74,7 @@ class Watched:
     def __post_init__(self) -> None:
         pace = ALONE if self.config.num_envs == 1 else PACE
         clock = count(0.0, 0.5 * self.config.num_envs / pace).__next__
-        self._run = live(self.config, 0, keep=self.keep, resume=self.resume, clock=clock)
+        self._run = LanderSession.live(self.config, 0, keep=self.keep, resume=self.resume, clock=clock)
         self.adviser = Adviser(self.config)
         self.history.reward_scale = self.config.reward_scale
         if self.resume:

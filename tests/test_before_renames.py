@@ -14,7 +14,7 @@ from ai.digits.training import DigitTraining, read_settings
 from ai.nn import ModelFormatError
 from ai.training.config import Config, load_agent
 from ai.training.history import History, SettingChange
-from ai.training.lander_session import live
+from ai.training.lander_session import LanderSession
 from ai.training.loop import Training
 from ai.training.run import resume
 from game.flight import flight_file
@@ -87,7 +87,7 @@ def test_a_history_shows_the_same_marks_by_the_words_of_now():
 
 def test_a_run_of_then_goes_on_and_is_saved_under_the_names_of_now(tmp_path):
     shutil.copytree(DATA / "run", tmp_path / "run")
-    run = live(Config(), keep=tmp_path / "kept", resume=tmp_path / "run")
+    run = LanderSession.live(Config(), keep=tmp_path / "kept", resume=tmp_path / "run")
     for _ in range(3):
         next(run)
     assert run.send(("change", "updates", 7))[0] == SettingChange(1002, "gradient_steps", 3, 7)

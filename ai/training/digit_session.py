@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
-from ai.digits.config import DigitConfig
 from ai.digits.filters import FilterMoment, first_filters, next_moment
 from ai.digits.training import DigitProgress, DigitTraining
 from ai.digits.validation import ValidationReading
@@ -16,7 +15,6 @@ from ai.explain.digit_lesson import explain_digit
 from ai.files import array_like, number_of
 from ai.nn import Array
 from ai.training.history import DIGIT_COLUMNS, REVERTED, DigitPoint, Validation
-from ai.training.run import resume as resume_run
 from ai.training.session import Session
 from ai.training.state import State
 
@@ -25,28 +23,13 @@ _LARGEST: Final = float(np.finfo(np.float16).max)
 _SHARE: Final = 0.25  # of the time that goes into reading the images held out
 
 
-def live_digits(
-    config: DigitConfig, seed: int = 0, *, keep: Path | None = None, resume: Path | None = None, data: Any = None
-) -> Generator[tuple[Any, ...], Any, None]:
-    """Train to the last epoch, as `Session.lead` does; every turn is a learning step.
-
-    The run is kept in `keep`. With `resume`, it goes on from the run kept there, with its settings. Raises what
-    `DigitTraining` raises, and ModelFormatError.
-    """
-    early = yield ()  # unpacking the images takes a while: show the caller first that the run is alive
-    training = resume_run(DigitTraining, resume, data=data) if resume else DigitTraining(config, seed, data)
-    session = DigitSession(training, keep, resume)
-    yield from session.lead(early)
-
-
 class DigitSession(Session[DigitTraining]):
     """Session of digits. Some of the images held out are read between two steps."""
 
-    columns = DIGIT_COLUMNS
+    kind, columns = DigitTraining, DIGIT_COLUMNS
 
-    def __init__(self, training: DigitTraining, keep: Path | None, resume: Path | None) -> None:
-        super().__init__(training, keep, resume)
-        self._own = keep
+    def __init__(self, training: DigitTraining, keep: Path | None, source: Path | None) -> None:
+        super().__init__(training, keep, source)
         self._batches: list[tuple[float, float]] = []  # loss and accuracy
         self._began = self._point_at = self._filters_at = training.seconds
         self._reading: ValidationReading | None = None
@@ -62,8 +45,10 @@ class DigitSession(Session[DigitTraining]):
         self._best = float(number_of(state["accuracy"], 0)), values
 
     def show(self) -> None:
-        """Tell the filters of the first layer as they are now, of the weights that learn."""
+        """Tell the filters of the first layer as they are now, of the weights that learn, if that is due."""
         training = self.training
+        if training.seconds < self._filters_at:
+            return
         self._filters_at = next_moment(training.seconds)
         images = np.clip(first_filters(training.classifier.network), -_LARGEST, _LARGEST).astype(np.float16)
         self.messages.append(FilterMoment(training.seconds, training.step, images))
@@ -77,8 +62,7 @@ class DigitSession(Session[DigitTraining]):
             self._batches.clear()
             self.record(DigitPoint(training.seconds, progress.step, progress.epoch, loss, accuracy,
                                    progress.learning_rate, progress.images_per_second))  # fmt: skip
-        if training.seconds >= self._filters_at:
-            self.show()
+        self.show()
         if self._looking <= _SHARE * (training.seconds - self._began) and len(training.held_images):
             began = training.clock()
             self._reading = self._reading or ValidationReading(training)
@@ -100,8 +84,8 @@ class DigitSession(Session[DigitTraining]):
     def last_words(self) -> Iterator[None]:
         """Read all images held out once more, and measure the test images."""
         training = self.training
-        if self._own:  # measuring takes a while, and a user who does not wait must lose nothing
-            self.keeper.save(self._own)
+        if self.keep:  # measuring takes a while, and a user who does not wait must lose nothing
+            self.keeper.save(self.keep)
         yield
         if len(training.held_images):
             reading = ValidationReading(training)
@@ -114,8 +98,8 @@ class DigitSession(Session[DigitTraining]):
                 while not reading.go_on():
                     yield
                 self.messages.append(reading.told()[1])
-        if self._own:
-            self.messages.append(self.keeper.save(self._own, final=True))
+        if self.keep:
+            self.messages.append(self.keeper.save(self.keep, final=True))
         yield
 
     # Commands

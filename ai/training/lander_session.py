@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Generator
+from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, Final
@@ -14,15 +13,14 @@ from ai.environment import StepResult
 from ai.files import count_of
 from ai.lander.environment import LanderEnv
 from ai.pilots.own import pay_by
-from ai.training.config import Config, InForce, in_force
+from ai.training.config import Config, in_force
 from ai.training.demonstrations import read, teach
 from ai.training.edits import EDITED, Edit, NetworkEditor
 from ai.training.explanations import Explanations
 from ai.training.history import COLUMNS, PARTS, REVERTED, Checkpoint, Point, Validation
 from ai.training.loop import Progress, Training
 from ai.training.messages import NetworkState, SwarmState
-from ai.training.run import resume as resume_run
-from ai.training.session import Session
+from ai.training.session import Session, Turns
 from ai.training.state import State
 from ai.training.tasks import Score
 
@@ -33,51 +31,41 @@ NOTHING_PAID: Final = (0.0,) * len(PARTS)
 CAREFUL: Final = 0  # the lander with the fewest random actions; the last one has the most (Config.epsilon_spread)
 
 
-def live(
-    config: Config,
-    seed: int = 0,
-    *,
-    keep: Path | None = None,
-    resume: Path | None = None,
-    clock: Callable[[], float] = time.monotonic,
-    pay: Path | None = None,
-) -> Generator[tuple[Any, ...], Any, None]:
-    """Train landers without end, as `Session.lead` does; every turn is one decision of all landers.
-
-    The run is kept in `keep`. With `resume`, it goes on from a saved run, with the settings, seed and history of that.
-    `clock` counts seconds. `pay` is a file of the player's own that pays in place of the usual pay; validations keep
-    that. Raises PilotError for what is wrong with it, ModelFormatError if there is nothing to resume from, and
-    ValueError for settings that are not a lander's.
-    """
-    training = Training(config, seed) if resume is None else resume_run(Training, resume)
-    training.clock = clock
-    session = LanderSession(training, keep, resume)
-    with ExitStack() as ends:
-        if pay:
-            ends.callback(pay_by(session.env, pay))
-        yield from session.lead()
-
-
 class LanderSession(Session[Training]):
     """Session of landers. They never stand still for a validation: that is flown bit by bit."""
 
-    columns = COLUMNS
+    kind, columns = Training, COLUMNS
 
-    def __init__(self, training: Training, keep: Path | None, resume: Path | None) -> None:
+    def __init__(self, training: Training, keep: Path | None, source: Path | None) -> None:
         if not isinstance(training.env, LanderEnv):
             raise ValueError(f"only landers can be looked into, not {training.config.env}")
-        super().__init__(training, keep, resume)
+        super().__init__(training, keep, source)
         self.env = training.env
         self.history.reward_scale = training.config.reward_scale
         training.on_step = self._on_step
         training.validation_pace = 1 + self.env.num_envs // 256
         self._explanations, self._editor = Explanations(training), NetworkEditor(training.agent)
         self._swarm_state = self._swarm_state_now()
-        self._network_state_at = 0.0
+        self._shown_at = 0.0
         self._point_at = 0
         self._checkpoint_at = training.agent.decisions + self._checkpoint_every
         self._began_learning = training.agent.gradient_steps
         self._learned_from: set[str] = set()  # digests of demonstrations
+        if not self.history.checkpoints:
+            self.record(self._checkpoint(0.0))
+
+    @classmethod
+    def live(cls, config: Config, seed: int = 0, *, pay: Path | None = None, **options: Any) -> Turns:
+        """Lead a session, made as by `of`; every turn is one decision of all landers.
+
+        `pay` is a file of the player's own that pays in place of the usual pay; validations keep that. Raises
+        PilotError for what is wrong with it, and ValueError for settings that are not a lander's.
+        """
+        session = cls.of(config, seed, **options)
+        with ExitStack() as ends:
+            if pay:
+                ends.callback(pay_by(session.env, pay))
+            yield from session.lead()
 
     @property
     def _checkpoint_every(self) -> int:
@@ -101,24 +89,26 @@ class LanderSession(Session[Training]):
         self._learned_from = set(state["learned_from"])
 
     def show(self) -> None:
-        self.messages += (self._swarm_state, *self._state_messages())
-        if not self.history.checkpoints:
-            self.record(self._checkpoint(0.0))
-
-    def turned(self) -> None:
-        self.messages.append(self._state_messages()[1])
+        agent, training = self.training.agent, self.training
+        self.messages += (
+            self._swarm_state,
+            NetworkState(agent.online.values.copy(), agent.online.gradients.copy(),
+                         training.observation[CAREFUL].copy(), agent.decisions),
+            in_force(training.config, agent.decisions, training.episodes),
+        )  # fmt: skip
 
     def tell(self, progress: Progress) -> None:
-        training, now = self.training, self.training.clock()
+        now = self.training.clock()
         self._tell_validation(progress.evaluation)
-        self.messages.append(self._swarm_state)
-        if now >= self._network_state_at:
-            self._network_state_at = now + NETWORK_SECONDS
-            self.messages += self._state_messages()
+        if now >= self._shown_at:
+            self._shown_at = now + NETWORK_SECONDS
+            self.show()
+        else:
+            self.messages.append(self._swarm_state)
         if progress.decisions >= self._point_at:
             self._point_at = progress.decisions + POINT_DECISIONS
             self.record(self._point(progress))
-        if progress.decisions >= self._checkpoint_at and not training.agent.paused:
+        if progress.decisions >= self._checkpoint_at and not self.keeps_still:
             self.record(self._checkpoint(progress.success_rate))
             self._checkpoint_at = progress.decisions + self._checkpoint_every
         self._explanations.keep()
@@ -130,9 +120,6 @@ class LanderSession(Session[Training]):
             best, evaluated = score is training.best, training.evaluated or 0
             self.record(Validation(evaluated, score.success, score.mean_return, best, training.seconds))
 
-    def finish_measuring(self) -> None:
-        self._tell_validation(self.training.validate())
-
     def go_back(self) -> None:
         """Restore the networks from the last checkpoint, when training has diverged since."""
         self._editor.forget()
@@ -141,7 +128,7 @@ class LanderSession(Session[Training]):
 
     def end(self) -> None:
         """Keep what has not been kept, without an edit that was only looked at."""
-        if self.training.agent.paused:
+        if self.keeps_still:
             self._editor.undo(every=True)
         super().end()
 
@@ -155,13 +142,6 @@ class LanderSession(Session[Training]):
             env.position.astype(np.float32), env.angle.astype(np.float32), env.actions.astype(np.int8),
             env.outcome.astype(np.int8), training.statistics.earned.astype(np.float32), training.agent.decisions,
         )  # fmt: skip
-
-    def _state_messages(self) -> tuple[NetworkState, InForce]:
-        """Return what is sent a few times a second, and whenever a command has changed it."""
-        training, agent = self.training, self.training.agent
-        network, careful = agent.online, training.observation[CAREFUL].copy()
-        state = NetworkState(network.values.copy(), network.gradients.copy(), careful, agent.decisions)
-        return state, in_force(training.config, agent.decisions, training.episodes)
 
     def _point(self, progress: Progress) -> Point:
         flown = 1.0 if self.training.statistics.known else np.nan
@@ -186,6 +166,11 @@ class LanderSession(Session[Training]):
         return Checkpoint(self.training.seconds, agent.decisions, success, values, normalizer)
 
     # Commands
+
+    def save(self, folder: Path) -> None:
+        """Save the run, as it is now, to a folder, with the validation under way at its end."""
+        self._tell_validation(self.training.validate())
+        super().save(folder)
 
     def _teach(self, file: Path) -> None:
         """Learn from the demonstrations in a file as well, as far as this run has not done so yet."""
@@ -219,7 +204,8 @@ class LanderSession(Session[Training]):
         change(editor)
         if editor.count != before:
             self.record_change(EDITED, before, editor.count)
-        self.messages += (editor.edits, *self._state_messages())
+        self.messages.append(editor.edits)
+        self.show()
 
     def _restore(self, decisions: int) -> None:
         """Restore the networks from the history's checkpoint of a moment; time does not go back."""
@@ -229,8 +215,10 @@ class LanderSession(Session[Training]):
         self._editor.forget()
         checkpoint.restore(self.training.agent)
         self.record_change(REVERTED, None, checkpoint.decisions)
-        self.messages += (self._editor.edits, *self._state_messages())
+        self.messages.append(self._editor.edits)
+        self.show()
 
     commands = Session.commands | {
-        "restore": _restore, "teach": _teach, "explain": _explain, "edit": _edit, "undo": _undo, "learn_on": _learn_on,
+        "save": save, "restore": _restore, "teach": _teach, "explain": _explain, "edit": _edit, "undo": _undo,
+        "learn_on": _learn_on,
     }  # fmt: skip

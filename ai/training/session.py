@@ -1,34 +1,37 @@
 """A run that is watched and steered while it goes on, of any kind.
 
-A session is pulled as a generator (`Session.lead`): each turn takes one step of the run, and yields its messages. What
+A session is pulled as a generator (`Session.live`): each turn takes one step of the run, and yields its messages. What
 is around every run is here: how it begins and ends, knobs, history, files. `lander_session` and `digit_session` say
 what is shown of each kind, and which further commands it knows.
 """
 
 from __future__ import annotations
 
+import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Generator, Iterator, Sequence
 from operator import attrgetter
 from pathlib import Path
-from typing import Any, ClassVar, Final, Generic, TypeVar
+from typing import Any, ClassVar, Final, Generic, Self, TypeVar
 
 from ai.run import Run
 from ai.training.history import Entry, History, SettingChange
 from ai.training.messages import Command, Refused, RunStarted, problem_of
 from ai.training.run import Keeper, step
+from ai.training.run import resume as resume_run
 from ai.training.state import State, going_on
 
 TURNING_SECONDS: Final = 1.0  # between two changes of a knob that is still being turned
 
-Training = TypeVar("Training", bound=Run)
-Messages = tuple[Any, ...]
+R = TypeVar("R", bound=Run)
+Turns = Generator[tuple[Any, ...], Command | None, None]
 
 
-class Session(ABC, Generic[Training]):
-    """Session of one run, which is kept in the folder `keep`; one that goes on has its history in `resume`.
+class Session(ABC, Generic[R]):
+    """Session of one run, which is kept in the folder `keep`; one that goes on has its history in `source`.
 
     Attributes:
+        kind: the class of its run.
         columns: what its history measures.
         commands: the method that carries out each command, by its name; a subclass adds its own. One that raises
             OSError, ValueError or FloatingPointError has changed nothing.
@@ -36,21 +39,47 @@ class Session(ABC, Generic[Training]):
 
     """
 
+    kind: type[R]
     columns: ClassVar[Sequence[str]]
 
-    def __init__(self, training: Training, keep: Path | None, resume: Path | None) -> None:
-        self.training = training
-        self.history = History.read(resume, self.columns) if resume else History(self.columns)
+    def __init__(self, training: R, keep: Path | None, source: Path | None) -> None:
+        self.training, self.keep = training, keep
+        self.history = History.read(source, self.columns) if source else History(self.columns)
         self.keeper = Keeper(training, keep, self.history, self.state)
-        self.messages: list[Any] = []
-        self._resumed = resume or Path()
+        self.messages: list[Any] = [
+            RunStarted(training.config, training.seed, training.moment, training.lost, training.steps)
+        ]
         self._turned_at: dict[str, float] = {}  # by the clock, when each knob was turned last
+
+    @classmethod
+    def of(
+        cls, config: Any, seed: int = 0, *, keep: Path | None = None, resume: Path | None = None,
+        clock: Callable[[], float] = time.monotonic, **options: Any,
+    ) -> Self:  # fmt: skip
+        """Return the session of a new run, or of the one kept in `resume`, which has its own settings and seed.
+
+        `clock` counts seconds; `options` are those of the run. Raises what its run does, and ModelFormatError if there
+        is nothing to go on from.
+        """
+        kind = cls.kind
+        training = resume_run(kind, resume, **options) if resume else kind(config, seed, **options)
+        training.clock = clock
+        session = cls(training, keep, resume)
+        with going_on(resume or Path()):
+            if training.around:
+                session.load_state(training.around)
+        return session
+
+    @classmethod
+    def live(cls, config: Any, seed: int = 0, **options: Any) -> Turns:
+        """Lead a session, made as by `of`."""
+        yield from cls.of(config, seed, **options).lead()
 
     # What a kind says
 
     @abstractmethod
     def show(self) -> None:
-        """Tell how it stands, at the beginning."""
+        """Tell how it stands, at the beginning and when a command has changed it."""
 
     @abstractmethod
     def tell(self, progress: Any) -> None:
@@ -69,12 +98,6 @@ class Session(ABC, Generic[Training]):
         """Whether the run is not to be kept as it is now."""
         return False
 
-    def turned(self) -> None:
-        """Tell what else has changed with a knob that was turned."""
-
-    def finish_measuring(self) -> None:
-        """Bring a measurement that is under way to its end, before a save that was asked for."""
-
     def last_words(self) -> Iterator[None]:
         """Do what is left when no more steps are taken, in as many turns as it likes."""
         yield
@@ -89,24 +112,17 @@ class Session(ABC, Generic[Training]):
 
     # What is around it
 
-    def lead(self, command: Command | None = None) -> Generator[Messages, Command | None, None]:
+    def lead(self) -> Turns:
         """Take the run to its end, or without end; every turn yields the messages of one step.
 
         The first turn only says how the run begins. A turn that is sent a command carries that out, at once and
-        without a step, and yields the answer; `command` is one that came before. The run is kept now and then, when it
-        is over, and when the generator is closed. Raises FloatingPointError, which names the learning step and the
-        likely cause, when training diverges.
+        without a step, and yields the answer. The run is kept now and then, when it is over, and when the generator is
+        closed. Raises FloatingPointError, which names the learning step and the likely cause, when training diverges.
         """
         training = self.training
-        with going_on(self._resumed):
-            if training.around:
-                self.load_state(training.around)
         try:
-            self.messages.append(
-                RunStarted(training.config, training.seed, training.moment, training.lost, training.steps)
-            )
             self.show()
-            command = (yield self._flush()) or command
+            command = yield self._answer(None)
             while not (training.done or command == ("finish",)):
                 if command is None:
                     self.tell(step(training))
@@ -116,7 +132,7 @@ class Session(ABC, Generic[Training]):
             for _ in self.last_words():
                 while command is not None:
                     command = yield self._answer(command)
-                command = yield self._flush()
+                command = yield self._answer(None)
             while command is not None:
                 command = yield self._answer(command)
         except FloatingPointError:
@@ -125,7 +141,7 @@ class Session(ABC, Generic[Training]):
         finally:
             self.end()
 
-    def _answer(self, command: Command | None) -> Messages:
+    def _answer(self, command: Command | None) -> tuple[Any, ...]:
         """Carry out a command, if there is one, or tell why it cannot be; return all messages."""
         if command is not None:
             name, *arguments = command
@@ -133,9 +149,6 @@ class Session(ABC, Generic[Training]):
                 self.commands[name](self, *arguments)
             except (OSError, ValueError, FloatingPointError) as error:
                 self.messages.append(Refused(command, problem_of(error)))
-        return self._flush()
-
-    def _flush(self) -> Messages:
         told, self.messages = tuple(self.messages), []
         return told
 
@@ -169,11 +182,10 @@ class Session(ABC, Generic[Training]):
         read = attrgetter(name := before.name_now(name))
         if read(self.training.config) != read(before):
             self.record_change(name, read(before), read(self.training.config))
-        self.turned()
+        self.show()
 
-    def _save(self, folder: Path) -> None:
+    def save(self, folder: Path) -> None:
         """Save the run, as it is now, to a folder."""
-        self.finish_measuring()
         self.messages.append(self.keeper.save(folder))
 
     def _autosave_to(self, folder: Path) -> None:
@@ -184,5 +196,5 @@ class Session(ABC, Generic[Training]):
         """Take no more steps: keep the run, measure it, and end."""
 
     commands: ClassVar[dict[str, Callable[..., None]]] = {
-        "change": change, "save": _save, "autosave_to": _autosave_to, "finish": _finish,
+        "change": change, "save": save, "autosave_to": _autosave_to, "finish": _finish,
     }  # fmt: skip

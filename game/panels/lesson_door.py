@@ -32,7 +32,7 @@ class Door:
             self._note(texts.LESSON_NO_RUN)
             return
         self._shown, self._asked, self._waited = self._run.lesson, True, 0
-        self._run.explain(slot, moment)
+        self._run.ask("explain", slot, moment)
 
     def answer(self) -> Lesson | DigitLesson | None:
         """Return the lesson that was asked for, once it has come; None before and afterwards. Call it once a frame."""

@@ -12,7 +12,7 @@ from ai.digits.training import read_summary
 from ai.run import TRAINING_FILE
 from game.core import texts
 from game.core.collection import Collection, ItemKind
-from game.training.workers import DIGITS
+from game.training.run_kind import DIGITS
 
 PATIENCE: Final = DIGITS.patience  # seconds for a worker's turn
 NAMES: Final = ("modern", "classic")  # names of the shipped networks

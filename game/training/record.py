@@ -1,9 +1,13 @@
-"""Bounded record of the messages of a run, from which any moment of it can be shown again."""
+"""What is kept of runs to be shown again: any moment of this one, and the curves of earlier ones beside it."""
 
 from __future__ import annotations
 
 from bisect import bisect_left
+from dataclasses import dataclass
+from itertools import count
 from typing import Any, Final, Generic, Protocol, TypeVar
+
+from ai.training.history import History
 
 _OVERHEAD: Final = 1024  # bytes of a message besides its arrays, about
 
@@ -81,3 +85,25 @@ class Record(Generic[Message]):
 def size_of(message: Any) -> int:
     """Return about how many bytes a message takes: those of its arrays, and a little for the rest."""
     return _OVERHEAD + sum(getattr(value, "nbytes", 0) for value in vars(message).values())
+
+
+@dataclass(frozen=True)
+class EarlierRun:
+    """Earlier run shown beside the current one; its line style stays the same as others come and go."""
+
+    name: str
+    run: History
+    style: int  # number for game.ui.series.run_style; 0 is the current run's
+
+
+def put_beside(runs: list[EarlierRun], name: str, run: History) -> None:
+    """Add an earlier run, in place of one of its name, with the first line style that is free."""
+    run.checkpoints.clear()  # only its curves are shown, and there may be many such runs
+    runs[:] = [each for each in runs if each.name != name]
+    taken = {each.style for each in runs}
+    runs.insert(0, EarlierRun(name, run, next(style for style in count(1) if style not in taken)))
+
+
+def take_away(runs: list[EarlierRun], style: int) -> None:
+    """Take away the earlier run of a line style; the others keep theirs."""
+    runs[:] = [each for each in runs if each.style != style]

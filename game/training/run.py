@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, Final
@@ -20,11 +21,12 @@ from ai.training.messages import NetworkState, Refused, RunStarted, Saved, Swarm
 from game.core import texts
 from game.core.collection import Collection
 from game.core.names import LibraryError
-from game.core.worker import Worker
-from game.training.beside import EarlierRun, put_beside
-from game.training.record import Record
-from game.training.workers import PACES, OneAfterAnother, WorkedRun
+from game.core.worker import Worker, WorkerState
+from game.training.record import EarlierRun, Record, put_beside
+from game.training.run_settings import RunKind
 
+# Decisions of all landers per second; one takes 1/15 s of simulated time. None is as fast as possible.
+PACES: Final[tuple[float | None, ...]] = (15.0, 60.0, None)
 SWARM_BYTES: Final = 8 << 20  # of landers' states kept to rewind to
 NETWORK_BYTES: Final = 16 << 20  # of networks
 AHEAD: Final = 12  # turns that either of two may be ahead of the slower: enough to work on between two frames
@@ -35,10 +37,14 @@ _LATEST: Final = {
 }  # fmt: skip
 
 
-class TrainingRun(OneAfterAnother):
-    """Training runs, one after another; call `poll` once a frame.
+_BOTH: Final = ("change", "teach", "restore")  # commands that the experiment is asked for as well
 
-    A run saves itself in the player's collection without a name, until `save` names it.
+
+class TrainingRun:
+    """Training runs in child processes, one after another; call `poll` once a frame.
+
+    A run saves itself in the player's collection without a name, until `save` names it. They write to the same folder,
+    so the next one waits until the last one has ended, and so do requests to it.
 
     Beside a run there can be an experiment, its `twin`, from the same seed. The faster of the two waits, so that both
     have taken as many turns: on any machine, what differs is what was changed. If one of them ends or fails, the other
@@ -60,15 +66,18 @@ class TrainingRun(OneAfterAnother):
         stopping: whether it was asked to end, and is being measured.
         twin: the experiment; None without one.
         differing: names of the settings in which the experiment differs.
+        pace: number of one of `PACES`.
 
     """
 
-    def __init__(self, kind: WorkedRun, collection: Collection[Any], *, keeps: bool = True) -> None:
-        super().__init__()
+    def __init__(self, kind: RunKind, collection: Collection[Any], *, keeps: bool = True) -> None:
         self.kind, self.collection, self._keeps = kind, collection, keeps
-        self.name, self.runs = "", 0
+        self.name, self.runs, self.pace = "", 0, len(PACES) - 1
+        self._worker: Worker | None = None
+        self._launch: Callable[[], str] | None = None  # starts the waiting run; returns a note for the player
+        self._orders: list[Callable[[Worker], None]] = []  # for the waiting run
         self.pay: Path | None = None
-        self.config: Any = kind.config
+        self.config: Any = kind.of()
         self.seed = 0
         self.earlier: list[EarlierRun] = []
         self.twin: TrainingRun | None = None
@@ -82,7 +91,7 @@ class TrainingRun(OneAfterAnother):
 
     def _clear(self) -> None:
         """Forget all that a run has told."""
-        self.history = History(self.kind.columns)
+        self.history = History(self.kind.session.columns)
         self.swarm_state: SwarmState | None = None
         self.network_state: NetworkState | None = None
         self.in_force: InForce | None = None
@@ -96,6 +105,28 @@ class TrainingRun(OneAfterAnother):
         self.kept_epoch: int | None = None
 
     # How it stands
+
+    @property
+    def waiting(self) -> bool:
+        """Whether a run waits for the previous one to end."""
+        return self._launch is not None
+
+    @property
+    def state(self) -> WorkerState | None:
+        """State of the run; None before the first."""
+        if self.waiting:
+            return WorkerState.STARTING
+        return self._worker.state if self._worker else None
+
+    @property
+    def alive(self) -> bool:
+        """Whether there is a run that can be paused, stepped, stopped and changed."""
+        return self.state in (WorkerState.STARTING, WorkerState.RUNNING, WorkerState.PAUSED)
+
+    @property
+    def problem(self) -> str:
+        """Reason why the run failed; empty if it did not."""
+        return self._worker.problem if self._worker and self.state is WorkerState.FAILED else ""
 
     @property
     def kept(self) -> bool:
@@ -151,16 +182,35 @@ class TrainingRun(OneAfterAnother):
         keep, notes = self.collection.unsaved if self._keeps else None, self._name_ended()
         try:
             if resume is not None:
-                self.history = History.read(resume, self.kind.columns)
+                self.history = History.read(resume, self.kind.session.columns)
             if keep is not None and resume != keep:
                 self.collection.discard_rescued()  # from where it can still be restored
         except (ModelFormatError, LibraryError) as error:
             notes.append(str(error))
         pay = {"pay": self.pay} if self.pay and resume is None else {}
-        self._worker = Worker(self.kind.live, config, seed, keep=keep, resume=resume, **pay)
+        self._worker = Worker(self.kind.session.live, config, seed, keep=keep, resume=resume, **pay)
         self._worker.patience = self.kind.patience
         self._worker.set_pace(PACES[self.pace])
         return " ".join(notes)
+
+    def _start(self, launch: Callable[[], str]) -> str:
+        """Start a run as soon as the previous process has ended; return a note for the player, or ""."""
+        self._launch = launch
+        self._orders.clear()
+        if self._worker:
+            self._worker.stop()
+        return self._start_waiting()
+
+    def _start_waiting(self) -> str:
+        """Start the waiting run, if the previous process has ended; return a note for the player, or ""."""
+        if self._launch is None or (self._worker and not self._worker.gone):
+            return ""
+        launch, self._launch = self._launch, None
+        note = launch()
+        orders, self._orders = self._orders, []
+        for order in orders:
+            self._order(order)
+        return note
 
     def call(self, settings: str) -> None:
         """Name the run after its settings, with a number, unless it was saved under a name."""
@@ -173,7 +223,7 @@ class TrainingRun(OneAfterAnother):
             self._launch = None
         elif self.alive and self.steps and not self.stopping:
             self.stopping = True
-            self._send("finish")
+            self.ask("finish")
             self.resume()
         elif self._worker:
             self._worker.stop()
@@ -188,7 +238,7 @@ class TrainingRun(OneAfterAnother):
         if self.alive:
             folder = self.collection.new_folder(name)
             self._saving.append(folder)
-            self._send("save", folder)
+            self.ask("save", folder)
             return ""
         self.collection.keep_rescued(name)
         return texts.TRAIN_SAVED.format(name=name)
@@ -279,7 +329,7 @@ class TrainingRun(OneAfterAnother):
     def compare(self, name: str, folder: Path) -> str:
         """Show a saved run's curves beside this one's; return a note for the player, or ""."""
         try:
-            history = History.read(folder, self.kind.columns)
+            history = History.read(folder, self.kind.session.columns)
         except ModelFormatError as error:
             return str(error)
         if not len(history):
@@ -287,32 +337,42 @@ class TrainingRun(OneAfterAnother):
         put_beside(self.earlier, name, history)
         return ""
 
-    # Requests: to the run, and where both can do it, to the experiment; `poll` brings the answers
+    # Requests
 
-    def change(self, name: str, value: Any) -> None:
-        """Change a live setting; one in which the experiment differs, of the run alone."""
-        self._send("change", name, value, both=name not in self.differing)
+    def ask(self, name: str, *arguments: Any) -> None:
+        """Send a command of the kind's session; `poll` brings the answer.
 
-    def teach(self, demonstrations: Path) -> None:
-        """Learn from a file of demonstrations as well."""
-        self._send("teach", demonstrations, both=True)
+        What the experiment can do as well, it is asked for too, but for the settings in which it differs.
+        """
+        both = name in _BOTH and not (name == "change" and arguments[0] in self.differing)
+        self._order(lambda worker: worker.send((name, *arguments)), both=both)
 
-    def revert(self, checkpoint: Checkpoint) -> None:
-        """Revert the network to the checkpoint of a moment."""
-        self._send("restore", checkpoint.decisions, both=True)
+    def _order(self, order: Callable[[Worker], None], *, both: bool = False) -> None:
+        """Give an order to the current run, if any, or keep it for the waiting one; `both`: and to the experiment."""
+        if self.waiting:
+            self._orders.append(order)
+        elif self._worker and self.alive:
+            order(self._worker)
+        if both and self.twin:
+            self.twin._order(order)
 
-    def go_back(self) -> None:
-        """Revert a digit network to its best."""
-        if not self.stopping:
-            self._send("restore_best")
+    def pause(self) -> None:
+        """Pause the run and the experiment."""
+        self._order(Worker.pause, both=True)
 
-    def explain(self, slot: int, decisions: int | None = None) -> None:
-        """Ask for the `lesson` of a lander's latest memory, now or at a time in the past, or of an image of digits."""
-        self._send("explain", slot, decisions)
+    def resume(self) -> None:
+        """Go on with both."""
+        self._order(Worker.resume, both=True)
 
-    def edit(self, name: str, *arguments: Any) -> None:
-        """Edit the run's network by hand, or take an edit back, by a command of `ai.training.lander_session`."""
-        self._send(name, *arguments)
+    def step(self) -> None:
+        """Take one learning step of both, then pause."""
+        self._order(Worker.pause, both=True)
+        self._order(Worker.step, both=True)
+
+    def set_pace(self, index: int) -> None:
+        """Choose one of `PACES` for both, by its index."""
+        self.pace = index
+        self._order(lambda worker: worker.set_pace(PACES[index]), both=True)
 
     # The experiment
 
@@ -359,7 +419,7 @@ class TrainingRun(OneAfterAnother):
         self._leaving = None
         with suppress(LibraryError):  # then it replaces what is there
             self.collection.discard_rescued()
-        self._send("autosave_to", self.collection.unsaved)
+        self.ask("autosave_to", self.collection.unsaved)
 
     def _keep_in_step(self) -> None:
         """Allow both runs as many turns, a few more than the slower one has taken."""
@@ -367,4 +427,4 @@ class TrainingRun(OneAfterAnother):
         limit = min(self.turns) + AHEAD if together else None
         if limit != self._limit:
             self._limit = limit
-            self._ask(lambda worker: worker.set_limit(limit), both=True)
+            self._order(lambda worker: worker.set_limit(limit), both=True)

@@ -133,10 +133,10 @@ def looking_around():
 def eager(config, seed, keep):
     """A live run that saves itself all the time."""
     from ai.training import run as keeping
-    from ai.training.lander_session import live
+    from ai.training.lander_session import LanderSession
 
     vars(keeping).update(FIRST_SECONDS=0.0, KEEP_SECONDS=0.0, SHARE=float("inf"))
-    yield from live(config, seed, keep=keep)
+    yield from LanderSession.live(config, seed, keep=keep)
 
 
 def biased_fix(folder, image, digit, keep, before=None):

@@ -10,7 +10,7 @@ from ai.digits.training import DigitTraining
 from ai.explain.agent_lesson import Lesson
 from ai.explain.digit_lesson import DigitLesson, explain_digit
 from ai.training.config import PRESETS, Config
-from ai.training.lander_session import live
+from ai.training.lander_session import LanderSession
 from tests.support.driver import Driver
 from tests.support.written import words_written
 
@@ -30,7 +30,7 @@ def lesson_of(name: str, turns: int = 60) -> Lesson:
 
 def lesson_from(config: Config, turns: int = 60, slot: int = 0) -> Lesson:
     """Return the lesson of a lander of a run with these settings, after so many decisions."""
-    run = live(config, 3)
+    run = LanderSession.live(config, 3)
     for _ in range(turns + 1):
         next(run)
     answer = run.send(("explain", slot))

@@ -44,7 +44,7 @@ from game.scenes.lesson.scene import LessonScene
 from game.scenes.play.scene import PlayScene
 from game.scenes.train.base import INSIDE
 from game.shell.app import App
-from game.training.beside import put_beside
+from game.training.record import put_beside
 from game.training.run import TrainingRun
 from game.ui.context import Context
 from game.ui.widgets import Choice

@@ -15,7 +15,7 @@ from ai.lander.rewards import REWARDS, RewardWeights
 from ai.pilots.child import PAY
 from ai.training.config import Config
 from ai.training.history import Checkpoint
-from ai.training.lander_session import live
+from ai.training.lander_session import LanderSession
 from ai.training.messages import SwarmState
 from engine import DT
 from game.core import texts
@@ -164,7 +164,7 @@ class PayChapter(Chapter):
             self.close()
             return
         self._clear()
-        self._worker = Worker(live, config_of(PAYS[self.pay]), self._runs, pay=self.own)
+        self._worker = Worker(LanderSession.live, config_of(PAYS[self.pay]), self._runs, pay=self.own)
         self._runs += 1
 
     def update(self) -> None:

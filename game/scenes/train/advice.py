@@ -10,8 +10,8 @@ from ai.training.config import Config
 from ai.training.hints import Adviser, Hint
 from game.core import texts
 from game.drawing.tokens import HUMAN, SMALL
-from game.training.knob_descriptions import told
 from game.training.run import TrainingRun
+from game.training.run_settings import told
 from game.ui.panel import Column
 
 
@@ -92,7 +92,7 @@ class Advice:
         for name, value in values.items():
             self._turn(name, value)
         if back_to is not None and (checkpoint := self._run.history.checkpoint_at(back_to)) is not None:
-            self._run.revert(checkpoint)
+            self._run.ask("restore", checkpoint.decisions)
         self._hint = None
 
     def _dismiss(self) -> None:

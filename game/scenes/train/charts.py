@@ -24,8 +24,8 @@ from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
 from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import HUMAN, LABEL, MUTE, NIGHT0
-from game.training.beside import EarlierRun
-from game.training.knob_descriptions import figure, label, told
+from game.training.record import EarlierRun
+from game.training.run_settings import figure, label, told
 from game.ui.chart import Chart, Series, Tick
 from game.ui.charts import Charts
 from game.ui.plotting import Limits

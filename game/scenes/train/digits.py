@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Hashable
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import pygame
 
-from ai.digits.config import DIGIT_PRESETS, DigitConfig
+from ai.digits.config import DIGIT_PRESETS
 from ai.training.config import InForce
 from ai.training.history import REVERTED, History
 from game.core import texts
@@ -27,8 +28,7 @@ from game.scenes.train.layout import Layout
 from game.scenes.train.status import TrainingStatus, digit_status
 from game.training.digit_models import DigitModels, runs_dir
 from game.training.run import TrainingRun
-from game.training.run_settings import RunKind
-from game.training.workers import DIGITS
+from game.training.run_kind import DIGITS
 from game.ui.context import Context
 from game.ui.panel import Column
 from game.ui.scrubber import Scrubber
@@ -38,11 +38,6 @@ from game.ui.widget import Widget
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier
 
-_OFFERED: Final = {name: preset for name, preset in DIGIT_PRESETS.items() if name in ("classic", "modern")}
-KNOBS: Final = RunKind(
-    DigitConfig, _OFFERED, lambda: texts.DIGIT_RUN_PRESETS, "images",
-    first=("learning_rate", "batch_size", "dropout"),
-)  # fmt: skip
 FALLEN: Final = 0.15  # drop of the accuracy below its best at which a return to the best is offered
 _HEAD: Final = 172.0  # of the display, for the title and a heading
 _LEFT: Final = 28.0
@@ -78,7 +73,9 @@ class DigitTrainingScene(TrainingScene):
         self._sky = NightSky(np.random.default_rng(12), ember=0.2, stars=40)
         self.charts = TrainingCharts(DIGIT_CHARTS)
         self.lessons = ImageDoor(self.run, self.context.note)
-        self.knobs = KnobsPanel(self.form, DIGIT_PRESETS["classic"], 0, self.run.change, self._begin, KNOBS)
+        self.knobs = KnobsPanel(
+            self.form, DIGIT_PRESETS["classic"], 0, partial(self.run.ask, "change"), self._begin, DIGITS
+        )
         self.film = FilterFilm(self.charts)
         self.matrix = ConfusionMatrix(self.form.manager, (0, 0, 100, 100))
 
@@ -157,7 +154,7 @@ class DigitTrainingScene(TrainingScene):
         best, now = (f"{100 * part:.1f} %" for part in parts)
         column.caption(texts.HINT_TITLE)
         column.text(texts.DIGIT_RUN_FALLEN.format(best=best, now=now), size=SMALL, colour=HUMAN)
-        column.button(texts.DIGIT_RUN_GO_BACK, self.run.go_back)
+        column.button(texts.DIGIT_RUN_GO_BACK, partial(self.run.ask, "restore_best"))
         return True
 
     def _change_view(self, view: int) -> None:

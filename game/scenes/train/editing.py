@@ -102,13 +102,13 @@ class NetworkEditing:
 
     def _silence(self) -> None:
         if isinstance(self.picked, Unit):
-            self._run.edit("edit", Edit(*self.picked))
+            self._run.ask("edit", Edit(*self.picked))
 
     def update(self) -> None:
         """Send what was changed in this frame, and keep what was edited in sight."""
         picked, edits = self.picked, self._run.edits
         if self._wanted is not None and isinstance(picked, Link) and self.enabled:
-            self._run.edit("edit", Edit(*picked, self._wanted), self._amends)
+            self._run.ask("edit", Edit(*picked, self._wanted), self._amends)
             self._amends = self._wanted != 0.0  # a cut is a step of its own
             if self._slider is not None:
                 self._slider.value = self._wanted
@@ -136,11 +136,11 @@ class NetworkEditing:
         elif changed:
             column.text(texts.EDIT_HOLDS if edits.holds else texts.EDIT_LEARNT_ON, size=SMALL, colour=HUMAN)
         if changed and edits.steps:
-            words.append((texts.EDIT_UNDO, lambda: self._run.edit("undo")))
+            words.append((texts.EDIT_UNDO, lambda: self._run.ask("undo")))
         if changed and edits.way_back:
-            words.append((texts.EDIT_RESTORE, lambda: self._run.edit("undo", True)))
+            words.append((texts.EDIT_RESTORE, lambda: self._run.ask("undo", True)))
         if changed and edits.holds:
-            words.append((texts.EDIT_LEARN_ON, lambda: self._run.edit("learn_on")))
+            words.append((texts.EDIT_LEARN_ON, lambda: self._run.ask("learn_on")))
         if words:
             column.words(words)
 

@@ -18,7 +18,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, MUTE, NET, PANEL, SMALL, Colour
 from game.input.controls import Command, translate
-from game.training.knob_descriptions import KnobDescription, figure
+from game.training.run_settings import KnobDescription, figure
 from game.ui.rows import RowWidget
 from game.ui.widget import PointsManager, mix
 

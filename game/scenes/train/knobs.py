@@ -12,8 +12,17 @@ from game.drawing.cursor import Cursor
 from game.drawing.tokens import HUMAN, LABEL, MUTE, NET, SMALL, TITLE
 from game.input.controls import Command
 from game.scenes.train.knob import KINDS, Knob
-from game.training.knob_descriptions import WEIGHTS, Configuration, KnobDescription, figure, label, pages
-from game.training.run_settings import LANDER, SEED, RunKind, RunSettings
+from game.training.run_settings import (
+    SEED,
+    WEIGHTS,
+    Configuration,
+    KnobDescription,
+    RunKind,
+    RunSettings,
+    figure,
+    label,
+    pages,
+)
 from game.ui.form import Form
 from game.ui.hints import Hint, HintRow
 from game.ui.panel import Column
@@ -50,7 +59,7 @@ class KnobsPanel:
         seed: int,
         on_change: Callable[[str, Any], None],
         on_restart: Callable[[Configuration, int], None],
-        run_kind: RunKind = LANDER,
+        run_kind: RunKind,
     ) -> None:
         self._form, self._run_kind = form, run_kind
         self.settings = RunSettings(config, seed, on_change, on_restart, run_kind)

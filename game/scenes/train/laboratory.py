@@ -25,9 +25,9 @@ from game.core import texts
 from game.drawing.tokens import HUMAN, INK, MUTE, NET, SMALL, TITLE
 from game.scenes.train.cards import measured
 from game.scenes.train.knobs import KnobsPanel
-from game.training.knob_descriptions import KnobDescription, figure, label
 from game.training.run import TrainingRun
-from game.training.run_settings import LANDER
+from game.training.run_kind import LANDERS
+from game.training.run_settings import KnobDescription, figure, label
 from game.ui.panel import Column
 
 
@@ -110,7 +110,7 @@ class Laboratory:
         for name in SABOTAGES:
             word, told = texts.SABOTAGES[name]
             column.button(word, partial(self._ask, name, word), told, colour=INK)
-        for knob in (each for each in LANDER.knob_descriptions if each.name in self._knobs.first):
+        for knob in (each for each in LANDERS.knob_descriptions if each.name in self._knobs.first):
             column.aside(texts.LAB_TURN.format(knob=knob.label))
             column.words([
                 (experiment_word(each, knob), partial(self._try, each, knob))

@@ -32,10 +32,10 @@ from game.scenes.train.layout import Layout
 from game.scenes.train.rewind import Rewind
 from game.scenes.train.split_view import SplitView
 from game.scenes.train.status import TrainingStatus, lander_status
-from game.training.beside import take_away
 from game.training.library import Library
-from game.training.run import TrainingRun
-from game.training.workers import LANDERS, PACES
+from game.training.record import take_away
+from game.training.run import PACES, TrainingRun
+from game.training.run_kind import LANDERS
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.panel import Column
@@ -72,7 +72,7 @@ class TrainScene(TrainingScene):
         run = self.run
         self.swarm, self.past_swarm = LearningSwarm(), LearningSwarm()
         self.charts, self.captions = TrainingCharts(), ChartCaptions()
-        self.knobs = KnobsPanel(self.form, PRESETS["modern"], 0, run.change, self._begin)
+        self.knobs = KnobsPanel(self.form, PRESETS["modern"], 0, partial(run.ask, "change"), self._begin, LANDERS)
         self.laboratory = Laboratory(run, self.knobs, self._split, self._leave_split)
         self.split_view, self.inside, self.rewind = SplitView(run), Inside(run), Rewind(run)
         self.lessons = LessonDoor(run, lambda: self.shown_swarm, lambda: self.moment, self.context.note)
@@ -318,7 +318,7 @@ class TrainScene(TrainingScene):
             return
         if not self.run.alive:
             self._begin(self.knobs.config, self.knobs.seed)
-        self.run.teach(folder / FILE_NAME)
+        self.run.ask("teach", folder / FILE_NAME)
 
     def _open_pays(self) -> Transition:
         def choose(path: Path | None) -> None:

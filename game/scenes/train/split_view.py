@@ -14,7 +14,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import LINE, NET, NIGHT0, SMALL, TEXT
 from game.scenes.train.charts import Beside
-from game.training.beside import EarlierRun
+from game.training.record import EarlierRun
 from game.training.run import TrainingRun
 from game.ui.series import RUN_STYLES
 from game.world.swarm import LearningSwarm

@@ -19,7 +19,7 @@ from game.drawing.tokens import LABEL, LINE, MUTE, NET, SMALL, TITLE
 from game.flight import networks
 from game.flight.study_runs import studies
 from game.scenes.train.networks import write_headings
-from game.training.knob_descriptions import figure, label
+from game.training.run_settings import figure, label
 from game.ui.chart import Chart, Series
 from game.ui.listing import Row
 from game.ui.panel_scene import PanelScene

@@ -8,7 +8,7 @@ import pytest
 from ai.digits.config import DIGIT_PRESETS
 from ai.digits.training import DigitTraining
 from ai.explain.digit_lesson import explain_digit
-from ai.training.digit_session import live_digits
+from ai.training.digit_session import DigitSession
 from ai.training.messages import Refused
 
 
@@ -72,7 +72,7 @@ def test_the_run_is_as_before(training):
 
 
 def test_a_live_run_answers_and_refuses(data):
-    session = live_digits(replace(DIGIT_PRESETS["classic"], batch_size=8, held_out=12), 1, data=data)
+    session = DigitSession.live(replace(DIGIT_PRESETS["classic"], batch_size=8, held_out=12), 1, data=data)
     for _ in range(4):
         next(session)
     (lesson,) = session.send(("explain", 3))

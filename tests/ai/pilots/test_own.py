@@ -14,7 +14,7 @@ from ai.pilots.process import PilotError
 from ai.pilots.shelf import TEMPLATES
 from ai.training.config import Config
 from ai.training.history import Point
-from ai.training.lander_session import live
+from ai.training.lander_session import LanderSession
 
 OBSERVATION = np.zeros((1, 9), np.float32)
 HELD = np.array([5])
@@ -215,7 +215,9 @@ def test_landers_are_paid_by_a_file(tmp_path: Path):
 def test_a_run_learns_by_a_file_from_nothing(tmp_path: Path):
     path = tmp_path / "pay.py"
     path.write_text("def pay(before, action, after):\n    return 3.0 * (after.steps - before.steps)")
-    turns = live(Config(num_envs=8, hidden=(8,), learning_starts=32, batch_size=16, gradient_steps=1), 1, pay=path)
+    turns = LanderSession.live(
+        Config(num_envs=8, hidden=(8,), learning_starts=32, batch_size=16, gradient_steps=1), 1, pay=path
+    )
     points = [message for _ in range(400) for message in next(turns) if isinstance(message, Point)]
     turns.close()
     assert points[-1].mean_return > 200  # three points for each step in the air

@@ -11,7 +11,7 @@ from ai.lander.pilots import ScriptedPilot
 from ai.training.config import PRESETS
 from ai.training.demonstrations import MOST, Demonstration, demonstrate, read, relive, takeover, teach, write
 from ai.training.history import SettingChange
-from ai.training.lander_session import TAUGHT, live
+from ai.training.lander_session import TAUGHT, LanderSession
 from ai.training.messages import NetworkState, Refused, SwarmState
 
 MODERN = PRESETS["modern"]
@@ -88,7 +88,7 @@ def test_a_live_run_learns_from_them_from_its_first_decision(landings, tmp_path)
     path = tmp_path / "flights.json"
     write(path, landings)
     config = PRESETS["classic"].changed(success_pass=False)
-    lonely, led = live(config), live(config)
+    lonely, led = LanderSession.live(config), LanderSession.live(config)
     next(lonely)
     next(led)
     answer = led.send(("teach", path))
@@ -112,7 +112,7 @@ def test_a_live_run_goes_on_where_there_is_nothing_to_learn_from(content, words,
     path = tmp_path / "flights.json"
     if content is not None:
         path.write_text(content)
-    run = live(PRESETS["classic"])
+    run = LanderSession.live(PRESETS["classic"])
     next(run)
     (refused,) = run.send(("teach", path))
     assert isinstance(refused, Refused)
@@ -135,7 +135,7 @@ KNOWN = '"format": "tranquility demonstrations", "version": 1'
 def test_demonstrations_that_make_no_sense_are_refused_and_the_training_goes_on(content, tmp_path):
     path = tmp_path / "flights.json"
     path.write_bytes(content if isinstance(content, bytes) else content.encode())
-    run = live(PRESETS["classic"])
+    run = LanderSession.live(PRESETS["classic"])
     next(run)
     (refused,) = run.send(("teach", path))
     assert isinstance(refused, Refused)

@@ -11,7 +11,7 @@ from ai.digits.mnist import load_part
 from ai.digits.training import DigitTraining, confusion
 from ai.digits.validation import EXAMPLES, Confusion
 from ai.training import digit_session
-from ai.training.digit_session import live_digits
+from ai.training.digit_session import DigitSession
 from ai.training.history import REVERTED, DigitPoint, SettingChange, Validation
 from ai.training.messages import Refused, RunStarted, Saved
 from ai.training.run import resume
@@ -36,7 +36,7 @@ def kinds(told, kind):
 
 
 def test_a_run_tells_how_it_begins_how_it_stands_and_what_it_misreads(data):
-    told = [each for turn in live_digits(SMALL, 4, data=data) for each in turn]
+    told = [each for turn in DigitSession.live(SMALL, 4, data=data) for each in turn]
     assert told[0] == RunStarted(SMALL, 4, 0, "", 30)
     points, scores = kinds(told, DigitPoint), kinds(told, Validation)
     assert points[0].step == 1
@@ -53,7 +53,7 @@ def test_a_run_tells_how_it_begins_how_it_stands_and_what_it_misreads(data):
 
 
 def test_the_network_is_that_of_a_run_without_a_window(data, tmp_path):
-    for _ in live_digits(SMALL, 4, keep=tmp_path / "run", data=data):
+    for _ in DigitSession.live(SMALL, 4, keep=tmp_path / "run", data=data):
         pass
     training = DigitTraining(SMALL, 4, data)
     while not training.done:
@@ -65,17 +65,17 @@ def test_the_network_is_that_of_a_run_without_a_window(data, tmp_path):
 
 
 def test_a_run_that_is_closed_can_be_gone_on_with(data, tmp_path):
-    run = live_digits(SMALL, 4, keep=tmp_path / "run", data=data)
+    run = DigitSession.live(SMALL, 4, keep=tmp_path / "run", data=data)
     for _ in range(9):
         next(run)
     run.close()
     assert resume(DigitTraining, tmp_path / "run", data=data).step == 7
-    again = live_digits(DIGIT_PRESETS["modern"], 0, resume=tmp_path / "run", data=data)
+    again = DigitSession.live(DIGIT_PRESETS["modern"], 0, resume=tmp_path / "run", data=data)
     assert [next(again), next(again)[0]] == [(), RunStarted(SMALL, 4, 7, "", 30)]
 
 
 def test_a_run_that_is_asked_to_finish_is_kept_measured_and_can_be_gone_on_with(data, tmp_path):
-    run = live_digits(SMALL, 4, keep=tmp_path / "run", data=data)
+    run = DigitSession.live(SMALL, 4, keep=tmp_path / "run", data=data)
     for _ in range(9):
         next(run)
     told = run.send(("finish",)) + next(run)
@@ -91,7 +91,7 @@ def test_a_run_that_is_asked_to_finish_is_kept_measured_and_can_be_gone_on_with(
 
 
 def test_live_knobs_turn_and_others_are_refused(data):
-    run = live_digits(SMALL, data=data)
+    run = DigitSession.live(SMALL, data=data)
     next(run), next(run)
     assert run.send(("change", "learning_rate", 1e-4)) == (SettingChange(0, "learning_rate", 3e-3, 1e-4),)
     (refused,) = run.send(("change", "hidden", (3,)))
@@ -102,7 +102,7 @@ def test_live_knobs_turn_and_others_are_refused(data):
 
 
 def test_without_images_held_out_there_is_no_confusion(data):
-    told = [each for turn in live_digits(SMALL.changed(held_out=0, epochs=1), data=data) for each in turn]
+    told = [each for turn in DigitSession.live(SMALL.changed(held_out=0, epochs=1), data=data) for each in turn]
     assert not kinds(told, Confusion)
     assert kinds(told, DigitPoint)
 
@@ -112,7 +112,7 @@ def test_numbers_that_run_away_end_the_run_with_a_reason(data, tmp_path):
         optimizer="sgd", learning_rate=1.0, activation="relu", output_activation=False, warm_up_epochs=0.0
     )
     with pytest.raises(FloatingPointError, match="learning rate"):
-        for _ in live_digits(wild.changed(hidden=(512, 512), epochs=20), keep=tmp_path / "run", data=data):
+        for _ in DigitSession.live(wild.changed(hidden=(512, 512), epochs=20), keep=tmp_path / "run", data=data):
             pass
 
 
@@ -129,7 +129,7 @@ def ruin(run):
 
 
 def test_a_ruined_network_can_go_back_to_its_best(data):
-    run = live_digits(RUINED, 4, data=data)
+    run = DigitSession.live(RUINED, 4, data=data)
     while "session" not in getgeneratorlocals(run):
         next(run)
     training = getgeneratorlocals(run)["session"].training
@@ -149,7 +149,7 @@ def test_a_ruined_network_can_go_back_to_its_best(data):
 
 
 def test_what_is_shown_in_the_end_is_the_network_that_is_kept(data, tmp_path):
-    run = live_digits(RUINED, 4, keep=tmp_path / "run", data=data)
+    run = DigitSession.live(RUINED, 4, keep=tmp_path / "run", data=data)
     ruin(run)
     told = run.send(("finish",))
     for turn in run:
@@ -168,7 +168,7 @@ def test_what_is_shown_in_the_end_is_the_network_that_is_kept(data, tmp_path):
 def test_the_filters_of_the_run_are_told_from_its_first_moment_on(data):
     for filters in ((3,), ()):
         config = SMALL.changed(convolutions=True, filters=filters) if filters else SMALL
-        told = [each for turn in live_digits(config, 4, data=data) for each in turn]
+        told = [each for turn in DigitSession.live(config, 4, data=data) for each in turn]
         moments, plain = kinds(told, FilterMoment), DigitTraining(config, 4, data)
         assert (moments[0].step, moments[0].seconds) == (0, 0.0)
         for moment in moments:

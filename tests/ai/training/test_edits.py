@@ -14,7 +14,7 @@ from ai.nn import NeuralNetwork
 from ai.training.config import PRESETS, Config
 from ai.training.edits import EDITED, MOST_WEIGHT, Edit, NetworkEditor, NetworkEdits
 from ai.training.history import History, Point, SettingChange
-from ai.training.lander_session import live
+from ai.training.lander_session import LanderSession
 from ai.training.messages import NetworkState
 from tests.support.small import LANDERS
 
@@ -143,7 +143,7 @@ def weights_of(config: Config, values: bytes) -> list[np.ndarray]:
 
 
 def test_a_live_run_is_edited_flies_on_without_learning_and_is_as_it_was() -> None:
-    run = live(LANDERS, 3)
+    run = LanderSession.live(LANDERS, 3)
     next(run)
     for _ in range(60):
         next(run)
@@ -170,7 +170,7 @@ def test_a_live_run_is_edited_flies_on_without_learning_and_is_as_it_was() -> No
 
 
 def test_it_learns_on_from_an_edit_and_can_still_go_back() -> None:
-    run = live(LANDERS, 3)
+    run = LanderSession.live(LANDERS, 3)
     for _ in range(60):
         next(run)
     before = state(run.send(("undo",)))
@@ -188,7 +188,7 @@ def test_it_learns_on_from_an_edit_and_can_still_go_back() -> None:
 
 
 def test_an_edit_that_is_dragged_is_one_step_and_one_change() -> None:
-    run = live(LANDERS, 3, clock=lambda: 0.0)
+    run = LanderSession.live(LANDERS, 3, clock=lambda: 0.0)
     next(run)
     history = History()
     for number in range(5):
@@ -202,7 +202,7 @@ def test_an_edit_that_is_dragged_is_one_step_and_one_change() -> None:
 
 
 def test_a_checkpoint_replaces_an_edited_network_and_it_learns() -> None:
-    run = live(LANDERS, 3)
+    run = LanderSession.live(LANDERS, 3)
     next(run)
     run.send(("edit", Edit(0, 0)))
     run.send(("restore", 0))
@@ -212,7 +212,7 @@ def test_a_checkpoint_replaces_an_edited_network_and_it_learns() -> None:
 
 
 def test_a_run_that_ends_while_it_is_edited_is_saved_as_it_was(tmp_path: Path) -> None:
-    run = live(LANDERS, 3, keep=tmp_path / "run")
+    run = LanderSession.live(LANDERS, 3, keep=tmp_path / "run")
     for _ in range(60):
         next(run)
     before = state(run.send(("undo",)))

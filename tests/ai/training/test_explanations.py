@@ -8,7 +8,7 @@ import pytest
 from ai.explain.agent_lesson import Lesson
 from ai.training.config import PRESETS
 from ai.training.history import Point
-from ai.training.lander_session import live
+from ai.training.lander_session import LanderSession
 from ai.training.messages import NetworkState, Refused
 
 CONFIG = replace(PRESETS["modern"], num_envs=6, batch_size=16, gradient_steps=1, learning_starts=48, n_step=4,
@@ -17,7 +17,7 @@ CONFIG = replace(PRESETS["modern"], num_envs=6, batch_size=16, gradient_steps=1,
 
 def run(config=CONFIG, **options):
     ticks = iter(range(10**9))
-    return live(config, 7, clock=lambda: next(ticks) / 100, **options)
+    return LanderSession.live(config, 7, clock=lambda: next(ticks) / 100, **options)
 
 
 def ask(session, slot, decisions=None):

@@ -12,7 +12,7 @@ from ai.nn import ModelFormatError
 from ai.training import run as keeping
 from ai.training.config import Config, gym_config
 from ai.training.history import PARTS, REVERTED, Checkpoint, History, Point, SettingChange, Validation
-from ai.training.lander_session import CAREFUL, live
+from ai.training.lander_session import CAREFUL, LanderSession
 from ai.training.loop import Training
 from ai.training.messages import NetworkState, Refused, RunStarted, Saved, SwarmState
 from ai.training.run import resume
@@ -29,7 +29,7 @@ def begin():
     begun = []
 
     def begin(config=TINY, seed=0, **options):
-        begun.append(live(config, seed, **options))
+        begun.append(LanderSession.live(config, seed, **options))
         return begun[-1]
 
     yield begin

@@ -13,7 +13,7 @@ from ai.training.config import PRESETS, Config
 from ai.training.edits import Edit
 from ai.training.hints import RULES, Adviser, RecentCurves
 from ai.training.history import Checkpoint, History, Point, SettingChange
-from ai.training.lander_session import live
+from ai.training.lander_session import LanderSession
 from tests.support.recordings import recorded
 
 # As `benchmarks.remedies` has it.
@@ -30,7 +30,7 @@ class Watched:
 
     def __init__(self, config: Config, resume: Path | None = None, keep: Path | None = None) -> None:
         clock = count(0.0, 0.5 * config.num_envs / PACE).__next__
-        self._run = live(config, 0, keep=keep, resume=resume, clock=clock)
+        self._run = LanderSession.live(config, 0, keep=keep, resume=resume, clock=clock)
         self.config, self.adviser = config, Adviser(config)
         self.history = History.read(resume) if resume else History()
         self.history.reward_scale = config.reward_scale

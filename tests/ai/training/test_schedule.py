@@ -9,7 +9,7 @@ import pytest
 from ai.agent.schedule import target_rate
 from ai.digits.config import DIGIT_PRESETS
 from ai.training.config import PRESETS, Config, InForce, idle, in_force
-from ai.training.lander_session import live
+from ai.training.lander_session import LanderSession
 from ai.training.loop import Training
 from ai.training.messages import SwarmState
 
@@ -75,7 +75,7 @@ def test_what_is_not_turned_on_changes_nothing():
 
 
 def test_what_a_run_says_is_in_force_is_what_it_learns_and_flies_with():
-    run = live(TINY)
+    run = LanderSession.live(TINY)
     told = [next(run)]
     training = getgeneratorlocals(run)["session"].training
     told += [next(run) for _ in range(80)]

@@ -15,7 +15,7 @@ import pytest
 
 from ai.training.config import Config
 from ai.training.history import Checkpoint, History
-from ai.training.lander_session import live
+from ai.training.lander_session import LanderSession
 from ai.training.loop import Training
 from ai.training.messages import Refused, Saved
 from ai.training.run import resume
@@ -297,7 +297,7 @@ def test_a_run_killed_at_any_moment_can_be_loaded(start, tmp_path):
 @pytest.mark.slow
 @POSIX
 def test_a_run_that_is_terminated_keeps_itself(start, tmp_path):
-    run = start(live, TINY, 0, keep=tmp_path / "run")
+    run = start(LanderSession.live, TINY, 0, keep=tmp_path / "run")
     polled(run, lambda told: any(isinstance(each, Checkpoint) and each.decisions > 0 for each in told))
     os.kill(run.process_id, signal.SIGTERM)
     over(run)
@@ -417,7 +417,7 @@ def test_the_program_can_be_imported_by_its_workers():
 
 @pytest.mark.slow
 def test_a_run_in_the_game_makes_the_same_network_as_one_without(start, tmp_path):
-    run = start(live, TINY, 7, keep=tmp_path / "keep")
+    run = start(LanderSession.live, TINY, 7, keep=tmp_path / "keep")
     run.send(("change", "no such knob", 1))
     told = polled(run, lambda told: sum(isinstance(each, Checkpoint) for each in told) == 2)
     assert any(isinstance(each, Refused) for each in told)

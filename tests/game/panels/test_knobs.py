@@ -12,7 +12,7 @@ from game.scenes.train.base import KNOBS
 from game.scenes.train.knob import Knob, SliderKnob, WordsKnob
 from game.scenes.train.knobs import KnobsPanel
 from game.scenes.train.scene import TrainScene
-from game.training.knob_descriptions import knob_descriptions, pages
+from game.training.run_settings import knob_descriptions, pages
 from tests.support.driver import Driver
 from tests.support.written import words_written
 

@@ -8,15 +8,15 @@ import pytest
 
 from ai.training.config import PRESETS, Config
 from ai.training.history import COLUMNS, DIGIT_COLUMNS, DigitPoint, History, Point, SettingChange, Validation
-from ai.training.lander_session import live
+from ai.training.lander_session import LanderSession
 from ai.training.messages import RunStarted
 from game.core import texts
 from game.core.worker import WorkerState
 from game.scenes.train.charts import DIGIT_CHARTS, Beside, TrainingCharts, ticks_of
-from game.training.beside import EarlierRun, put_beside, take_away
 from game.training.library import Library
+from game.training.record import EarlierRun, put_beside, take_away
 from game.training.run import TrainingRun
-from game.training.workers import LANDERS
+from game.training.run_kind import LANDERS
 from game.ui.series import run_style
 from tests.ai.training.test_hints import HEALTHY
 
@@ -138,7 +138,7 @@ def test_a_place_on_the_axis_is_a_moment_of_the_run(axis: int, place: float) -> 
 @pytest.mark.parametrize("preset", ["modern", "classic"])
 def test_a_run_says_in_which_unit_it_counts(preset: str, tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
     config = PRESETS[preset].changed(num_envs=1, hidden=(4,))
-    session = live(config, 0, keep=tmp_path / "run")
+    session = LanderSession.live(config, 0, keep=tmp_path / "run")
     told = next(session)
     for _ in range(3):
         next(session)

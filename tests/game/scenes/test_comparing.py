@@ -8,7 +8,7 @@ import pytest
 
 from ai.training.history import History
 from game.scenes.train.scene import TrainScene
-from game.training.beside import put_beside
+from game.training.record import put_beside
 from game.ui.rows import RunRow
 from tests.ai.training.test_hints import HEALTHY
 from tests.support.driver import Driver

@@ -23,12 +23,11 @@ from ai.training.run import save
 from game.core import texts
 from game.core.names import LibraryError
 from game.core.worker import WorkerState
-from game.scenes.train.digits import KNOBS, DigitTrainingScene
+from game.scenes.train.digits import DigitTrainingScene
 from game.training.digit_models import DigitModels
-from game.training.knob_descriptions import knob_descriptions
 from game.training.run import TrainingRun
-from game.training.run_settings import RunSettings
-from game.training.workers import DIGITS
+from game.training.run_kind import DIGITS
+from game.training.run_settings import RunSettings, knob_descriptions
 from game.ui.scrubber import Scrubber
 from tests.support.driver import Driver
 from tests.support.player import Player
@@ -72,9 +71,9 @@ def test_every_setting_has_a_knob_and_a_word():
 
 
 def test_presets_are_named_and_no_sabotage_is_offered():
-    run_settings = RunSettings(DIGIT_PRESETS["classic"], 0, lambda *_: None, lambda *_: None, KNOBS)
+    run_settings = RunSettings(DIGIT_PRESETS["classic"], 0, lambda *_: None, lambda *_: None, DIGITS)
     assert run_settings.named == ("classic", "")
-    assert KNOBS.word(KNOBS.nearest(DIGIT_PRESETS["modern"].changed(dropout=0.5))) == "Modern"
+    assert DIGITS.word(DIGITS.nearest(DIGIT_PRESETS["modern"].changed(dropout=0.5))) == "Modern"
 
 
 # A run

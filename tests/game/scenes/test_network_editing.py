@@ -25,7 +25,7 @@ def paused(driver: Driver) -> Driver:
     driver.key(pygame.K_RETURN)
     driver.wait(lambda: driver.top.run.state is WorkerState.PAUSED)
     driver.press_on(texts.TRAIN_LOOK[0])
-    driver.top.run.edit("undo")  # of nothing: the answer is the network as it is now
+    driver.top.run.ask("undo")  # of nothing: the answer is the network as it is now
     driver.frames(3)
     return driver
 

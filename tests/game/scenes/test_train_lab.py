@@ -21,9 +21,9 @@ from game.scenes.train.cards import FILE, measured
 from game.scenes.train.knob import Knob
 from game.scenes.train.laboratory import came_words, why
 from game.scenes.train.scene import TrainScene
-from game.training.knob_descriptions import knob_descriptions
 from game.training.library import Library
 from game.training.run import AHEAD
+from game.training.run_settings import knob_descriptions
 from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.small import LANDERS as SMALL

@@ -8,8 +8,8 @@ from ai.lander.rewards import RewardWeights
 from ai.training.config import PRESETS, Config
 from ai.training.experiments import SABOTAGES, sabotaged
 from game.core import texts
-from game.training.knob_descriptions import figure, knob_descriptions, pages
-from game.training.run_settings import LANDER, RunSettings
+from game.training.run_kind import LANDERS
+from game.training.run_settings import RunSettings, figure, knob_descriptions, pages
 
 KNOBS = {knob.name: knob for knob in knob_descriptions()}
 
@@ -22,7 +22,7 @@ def heard() -> list[Any]:
 @pytest.fixture
 def run_settings(heard: list[Any]) -> RunSettings:
     return RunSettings(
-        PRESETS["modern"], 0, lambda name, value: heard.append((name, value)), lambda *anew: heard.append(anew)
+        PRESETS["modern"], 0, lambda name, value: heard.append((name, value)), lambda *anew: heard.append(anew), LANDERS
     )
 
 
@@ -173,7 +173,7 @@ def test_parts_of_the_reward_are_named_apart(run_settings: RunSettings, heard: l
 def test_a_configuration_from_elsewhere_is_named_after_what_is_nearest(run_settings: RunSettings, heard: list[Any]):
     run_settings.set_config(PRESETS["classic"].changed(discount=0.95), 3)
     assert (run_settings.named, run_settings.seed, run_settings.changed) == (("classic", ""), 3, True)
-    assert LANDER.nearest(sabotaged(PRESETS["modern"], "no_shaping")) == ("modern", "no_shaping")
+    assert LANDERS.nearest(sabotaged(PRESETS["modern"], "no_shaping")) == ("modern", "no_shaping")
     assert not heard
 
 
@@ -186,6 +186,6 @@ def test_a_run_that_begins_with_what_was_chosen_keeps_its_name(run_settings: Run
 
 @pytest.mark.parametrize("name", SABOTAGES)
 def test_every_sabotage_has_its_words(name: str):
-    assert LANDER.word(("modern", name)) == texts.SABOTAGES[name][0]
+    assert LANDERS.word(("modern", name)) == texts.SABOTAGES[name][0]
     assert len(texts.SABOTAGES[name]) == 2
-    assert LANDER.sentence(("modern", name))
+    assert LANDERS.sentence(("modern", name))

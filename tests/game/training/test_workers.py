@@ -8,15 +8,17 @@ from pathlib import Path
 import pytest
 
 from game.core.worker import Worker, WorkerState
-from game.training.workers import OneAfterAnother
+from game.training.library import Library
+from game.training.run import TrainingRun
+from game.training.run_kind import LANDERS
 from tests.support.chores import keep
 
 
-class Notebook(OneAfterAnother):
+class Notebook(TrainingRun):
     """Runs that note when they begin and end."""
 
     def __init__(self, path: Path) -> None:
-        super().__init__()
+        super().__init__(LANDERS, Library(path.parent))
         self.path, self.closing = path, False
 
     def close(self) -> None:
@@ -24,17 +26,12 @@ class Notebook(OneAfterAnother):
         if self._worker:
             self._worker.close(5.0)
 
-    def begin(self, name: str, seconds: float = 0.0, note: str = "") -> str:
+    def note(self, name: str, seconds: float = 0.0, note: str = "") -> str:
         def launch() -> str:
             self._worker = Worker(keep, self.path, name, seconds)
             return note
 
         return self._start(launch)
-
-    def poll(self) -> str:
-        if self._worker:
-            self._worker.poll()
-        return self._start_waiting()
 
     @property
     def lines(self) -> list[str]:
@@ -59,15 +56,15 @@ def wait(learner: Notebook, until: Callable[[], object]) -> list[str]:
     notes, end = [], time.monotonic() + 60
     while not until():
         assert time.monotonic() < end
-        notes.append(learner.poll())
+        notes += learner.poll()
         time.sleep(0.01)
     return [note for note in notes if note]
 
 
 def test_the_next_run_begins_when_the_one_before_has_ended_and_nobody_waits(notebook: Notebook):
-    assert notebook.begin("one", 0.5, "at once") == "at once"
+    assert notebook.note("one", 0.5, "at once") == "at once"
     wait(notebook, lambda: notebook.state is WorkerState.RUNNING)
-    assert notebook.begin("two", note="later") == ""
+    assert notebook.note("two", note="later") == ""
     assert notebook.waiting
     assert notebook.state is WorkerState.STARTING
     assert notebook.alive
@@ -77,36 +74,36 @@ def test_the_next_run_begins_when_the_one_before_has_ended_and_nobody_waits(note
 
 
 def test_what_is_asked_meanwhile_is_for_the_run_to_come(notebook: Notebook):
-    notebook.begin("one", 0.3)
+    notebook.note("one", 0.3)
     wait(notebook, lambda: notebook.state is WorkerState.RUNNING)
-    notebook.begin("two", 0.0)
-    notebook._ask(Worker.pause)
+    notebook.note("two", 0.0)
+    notebook._order(Worker.pause)
     wait(notebook, lambda: notebook.state is WorkerState.PAUSED)
     assert notebook.lines[-1] == "two begins"
 
 
 def test_of_two_that_wait_the_last_one_is_meant(notebook: Notebook):
-    notebook.begin("one", 0.3)
+    notebook.note("one", 0.3)
     wait(notebook, lambda: notebook.state is WorkerState.RUNNING)
-    notebook.begin("two", 0.0)
-    notebook.begin("three", 0.0)
+    notebook.note("two", 0.0)
+    notebook.note("three", 0.0)
     wait(notebook, lambda: notebook.state is WorkerState.RUNNING)
     assert notebook.lines == ["one begins", "one ends", "three begins"]
 
 
 def test_one_that_does_not_end_is_ended(notebook: Notebook, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("game.core.worker.STOP_SECONDS", 0.3)
-    notebook.begin("one", 60.0)
+    notebook.note("one", 60.0)
     wait(notebook, lambda: notebook.state is WorkerState.RUNNING)
-    notebook.begin("two", 0.0)
+    notebook.note("two", 0.0)
     wait(notebook, lambda: notebook.state is WorkerState.RUNNING)
     assert notebook.lines == ["one begins", "two begins"]
 
 
 def test_after_a_close_nothing_begins(notebook: Notebook):
-    notebook.begin("one", 0.2)
+    notebook.note("one", 0.2)
     wait(notebook, lambda: notebook.state is WorkerState.RUNNING)
-    notebook.begin("two", 0.0)
+    notebook.note("two", 0.0)
     notebook.close()
     notebook.poll()
     assert not notebook.alive
