@@ -30,8 +30,9 @@ from ai.agent.network import build_network
 from ai.explain.inspection import NetworkHealth
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.training.config import PRESETS, Config
+from ai.training.curves import RecentCurves
 from ai.training.edits import Edit
-from ai.training.hints import Adviser, Hint, RecentCurves
+from ai.training.hints import Adviser, Hint
 from ai.training.history import Checkpoint, History, Point, SettingChange
 from ai.training.lander_session import LanderSession
 from ai.training.messages import NetworkState, RunStarted

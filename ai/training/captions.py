@@ -14,8 +14,9 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from ai.agent.decision import in_points
+from ai.training.curves import RecentCurves
 from ai.training.edits import EDITED
-from ai.training.hints import RULES, RecentCurves, returns
+from ai.training.hints import RULES, returns
 from ai.training.history import PARTS
 
 CHARTS: Final = ("success", "mean_return", "loss", "epsilon")

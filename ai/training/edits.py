@@ -1,6 +1,6 @@
 """Edits of a network by hand, while it flies: weights that are set, units that are silenced, and the way back.
 
-Layers are counted as `ai.explain.inspection.links` has them: layer 0 leads from the inputs to the first hidden units.
+Layer 0 leads from the inputs to the first hidden units, as in `ai.explain.inspection.links`.
 """
 
 from __future__ import annotations
@@ -40,17 +40,15 @@ class Edit:
     def check(self, network: NeuralNetwork) -> None:
         """Raise ValueError, with the reason, where it cannot be made in a network."""
         layers = _layers(network)
+        if self.end is None and self.layer == len(layers):
+            raise ValueError("an action's value has no outgoing weights; silence a unit before it")
         if not 0 <= self.layer < len(layers):
-            if self.end is None and self.layer == len(layers):
-                raise ValueError("an action's value has no outgoing weights; silence a unit before it")
             raise ValueError(f"there is no layer {self.layer} of {len(layers)}")
         layer = layers[self.layer]
         starts, ends = layer.weights.shape
-        if not 0 <= self.start < starts:
-            raise ValueError(f"there is no unit {self.start} of {starts}")
         if self.end is not None and isinstance(layer, DuelingLayer):
             raise ValueError("in a dueling layer no single weight leads to one action; silence a unit before it")
-        if self.end is not None and not 0 <= self.end < ends:
+        if not (0 <= self.start < starts and 0 <= (self.end or 0) < ends):
             raise ValueError(f"there is no weight {self.start}, {self.end} of {starts} x {ends}")
         if not abs(self.value) <= MOST_WEIGHT:  # nor is NaN
             raise ValueError(f"a weight is at most {MOST_WEIGHT:g} in size, not {self.value:g}")
@@ -58,22 +56,14 @@ class Edit:
 
 @dataclass(frozen=True)
 class NetworkEdits:
-    """Edits in force: an empty message says that the network is as it has learnt.
-
-    Attributes:
-        places: layer, start and end of each weight that was set; without an end, of a unit that was silenced.
-        steps: number of steps that can be undone one by one.
-        holds: whether learning is held still.
-        way_back: whether all parameters from before the first edit can be restored.
-
-    """
+    """Edits in force: an empty message says that the network is as it has learnt."""
 
     newest_only: ClassVar = True
 
-    places: tuple[Place, ...] = ()
-    steps: int = 0
-    holds: bool = False
-    way_back: bool = False
+    places: tuple[Place, ...] = ()  # layer, start and end of each weight that was set; no end: of a silenced unit
+    steps: int = 0  # that can be undone one by one
+    holds: bool = False  # whether learning is held still
+    way_back: bool = False  # whether all parameters from before the first edit can be restored
 
     @property
     def silenced(self) -> list[tuple[int, int]]:

@@ -16,7 +16,8 @@ import numpy as np
 
 from ai.lander.rewards import RewardWeights
 from ai.training.config import Config, idle
-from ai.training.hints import RULES, RecentCurves
+from ai.training.curves import RecentCurves
+from ai.training.hints import RULES
 from ai.training.history import History
 
 FACTOR: Final = 100.0  # on a logarithmic scale
@@ -53,20 +54,12 @@ def sabotaged(config: Config, name: str) -> Config:
 
 @dataclass(frozen=True)
 class Experiment:
-    """One difference between two runs.
+    """One difference between two runs."""
 
-    Attributes:
-        kind: how the setting changes: by a factor, to a value, or as a sabotage says.
-        amount: the factor, or the value; None for a sabotage that is no knob's.
-        changes: the new settings, by the fields of Config.
-        sabotage: name of the sabotage that it is; empty if none.
-
-    """
-
-    kind: Literal["times", "divided", "value", "sabotage"]
-    amount: Any
-    changes: Mapping[str, Any] = field(hash=False)
-    sabotage: str = ""
+    kind: Literal["times", "divided", "value", "sabotage"]  # how the setting changes
+    amount: Any  # the factor, or the value; None for a sabotage that is no knob's
+    changes: Mapping[str, Any] = field(hash=False)  # the new settings, by the fields of Config
+    sabotage: str = ""  # its name; empty if it is none
 
     def applied(self, config: Config) -> Config:
         """Return the configuration with this difference; raises ValueError if it is not valid there."""
@@ -127,13 +120,8 @@ class Flown(NamedTuple):
         """Decisions of each lander so far."""
         return float(self.history["decisions"][-1]) / self.config.num_envs if len(self.history) else 0.0
 
-    @property
-    def landed(self) -> float:
-        """Share of the last hundred flights that landed; 0 before any has ended."""
-        return self.landed_at(-1)
-
-    def landed_at(self, row: int) -> float:
-        """Return that share at a row of the history."""
+    def landed(self, row: int = -1) -> float:
+        """Return the share of the last hundred flights that landed, at a row; 0 before any has ended."""
         return float(np.nan_to_num(self.history["success"][row])) if len(self.history) else 0.0
 
     def landed_after(self) -> float:
@@ -147,7 +135,8 @@ def verdict(healthy: Flown, other: Flown, *, failed: bool = False) -> Verdict | 
 
     `failed` says that its training has diverged. It has run away if its mean Q-value or its loss has: see the hints.
     """
-    if failed or (len(other.history) and _has_run_away(other)):
+    run = RecentCurves(other.history, other.config)
+    if failed or (run.count and any(rule.holds(run) for rule in RULES if rule.name in _RUN_AWAY)):
         return "runs_away"
     needed = healthy.landed_after()
     if healthy.turns < _GRACE * needed:
@@ -155,14 +144,9 @@ def verdict(healthy: Flown, other: Flown, *, failed: bool = False) -> Verdict | 
     if np.nan_to_num(other.history["success"]).max(initial=0.0) < _NEVER:
         return "never"
     in_time = other.landed_after() <= _LATER * needed
-    return "as_well" if in_time and other.landed >= healthy.landed - _WORSE else "later"
+    return "as_well" if in_time and other.landed() >= healthy.landed() - _WORSE else "later"
 
 
 def judged_at(healthy: Flown, other: Flown) -> float:
     """Return the decisions from which an experiment is judged; infinite while its twin does not land."""
     return _GRACE * healthy.landed_after() * other.config.num_envs
-
-
-def _has_run_away(flown: Flown) -> bool:
-    run = RecentCurves(flown.history, flown.config)
-    return any(rule.holds(run) for rule in RULES if rule.name in _RUN_AWAY)

@@ -1,7 +1,7 @@
 """Lessons of a live run: the learning step that follows from a moment of a flight, now or earlier in the run.
 
-A run keeps the last decisions of all landers, and now and then all that its next learning step depends on; that takes
-it a thousandth of its time. A lesson is made from these only when one is asked for, by a copy of the agent.
+A run keeps the last decisions of all landers, and now and then all that its next learning step depends on. A lesson is
+made from these only when one is asked for, by a copy of the agent.
 """
 
 from __future__ import annotations

@@ -34,6 +34,8 @@ from ai.training.state import State, restore_buffer
 from ai.training.statistics import EpisodeStatistics
 from ai.training.tasks import TEST_SEED, VALIDATION_SEED, AnywhereTask, LanderTask, Score, Task, Trial
 
+Network = tuple[Floats, Normalizer | None]  # parameters, and the scale of its observations
+
 
 @dataclass
 class Progress:
@@ -71,6 +73,7 @@ class Training(Run):
         validation_episodes: episodes of one; by default, as many as suit the task.
         validation_pace: decisions of its flights after one of the run's; None for all at once.
         evaluated: how many decisions the network had taken that was measured last.
+        best_network: the network of the best score.
         on_step: is shown every step, before ended slots begin anew.
 
     """
@@ -101,8 +104,7 @@ class Training(Run):
         self.episodes = 0
         self.statistics = EpisodeStatistics(self.env.num_envs)
         self.best: Score | None = None
-        self.best_values: Floats | None = None
-        self.best_normalizer: Normalizer | None = None
+        self.best_network: Network | None = None
         self._moments: deque[float] = deque(maxlen=100)
         self._held = np.zeros(self.env.num_envs, dtype=np.intp)
         self._validated: DeepQAgent | None = None  # while its flights are under way
@@ -172,7 +174,9 @@ class Training(Run):
 
     def _measure(self, before: int) -> Score | None:
         """Begin the validation that is due, and go on with it; return the score once there is one."""
-        if not passed(before, self.agent.decisions, self.evaluate_every):
+        # It depends on decisions alone: not on the clock, and not on whether a run was interrupted.
+        every, now = self.evaluate_every, self.agent.decisions
+        if not every or now // every == before // every:
             return self.validate(self.validation_pace)
         score = self.validate()  # of the one before, if it is still under way
         self._begin_validation(self.last_agent())
@@ -197,8 +201,7 @@ class Training(Run):
             agent, self._flights, self._validated = self._validated, None, None
             self.evaluated = agent.decisions
             if score.better_than(self.best):
-                self.best, self.best_values = score, agent.network.values.copy()
-                self.best_normalizer = agent.normalizer
+                self.best, self.best_network = score, _network(agent)
             return score
         return None
 
@@ -212,10 +215,7 @@ class Training(Run):
     def best_agent(self) -> DeepQAgent:
         """Return an agent that flies with the best network found so far."""
         agent = self._new_agent(self.config)
-        if self.best_values is None:
-            agent.restore(self.agent.network.values, deepcopy(self.agent.normalizer))
-        else:
-            agent.restore(self.best_values, deepcopy(self.best_normalizer))
+        agent.restore(*deepcopy(self.best_network or _network(self.agent)))
         agent.decisions, agent.gradient_steps = self.agent.decisions, self.agent.gradient_steps
         return agent
 
@@ -227,8 +227,8 @@ class Training(Run):
 
     def restore_best(self) -> None:
         self.diverged = True
-        if self.best_values is not None:
-            self.agent.restore(self.best_values, deepcopy(self.best_normalizer))
+        if self.best_network is not None:
+            self.agent.restore(*deepcopy(self.best_network))
 
     # On disk
 
@@ -285,8 +285,7 @@ class Training(Run):
         if described["best"] is not None:
             if best.network.values.shape != self.agent.network.values.shape:
                 raise ValueError("the best network and the last one are of different sizes")
-            self.best = task.read_score(described["best"])
-            self.best_values, self.best_normalizer = best.network.values.copy(), best.normalizer
+            self.best, self.best_network = task.read_score(described["best"]), _network(best)
         self.episodes, self.env.landings = count_of(described["episodes"]), count_of(described["landings"])
         self.seconds = float(number_of(described["seconds"], 0))
         self.agent.copy_from(last)
@@ -298,14 +297,14 @@ class Training(Run):
 
     def state(self) -> State:
         best, validated = None, self._validated
-        if self.best is not None and self.best_values is not None:
-            best = {"score": self.best.to_json(), **_network(self.best_values, self.best_normalizer)}
+        if self.best is not None and self.best_network is not None:
+            best = {"score": self.best.to_json(), **_described(self.best_network)}
         return {
             "episodes": self.episodes, "evaluated": self.evaluated, "seconds": self.seconds, "best": best,
             "observation": self.observation.copy(), "held": self._held.copy(), "agent": agent_state(self.agent),
             "env": self.task.env_state(self.env), "statistics": self.statistics.state(),
             "validation": validated and {
-                "decisions": validated.decisions, **_network(validated.network.values, validated.normalizer)
+                "decisions": validated.decisions, **_described(_network(validated))
             },
         }  # fmt: skip
 
@@ -331,10 +330,10 @@ class Training(Run):
         self.lost = lost if all(whole) else "its memory is too large to be kept whole, so the oldest of it is gone"
         self.episodes, self.seconds = count_of(state["episodes"]), float(number_of(state["seconds"], 0))
         self.evaluated = None if state["evaluated"] is None else count_of(state["evaluated"])
-        self.best = self.best_values = self.best_normalizer = None
+        self.best = self.best_network = None
         if (told := state["best"]) is not None:
             self.best = self.task.read_score(told["score"])
-            self.best_values, self.best_normalizer = self._read_network(told, "best")
+            self.best_network = self._read_network(told, "best")
         if (told := state["validation"]) is not None:  # its flights begin anew
             validated = self.last_agent()
             validated.restore(*self._read_network(told, "validated network"))
@@ -342,15 +341,20 @@ class Training(Run):
             self._begin_validation(validated)
         return True
 
-    def _read_network(self, told: Mapping[str, Any], name: str) -> tuple[Floats, Normalizer | None]:
+    def _read_network(self, told: Mapping[str, Any], name: str) -> Network:
         normalizer = Normalizer(self.task.num_features) if self.agent.normalizer else None
         if normalizer:
             normalizer.load(told["normalizer"])
         return array_like(self.agent.network.values, told["values"], name), normalizer
 
 
-def _network(values: Floats, normalizer: Normalizer | None) -> State:
-    return {"values": values.copy(), "normalizer": normalizer.to_json() if normalizer else None}
+def _network(agent: DeepQAgent) -> Network:
+    return agent.network.values.copy(), deepcopy(agent.normalizer)
+
+
+def _described(network: Network) -> State:
+    values, normalizer = network
+    return {"values": values, "normalizer": normalizer.to_json() if normalizer else None}
 
 
 def task_of(config: Config) -> Task[Any]:
@@ -362,15 +366,6 @@ def task_of(config: Config) -> Task[Any]:
     if config.env in (LANDER, ANYWHERE):
         return LanderTask(config) if config.env == LANDER else AnywhereTask(config)
     return GymTask(config)
-
-
-def passed(before: int, now: int, every: int) -> bool:
-    """Whether a count has reached a multiple of `every` on its way from `before` to `now`; never, if that is 0.
-
-    The moments at which networks are measured depend on nothing else: not on the clock, and not on whether
-    a run was interrupted.
-    """
-    return every > 0 and now // every > before // every
 
 
 def run(config: Config, seed: int = 0, **options: Any) -> Generator[Progress, Config | None, None]:

@@ -87,7 +87,6 @@ class WatchedReplay(ReplayBuffer):
     drawn: Ints = np.zeros(0, dtype=np.intp)
 
     def sample(self, count: int, rng: np.random.Generator) -> tuple[Transition, Ints, Floats]:
-        """Draw as the buffer does, and keep the rows."""
         cells, self.drawn, weights = super().sample(count, rng)
         return cells, self.drawn, weights
 
@@ -99,28 +98,25 @@ class WatchedPrioritisedReplay(WatchedReplay, PrioritisedReplayBuffer):
 class _Landers:
     """Landers that fly side by side and begin anew; `recent` are whether the latest flights landed."""
 
-    def __init__(self, count: int, rng: np.random.Generator, heights: tuple[float, float], recent: int,
-                 config: Config) -> None:  # fmt: skip
-        self.env = OneEngineEnv(count, rng, heights, config.reward_weights)
-        self.observation = self.env.reset()
+    def __init__(self, env: OneEngineEnv, recent: int) -> None:
+        self.env, self.flights = env, 0
+        self.observation = env.reset()
         self.recent: deque[bool] = deque(maxlen=recent)
-        self.flights = 0
-        self.see(self.env.outcome)
+        self._look(env.outcome)
 
     @property
     def landed(self) -> float | None:
         """Share of the latest flights; None before the first has ended."""
         return sum(self.recent) / len(self.recent) if self.recent else None
 
-    def see(self, outcome: Ints) -> None:
-        """Keep how they are."""
+    def _look(self, outcome: Ints) -> None:
         env = self.env
         self.flown = Flown(env.altitude, env.velocity[:, 1].copy(), env.actions >= 3, outcome.copy())
 
     def take(self, result: StepResult) -> None:
         """Take what came of a decision, and begin flights anew that have ended."""
         ended = result.ended
-        self.see(result.outcome)
+        self._look(result.outcome)
         self.recent.extend((result.outcome[ended] == Outcome.LANDED).tolist())
         self.flights += int(ended.sum())
         self.observation = self.env.reset(ended) if ended.any() else result.observation
@@ -131,11 +127,10 @@ class SmallRun:
 
     def __init__(self, config: Config, seed: int, plan: Plan | None = None) -> None:
         agent_rng, env_rng, test_rng = np.random.default_rng(seed).spawn(3)
-        self.config, self.plan = config, plan or Plan()
-        self.learners = _Landers(config.num_envs, env_rng, self.plan.heights, RECENT, config)
-        tested = self.plan.tested
-        self.tests = _Landers(TESTED, test_rng, tested, RECENT_TESTS, config) if tested else None
-        self.env = self.learners.env
+        self.config, self.plan, pay = config, plan or Plan(), config.reward_weights
+        self.env = OneEngineEnv(config.num_envs, env_rng, self.plan.heights, pay)
+        self.learners, tested = _Landers(self.env, RECENT), self.plan.tested
+        self.tests = _Landers(OneEngineEnv(TESTED, test_rng, tested, pay), RECENT_TESTS) if tested else None
         replay = WatchedPrioritisedReplay if config.prioritised else WatchedReplay
         self.replay: WatchedReplay = replay(config.replay_size, self.env.num_features, config.replay_prune)
         self.agent = DeepQAgent(self.env.num_features, self.env.num_actions, config, agent_rng, replay=self.replay)

@@ -15,8 +15,8 @@ from ai.agent.decision import in_points
 from ai.environment import Doubles
 from ai.training.captions import Caption, caption
 from ai.training.config import Config
+from ai.training.curves import RecentCurves
 from ai.training.edits import EDITED
-from ai.training.hints import RecentCurves
 from ai.training.history import REVERTED, History, SettingChange
 from ai.training.lander_session import TAUGHT
 from game.core import texts

@@ -92,7 +92,7 @@ class SplitView:
             share = landed[number] if number < len(landed) else ""
             if self._moment is not None:
                 row = run.history.row_at(self.moment_of(run, self._moment))
-                share = f"{100 * Flown(run.history, run.config).landed_at(row):.0f}"
+                share = f"{100 * Flown(run.history, run.config).landed(row):.0f}"
             self._write(canvas, left, number, run, share)
         canvas.line((box.centerx, box.top), (box.centerx, box.bottom), LINE)
 

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from ai.training.config import Config, idle
-from ai.training.hints import Adviser, Hint, RecentCurves
+from ai.training.curves import RecentCurves
+from ai.training.hints import Adviser, Hint
 from ai.training.history import REVERTED, SettingChange
 from tests.support.recordings import FILE, growing, names, recorded, turns
 

@@ -7,7 +7,8 @@ import pytest
 
 from ai.training.captions import CAPTION_RULES, CHARTS, Caption, caption
 from ai.training.config import Config
-from ai.training.hints import RULES, Adviser, RecentCurves
+from ai.training.curves import RecentCurves
+from ai.training.hints import RULES, Adviser
 from ai.training.history import History, Point
 from tests.support.recordings import growing, names, recorded
 

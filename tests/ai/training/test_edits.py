@@ -101,8 +101,8 @@ def test_a_weight_is_set_and_no_other_changes() -> None:
 
 def test_what_cannot_be_edited_is_refused_and_nothing_changes(subtests: pytest.Subtests):
     for edit, said in [
-        (Edit(0, 9), "no unit 9"),
-        (Edit(0, -1), "no unit -1"),
+        (Edit(0, 9), "no weight 9"),
+        (Edit(0, -1), "no weight -1"),
         (Edit(3, 0), "no outgoing weights"),
         (Edit(7, 0), "no layer 7"),
         (Edit(-1, 0, 0, 1.0), "no layer -1"),

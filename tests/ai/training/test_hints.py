@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 from ai.training.config import PRESETS, Config
+from ai.training.curves import RecentCurves
 from ai.training.edits import EDITED
 from ai.training.experiments import sabotaged
-from ai.training.hints import HOLD, REST, RULES, STAY, Adviser, Hint, RecentCurves, returns
+from ai.training.hints import HOLD, REST, RULES, STAY, Adviser, Hint, returns
 from ai.training.history import Checkpoint, History, Point, SettingChange
 from ai.training.loop import Training
 

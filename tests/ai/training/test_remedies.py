@@ -10,8 +10,9 @@ import pytest
 
 from ai.training.captions import caption
 from ai.training.config import PRESETS, Config
+from ai.training.curves import RecentCurves
 from ai.training.edits import Edit
-from ai.training.hints import RULES, Adviser, RecentCurves
+from ai.training.hints import RULES, Adviser
 from ai.training.history import Checkpoint, History, Point, SettingChange
 from ai.training.lander_session import LanderSession
 from tests.support.recordings import recorded

@@ -112,14 +112,14 @@ def test_more_landings_count_before_quicker_ones_where_hard_starts_were_flown():
 def test_the_best_checkpoint_is_kept():
     training, _ = advanced()
     training.evaluate()
-    kept = training.best_values.copy()
+    kept = training.best_network[0].copy()
     worse = Evaluation(4, 0.0, 1.0, 0.0, 0.0, -1e9, 1.0, 1.0, 1.0)
     assert not worse.better_than(training.best)
     training.best = Evaluation(4, 1.0, 0.0, 0.0, 0.0, 1e9, 1.0, 1.0, 1.0)
     for _ in range(5):
         training.advance()
     training.evaluate()
-    assert np.array_equal(training.best_values, kept)
+    assert np.array_equal(training.best_network[0], kept)
     assert np.array_equal(training.best_agent().network.values, kept)
 
 
@@ -151,10 +151,10 @@ def test_a_run_stops_at_the_decisions_or_seconds_asked_for_whichever_comes_first
 def test_what_is_best_stays_as_it_was_while_training_goes_on():
     training, _ = advanced(SMALL.changed(normalise_inputs=True))
     training.evaluate()
-    values, scale = training.best_values.copy(), training.best_normalizer.to_json()
+    values, scale = training.best_network[0].copy(), training.best_network[1].to_json()
     training.advance()
-    assert np.array_equal(training.best_values, values)
-    assert training.best_normalizer.to_json() == scale != training.agent.normalizer.to_json()
+    assert np.array_equal(training.best_network[0], values)
+    assert training.best_network[1].to_json() == scale != training.agent.normalizer.to_json()
 
 
 def test_a_curriculum_run_climbs_its_stages():

@@ -1,4 +1,4 @@
-"""Recent curves of a training run, as hints look at them."""
+"""Recent curves of a training run, as hints and captions look at them."""
 
 from __future__ import annotations
 
