@@ -177,18 +177,12 @@ _SCHEDULED: Final = {
 
 @dataclass(frozen=True)
 class InForce:
-    """Values of the scheduled settings in force at one moment of a run.
-
-    Attributes:
-        values: the values in force, by the name of the setting that each began as.
-        idle: settings that change nothing any more, each with the one that acts, or decides, in its place.
-
-    """
+    """Values of the scheduled settings in force at one moment of a run."""
 
     newest_only: ClassVar = True
 
-    values: Mapping[str, float]
-    idle: Mapping[str, str]
+    values: Mapping[str, float]  # by the name of the setting that each began as
+    idle: Mapping[str, str]  # settings that change nothing any more, each with the one that acts, or decides, instead
 
 
 def touchdown_limits(config: Config, decisions: int) -> float:

@@ -33,14 +33,9 @@ _PARTS: Final = ("distance", "speed", "alignment")  # of the reward, that say ho
 
 
 class HintRule(NamedTuple):
-    """Rule for one fault.
+    """Rule for one fault: the charts that it is about, and its remedy.
 
-    Attributes:
-        about: the charts that it is about.
-        remedy: values to try.
-        back_to: the moment to go back to, in decisions.
-        of_settings: whether it needs no curves: then it holds as soon as a setting is changed.
-
+    One `of_settings` needs no curves: it holds as soon as a setting is changed.
     """
 
     name: str
@@ -229,18 +224,11 @@ RULES: Final = (
 
 @dataclass(frozen=True)
 class Hint:
-    """Hint at a fault, by the name of its rule.
-
-    Attributes:
-        remedy: values to try, by the name of a knob: a field of Config, or "reward_weights.time" for one of its
-            parts.
-        back_to: how many decisions the run had taken when it was at its best, if it should go back there.
-
-    """
+    """Hint at a fault, by the name of its rule."""
 
     name: str
-    remedy: Mapping[str, Any] = field(default_factory=dict)
-    back_to: int | None = None
+    remedy: Mapping[str, Any] = field(default_factory=dict)  # values to try, by names such as "reward_weights.time"
+    back_to: int | None = None  # decisions of the run at the moment that it should go back to
 
 
 class Adviser:

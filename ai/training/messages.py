@@ -56,18 +56,12 @@ class NetworkState:
 
 @dataclass(frozen=True)
 class Saved:
-    """Result of a save; no problem means that it is on the disk, whole.
-
-    Attributes:
-        test: accuracy on the test images, of digits that have been measured.
-        epoch: the epoch after which their network that is kept was best; None if it is the last one.
-
-    """
+    """Result of a save; no problem means that it is on the disk, whole."""
 
     folder: Path
     problem: str = ""
-    test: float | None = None
-    epoch: int | None = None
+    test: float | None = None  # accuracy on the test images, of digits that have been measured
+    epoch: int | None = None  # after which their network that is kept was best; None if it is the last one
 
 
 @dataclass(frozen=True)

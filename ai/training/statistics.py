@@ -25,22 +25,13 @@ class _RecentFile:
 
 
 class EpisodeStatistics:
-    """Episode statistics: sums over every slot's current episode, and the last hundred that ended.
-
-    Returns and parts of the reward are in points, exploration included.
-
-    Attributes:
-        earned: (num_envs,) in each slot's episode so far.
-        shares: of the last hundred, by outcome from 1 on; zeros before any has ended.
-        mean_return, parts: of the same, and what each part of the reward brought of it.
-
-    """
+    """Sums over every slot's current episode, and the last hundred that ended; in points, exploration included."""
 
     def __init__(self, num_envs: int) -> None:
-        self.earned: Doubles = np.zeros(num_envs)
-        self.shares: tuple[float, ...] = (0.0,) * OUTCOMES
-        self.mean_return = 0.0
-        self.parts: tuple[float, ...] = ()
+        self.earned: Doubles = np.zeros(num_envs)  # in each slot's episode so far
+        self.shares: tuple[float, ...] = (0.0,) * OUTCOMES  # of the last hundred, by outcome from 1 on
+        self.mean_return = 0.0  # of the same
+        self.parts: tuple[float, ...] = ()  # what each part of the reward brought of that
         self._paid: Doubles | None = None  # what `earned` is the sum of, (parts, num_envs)
         self._recent: deque[tuple[int, float, Sequence[float]]] = deque(maxlen=RECENT)  # outcomes, returns, parts
 

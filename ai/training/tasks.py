@@ -46,15 +46,11 @@ Trial = Generator[None, None, T]  # takes one decision a turn, and returns what 
 
 
 class Score(ABC):
-    """Score of a pilot over a number of episodes without random actions; a dataclass that a file can hold.
-
-    `success` is the share that ended well, None where the environment does not define that; `mean_return` the mean sum
-    of rewards.
-    """
+    """Score of a pilot over a number of episodes without random actions; a dataclass that a file can hold."""
 
     episodes: int
-    success: float | None
-    mean_return: float
+    success: float | None  # share that ended well; None where the environment does not define that
+    mean_return: float  # sum of rewards
 
     @property
     @abstractmethod
@@ -71,26 +67,16 @@ class Score(ABC):
 
 
 class Task(ABC, Generic[S]):
-    """Environment as an agent is to learn it.
+    """Environment as an agent is to learn it."""
 
-    Attributes:
-        num_features, num_actions: numbers that an observation has, and actions to choose from.
-        symmetry: how a mirror image looks; None if it looks different.
-        action_chances: (actions,) odds of random actions; None for uniform.
-        evaluate_every: decisions between two validations.
-        validation_episodes, test_episodes: how many suit it.
-        score: what its pilots are measured by.
-
-    """
-
-    num_features: int
+    num_features: int  # of an observation
     num_actions: int
-    symmetry: Symmetry | None = None
-    action_chances: Doubles | None = None
-    evaluate_every: int
+    symmetry: Symmetry | None = None  # how a mirror image looks; None if it looks different
+    action_chances: Doubles | None = None  # (actions,) odds of random actions; None for uniform
+    evaluate_every: int  # decisions between two validations
     validation_episodes: int
     test_episodes: int
-    score: type[S]
+    score: type[S]  # what its pilots are measured by
 
     def __init__(self, config: Config) -> None:
         self.config = config
@@ -159,8 +145,7 @@ class Evaluation(Score):
     def better_than(self, other: Evaluation | None) -> bool:
         """Whether more flights landed, random and hard starts together, or as many and the mean return is higher.
 
-        Where hard starts were not flown, the mean return decides, and each flight that did not land counts a thousand
-        points less. Then a tenth of a second outweighs one landing in 500, too much where nearly all land.
+        Where hard starts were not flown, the mean return decides, a flight that did not land counting 1000 points less.
         """
         if other is None:
             return True
@@ -170,7 +155,6 @@ class Evaluation(Score):
 
     @property
     def figure(self) -> str:
-        """Share that landed, as text."""
         return f"{self.success:.1%}"
 
     def __str__(self) -> str:

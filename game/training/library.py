@@ -24,31 +24,20 @@ _MOST_SEED: Final = 10**LONGEST_NAME
 
 @dataclass(frozen=True)
 class SavedRun:
-    """Summary of a run, known without reading its network.
-
-    Attributes:
-        saved: time of saving, in seconds since 1970.
-        preset, changes: the preset nearest to its settings, and the number of settings that differ.
-        decisions, seconds: length of the training.
-        success: share of validation flights that its best network landed, 0 to 1; None if not measured.
-        flyable: whether it can probably fly a lander; certain only after reading it.
-        resumable: whether its training can be resumed.
-        problem: what is wrong with it; empty for a complete one.
-
-    """
+    """Summary of a run, known without reading its network."""
 
     name: str
     folder: Path
-    saved: float = 0.0
-    preset: str = ""
-    changes: int = 0
+    saved: float = 0.0  # seconds since 1970
+    preset: str = ""  # the nearest to its settings
+    changes: int = 0  # settings that differ from that
     seed: int = 0
     decisions: int = 0
-    seconds: float = 0.0
-    success: float | None = None
-    flyable: bool = False
+    seconds: float = 0.0  # of training
+    success: float | None = None  # share of validation flights that its best network landed; None if not measured
+    flyable: bool = False  # probably; certain only after reading it
     resumable: bool = False
-    problem: str = ""
+    problem: str = ""  # what is wrong with it
 
 
 @dataclass(frozen=True)

@@ -51,11 +51,9 @@ class TrainingRun:
     goes on alone, and at full pace.
 
     Attributes:
-        name: of the run, to tell it from others.
         runs: number of runs so far.
         pay: the player's own file that pays the runs that begin from now on; None for the usual pay.
-        config, seed, steps: of the current or last run; `steps` are 0 before it has reported them, or without end.
-        history: of the current or last run.
+        steps: of the current or last run; 0 before it has reported them, or without end.
         swarm_state, network_state, in_force, lesson, confusion: the latest message of each kind; None before the first.
         swarms, networks, filters: those of the whole run, as far as they were kept.
         edits: what was edited of its network by hand.
@@ -64,8 +62,7 @@ class TrainingRun:
         test, kept_epoch: accuracy on the test images of a run of digits that was measured, and the epoch of the tested
             network, if that is not the last one.
         stopping: whether it was asked to end, and is being measured.
-        twin: the experiment; None without one.
-        differing: names of the settings in which the experiment differs.
+        twin: the experiment; None without one. `differing` are names of the settings in which it differs.
         pace: number of one of `PACES`.
 
     """
@@ -141,23 +138,14 @@ class TrainingRun:
         return self.collection.left_behind and state_folder(self.collection.unsaved).is_dir()
 
     @property
-    def measured(self) -> bool:
-        """Whether there are figures to show: a point of the history, and a state of the swarm."""
-        return len(self.history) > 0 and self.swarm_state is not None
+    def taught(self) -> bool:
+        """Whether this run has learnt from demonstrations."""
+        return any(each.name == TAUGHT for each in self.history.setting_changes)
 
     @property
-    def demonstrations(self) -> int:
-        """Number of demonstrations this run has learnt from."""
-        return sum(
-            each.after for each in self.history.setting_changes if each.name == TAUGHT and type(each.after) is int
-        )
-
-    @property
-    def turns(self) -> tuple[int, int]:
-        """Turns that this run and the experiment have taken."""
-        runs = (self, self.twin) if self.twin else (self, self)
-        first, second = (each.swarm_state.decisions // each.config.num_envs if each.swarm_state else 0 for each in runs)
-        return first, second
+    def turns(self) -> int:
+        """Turns that a run of landers has taken."""
+        return self.swarm_state.decisions // self.config.num_envs if self.swarm_state else 0
 
     # Beginning and end
 
@@ -194,7 +182,6 @@ class TrainingRun:
         return " ".join(notes)
 
     def _start(self, launch: Callable[[], str]) -> str:
-        """Start a run as soon as the previous process has ended; return a note for the player, or ""."""
         self._launch = launch
         self._orders.clear()
         if self._worker:
@@ -423,8 +410,9 @@ class TrainingRun:
 
     def _keep_in_step(self) -> None:
         """Allow both runs as many turns, a few more than the slower one has taken."""
-        together = self.twin is not None and self.alive and self.twin.alive
-        limit = min(self.turns) + AHEAD if together else None
+        limit = None
+        if self.twin is not None and self.alive and self.twin.alive:
+            limit = min(self.turns, self.twin.turns) + AHEAD
         if limit != self._limit:
             self._limit = limit
             self._order(lambda worker: worker.set_limit(limit), both=True)

@@ -36,27 +36,17 @@ Configuration = Any  # `ai.training.config.Config`, or another dataclass with fi
 
 @dataclass(frozen=True)
 class KnobDescription:
-    """Knob for one field of the configuration, or for one of its reward weights.
+    """Knob for one field of the configuration, or for one of its reward weights."""
 
-    Attributes:
-        field: the field of the configuration that changes.
-        part: name of the weight, if the field holds the reward weights.
-        page: group of knobs it is shown in.
-        live: whether it may change during a run.
-        stops: its possible values, from left to right on its track, or those of its words.
-        advice: what comes of too little and of too much of it, and what to watch; empty for some.
-
-    """
-
-    field: str
-    part: str
+    field: str  # of the configuration
+    part: str  # name of the weight, if the field holds the reward weights
     label: str
     help: str
-    page: str
-    live: bool
+    page: str  # group of knobs it is shown in
+    live: bool  # whether it may change during a run
     kind: KnobKind
-    stops: tuple[Any, ...]
-    advice: tuple[str, ...] = ()
+    stops: tuple[Any, ...]  # its possible values, from left to right on its track, or those of its words
+    advice: tuple[str, ...] = ()  # what comes of too little and of too much of it, and what to watch; for some
 
     @property
     def name(self) -> str:
@@ -179,32 +169,18 @@ def pages(of: Iterable[KnobDescription]) -> list[str]:
 
 @dataclass(frozen=True)
 class RunKind:
-    """Kind of run: how it is started, and its knobs, presets and sabotages.
+    """Kind of run: how it is started, and its knobs, presets and sabotages."""
 
-    Attributes:
-        session: the class of what leads it in a worker.
-        of: the class of configurations.
-        presets: configurations by name.
-        words: returns the label of each preset, and a sentence about it, by its name.
-        sabotages: names of the parts that can be taken away from a preset.
-        idle: returns which settings of a configuration have no effect in a new run, each with the one that causes it.
-        seed_page: the page of knobs that shows the seed.
-        first: names of the few knobs to begin with.
-        grace: seconds that a run has to end by itself when the window closes it.
-        patience: seconds for a turn of its worker.
-
-    """
-
-    session: type[Session[Any]]
+    session: type[Session[Any]]  # leads it in a worker
     of: type[Configuration]
     presets: Mapping[str, Configuration]
-    words: Callable[[], Mapping[str, tuple[str, str]]]
-    seed_page: str
-    first: tuple[str, ...]
-    sabotages: tuple[str, ...] = ()
-    idle: Callable[[Any], Mapping[str, str]] = Knobs.unused
-    grace: float = 3.0
-    patience: float = PATIENCE
+    words: Callable[[], Mapping[str, tuple[str, str]]]  # the label of each preset, and a sentence about it
+    seed_page: str  # the page of knobs that shows the seed
+    first: tuple[str, ...]  # names of the few knobs to begin with
+    sabotages: tuple[str, ...] = ()  # parts that can be taken away from a preset
+    idle: Callable[[Any], Mapping[str, str]] = Knobs.unused  # settings without effect in a new run, and what causes it
+    grace: float = 3.0  # seconds that a run has to end by itself when the window closes it
+    patience: float = PATIENCE  # seconds for a turn of its worker
 
     @property
     def knob_descriptions(self) -> tuple[KnobDescription, ...]:
@@ -227,15 +203,11 @@ class RunKind:
 
         return min(every, key=distance)
 
-    def word(self, named: Named) -> str:
-        """Return the label of a preset or a sabotage."""
+    def said(self, named: Named) -> tuple[str, str]:
+        """Return the label of a preset or a sabotage, and a sentence about it."""
         base, sabotage = named
-        return texts.SABOTAGES[sabotage][0] if sabotage else self.words().get(base, (base.capitalize(), ""))[0]
-
-    def sentence(self, named: Named) -> str:
-        """Return the sentence about a preset or a sabotage."""
-        base, sabotage = named
-        return texts.SABOTAGES[sabotage][1] if sabotage else self.words().get(base, ("", ""))[1]
+        label, sentence = texts.SABOTAGES[sabotage][:2] if sabotage else self.words()[base]
+        return label, sentence
 
 
 class RunSettings:
@@ -245,11 +217,9 @@ class RunSettings:
     configuration and seed of a new run, when changes are applied.
 
     Attributes:
-        config: configuration in effect, without waiting changes.
-        seed: seed in effect.
-        draft: configuration that the knobs show, with waiting changes.
+        config, seed: in effect, without waiting changes.
+        draft, draft_seed: those that the knobs show.
         named: the preset, or sabotage of one, that the draft is or started from.
-        running: whether a run goes on.
         in_force: effective values, from the run's latest message.
         problem: why the last value was refused.
         put_aside: the draft that a preset has replaced, until the next change.

@@ -83,7 +83,7 @@ class KnobsPanel:
     @property
     def name(self) -> str:
         """Displayed name of the preset or sabotage that this configuration is, or began as."""
-        return self._run_kind.word(self.settings.holds)
+        return self._run_kind.said(self.settings.holds)[0]
 
     @property
     def first(self) -> tuple[str, ...]:
@@ -149,7 +149,7 @@ class KnobsPanel:
         names, kind = self.first, self._run_kind
         if self.every:
             others = [base for base in kind.presets if self.settings.changed or (base, "") != self.settings.holds]
-            column.words([(kind.word((base, "")), partial(self.load, base)) for base in others])
+            column.words([(kind.said((base, ""))[0], partial(self.load, base)) for base in others])
             tabs = [texts.KNOB_PAGES.get(page, page.capitalize()) for page in self.pages]
             column.choice("", tabs, self._page, self._turn_page, LABEL)
             page = self.pages[self._page]
@@ -188,12 +188,12 @@ class KnobsPanel:
         cursor.y = title.y + 12
 
     def _question(self) -> str:
-        settings, word = self.settings, self._run_kind.word
+        settings, said = self.settings, self._run_kind.said
         if not settings.waiting:
-            return texts.KNOBS_PUT_ASIDE.format(name=word(settings.named))
+            return texts.KNOBS_PUT_ASIDE.format(name=said(settings.named)[0])
         anew = texts.KNOBS_STARTS_ANEW
         if settings.named != settings.holds:
-            anew = texts.KNOBS_STARTS_ANEW_AS.format(name=word(settings.named))
+            anew = texts.KNOBS_STARTS_ANEW_AS.format(name=said(settings.named)[0])
         return f"{anew}: {_listed(settings.waiting)}"
 
     def _write_help(self, cursor: Cursor) -> None:
@@ -206,7 +206,7 @@ class KnobsPanel:
         elif isinstance(knob, Knob):
             self._write_help_of(knob, cursor)
         elif self.every and not self._asks:
-            cursor.aside(self._run_kind.sentence(settings.holds))
+            cursor.aside(self._run_kind.said(settings.holds)[1])
 
     def _write_help_of(self, knob: Knob, cursor: Cursor) -> None:
         cursor.aside(knob.help)

@@ -307,7 +307,7 @@ class TrainScene(TrainingScene):
 
     @property
     def _suggestion(self) -> str:
-        name = texts.TRAIN_TAUGHT_NAME if self.run.demonstrations else texts.TRAIN_NAME
+        name = texts.TRAIN_TAUGHT_NAME if self.run.taught else texts.TRAIN_NAME
         return name.format(preset=self.knobs.name)
 
     def _teach(self) -> None:

@@ -25,7 +25,7 @@ def lander_status(run: TrainingRun, moment: int | None = None, row: int = -1) ->
     `moment`, in decisions, and the `row` of the history say so of an earlier moment.
     """
     history, swarm_state = run.history, run.swarm_state
-    if swarm_state is None or not run.measured:
+    if swarm_state is None or not len(run.history):
         line = texts.TRAIN_BEGINS if run.alive else texts.TRAIN_LINE
         return TrainingStatus(texts.TRAIN_TITLE, line, "", texts.TRAIN_LANDED)
     line = texts.TRAIN_FIGURES.format(

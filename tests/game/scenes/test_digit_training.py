@@ -73,7 +73,7 @@ def test_every_setting_has_a_knob_and_a_word():
 def test_presets_are_named_and_no_sabotage_is_offered():
     run_settings = RunSettings(DIGIT_PRESETS["classic"], 0, lambda *_: None, lambda *_: None, DIGITS)
     assert run_settings.named == ("classic", "")
-    assert DIGITS.word(DIGITS.nearest(DIGIT_PRESETS["modern"].changed(dropout=0.5))) == "Modern"
+    assert DIGITS.said(DIGITS.nearest(DIGIT_PRESETS["modern"].changed(dropout=0.5)))[0] == "Modern"
 
 
 # A run

@@ -182,7 +182,7 @@ def test_a_run_is_begun_that_learns_from_the_players_landings(train: Driver, tmp
     assert texts.TRAIN_NO_LESSONS in notes
     write(tmp_path / "user" / FILE_NAME, demonstrate(ScriptedPilot(), 2, seed=5, spawn="near"))
     train.key(pygame.K_RETURN)
-    train.wait(lambda: scene.run.demonstrations == 2 and len(scene.run.history))
+    train.wait(lambda: scene.run.taught and len(scene.run.history))
     assert scene.run.config.success_pass
     assert scene.knobs.config.success_pass
     train.frames(1)

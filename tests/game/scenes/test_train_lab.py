@@ -98,7 +98,7 @@ def test_both_runs_begin_alike_and_stay_in_step(beside: Driver) -> None:
     gaps = []
     for _ in range(60):
         beside.frames(1)
-        gaps.append(abs(run.turns[0] - run.turns[1]))
+        gaps.append(abs(run.turns - run.twin.turns))
     assert max(gaps) <= AHEAD
     beside.wait(lambda: len(run.history.checkpoints) >= 2 and len(run.twin.history.checkpoints) >= 2)
     for each in (run, run.twin):
@@ -118,8 +118,8 @@ def test_a_worker_that_dies_leaves_the_other_flying(beside: Driver) -> None:
     run = beside.top.run
     os.kill(run.twin._worker.process_id, signal.SIGKILL)
     beside.wait(lambda: run.twin.state is WorkerState.FAILED)
-    before = run.turns[0]
-    beside.wait(lambda: run.turns[0] > before + 3 * AHEAD)
+    before = run.turns
+    beside.wait(lambda: run.turns > before + 3 * AHEAD)
     assert run.state is WorkerState.RUNNING
     assert "SIGKILL" in run.twin.problem
     beside.press_on(texts.LAB_KEEP_EXPERIMENT)
@@ -162,12 +162,12 @@ def test_pause_and_step_are_for_both(train: Driver) -> None:
     train.press_on(texts.TRAIN_PAUSE)
     train.frames(3)
     assert run.twin.state is run.state is WorkerState.PAUSED
-    before = run.turns
+    before = run.turns, run.twin.turns
     train.press_on(texts.LAB_KNOBS)
     train.frames(1)
     train.press_on(texts.TRAIN_STEP)
     train.frames(3)
-    assert run.turns == (before[0] + 1, before[1] + 1)
+    assert (run.turns, run.twin.turns) == (before[0] + 1, before[1] + 1)
 
 
 def test_a_turned_knob_is_turned_in_both_but_the_one_that_differs(train: Driver) -> None:

@@ -186,6 +186,6 @@ def test_a_run_that_begins_with_what_was_chosen_keeps_its_name(run_settings: Run
 
 @pytest.mark.parametrize("name", SABOTAGES)
 def test_every_sabotage_has_its_words(name: str):
-    assert LANDERS.word(("modern", name)) == texts.SABOTAGES[name][0]
+    assert LANDERS.said(("modern", name))[0] == texts.SABOTAGES[name][0]
     assert len(texts.SABOTAGES[name]) == 2
-    assert LANDERS.sentence(("modern", name))
+    assert LANDERS.said(("modern", name))[1]
