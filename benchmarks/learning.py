@@ -52,7 +52,7 @@ TUNED = {
     "exploration_final_eps": 0.1, "policy_kwargs": {"net_arch": [256, 256]},
 }  # fmt: skip
 TUNED_STEPS = 100_000
-LANDER = "ai.gym.lander:tranquility/Lander-v0"
+LANDER = "ai.training.gym_lander:tranquility/Lander-v0"
 
 
 @dataclass

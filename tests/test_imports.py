@@ -22,14 +22,14 @@ LATE = {
 }
 # What is there for the users of an extra alone.
 EXTRA = {
-    "ai.gym.lander": {"gymnasium"},
+    "ai.training.gym_lander": {"gymnasium"},
     "ai.sweep.driver": {"ray"},
     "ai.sweep.search": {"optuna"},
 }
 # The floors inside `ai` and `game`, from the bottom up: a package imports from itself and from those before it.
 AI_FLOORS = (
     "ai.files", "ai.nn", "ai.environment", "ai.run", "ai.lander", "ai.pilots", "ai.flights", "ai.agent", "ai.digits",
-    "ai.explain", "ai.training", "ai.copilot", "ai.gym", "ai.sweep", "ai.cli",
+    "ai.explain", "ai.training", "ai.copilot", "ai.sweep", "ai.cli",
 )  # fmt: skip
 GAME_FLOORS = (
     "game.core", "game.input", "game.audio", "game.drawing", "game.ui", "game.flight", "game.training",

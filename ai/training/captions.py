@@ -54,6 +54,8 @@ def caption(chart: str, run: RecentCurves, hint: str = "", shown: str = "") -> C
     """
     if not run.count:
         return None
+    if np.isnan(run.now(chart)):
+        return Caption("unknown", {})
     quiet = chart in _ABOUT.get(hint, ())
     rules = sorted(CAPTION_RULES[chart], key=lambda rule: rule.name != shown)
     found = next((rule for rule in rules if not (rule.praises and quiet) and rule.holds(run)), None)
@@ -78,13 +80,9 @@ def _hint(name: str) -> Callable[[RecentCurves], bool]:
     return next(rule for rule in RULES if rule.name == name).holds
 
 
-def _unknown(column: str) -> Callable[[RecentCurves], bool]:
-    return lambda run: bool(np.isnan(run.now(column)))
-
-
 def _stands(run: RecentCurves) -> bool:
     """Whether it has learnt, and does not now."""
-    return bool(np.isnan(run.history["loss"][-1])) and not np.isnan(run.now("loss"))
+    return bool(np.isnan(run.history["loss"][-1]))
 
 
 def _held(run: RecentCurves) -> bool:
@@ -93,25 +91,18 @@ def _held(run: RecentCurves) -> bool:
     return _stands(run) and bool(edits) and bool(edits[-1].after)
 
 
+def _gains(run: RecentCurves, column: str) -> tuple[float, float]:
+    """Return how much a curve has risen over the last share of the run, and its latest number since before."""
+    return run.gained(column), run.now(column) - run.before(column)
+
+
 def _rises(column: str, by: float) -> Callable[[RecentCurves], bool]:
     """Return whether a curve is well above what it was, and its latest number not as far below its highest since."""
-    return lambda run: (
-        min(run.gained(column), run.now(column) - run.before(column)) > by
-        and run.highest(column) - run.now(column) <= by
-    )
+    return lambda run: min(_gains(run, column)) > by and run.highest(column) - run.now(column) <= by
 
 
 def _falls(column: str, by: float) -> Callable[[RecentCurves], bool]:
-    return lambda run: max(run.gained(column), run.now(column) - run.before(column)) < -by
-
-
-def _steady(run: RecentCurves) -> bool:
-    now, before = run.now("success"), run.before("success")
-    return max(abs(run.gained("success")), abs(now - before)) <= _CHANGE
-
-
-def _points(run: RecentCurves, scaled: float) -> float:
-    return float(in_points(np.array(scaled), run.history.reward_scale))
+    return lambda run: max(_gains(run, column)) < -by
 
 
 def _loss_times(run: RecentCurves) -> float:
@@ -128,11 +119,7 @@ def _most(column: str) -> Callable[[RecentCurves], bool]:
 
 
 def _percent(run: RecentCurves) -> Mapping[str, float]:
-    return {
-        "percent": 100 * run.now("success"),
-        "before": 100 * run.before("success"),
-        "best": 100 * run.best(),
-    }
+    return {"percent": 100 * run.now("success"), "before": 100 * run.before("success"), "best": 100 * run.best()}
 
 
 def _split(run: RecentCurves) -> Mapping[str, float]:
@@ -153,7 +140,7 @@ def _random(run: RecentCurves) -> Mapping[str, float]:
 
 
 def _hopes(run: RecentCurves) -> bool:
-    hoped = _points(run, run.now("mean_q"))
+    hoped = float(in_points(np.array(run.now("mean_q")), run.history.reward_scale))
     return run.config.discount >= _SIGHT and hoped > expected_value(run) + _HOPE
 
 
@@ -162,14 +149,9 @@ def _runs_away(run: RecentCurves) -> bool:
     return _hint("q_runs_away")(run) and not 2 * least <= run.now("mean_q") <= 2 * most
 
 
-def _always(_: RecentCurves) -> bool:
-    return True
-
-
 # The first that holds is the caption.
 CAPTION_RULES: Final[Mapping[str, tuple[CaptionRule, ...]]] = {
     "success": (
-        CaptionRule("unknown", _unknown("success")),
         CaptionRule("collapsed", lambda run: run.now("success") <= run.best() - 0.4, values=_percent),
         CaptionRule("crashes", _most("crashed")),
         CaptionRule("hovers", _most("timed_out")),
@@ -178,10 +160,9 @@ CAPTION_RULES: Final[Mapping[str, tuple[CaptionRule, ...]]] = {
         CaptionRule("high", lambda run: run.now("success") >= 0.9 and run.last("success") >= 0.9, True),
         CaptionRule("rises", _rises("success", _CHANGE), True, _percent),
         CaptionRule("falls", _falls("success", _CHANGE), values=_percent),
-        CaptionRule("steady", _steady, values=_percent),
+        CaptionRule("steady", lambda run: max(map(abs, _gains(run, "success"))) <= _CHANGE, values=_percent),
     ),
     "mean_return": (
-        CaptionRule("unknown", _unknown("mean_return")),
         CaptionRule("runs_away", _runs_away),
         CaptionRule("hopes", _hopes),
         CaptionRule("nothing", lambda run: abs(run.now("mean_return")) < _ROUNDED and not _lands_for_little(run)),
@@ -190,7 +171,6 @@ CAPTION_RULES: Final[Mapping[str, tuple[CaptionRule, ...]]] = {
         CaptionRule("falls", _falls("mean_return", _RETURN_CHANGE)),
     ),
     "loss": (
-        CaptionRule("unknown", _unknown("loss")),
         CaptionRule("held", _held),
         CaptionRule("waits", _stands),
         CaptionRule("explodes", _hint("loss_explodes")),
@@ -204,6 +184,6 @@ CAPTION_RULES: Final[Mapping[str, tuple[CaptionRule, ...]]] = {
         CaptionRule("none", lambda run: run.now("epsilon") == 0.0),
         CaptionRule("falls", lambda run: run.now("epsilon") < run.history["epsilon"][-8:].max(), values=_random),
         CaptionRule("spread", lambda run: run.config.epsilon_spread > 0 and run.config.num_envs > 1, values=_random),
-        CaptionRule("steady", _always, values=_random),
+        CaptionRule("steady", lambda _: True, values=_random),
     ),
 }

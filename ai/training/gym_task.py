@@ -52,7 +52,7 @@ class GymScore(Score):
 
 
 class GymEnv:
-    """Vectorised environment (`ai.environment.Env`) of several Gymnasium ones, stepped one by one.
+    """Several environments of Gymnasium as one of ours (`ai.environment.Env`), stepped one by one.
 
     Nothing of theirs can be stored. So that each can be brought to where it was, its random numbers before its last
     reset are kept, and its actions since: see `restore`.

@@ -12,11 +12,10 @@ import io
 import json
 import secrets
 import shutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,8 +57,7 @@ def rebuilt(template: Any, value: Any) -> Any:
     return number_of(value)
 
 
-@dataclass(frozen=True)
-class PreparedState:
+class PreparedState(NamedTuple):
     """Copy of a state that can be written while training goes on."""
 
     name: str  # of its archive
@@ -115,7 +113,7 @@ class StateWriter:
         """Write a state; raises OSError if it cannot be."""
         try:
             for file, content in prepared.blocks.items():
-                write_bytes(self._folder / file, _npy(content))
+                write_bytes(self._folder / file, _saved(np.save, content))
             write_bytes(self._folder / prepared.name, _archive(prepared.state))
         except OSError:
             self._written.clear()  # next time, all of them are written
@@ -237,18 +235,16 @@ def _fill(buffer: ReplayBuffer, rows: NDArray[np.intp], content: NDArray[np.uint
         part[rows] = records[name]
 
 
-def _npy(array: NDArray[Any]) -> bytes:
+def _saved(save: Callable[..., Any], *arrays: NDArray[Any], **named: NDArray[Any]) -> bytes:
     content = io.BytesIO()
-    np.save(content, array, allow_pickle=False)
+    save(content, *arrays, allow_pickle=False, **named)
     return content.getvalue()
 
 
 def _archive(state: State) -> bytes:
     arrays: dict[str, NDArray[Any]] = {}
     text = json.dumps(_described(state, arrays))
-    content = io.BytesIO()
-    np.savez(content, allow_pickle=False, **{_TEXT: np.frombuffer(text.encode(), np.uint8)}, **arrays)
-    return content.getvalue()
+    return _saved(np.savez, **{_TEXT: np.frombuffer(text.encode(), np.uint8)}, **arrays)
 
 
 def _described(value: Any, arrays: dict[str, NDArray[Any]]) -> Any:

@@ -34,10 +34,11 @@ ANYWHERE_SYMMETRY: Final = Symmetry(
 )
 # What changes of landers as they fly; the rest of their snapshot follows from the settings, and from their sites.
 _CHANGED: Final = ("landers", "bodies", "contacts", "gravity", "strictness", "landings")
-# Shapes of what is known of each contact (`engine.contacts.Contacts`).
-_CONTACTS: Final = {
-    "normal": (2,), "points": (2, 2), "depth": (2,), "feature": (2,), "valid": (2,), "world": (), "pair": (),
-    "body": (2,), "friction": (), "restitution": (), "impulse": (3,), "approach": (3,), "age": (), "colour": (),
+# Type and shape of what is known of each contact (`engine.contacts.Contacts`).
+_CONTACTS: Final[dict[str, tuple[Any, ...]]] = {
+    "normal": (float, 2), "points": (float, 2, 2), "depth": (float, 2), "feature": (np.intp, 2), "valid": (bool, 2),
+    "world": (np.intp,), "pair": (np.intp,), "body": (np.intp, 2), "friction": (float,), "restitution": (float,),
+    "impulse": (float, 3), "approach": (float, 3), "age": (np.intp,), "colour": (np.intp,),
 }  # fmt: skip
 
 S = TypeVar("S", bound="Score")
@@ -293,16 +294,14 @@ class AnywhereTask(LanderTask):
 
 def _contacts(env: LanderEnv, new: State, told: Any) -> State:
     """Return what a snapshot remembers of contacts, from a file; raises KeyError, TypeError or ValueError."""
-    gravity, kept = rebuilt(new["gravity"], told["gravity"]), told["contacts"]
+    gravity, kept, world = rebuilt(new["gravity"], told["gravity"]), told["contacts"], env.world
     if not kept:
         return {"gravity": gravity, "contacts": {}}
-    count, worlds = len(kept["world"]), env.world
-    integers = ("world", "pair", "body", "feature", "age", "colour")
-    contacts = {}
-    for name, shape in _CONTACTS.items():
-        kind = bool if name == "valid" else np.intp if name in integers else float
-        contacts[name] = rebuilt(np.empty((count, *shape), kind), kept[name])
-    most = {"world": env.num_envs, "pair": len(worlds.pairs), "body": len(worlds.bodies)}
+    count = len(kept["world"])
+    contacts = {
+        name: rebuilt(np.empty((count, *shape), kind), kept[name]) for name, (kind, *shape) in _CONTACTS.items()
+    }
+    most = {"world": env.num_envs, "pair": len(world.pairs), "body": len(world.bodies)}
     if any((contacts[name] < 0).any() or (contacts[name] >= limit).any() for name, limit in most.items()):
         raise ValueError("contacts are of none of the landers")
     return {"gravity": gravity, "contacts": contacts}

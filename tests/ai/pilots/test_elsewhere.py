@@ -51,7 +51,7 @@ def test_a_policy_trained_on_our_lander_flies(fly, tmp_path: Path):
     import gymnasium
     from stable_baselines3 import DQN
 
-    env = gymnasium.make("ai.gym.lander:tranquility/Lander-v0")
+    env = gymnasium.make("ai.training.gym_lander:tranquility/Lander-v0")
     model = DQN("MlpPolicy", env, learning_starts=50, buffer_size=1000, seed=1).learn(200)
     model.save(tmp_path / "lander")
     assert fly(SHOWN[0]) == model.predict(OBSERVATIONS, deterministic=True)[0].tolist()

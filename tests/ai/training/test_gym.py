@@ -14,7 +14,7 @@ from ai.training.loop import Training
 from ai.training.run import resume
 from main import main
 
-LANDER = "ai.gym.lander:tranquility/Lander-v0"
+LANDER = "ai.training.gym_lander:tranquility/Lander-v0"
 
 
 class Rocking:

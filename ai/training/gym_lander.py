@@ -1,6 +1,6 @@
 """The lander as an environment of Gymnasium. Needs the extra `gym`.
 
-    env = gymnasium.make("ai.gym.lander:tranquility/Lander-v0")
+    env = gymnasium.make("ai.training.gym_lander:tranquility/Lander-v0")
 
 The part before the colon imports this module, which registers the rest of the name.
 """
@@ -55,6 +55,6 @@ class GymLander(gymnasium.Env[Floats, np.int64]):
 if LANDER_ID not in gymnasium.registry:
     gymnasium.register(
         LANDER_ID,
-        entry_point="ai.gym.lander:GymLander",
+        entry_point="ai.training.gym_lander:GymLander",
         reward_threshold=170.0,
     )

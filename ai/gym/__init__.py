@@ -1,1 +1,0 @@
-"""The lander as an environment of Gymnasium. Needs the extra `gym`."""
