@@ -33,9 +33,10 @@ class Run(ABC):
     """
 
     kind: ClassVar[FolderKind]
+    config: Any
 
-    def __init__(self, config: Any, seed: int) -> None:
-        self.config, self.seed = config, seed
+    def __init__(self, seed: int) -> None:
+        self.seed = seed
         self.clock: Callable[[], float] = time.monotonic
         self.seconds = 0.0
         self.best: Any = None

@@ -79,7 +79,6 @@ class Training(Run):
     """
 
     kind = KIND
-    config: Config
 
     def __init__(
         self,
@@ -89,7 +88,7 @@ class Training(Run):
         evaluate_every: int | None = None,
         validation_episodes: int | None = None,
     ) -> None:
-        super().__init__(config, seed)
+        super().__init__(seed)
         self.task = task = task_of(config)
         self.evaluate_every = task.evaluate_every if evaluate_every is None else evaluate_every
         self.validation_episodes = task.validation_episodes if validation_episodes is None else validation_episodes
@@ -118,13 +117,18 @@ class Training(Run):
         )  # fmt: skip
 
     @property
+    def config(self) -> Config:  # type: ignore[override]
+        """The agent's: there is no other."""
+        return Config.of(self.agent)
+
+    @property
     def moment(self) -> int:
         return self.agent.decisions
 
     @property
     def epsilon(self) -> float:
         """Share of random actions now."""
-        return exploration(self.agent.config, self.agent.decisions, self.episodes)
+        return exploration(self.config, self.agent.decisions, self.episodes)
 
     def advance(self) -> Progress:
         """Let every lander take one decision, learn from it, and evaluate if it is time.
@@ -161,9 +165,8 @@ class Training(Run):
 
     def apply_live(self, config: Config) -> None:
         """Take over the live knobs of another configuration; what was paid otherwise is forgotten."""
-        paid, self.config = self.config.reward_weights, self.config.with_live(config)
-        config = self.config
-        if config.reward_weights != paid:
+        before, config = self.config, self.config.with_live(config)
+        if config.reward_weights != before.reward_weights:
             for buffer in self.buffers.values():
                 buffer.clear()
         self.task.apply_live(config, self.env)
