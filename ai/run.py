@@ -35,7 +35,7 @@ class Run(ABC):
     kind: ClassVar[FolderKind]
     config: Any
 
-    def __init__(self, seed: int) -> None:
+    def __init__(self, config: Any, seed: int) -> None:  # noqa: ARG002 - each kind keeps it where it is used
         self.seed = seed
         self.clock: Callable[[], float] = time.monotonic
         self.seconds = 0.0

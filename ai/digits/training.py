@@ -71,7 +71,7 @@ class DigitTraining(Run):
     config: DigitConfig
 
     def __init__(self, config: DigitConfig, seed: int = 0, data: tuple[Images, Labels] | None = None) -> None:
-        super().__init__(seed)
+        super().__init__(config, seed)
         self.config, self.step = config, 0
         self.best: float | None = None
         self.best_values: Array | None = None

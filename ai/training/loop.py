@@ -88,7 +88,7 @@ class Training(Run):
         evaluate_every: int | None = None,
         validation_episodes: int | None = None,
     ) -> None:
-        super().__init__(seed)
+        super().__init__(config, seed)
         self.task = task = task_of(config)
         self.evaluate_every = task.evaluate_every if evaluate_every is None else evaluate_every
         self.validation_episodes = task.validation_episodes if validation_episodes is None else validation_episodes
@@ -117,7 +117,7 @@ class Training(Run):
         )  # fmt: skip
 
     @property
-    def config(self) -> Config:  # type: ignore[override]
+    def config(self) -> Config:
         """The agent's: there is no other."""
         return Config.of(self.agent)
 

@@ -30,10 +30,14 @@ PACES: Final[tuple[float | None, ...]] = (15.0, 60.0, None)
 SWARM_BYTES: Final = 8 << 20  # of landers' states kept to rewind to
 NETWORK_BYTES: Final = 16 << 20  # of networks
 AHEAD: Final = 12  # turns that either of two may be ahead of the slower: enough to work on between two frames
-# Where the latest message of each kind is found.
+# Where the latest message of a kind is found, and where all of them.
 _LATEST: Final = {
     SwarmState: "swarm_state", NetworkState: "network_state", InForce: "in_force", Lesson: "lesson",
     DigitLesson: "lesson", Confusion: "confusion", NetworkEdits: "edits",
+}  # fmt: skip
+_KEPT: Final = {
+    SwarmState: "swarms", NetworkState: "networks", FilterMoment: "filters",
+    **dict.fromkeys((Point, DigitPoint, Checkpoint, Validation, SettingChange), "history"),
 }  # fmt: skip
 
 
@@ -111,9 +115,7 @@ class TrainingRun:
     @property
     def state(self) -> WorkerState | None:
         """State of the run; None before the first."""
-        if self.waiting:
-            return WorkerState.STARTING
-        return self._worker.state if self._worker else None
+        return WorkerState.STARTING if self.waiting else self._worker and self._worker.state
 
     @property
     def alive(self) -> bool:
@@ -189,7 +191,7 @@ class TrainingRun:
         return self._start_waiting()
 
     def _start_waiting(self) -> str:
-        """Start the waiting run, if the previous process has ended; return a note for the player, or ""."""
+        """Start the waiting run, if the previous process has ended; return a note."""
         if self._launch is None or (self._worker and not self._worker.gone):
             return ""
         launch, self._launch = self._launch, None
@@ -273,20 +275,13 @@ class TrainingRun:
         return [note for note in notes if note]
 
     def _hear(self, message: Any) -> str:
-        """Handle one message of the worker; return a note for the player, or ""."""
+        """Keep one message of the worker; return a note for the player, or ""."""
         if name := _LATEST.get(type(message)):
             setattr(self, name, message)
+        if name := _KEPT.get(type(message)):
+            getattr(self, name).append(message)
         match message:
-            case SwarmState():
-                self.swarms.append(message)
-            case NetworkState():
-                self.networks.append(message)
-            case FilterMoment():
-                self.filters.append(message)
-            case Point() | DigitPoint() | Checkpoint() | Validation():
-                self.history.append(message)
             case SettingChange(_, name, _, after):
-                self.history.append(message)
                 with suppress(ValueError):  # what is no knob, such as a way back
                     self.config = self.config.turned(name, after)
                 if name == TAUGHT:
@@ -302,7 +297,6 @@ class TrainingRun:
         return ""
 
     def _hear_saved(self, saved: Saved) -> str:
-        """Handle a report on where the run was saved, or why not; return a note for the player, or ""."""
         if saved.folder in self._saving:
             self._saving.remove(saved.folder)
         if saved.problem:

@@ -73,8 +73,8 @@ def test_without_commands_it_is_the_training_it_would_be_headless(begin, tmp_pat
     for network in ("online", "target"):
         assert np.array_equal(getattr(saved.agent, network).values, getattr(headless.agent, network).values)
     assert saved.best == headless.best
-    if headless.best_network is not None:
-        assert np.array_equal(saved.best_network[0], headless.best_network[0])
+    if headless.best is not None:
+        assert np.array_equal(saved.best_agent().network.values, headless.best_agent().network.values)
     tried = of(Validation, [*told, *answer])
     assert [(each.success, each.mean_return) for each in tried] == [(each.success, each.mean_return) for each in scores]
     assert [each.decisions for each in tried] == [640 * (each + 1) for each in range(len(scores))]
@@ -331,7 +331,7 @@ def test_a_run_that_goes_on_is_the_run_that_never_stopped(begin, tmp_path, monke
         each.send(("save", tmp_path / folder))
     alike = [resume(Training, tmp_path / folder) for folder in ("straight", "pieces")]
     assert np.array_equal(alike[0].agent.online.values, alike[1].agent.online.values)
-    assert np.array_equal(alike[0].best_network[0], alike[1].best_network[0])
+    assert np.array_equal(*(each.best_agent().network.values for each in alike))
     assert alike[0].statistics.mean_return == alike[1].statistics.mean_return
 
 
