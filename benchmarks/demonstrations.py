@@ -21,37 +21,14 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ai.lander.environment import LanderEnv, Outcome
-from ai.lander.pilots import Pilot, ScriptedPilot
+from ai.lander.pilots import ScriptedPilot
 from ai.training.config import PRESETS, Config
-from ai.training.demonstrations import Demonstration, stream, teach
+from ai.training.demonstrations import Demonstration, demonstrate, teach
 from ai.training.loop import Training
 from benchmarks.learning import Checkpoint, race
 
 SHARE = 0.95
 PAUSE = {"modern": 1.0, "classic": 15.0}  # seconds between two looks at the network
-
-
-def demonstrate(pilot: Pilot, count: int, seed: int = 0, spawn: str = "random") -> list[Demonstration]:
-    """Let a pilot fly until it has landed `count` times, each flight from a seed of its own, and return those.
-
-    Raises ValueError for a pilot that crashes more than nine times out of ten.
-    """
-    found: list[Demonstration] = []
-    seeds = range(seed, seed + 10 * count)
-    env = LanderEnv(len(seeds), 0, spawn, frame_skip=4)
-    for slot, own in enumerate(seeds):
-        env.streams[slot] = stream(own)
-    observation, flown = env.reset(), []
-    while (env.outcome == Outcome.FLYING).any():
-        flown.append(pilot.act(observation, held=env.actions))
-        observation = env.step(flown[-1]).observation
-    for slot in np.flatnonzero(env.outcome == Outcome.LANDED)[:count].tolist():
-        actions = np.repeat([row[slot] for row in flown], env.frame_skip)[: env.steps[slot]]
-        found.append(Demonstration(seeds[slot], tuple(actions.tolist()), spawn))
-    if len(found) < count:
-        raise ValueError(f"of {len(seeds)} flights, only {len(found)} landed, not {count}")
-    return found
 
 
 def lander_run(config: Config, seed: int, lessons: list[Demonstration], pause: float) -> Iterator[Checkpoint]:

@@ -73,7 +73,8 @@ class Session(ABC, Generic[R]):
     @classmethod
     def live(cls, config: Any, seed: int = 0, **options: Any) -> Turns:
         """Lead a session, made as by `of`."""
-        yield from cls.of(config, seed, **options).lead()
+        session = cls.of(config, seed, **options)
+        yield from session.lead()
 
     # What a kind says
 

@@ -15,11 +15,10 @@ import pytest
 from ai.lander.pilots import ScriptedPilot
 from ai.lander.rewards import RewardWeights
 from ai.training.config import PRESETS
-from ai.training.demonstrations import write
+from ai.training.demonstrations import demonstrate, write
 from ai.training.history import History
 from ai.training.lander_session import TAUGHT
 from ai.training.loop import Training
-from benchmarks.demonstrations import demonstrate
 from game.core import texts
 from game.core.scene import Push
 from game.core.worker import WorkerState
