@@ -39,8 +39,6 @@ _KEPT: Final = {
     SwarmState: "swarms", NetworkState: "networks", FilterMoment: "filters",
     **dict.fromkeys((Point, DigitPoint, Checkpoint, Validation, SettingChange), "history"),
 }  # fmt: skip
-
-
 _BOTH: Final = ("change", "teach", "restore")  # commands that the experiment is asked for as well
 
 
@@ -57,17 +55,12 @@ class TrainingRun:
     Attributes:
         runs: number of runs so far.
         pay: the player's own file that pays the runs that begin from now on; None for the usual pay.
-        steps: of the current or last run; 0 before it has reported them, or without end.
-        swarm_state, network_state, in_force, lesson, confusion: the latest message of each kind; None before the first.
+        swarm_state, network_state, in_force, lesson, confusion, edits: the latest message of each kind.
         swarms, networks, filters: those of the whole run, as far as they were kept.
-        edits: what was edited of its network by hand.
         earlier: the runs shown beside it, the latest first.
         begun: whether a run has reported its configuration since this was last set to False.
-        test, kept_epoch: accuracy on the test images of a run of digits that was measured, and the epoch of the tested
-            network, if that is not the last one.
         stopping: whether it was asked to end, and is being measured.
-        twin: the experiment; None without one. `differing` are names of the settings in which it differs.
-        pace: number of one of `PACES`.
+        differing: names of the settings in which the experiment differs.
 
     """
 
@@ -79,11 +72,10 @@ class TrainingRun:
         self._orders: list[Callable[[Worker], None]] = []  # for the waiting run
         self.pay: Path | None = None
         self.config: Any = kind.of()
-        self.seed = 0
+        self.seed, self.begun = 0, False
         self.earlier: list[EarlierRun] = []
         self.twin: TrainingRun | None = None
         self.differing: tuple[str, ...] = ()
-        self.begun = False
         self._named = False  # whether the run was saved under its name
         self._saving: list[Path] = []  # folders it was asked to save to, without an answer yet
         self._leaving: Worker | None = None  # of a healthy run whose place the experiment takes
@@ -101,9 +93,9 @@ class TrainingRun:
         self.swarms, self.networks = Record[SwarmState](SWARM_BYTES), Record[NetworkState](NETWORK_BYTES)
         self.filters: list[FilterMoment] = []
         self.edits = NetworkEdits()
-        self.steps, self.stopping = 0, False
-        self.test: float | None = None
-        self.kept_epoch: int | None = None
+        self.steps, self.stopping = 0, False  # 0 before it has reported them, or without end
+        self.test: float | None = None  # accuracy on the test images, of digits that were measured
+        self.kept_epoch: int | None = None  # of the tested network, if that is not the last one
 
     # How it stands
 
@@ -161,8 +153,7 @@ class TrainingRun:
         if len(self.history):
             put_beside(self.earlier, self.name, self.history)
         self._clear()
-        self.config, self.seed = config, seed
-        self.runs += 1
+        self.config, self.seed, self.runs = config, seed, self.runs + 1
         self._named = resume is not None and resume != self.collection.unsaved
         self.name = resume.name if resume else ""
         self.call(name)
@@ -218,9 +209,9 @@ class TrainingRun:
             self._worker.stop()
 
     def save(self, name: str) -> str:
-        """Name the run in the collection; raises LibraryError if that fails.
+        """Name the run in the collection; return a note, which comes from `poll` for a run that goes on.
 
-        Returns a note for the player, or ""; for a run that goes on, the note comes from `poll`.
+        Raises LibraryError if that fails.
         """
         if self.waiting:
             raise LibraryError(texts.TRAIN_NOTHING)
