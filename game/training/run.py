@@ -146,8 +146,7 @@ class TrainingRun:
     def begin(self, config: Any, seed: int, resume: Path | None = None, name: str = "") -> str:
         """Start a run, or resume a saved one, as soon as the previous one has ended, without an experiment beside it.
 
-        `name` is the name of its settings; a run that was saved under a name keeps that. Returns a note for the
-        player, or ""; for a run that must wait, the note comes from `poll`.
+        `name` is that of its settings. Returns a note, or ""; for a run that must wait, it comes from `poll`.
         """
         self.leave()
         if len(self.history):
@@ -366,9 +365,9 @@ class TrainingRun:
             self._keep_in_step()
 
     def keep_twin(self) -> str:
-        """Go on with the experiment in place of the run, whose curves stay beside; its network can be restored.
+        """Go on with the experiment in place of the run, whose curves stay beside; return a note for the player, or "".
 
-        Returns a note for the player, or "": an experiment that has ended cannot be kept, and nothing changes then.
+        One that has ended cannot be kept, and nothing changes then.
         """
         twin = self.twin
         if twin is None or not twin.alive or twin._worker is None or self._worker is None:
@@ -376,8 +375,7 @@ class TrainingRun:
         put_beside(self.earlier, self.name, self.history)
         self._leaving, self._worker = self._worker, twin._worker
         self._leaving.stop()
-        self.runs += 1
-        self._named = False
+        self.runs, self._named = self.runs + 1, False
         for told in ("history", "config", "seed", "swarm_state", "network_state", "swarms", "networks", "edits",
                      "in_force"):  # fmt: skip
             setattr(self, told, getattr(twin, told))
@@ -395,9 +393,8 @@ class TrainingRun:
 
     def _keep_in_step(self) -> None:
         """Allow both runs as many turns, a few more than the slower one has taken."""
-        limit = None
-        if self.twin is not None and self.alive and self.twin.alive:
-            limit = min(self.turns, self.twin.turns) + AHEAD
+        twin = self.twin
+        limit = min(self.turns, twin.turns) + AHEAD if twin and self.alive and twin.alive else None
         if limit != self._limit:
             self._limit = limit
             self._order(lambda worker: worker.set_limit(limit), both=True)
