@@ -22,10 +22,9 @@ from importlib.metadata import version
 from pathlib import Path
 
 from ai.sweep.cluster import MISSING, installed, joined
-from ai.sweep.plan import Plan
-from ai.sweep.space import knob_space
-from ai.sweep.study import Study
-from ai.sweep.trial import Asked, Trial
+from ai.sweep.plan import Plan, knob_space
+from ai.sweep.study import Asked, Study
+from ai.sweep.trial import Trial
 from ai.training.config import PRESETS
 
 
@@ -43,7 +42,7 @@ def looped(plan: Plan, study: Study, swept: Study) -> float:
     """Run a finished study's trials again in a plain loop that keeps the same; return the seconds."""
     began = time.monotonic()
     for number, trial in sorted(swept.trials.items()):
-        run = Trial(plan, Asked(number, trial.params), {})
+        run = Trial(plan, Asked(number, trial.params))
         while not run.done:
             run.step()
         study.record(*run.finish())

@@ -76,7 +76,8 @@ def _table(arguments: argparse.Namespace) -> int:
         return _told(arguments, _own(arguments, agent, [*HELPS, *more]))
     agents = {"one_pad": agent, "three_pads": agent, "other_worlds": _lander(arguments.anywhere, (ANYWHERE,))}
     flown, scripted = (arguments.episodes, arguments.seed), arguments.good == "scripted"
-    asked = parts_of(agents, scripted, [*HELPS, *more], *flown)
+    models = {table: arguments.anywhere if table == "other_worlds" else arguments.model for table in agents}
+    asked = parts_of(models, scripted, [*HELPS, *more], *flown)
     took = (
         sum(
             seconds(agent, ScriptedPilot() if scripted else agent, table, TABLES[table][1], help_, *flown)

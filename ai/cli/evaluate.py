@@ -49,7 +49,7 @@ def _evaluate(arguments: argparse.Namespace) -> int:
     agent, task, env = _agent_and_task(arguments)
     episodes = arguments.episodes or task.test_episodes
     if env == LANDER:
-        score: Score = _flown(arguments, agent, episodes)
+        score: Score = _flown(arguments, episodes)
     elif arguments.workers is not None or episodes > cli.EPISODES[1]:
         raise ValueError(f"--workers and more than {cli.EPISODES[1]:,} episodes are for the lander on the moon")
     elif arguments.spawn is not None:
@@ -106,12 +106,12 @@ def _own(arguments: argparse.Namespace) -> Score:
         return evaluate(pilot, episodes, arguments.seed, arguments.spawn or "random")
 
 
-def _flown(arguments: argparse.Namespace, agent: DeepQAgent, episodes: int) -> Score:
+def _flown(arguments: argparse.Namespace, episodes: int) -> Score:
     """Fly the flights, in shards; in several processes if that is asked for."""
     from ai.sweep.shards import results, shards
     from ai.training.tasks import Evaluation
 
-    parts = shards(agent, episodes, arguments.seed, arguments.spawn or "random")
+    parts = shards(arguments.model, episodes, arguments.seed, arguments.spawn or "random")
     with cli.progress_bar(len(parts), "flying", unit="shard", disable=True if len(parts) == 1 else None) as bar:
         sums = results(parts, arguments.workers or 1, bar.update)
     return Evaluation.of(sum(sums[1:], sums[0]))

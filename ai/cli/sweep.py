@@ -15,17 +15,17 @@ if TYPE_CHECKING:
     from ai.sweep.plan import Plan
     from ai.sweep.study import FinishedTrial, Study
 
-RUNS: Final = (1, 1000)  # seeds of a trial, members of a population
-BUDGET: Final = (1, 10**12)
+_RUNS: Final = (1, 1000)  # seeds of a trial, members of a population
+_BUDGET: Final = (1, 10**12)
 _RANGES: Final = {
-    "trials": (1, 100_000), "seeds": RUNS, "population": RUNS, "decisions": BUDGET, "epochs": BUDGET, "every": BUDGET,
+    "trials": (1, 100_000), "seeds": _RUNS, "population": _RUNS, "decisions": _BUDGET, "every": _BUDGET,
     "validation": cli.EPISODES, "seed": cli.SEEDS, "workers": cli.WORKERS,
 }  # fmt: skip
 # Options of a plan, which a study keeps: as they are, and what they are made into.
 _PLAN: Final = (
     "seeds", "metric", "search", "population", "stop_early", "decisions", "every", "validation", "seed",
 )  # fmt: skip
-_OF_A_NEW_ONE: Final = (*_PLAN, "knobs", "space", "epochs", "preset", "changes", "digits")
+_OF_A_NEW_ONE: Final = (*_PLAN, "knobs", "space", "preset", "changes", "digits")
 
 
 def add_commands(commands: Any) -> None:
@@ -48,7 +48,6 @@ def add_commands(commands: Any) -> None:
     add("--population", type=int, metavar="N", help="members of a generation (default: 8)")
     add("--stop-early", action="store_true", default=None, help="end trials that fall behind (ASHA)")
     add("--decisions", type=int, metavar="N", help="length of each run (default: 250,000)")
-    add("--epochs", type=int, metavar="N", help="length of each run of digits (default: the preset's)")
     add("--every", type=int, metavar="N", help="decisions or epochs between two measurements")
     add("--validation", type=int, metavar="N", help="episodes of a measurement, as for train")
     add("--env", metavar="NAME", help="an environment of Gymnasium (default: our own lander); with --resume only to"
@@ -129,15 +128,16 @@ def _described(study: Study, trial: FinishedTrial) -> str:
 
 
 def _place(arguments: argparse.Namespace) -> Path:
-    """Return the folder of the study; raises ValueError for a name that cannot be one."""
+    """Return the folder of the study, among the user's or where a path leads; raises ValueError for no such name."""
     from ai.files import user_dir
-    from ai.sweep.study import find
+    from ai.sweep.study import STUDIES
 
+    name = arguments.study
     try:
-        cli.folder(arguments.study)
+        cli.folder(name)
     except argparse.ArgumentTypeError as error:
         raise ValueError(str(error)) from error
-    return find(arguments.study, arguments.user_dir or user_dir())
+    return Path(name) if "/" in name or "\\" in name else (arguments.user_dir or user_dir()) / STUDIES / name
 
 
 def _resumed(arguments: argparse.Namespace, place: Path) -> Study:
@@ -170,15 +170,12 @@ def _resumed(arguments: argparse.Namespace, place: Path) -> Study:
 def _plan(arguments: argparse.Namespace) -> Plan:
     """Return the plan of a new study; raises ValueError or OSError for what makes no sense."""
     from ai.cli.train import digit_config, lander_config
-    from ai.sweep.plan import Plan
-    from ai.sweep.space import knob_space, read_space
+    from ai.sweep.plan import Plan, knob_space, read_space
     from ai.sweep.trial import check_ready
 
-    arguments.changes = arguments.changes or []
+    arguments.changes, arguments.epochs = arguments.changes or [], None
     if arguments.digits and (arguments.env or arguments.decisions):
-        raise ValueError("--env and --decisions are not for digits: these train for --epochs")
-    if arguments.epochs and not arguments.digits:
-        raise ValueError("--epochs is for --digits: agents train for --decisions")
+        raise ValueError("--env and --decisions are not for digits: these train for --set epochs=N")
     if arguments.knobs is not None and arguments.space is not None:
         raise ValueError("say what to search with --knobs or with --space, not with both")
     config: Any = (digit_config if arguments.digits else lander_config)(arguments)

@@ -2,7 +2,8 @@
 
 import pytest
 
-from ai.sweep.metric import Metric, Point, median
+from ai.sweep.plan import Metric, Point
+from ai.sweep.study import median
 
 CURVE = [Point(100, 0.0, -5.0), Point(200, 0.96, 1.0), Point(300, 0.99, 2.0), Point(400, 0.97, 3.0)]
 

@@ -8,7 +8,7 @@ import pytest
 
 from ai.digits.config import DIGIT_PRESETS
 from ai.files import read_as
-from ai.sweep.space import Dimension, knob_dimension, knob_space, read_space
+from ai.sweep.plan import Dimension, knob_dimension, knob_space, read_space
 from ai.training.config import PRESETS
 
 MODERN = PRESETS["modern"]
