@@ -29,8 +29,9 @@ def trained(
 ) -> Iterator[tuple[FinishedTrial, Files, bool]]:
     """Train a trial; yield at every mark the result, the runs if there are new ones to keep, and whether it is over.
 
-    `source` and `runs` are those of a `Trial`, `checkpoint` are seconds between two times to keep them. Raises RuntimeError, ImportError, ValueError or ModelFormatError for
-    what is no result of a trial: a node that has other code, or not all that is needed.
+    `source` and `runs` are those of a `Trial`; `checkpoint` are the seconds between two times that runs are kept.
+    Raises RuntimeError, ImportError, ValueError or ModelFormatError for what is no result of a trial: a node that has
+    other code, or not all that is needed.
     """
     if code != fingerprint():
         raise RuntimeError("this node has another version of Tranquility than the one that runs the study")

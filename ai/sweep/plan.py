@@ -114,7 +114,7 @@ class Dimension:
         """
         if self.choices:
             return self.choices.index(value) / max(1, len(self.choices) - 1)
-        if not self.low <= value <= self.high or (self.whole and not isinstance(value, int)):
+        if not self.low <= value <= self.high or (self.whole and value % 1):
             raise ValueError("out of its range")
         low, high, at = map(math.log, (self.low, self.high, value)) if self.log else (self.low, self.high, value)
         return min(1.0, (at - low) / (high - low))

@@ -21,7 +21,6 @@ from ai.copilot import measurement
 from ai.copilot.measurement import AssistedFlights, Help
 from ai.environment import Doubles
 from ai.lander.environment import LanderEnv
-from ai.lander.pilots import Pilot, ScriptedPilot
 from ai.training.config import Config
 from ai.training.tasks import finished, flown
 
@@ -69,23 +68,19 @@ def shards(model: Path, episodes: int, seed: int, spawn: str) -> list[partial[Do
 
 
 def fly_part(
-    model: Path, scripted: bool, table: str, names: Sequence[str], helps: Sequence[Help], episodes: int, seed: int
+    model: Path, table: str, names: Sequence[str], helps: Sequence[Help], episodes: int, seed: int
 ) -> list[AssistedFlights]:
     """Fly a part of a table; what comes of it does not depend on the others."""
     agent = DeepQAgent.load(model)
-    good: Pilot = ScriptedPilot() if scripted else agent
-    return measurement.rows(agent, good, table, names, helps, episodes, seed)
+    return measurement.rows(agent, agent, table, names, helps, episodes, seed)
 
 
 def parts_of(
-    models: Mapping[str, Path], scripted: bool, helps: Sequence[Help], episodes: int, seed: int
+    models: Mapping[str, Path], helps: Sequence[Help], episodes: int, seed: int
 ) -> list[tuple[str, Callable[[], list[AssistedFlights]]]]:
-    """Return the co-pilot's tables by name, in parts of some pilots each: `models` have the co-pilots of the tables.
-
-    Some pilots are made of a good one: the `scripted` one, or the co-pilot's network.
-    """
+    """Return the co-pilot's tables by name, in parts of some pilots each: `models` have the co-pilots of the tables."""
     return [
-        (table, partial(fly_part, model, scripted, table, names[first:][:PILOTS], helps, episodes, seed))
+        (table, partial(fly_part, model, table, names[first:][:PILOTS], helps, episodes, seed))
         for table, model in models.items()
         for names in [measurement.TABLES[table][1]]
         for first in range(0, len(names), PILOTS)

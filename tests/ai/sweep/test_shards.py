@@ -59,7 +59,7 @@ def test_the_copilots_table_is_the_same_in_parts(monkeypatch):
     table = (lambda slots, rng: LanderEnv(slots, rng, "rung_1"), names)
     monkeypatch.setattr(measurement, "TABLES", {"one_pad": table})
     monkeypatch.setattr(module, "PILOTS", 1)
-    asked = parts_of({"one_pad": MODERN}, False, helps, 3, 2)
+    asked = parts_of({"one_pad": MODERN}, helps, 3, 2)
     assert [name for name, _ in asked] == ["one_pad"] * 2
     rows = [row for _, part in asked for row in part()]
     assert rows == list(measurement.rows(AGENT, AGENT, "one_pad", names, helps, 3, 2))
