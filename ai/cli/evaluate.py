@@ -84,7 +84,8 @@ def _score(arguments: argparse.Namespace) -> Score:
         raise ValueError(f"--workers and more than {cli.EPISODES[1]:,} episodes are for the lander on the moon")
     if arguments.spawn is not None:
         raise ValueError(f"--spawn is for the lander on the moon; this network is for {config.env}")
-    return task.evaluate(agent, episodes, arguments.seed)
+    score: Score = task.evaluate(agent, episodes, arguments.seed)
+    return score
 
 
 def _own(arguments: argparse.Namespace) -> Score:

@@ -31,35 +31,34 @@ _ROOT: Final = Path(__file__).parents[2]
 _MOST_SENT: Final = 100_000_000  # bytes of a checkpoint; a larger one goes without the memories, and so on with none
 
 
-class SeedRun:
-    """Run of one seed: new, or going on, with other live knobs, from what a run kept in `parent`.
+def seed_run(plan: Plan, params: dict[str, Any], seed: int, parent: Path | None) -> Any:
+    """Return the run of one seed: new, or going on, with other live knobs, from what a run kept in `parent`.
 
     Raises ValueError for settings that make no sense, ModelFormatError for a parent that cannot be read. The settings
     are the user's: their environment is named.
     """
+    config: Any = type(plan.config).from_json(plan.settings | params)
+    kind: Any = DigitTraining if plan.kind == DIGITS else Training
+    if kind is DigitTraining and not config.held_out:
+        raise ValueError("a study of digits needs images held out: held_out was 0")
+    run = resume(kind, parent, env=getattr(config, "env", None)) if parent else kind(config, seed)
+    if parent:
+        run.apply_live(config)
+    if kind is Training:
+        run.validation_episodes = plan.validation or run.validation_episodes
+    return run
 
-    def __init__(self, plan: Plan, params: dict[str, Any], seed: int, parent: Path | None) -> None:
-        config: Any = type(plan.config).from_json(plan.settings | params)
-        kind: Any = DigitTraining if plan.kind == DIGITS else Training
-        if kind is DigitTraining and not config.held_out:
-            raise ValueError("a study of digits needs images held out: held_out was 0")
-        self.run: Any = resume(kind, parent, env=getattr(config, "env", None)) if parent else kind(config, seed)
-        if parent:
-            self.run.apply_live(config)
-        self.pace = self.run.steps_per_epoch if kind is DigitTraining else 1  # steps to a unit of the budget
-        if kind is Training:
-            self.run.validation_episodes = plan.validation or self.run.validation_episodes
 
-    def advance(self, mark: int) -> Point:
-        """Train up to so many decisions or epochs, and measure; raises FloatingPointError if it diverges."""
-        run, last = self.run, None
-        for progress in Limit(moment=mark * self.pace).run(run):
-            last = progress
-        if isinstance(run, DigitTraining):
-            return Point(mark, run.history[-1]["held_out"], run.history[-1]["held_out"])
-        score = last.evaluation if last else None
-        score = score or run.task.evaluate(run.agent, run.validation_episodes, VALIDATION_SEED)
-        return Point(run.moment, score.success, score.mean_return)
+def trained_to(run: Any, mark: int) -> Point:
+    """Train a run up to so many decisions or epochs, and measure it; raises FloatingPointError if it diverges."""
+    last = None
+    for progress in Limit(moment=mark * getattr(run, "steps_per_epoch", 1)).run(run):
+        last = progress
+    if isinstance(run, DigitTraining):
+        return Point(mark, run.history[-1]["held_out"], run.history[-1]["held_out"])
+    score = last.evaluation if last else None
+    score = score or run.task.evaluate(run.agent, run.validation_episodes, VALIDATION_SEED)
+    return Point(run.moment, score.success, score.mean_return)
 
 
 class Trial:
@@ -84,7 +83,7 @@ class Trial:
             write_files(runs or {}, Path(folder))
             kept = {seed: Path(folder, seed_folder(seed)) for seed in plan.seeds}
             self.runs = [  # what diverged at once has kept nothing, and begins anew
-                SeedRun(plan, asked.params, seed, run if run.is_dir() else None) for seed, run in kept.items()
+                seed_run(plan, asked.params, seed, run if run.is_dir() else None) for seed, run in kept.items()
             ]
 
     @property
@@ -98,7 +97,7 @@ class Trial:
         for index, run in enumerate(self.runs):
             if not self.problems[index]:
                 try:
-                    self.curves[index].append(run.advance(mark))
+                    self.curves[index].append(trained_to(run, mark))
                 except FloatingPointError as error:
                     self.problems[index] = str(error)
         self.at = mark
@@ -107,7 +106,7 @@ class Trial:
         """Return what the trial has come to; `figures` are those of the networks kept, by seed."""
         seeds = tuple(
             SeedResult(seed, tuple(curve), self.metric.of(curve, self.plan.budget, bool(problem)), problem,
-                       round(run.run.seconds, 3), (figures or {}).get(seed, {}))
+                       round(run.seconds, 3), (figures or {}).get(seed, {}))
             for seed, curve, problem, run in zip(self.plan.seeds, self.curves, self.problems, self.runs, strict=True)
         )  # fmt: skip
         value, seconds = median([seed.value for seed in seeds]), round(time.monotonic() - self._began, 3)
@@ -122,7 +121,7 @@ class Trial:
             return {}
         with tempfile.TemporaryDirectory() as temporary:
             for seed, run in zip(self.plan.seeds, self.runs, strict=True):
-                save(run.run, Path(temporary, seed_folder(seed)))
+                save(run, Path(temporary, seed_folder(seed)))
             files = files_in(Path(temporary))
         large = sum(map(len, files.values())) > _MOST_SENT
         return {name: content for name, content in files.items() if not (large and name.startswith("."))}
@@ -135,14 +134,14 @@ class Trial:
             for seed, problem, run in zip(self.plan.seeds, self.problems, self.runs, strict=True):
                 folder = Path(temporary, seed_folder(seed))
                 if not problem:
-                    said = save(run.run, folder, final=True, state=goes_on)
+                    said = save(run, folder, final=True, state=goes_on)
                     figures[seed] = said.get("best") or {
                         name: said[name] for name in ("held_out", "test") if name in said
                     }
                 else:
-                    run.run.restore_best()
+                    run.restore_best()
                     with suppress(ValueError):  # its numbers were never finite after a step
-                        save(run.run, folder, state=False)
+                        save(run, folder, state=False)
             return self.result(figures), files_in(Path(temporary))
 
 

@@ -202,7 +202,7 @@ def test_a_termination_ends_in_143_whenever_it_comes_and_the_study_goes_on(tmp_p
 
 def test_a_trial_goes_on_from_its_last_checkpoint_when_its_worker_is_killed(tmp_path):
     folder = tmp_path / "study"  # its trial must last longer than until its worker is killed
-    Study.create(folder, tiny_plan(trials=1, budget=30_000, every=1000))
+    Study.create(folder, tiny_plan(trials=1, budget=16_000, every=1000))
     program = f"""
 from pathlib import Path
 from ai.sweep.cluster import joined
@@ -223,7 +223,7 @@ with joined(None, 1):
     assert "raylet" not in out, "Ray tells it elsewhere than among the results"
     (trial,) = Study.load(folder).trials.values()
     assert trial.restarts == 1
-    assert [point.at for point in trial.seeds[0].curve] == list(range(1000, 31_000, 1000))
+    assert [point.at for point in trial.seeds[0].curve] == list(range(1000, 17_000, 1000))
 
 
 def test_what_is_missing_on_a_node_is_a_failure_and_no_finished_trial(tmp_path):

@@ -17,7 +17,7 @@ from ai.sweep import study as study_module
 from ai.sweep.plan import Plan, knob_space
 from ai.sweep.report import told
 from ai.sweep.study import Asked, FinishedTrial, Study, StudyError, write_files
-from ai.sweep.trial import SeedRun, Trial
+from ai.sweep.trial import Trial
 from ai.training.config import PRESETS
 from ai.training.run import save
 from main import main
@@ -129,7 +129,7 @@ def test_settings_that_diverge_are_a_result_and_not_an_error(tmp_path, monkeypat
     def diverge(*_):
         raise FloatingPointError("the loss is not finite")
 
-    monkeypatch.setattr(SeedRun, "advance", diverge)
+    monkeypatch.setattr("ai.sweep.trial.trained_to", diverge)
     plan = tiny_plan(metric="success", seeds=(0,))
     trial = Trial(plan, Asked(0, {"learning_rate": 0.1, "tau": 1.0}))
     trial.step()
