@@ -43,8 +43,16 @@ def test_what_was_under_way_goes_on_with_its_settings(study):
 
 
 def test_a_study_that_goes_on_proposes_nothing_twice(study):
-    search = Search(Study.load(study.folder))
-    asked = [study.trials[0].params] + [search.next().params for _ in range(8)]
+    again = Study.load(study.folder)
+    search, asked = Search(again), [study.trials[0].params]
+    for number in range(1, 9):
+        trial = search.next()
+        assert trial.number == number
+        again.begin(trial)
+        asked.append(trial.params)
+        if number % 2:  # it ends before the next one begins
+            again.record(finished(number, trial.params, 1.0), {})
+            search.tell(again.trials[number])
     assert search.next() is None, "nine trials in all"
     assert len({json.dumps(params) for params in asked}) == 9
 
@@ -83,6 +91,8 @@ def test_a_trial_that_falls_behind_is_ended_also_when_the_study_goes_on(tmp_path
         asked = search.next()
         trial = finished(asked.number, asked.params, value, at=200, curve=[Point(200, None, value)])
         ended.append(search.falls_behind(trial))
+        if value == 10.0:
+            assert not search.falls_behind(replace(trial, value=-9.0, at=400)), "only at powers of three"
         study.record(trial, {})
         search.tell(trial)
     assert ended == [False, False, True, True, True, False]
