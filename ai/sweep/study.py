@@ -25,6 +25,7 @@ from ai.files import (
     Seed,
     Share,
     Sized,
+    Within,
     atomic_folder,
     brief,
     check_header,
@@ -59,7 +60,7 @@ class StudyError(ValueError):
 class Asked:
     """What is asked of one trial."""
 
-    number: Count  # in its study
+    number: Annotated[int, Within(0, 999_999)]  # in its study
     params: dict[str, Any]  # values of the knobs that are searched
     parent: Count | None = None  # the trial whose runs it goes on with, in a population
 
