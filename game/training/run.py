@@ -107,7 +107,9 @@ class TrainingRun:
     @property
     def state(self) -> WorkerState | None:
         """State of the run; None before the first."""
-        return WorkerState.STARTING if self.waiting else self._worker and self._worker.state
+        if self.waiting:
+            return WorkerState.STARTING
+        return self._worker.state if self._worker else None
 
     @property
     def alive(self) -> bool:
