@@ -188,9 +188,8 @@ class TrainingRun:
             return ""
         launch, self._launch = self._launch, None
         note = launch()
-        orders, self._orders = self._orders, []
-        for order in orders:
-            self._order(order)
+        while self._orders:
+            self._order(self._orders.pop(0))
         return note
 
     def call(self, settings: str) -> None:
