@@ -48,9 +48,8 @@ class TrainingRun:
     A run saves itself in the player's collection without a name, until `save` names it. They write to the same folder,
     so the next one waits until the last one has ended, and so do requests to it.
 
-    Beside a run there can be an experiment, its `twin`, from the same seed. The faster of the two waits, so that both
-    have taken as many turns: on any machine, what differs is what was changed. If one of them ends or fails, the other
-    goes on alone, and at full pace.
+    Beside a run there can be an experiment, its `twin`, from the same seed. The faster of the two waits, so that on any
+    machine what differs is what was changed. If one of them ends, the other goes on alone, and at full pace.
 
     Attributes:
         runs: number of runs so far.
