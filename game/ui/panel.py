@@ -48,7 +48,7 @@ class Row:
 def _adding(kind: Callable[Concatenate[PointsManager, P], W]) -> Callable[Concatenate[Column, P], W]:
     """Return a method that adds a widget of a kind, made of all that it takes but the manager."""
 
-    def add(column: Column, *given: P.args, **more: P.kwargs) -> W:
+    def add(column: Column, /, *given: P.args, **more: P.kwargs) -> W:
         return column.widget(kind(column.manager, *given, **more))
 
     return add

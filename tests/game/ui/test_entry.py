@@ -82,7 +82,7 @@ def test_keys_edit_a_line():
     end, home, left, right = pygame.K_END, pygame.K_HOME, pygame.K_LEFT, pygame.K_RIGHT
     back, delete, none = pygame.K_BACKSPACE, pygame.K_DELETE, 0
     shift, control = pygame.KMOD_LSHIFT, pygame.KMOD_LCTRL
-    for steps, text, selection in (
+    cases: tuple[tuple[list[Any], str, tuple[int, int]], ...] = (
         (["x"], "x", (1, 1)),  # the first letter takes the place of a suggestion
         ([([end], none), "!", ([home, right, delete], none), "oo", ([left, back], none)], "Modern!", (2, 2)),
         ([([home, left, back, end, right, delete], none)], "Modern", (6, 6)),
@@ -90,7 +90,8 @@ def test_keys_edit_a_line():
         ([([end], none), ([left, left, left, right], shift)], "Modern", (4, 6)),
         ([([end], none), ([left, left, left, right], shift), "e"], "Modee", (5, 5)),
         ([([end], none), ([home], shift), ([delete], none)], "", (0, 0)),
-    ):
+    )
+    for steps, text, selection in cases:
         line = line_of("Modern")
         for step in steps:
             if isinstance(step, str):
@@ -169,16 +170,20 @@ def test_enter_begins_letters_replace_the_suggestion_and_enter_accepts(page: tup
 def test_a_letter_that_is_bound_to_full_screen_is_typed_and_switches_nothing(page: tuple[Driver, Page]):
     driver, scene = page
     context = driver.app.context
+
+    def full_screen() -> bool:
+        return context.settings.full_screen
+
     for key, letter in ((pygame.K_f, "f"), (pygame.K_KP_PERIOD, "."), (pygame.K_KP_MINUS, "-")):
         context.controls.keys.bind(Command.FULLSCREEN, key)
         driver.key(pygame.K_RETURN)
         driver.key(key)
         driver.post(pygame.TEXTINPUT, text=letter)
         assert scene.entry.text == letter
-        assert not context.settings.full_screen
+        assert not full_screen()
         driver.key(pygame.K_RETURN)
         driver.key(key)  # which nobody types any more
-        assert context.settings.full_screen
+        assert full_screen()
         driver.key(key)
 
 
