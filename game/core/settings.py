@@ -178,6 +178,7 @@ class SettingsWriter:
         """Write the settings one last time, wait for the thread to end, and let another window write."""
         self.save(settings)
         self._thread.shutdown()
+        self._thread = ThreadPoolExecutor(1, "settings")  # which runs only once something is saved
         if self._lock:
             self._lock.close()
 

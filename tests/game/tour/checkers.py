@@ -305,8 +305,8 @@ IN_FLIGHT = {
 ONLY_AT = {
     # Whatever is laid out for a page is laid out alike in every window: the last of these stands for all.
     texts_fit_in_windows_of_any_shape: FLOWING | {
-        "WatchScene", "ReplayScene", "Play", "swarm", "mission", "TrainScene", "Play, in flight",
-        "tutorial", "mission, card",
+        "WatchScene", "ReplayScene", "Play", "swarm", "mission", "TrainScene", "Play, in flight", "Play, shared",
+        "tutorial", "mission, card", "Play, thinking",
     },
     at_first_sight_there_is_little_to_read_and_to_choose_from: FLOWING
     | {"Play", "mission", "daily", "descent", "LogbookScene, with much to list", "MissionsScene, with much to list"},
