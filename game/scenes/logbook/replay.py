@@ -70,7 +70,7 @@ class ReplayScene(FormScene):
 
     """
 
-    fills = takes_tab = True
+    takes_tab = True
 
     def __init__(self, context: Context, record: Record, friend: SharedFlight | None = None) -> None:
         super().__init__(context)

@@ -62,8 +62,6 @@ class WatchScene(FormScene):
 
     """
 
-    fills = True
-
     def __init__(
         self, context: Context, count: int = 1, seed: int | None = None, guest: tuple[str, Path] | None = None
     ) -> None:

@@ -10,14 +10,8 @@ from hypothesis import settings as examples
 from hypothesis import strategies as st
 
 from game.core import texts
-from game.core.scene import Scene
 from game.drawing.canvas import PAGE, Canvas
-from game.drawing.tokens import MARGIN
-from game.explain import readouts
-from game.scenes.menus.menu import MenuScene
 from game.scenes.play.help import HELP
-from game.scenes.play.scene import PlayScene
-from game.scenes.watch.scene import WatchScene
 from game.ui.context import Context
 from game.world.camera import LAND_REACH, WIDEST, Camera, CameraTarget
 from game.world.landscape.backdrop import Backdrop
@@ -170,18 +164,6 @@ def test_a_window_too_small_to_read_grows_again(open_game, asked: tuple[int, int
     driver.resize(asked)
     assert driver.app.window.size == got
     assert driver.app.canvas.scale >= 0.5
-
-
-def test_scenes_with_a_world_fill_the_window_and_pages_do_not():
-    def fills(scene: type[Scene]) -> bool:
-        return scene.fills
-
-    assert fills(WatchScene)
-    assert PlayScene.flows
-    assert MenuScene.flows
-    assert not Scene.fills
-    assert not Scene.flows
-    assert readouts.GAUGES["altitude"].column == MARGIN
 
 
 def test_a_crash_is_not_hidden(open_game, context: Context):
