@@ -85,8 +85,9 @@ def test_the_latest_comes_first(library: Library):
 
 
 def test_a_damaged_run_is_listed_with_its_problem_and_can_go_anywhere(library: Library, tmp_path: Path):
-    wrong: dict[str, list[object]] = {"decisions": ["many", float("inf"), 10**400, -1], "seconds": [None, float("nan")], "seed": [10**400],
-             "best": [3, {"success": float("nan")}], "changes": [1]}  # fmt: skip
+    nan, wrong = float("nan"), dict[str, list[object]]()
+    wrong = {"decisions": ["many", float("inf"), 10**400, -1], "seconds": [None, nan], "seed": [10**400],
+             "best": [3, {"success": nan}], "changes": [1]}  # fmt: skip
     values = [{**DESCRIBED, name: value} for name, values in wrong.items() for value in values]
     for number, text in enumerate(("", "{", "[]", "[" * 100_000, '{"env": "lander"}', *map(json.dumps, values))):
         (add(library, "hurt") / "training.json").write_text(text)
