@@ -37,10 +37,10 @@ from game.training.record import take_away
 from game.training.run import PACES, TrainingRun
 from game.training.run_kind import LANDERS
 from game.ui.actions import Action, Table
+from game.ui.charts import Scrubber
 from game.ui.context import Context
 from game.ui.panel import Column
 from game.ui.rows import RunRow
-from game.ui.scrubber import Scrubber
 from game.ui.virtual_pointer import VirtualPointer
 from game.ui.widget import Widget
 from game.world.swarm import LearningSwarm

@@ -68,7 +68,7 @@ def test_a_remedy_is_applied_and_undone_the_way_back_too(context: Context, colla
     run = SimpleNamespace(
         history=growing,
         config=MODERN.changed(schedule_decisions=600_000),  # its rate has not come down yet
-        revert=lambda checkpoint: gone_to.append(checkpoint.decisions),
+        ask=lambda _, decisions: gone_to.append(decisions),
     )
     advice = advised(run, lambda name, value: turned.append((name, value)))
     for checkpoint in collapsed.checkpoints:
