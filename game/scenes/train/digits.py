@@ -28,13 +28,8 @@ from game.scenes.train.layout import Layout
 from game.scenes.train.status import TrainingStatus, digit_status
 from game.training.digit_models import DigitModels, runs_dir
 from game.training.run import TrainingRun
-<<<<<<< HEAD
 from game.training.run_kind import DIGITS
-=======
-from game.training.run_settings import RunKind
-from game.training.workers import DIGITS
 from game.ui.charts import Scrubber
->>>>>>> main
 from game.ui.context import Context
 from game.ui.panel import Column
 from game.ui.virtual_pointer import VirtualPointer

@@ -18,14 +18,8 @@ from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, MUTE, NET, PANEL, SMALL, Colour
 from game.input.controls import Command, translate
-<<<<<<< HEAD
 from game.training.run_settings import KnobDescription, figure
-from game.ui.rows import RowWidget
-from game.ui.widget import PointsManager, mix
-=======
-from game.training.knob_descriptions import KnobDescription, figure
 from game.ui.widget import PointsManager, RowWidget, mix
->>>>>>> main
 
 _LABELS, _FIGURES = 150.0, 62.0  # points from the label to the track, and from the track to the right end
 _HEIGHT: Final = 20.0

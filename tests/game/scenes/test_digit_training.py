@@ -26,15 +26,9 @@ from game.core.worker import WorkerState
 from game.scenes.train.digits import DigitTrainingScene
 from game.training.digit_models import DigitModels
 from game.training.run import TrainingRun
-<<<<<<< HEAD
 from game.training.run_kind import DIGITS
 from game.training.run_settings import RunSettings, knob_descriptions
-from game.ui.scrubber import Scrubber
-=======
-from game.training.run_settings import RunSettings
-from game.training.workers import DIGITS
 from game.ui.charts import Scrubber
->>>>>>> main
 from tests.support.driver import Driver
 from tests.support.player import Player
 from tests.support.small import DIGITS as SMALL

@@ -16,13 +16,8 @@ from game.scenes.train.charts import DIGIT_CHARTS, Beside, TrainingCharts, ticks
 from game.training.library import Library
 from game.training.record import EarlierRun, put_beside, take_away
 from game.training.run import TrainingRun
-<<<<<<< HEAD
 from game.training.run_kind import LANDERS
-from game.ui.series import run_style
-=======
-from game.training.workers import LANDERS
 from game.ui.curves import run_style
->>>>>>> main
 from tests.ai.training.test_hints import HEALTHY
 
 NUMBERS = list(COLUMNS[:10])
