@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-optuna = pytest.importorskip("optuna")
+pytest.importorskip("optuna")
 
 from ai.sweep.plan import Point
 from ai.sweep.search import JOURNAL, LEAST, Search
@@ -125,6 +125,8 @@ def test_the_knob_that_decides_matters_most_and_too_few_trials_say_nothing(tmp_p
 
 
 def test_optunas_own_tools_read_the_journal_and_we_do_not(study):
+    import optuna
+
     journal = study.folder / JOURNAL
     journal.write_text('{"op_code": 99}\nno line of a journal')
     Search(Study.load(study.folder)).next()
