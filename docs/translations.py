@@ -189,7 +189,9 @@ def follow(language: str, folder: Path = catalogue.LOCALE) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         texts = template(domain, folder, language)
         if path.exists():
-            texts = merged(translations(path), texts)
+            known = translations(path)
+            texts.mime_headers = [("Plural-Forms", known.plural_forms)]  # a newer Babel may count other ones
+            texts = merged(known, texts)
         with path.open("wb") as file:
             write_po(file, texts, width=120, include_previous=True)
 

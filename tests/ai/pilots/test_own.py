@@ -42,6 +42,10 @@ class Fake:
             raise PilotError(self.does, 7)
         return np.full(len(observation), int(self.does))
 
+    def late(self, words: str) -> PilotError:
+        self.gone = True
+        return PilotError(words, 2)
+
     def close(self) -> None:
         self.gone = True
 
@@ -131,6 +135,7 @@ def test_late_decisions_are_skipped_and_three_in_a_row_end_the_process(pilot: Ow
     fake.does = "late"
     assert flown(pilot, 3) == 0  # it coasts
     assert "3 decisions in a row took longer than 50 ms" in pilot.problem
+    assert not pilot.flies_on
     assert running() == []
     save(pilot, "2")
     assert flown(pilot) == 2
@@ -142,7 +147,17 @@ def test_one_that_never_begins_is_ended(pilot: OwnPilot):
     assert flown(pilot, 10) == 1
     assert running() == ["1", "loading"]
     assert flown(pilot, 100) == 1
-    assert "too long" in pilot.problem
+    assert pilot.problem == "line 2: it was not loaded after 25 seconds"
+    assert pilot.flies_on
+    assert running() == ["1"]
+
+
+def test_one_that_never_answers_first_is_ended_and_told_at_once(pilot: OwnPilot):
+    assert flown(pilot) == 1
+    save(pilot, "late")
+    assert flown(pilot, 5) == 1
+    assert pilot.problem == "line 2: its first decision took longer than 2 seconds"
+    assert pilot.flies_on
     assert running() == ["1"]
 
 
