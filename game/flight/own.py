@@ -52,7 +52,7 @@ def flying(context: Context) -> networks.Network | None:
 
 
 def wrong(pilot: OwnPilot) -> str:
-    """Say what is wrong with the file that was saved last, and whether the last good one flies on; empty for nothing."""
+    """Say what is wrong with the file as it was saved last, and whether the last good one flies on; or nothing."""
     if not pilot.problem:
         return ""
     words = texts.PILOTS_FLIES_ON if pilot.flies_on else texts.PILOTS_WRONG

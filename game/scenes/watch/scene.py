@@ -43,7 +43,6 @@ _ROW: Final = (MARGIN, 624.0, 22.0)  # left and top of the first row of choices,
 _ROW_HEIGHT: Final = 17.0
 _WIDEST: Final = 452.0  # of a row: the pad begins there
 _LONGEST_NAME: Final = 24
-_LONGEST_PROBLEM: Final = 110
 _READOUTS: Final = (758.0, 880.0, 1002.0, 1124.0)  # left ends of the read-outs
 _TOUCHED: Final = pygame.Rect(40, 108, PANEL.left - 80, 600)  # where the hand can put a lander
 
@@ -180,9 +179,9 @@ class WatchScene(FormScene):
 
     def update(self) -> Transition | None:
         """Fly as many steps as the chosen speed makes due."""
-        if self._awaited and isinstance(pilot := self._awaited.policy, OwnPilot):
+        if isinstance(pilot := (self._awaited or self.network).policy, OwnPilot):
             pilot.look()
-            if pilot.ready:
+            if self._awaited and pilot.ready:
                 self._fly(self._awaited)
         self.world.update()
         self.explained.update()
@@ -285,7 +284,7 @@ class WatchScene(FormScene):
     def _pause_words(self) -> list[tuple[str, OnPress]]:
         name = brief(networks.word(self._wanted or self.network.name), _LONGEST_NAME)
         return [
-            (texts.PAUSE_NETWORK.format(name=name), self._open_networks),
+            (texts.WATCH_PAUSE.format(name=name), self._open_networks),
             (texts.PILOTS_OPEN, self._open_pilots),
         ]
 
@@ -378,7 +377,7 @@ class WatchScene(FormScene):
         words = partial(canvas.text, size=SMALL, align="centre")
         middle, problem = VIEW_SIZE[0] / 2, self._problem()
         if problem:
-            box = words(brief(problem, _LONGEST_PROBLEM), (middle, 84), colour=canvas.palette.warn)
+            box = words(problem, (middle, 84), colour=canvas.palette.warn)
             canvas.marker("cross", (box.left - 12, 80), 9, canvas.palette.warn)
         elif self.world.touched:
             words(texts.TOUCH_COUNTS, (middle, 84), colour=HUMAN)
@@ -390,15 +389,15 @@ class WatchScene(FormScene):
     def _problem(self) -> str:
         """Return what is wrong with a network that was chosen, or with the player's own file."""
         network = self._awaited or self.network
-        if isinstance(network.policy, OwnPilot) and network.policy.problem:
-            return f"{network.name}: {network.policy.problem}"
-        return self.problem
+        return self.problem or (own.wrong(network.policy) if isinstance(network.policy, OwnPilot) else "")
 
     def _who(self) -> str:
         """Say who decides."""
-        if isinstance(self.network.policy, networks.QPolicy):
-            return texts.EXPLAIN_FLIES_NETWORK.format(name=brief(self.network.name, _LONGEST_NAME))
-        return texts.EXPLAIN_FLIES_SCRIPTED
+        if self.network.name == networks.SCRIPTED:
+            return texts.EXPLAIN_FLIES_SCRIPTED
+        mine = isinstance(self.network.policy, OwnPilot)
+        words = texts.EXPLAIN_FLIES_OWN if mine else texts.EXPLAIN_FLIES_NETWORK
+        return words.format(name=brief(self.network.name, _LONGEST_NAME))
 
     @property
     def _said(self) -> str:
