@@ -15,7 +15,7 @@ from game.input.controls import Command, Held
 from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import Hint, HintRow
-from game.ui.listing import Listing
+from game.ui.listing import ListRow
 from game.ui.widget import Widget
 
 DWELL: Final = 75  # steps for which each choice is marked
@@ -120,7 +120,7 @@ class SwitchScan:
         stop = stops[self.index % len(stops)] if stops else None
         if stop and stop.widget and isinstance(form := getattr(scene, "form", None), Form) and not form.typing:
             form.focus(stop.widget)
-            if isinstance(stop.widget, Listing) and self._since == 0:
+            if isinstance(stop.widget, ListRow) and self._since == 0:
                 stop.widget.choose(stop.row)
 
     def _choose(self, scene: Scene, stop: Stop) -> Transition | None:
@@ -154,7 +154,7 @@ class SwitchScan:
 
 def _stops_of(widget: Widget) -> list[Stop]:
     box = pygame.FRect(widget.box)
-    if not isinstance(widget, Listing):
+    if not isinstance(widget, ListRow):
         return [Stop(box, widget=widget)]
     seen = range(widget.first, min(len(widget.rows), widget.first + widget.room))
     pitch = widget.baseline(1) - widget.baseline(0)

@@ -14,8 +14,7 @@ from game.input.bindings import Bindings, Meaning
 from game.input.controls import Command, Controls, Held, key_name
 from game.ui.actions import Action, Table
 from game.ui.panel_scene import PanelScene
-from game.ui.rows import RowWidget
-from game.ui.widget import PointsManager, mix
+from game.ui.widget import PointsManager, RowWidget, mix
 
 if TYPE_CHECKING:
     from game.drawing.cursor import Cursor
