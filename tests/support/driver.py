@@ -11,7 +11,7 @@ import pygame
 from game.core.settings import FILE_NAME
 from game.shell.app import App
 from game.ui.form import Form
-from game.ui.widgets import Choice
+from game.ui.rows import ChoiceRow
 
 Kind = TypeVar("Kind")
 
@@ -129,9 +129,9 @@ class Driver:
         [found] = [widget for widget in self.form.widgets if type(widget) is kind]
         return found
 
-    def choice(self, option: str) -> Choice:
+    def choice(self, option: str) -> ChoiceRow:
         """The choice on the screen that offers an option."""
-        return next(each for each in self.form.widgets if isinstance(each, Choice) and option in each.options)
+        return next(each for each in self.form.widgets if isinstance(each, ChoiceRow) and option in each.options)
 
     def press_on(self, label: str) -> None:
         """Move the focus to the widget of that label, and press it."""

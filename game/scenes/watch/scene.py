@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Final
@@ -30,18 +29,19 @@ from game.scenes.watch.touch import Hand
 from game.scenes.watch.watched import SIZES, Watched
 from game.ui.actions import Action, Run, Table
 from game.ui.context import Context
+from game.ui.form import Part
 from game.ui.form_scene import FormScene
 from game.ui.hints import HintRow
-from game.ui.playback import LABEL_WIDTH
-from game.ui.widget import OnPress
-from game.ui.widgets import GAP, Choice
+from game.ui.panel import Panel
+from game.ui.rows import ChoiceRow
+from game.ui.widget import OnPress, Widget
 from game.world.camera import Camera
 from game.world.policy_map import ACTION
 
 COUNTS: Final = tuple(SIZES)
-_ROW: Final = (MARGIN, 624.0, 22.0)  # left and top of the first row of choices, and how far to the next
-_ROW_HEIGHT: Final = 17.0
-_WIDEST: Final = 452.0  # of a row: the pad begins there
+_ROWS: Final = (452.0, 712.0)  # greatest width of the choices, for the pad begins there, and where they end
+_LABELS: Final = 60.0
+_BETWEEN: Final = 2.0  # points above and below each row
 _LONGEST_NAME: Final = 24
 _READOUTS: Final = (758.0, 880.0, 1002.0, 1124.0)  # left ends of the read-outs
 _TOUCHED: Final = pygame.Rect(40, 108, PANEL.left - 80, 600)  # where the hand can put a lander
@@ -72,6 +72,7 @@ class WatchScene(FormScene):
         self.explained = Explained()
         self.problem = self._wanted = self._told = ""
         self._awaited: networks.Network | None = None  # a file that is being loaded, to fly then
+        self._valued = True  # whether who flies gives values
         self._settings = context.settings
         self._guests = dict([guest]) if guest else {}
         self._seed = int(context.rng.integers(2**31)) if seed is None else seed
@@ -79,11 +80,8 @@ class WatchScene(FormScene):
         names = self.policies.names
         first = guest[0] if guest else context.settings.model
         wanted = names.index(first) if first in names else 0
-        self._model_choice = self.form.add(self._network_row(wanted))
-        counts = [str(count) for count in COUNTS]
-        self._count_choice = self.form.add(self._row(1, texts.WATCH_COUNT, counts, self._count, self._choose_count))
-        self._speed_choice = self.form.add(self.playback.row(self.form.manager, self._row_box(2, self.playback.words)))
-        self._map_choice = self.form.add(self._map_row())
+        self._rows: list[Widget] = []
+        self._describe(wanted)
         self.hand = self.form.add(Hand(self.form.manager, self.world, _TOUCHED, context.view))
         self._choose_network(wanted)
         if self.problem:
@@ -116,8 +114,12 @@ class WatchScene(FormScene):
     def enter(self) -> None:
         """Follow a change of the networks and of the settings."""
         self._look_again()
+        self._describe(self._model_choice.index)
         if self.world.stage.calm != self._settings.reduced_motion:
             self.world.set_up_camera()
+
+    def reword(self) -> None:
+        self._describe(self._model_choice.index)
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Explain, touch or pick a lander, or pass the event to the actions and the choices."""
@@ -183,7 +185,9 @@ class WatchScene(FormScene):
                 self._fly(self._awaited)
         self.world.update()
         self.explained.update()
-        return self.form.update()
+        outcome = self.form.update()
+        self._lay_out()
+        return outcome
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the world, the swarm, the panel and the choices."""
@@ -254,27 +258,32 @@ class WatchScene(FormScene):
             policies.add(networks.Network(pilot.path.name, pilot))
         return policies
 
-    def _row(self, row: int, label: str, words: Sequence[str], index: int, chosen: Callable[[int], None]) -> Choice:
-        box = self._row_box(row, words)
-        return Choice(self.form.manager, box, label, words, index, chosen, label_width=LABEL_WIDTH, size=SMALL)
-
-    def _row_box(self, row: int, words: Sequence[str]) -> pygame.Rect:
-        x, y, pitch = _ROW
-        width = LABEL_WIDTH + sum(typeface.width(word, SMALL, "regular") + GAP for word in words) - GAP
-        return pygame.Rect(x, y + row * pitch, math.ceil(min(width, _WIDEST)), _ROW_HEIGHT)
-
-    def _network_row(self, index: int) -> Choice:
-        words = [brief(networks.word(name), _LONGEST_NAME) for name in self.policies.names]
-        box, everything = self._row_box(0, words), texts.WATCH_ALL.format(count=len(words))
-        return Choice(
-            self.form.manager, box, texts.WATCH_MODEL, words, index, self._choose_network, label_width=LABEL_WIDTH,
-            size=SMALL, on_open=self._open_networks, all_word=everything,
+    def _describe(self, chosen: int) -> None:
+        """Describe the rows anew: who flies, how many, how fast, and the map; one without values has none of scores."""
+        part, size = Part(self.form), typeface.grown(SMALL)
+        self._panel = panel = Panel(part)
+        names = [brief(networks.word(name), _LONGEST_NAME) for name in self.policies.names]
+        self._model_choice = panel.choice(
+            texts.WATCH_MODEL, names, chosen, self._choose_network, size,
+            on_open=self._open_networks, all_word=texts.WATCH_ALL.format(count=len(names)),
         )  # fmt: skip
+        counts = [str(count) for count in COUNTS]
+        panel.choice(texts.WATCH_COUNT, counts, self._count, self._choose_count, size)
+        self._speed_choice = self.playback.describe(panel, size)
+        kinds = texts.MAP_KINDS if self._valued else texts.MAP_KINDS[: ACTION + 1]
+        self._map_choice = panel.choice(texts.WATCH_MAP, kinds, self.world.policy_map.kind, self._choose_map, size)
+        for row, widget, what in zip(panel.rows, part.widgets, texts.EXPLAIN_CHOICES, strict=True):
+            assert isinstance(widget, ChoiceRow)
+            row.what, widget.labels, widget.pad = what, _LABELS, _BETWEEN
+        self.form.replace(self._rows, part.widgets)
+        self._rows = part.widgets
+        self._lay_out()
 
-    def _map_row(self, values: bool = True) -> Choice:
-        """Return the row of maps; a pilot without values has none of scores."""
-        kinds = texts.MAP_KINDS if values else texts.MAP_KINDS[: ACTION + 1]
-        return self._row(3, texts.WATCH_MAP, kinds, self.world.policy_map.kind, self._choose_map)
+    def _lay_out(self) -> None:
+        """Put the rows above the lower edge of the page, whatever their height."""
+        (width, end), scale = _ROWS, self.context.in_window((0, 0, 1000, 0)).width / 1000
+        for height in (end, self._panel.height + 1):
+            self._panel.lay_out(pygame.FRect(MARGIN, end - height, width, height), scale)
 
     def _pause(self) -> Transition:
         return push("pause", self, self._begin_anew, texts.PAUSE_NEW_STARTS, self._pause_words)
@@ -310,9 +319,7 @@ class WatchScene(FormScene):
             return
         self.policies = policies
         index = next((policies.names.index(name) for name in (wanted, self.network.name) if name in policies.names), 0)
-        row = self._network_row(index)
-        self.form.replace([self._model_choice], [row])
-        self._model_choice = row
+        self._describe(index)
         self._choose_network(index)
 
     def _choose_network(self, index: int) -> None:
@@ -327,17 +334,16 @@ class WatchScene(FormScene):
 
     def _fly(self, network: networks.Network) -> None:
         self.network, self._awaited = network, None
-        values = isinstance(network.policy, networks.QPolicy)
         own_flies = isinstance(network.policy, OwnPilot)
         if self.context.pilot:
             self.context.pilot.chosen = own_flies
         if network.name not in self._guests and not own_flies:
             self._settings.model = network.name
-        if not values:
-            self.world.policy_map.kind = min(self.world.policy_map.kind, ACTION)
-        row = self._map_row(values)
-        self.form.replace([self._map_choice], [row])
-        self._map_choice = row
+        if (valued := isinstance(network.policy, networks.QPolicy)) is not self._valued:
+            self._valued = valued
+            if not valued:
+                self.world.policy_map.kind = min(self.world.policy_map.kind, ACTION)
+            self._describe(self._model_choice.index)
         self._begin()
 
     def _choose_count(self, index: int) -> None:
@@ -363,10 +369,7 @@ class WatchScene(FormScene):
         shown = readouts.flight_readouts(self.swarm.env, self.shown)
         readouts.draw_readouts(canvas, [shown[name] for name in readouts.PILOT], _READOUTS)
         self._draw_notice(middle)
-        rows = (self._model_choice, self._count_choice, self._speed_choice, self._map_choice)
-        for row, what in zip(rows, texts.EXPLAIN_CHOICES, strict=True):
-            canvas.at(*self.form.anchor).explain(row.box, what)
-        self.form.draw(canvas)
+        self._panel.draw(canvas.at(*self.form.anchor).ungrown)
         if self._settings.show_hints or self.context.controls.mouse_in_use:  # for the mouse, they are what it presses
             self.draw_hints(canvas)
 
