@@ -36,6 +36,11 @@ class Playback:
         self.stopped = False
         self._row: ChoiceRow | None = None
 
+    @property
+    def word(self) -> str:
+        """The speed as it is written."""
+        return _WORDS[self._clock.rate]
+
     def describe(self, column: Column, size: float = SMALL) -> ChoiceRow:
         """Add the row of speeds, and return it."""
         words, now = [_WORDS[speed] for speed in self._speeds], self._speeds.index(self._clock.rate)

@@ -35,7 +35,6 @@ from game.ui.hints import HintRow
 from game.ui.panel import Panel
 from game.ui.rows import ChoiceRow
 from game.ui.widget import OnPress, Widget
-from game.world.camera import Camera
 from game.world.policy_map import ACTION
 
 COUNTS: Final = tuple(SIZES)
@@ -97,16 +96,6 @@ class WatchScene(FormScene):
         return self.world.swarm
 
     @property
-    def camera(self) -> Camera:
-        """The camera on them."""
-        return self.world.camera
-
-    @property
-    def shown(self) -> int:
-        """Number of the lander whose decisions are shown."""
-        return self.world.shown
-
-    @property
     def decision(self) -> Decision:
         """The decision that the shown lander flies."""
         return self.world.decision
@@ -143,15 +132,16 @@ class WatchScene(FormScene):
             return says(lambda: hand.turn(notches), texts.TOUCH_PARTS[1], lambda: world.tilt_words)
 
         def shown(direction: int) -> Run:
-            return says(lambda: self._turn(direction), texts.HINT_NEXT_LANDER, lambda: str(self.shown + 1))
+            return says(lambda: self._turn(direction), texts.HINT_NEXT_LANDER, lambda: str(world.shown + 1))
 
+        turn_map = says(self._turn_map, texts.HINT_MAP, lambda: texts.MAP_KINDS[world.policy_map.kind])
         undo = Action(pygame.K_z, says(world.untouch, texts.HINT_UNTOUCH), "" if by_pad else texts.HINT_UNTOUCH)
         return [
             stop,
             Action(step.key, says(playback.step, texts.HINT_DECISION, self._flown), step.hint),
             Action(Command.MODE, self._touch, texts.HINT_TOUCH),
             *([undo] if world.can_untouch else []),
-            Action(pygame.K_m, says(self._turn_map, texts.HINT_MAP, self._map), "" if by_pad else texts.HINT_MAP),
+            Action(pygame.K_m, turn_map, "" if by_pad else texts.HINT_MAP),
             Action(Command.NEXT, shown(1), texts.HINT_NEXT_LANDER if many else ""),
             Action(Command.RETRY, says(self._begin_anew, texts.HINT_RESTART), texts.HINT_RESTART),
             Action(pygame.K_o, self._open_pilots, "" if by_pad else texts.HINT_PILOTS),
@@ -159,7 +149,7 @@ class WatchScene(FormScene):
             Action(Command.PREVIOUS, shown(-1)),
             Action(pygame.K_q, turned(1)),
             Action(pygame.K_e, turned(-1)),
-            *(Action(each.key, says(each.run, texts.WATCH_SPEED, self._speed)) for each in speeds),
+            *(Action(each.key, says(each.run, texts.WATCH_SPEED, lambda: playback.word)) for each in speeds),
             self.explained.action(),
         ]
 
@@ -204,15 +194,21 @@ class WatchScene(FormScene):
     # What flies
 
     def _begin(self) -> None:
-        assert self.network.policy is not None
-        self.world.begin(COUNTS[self._count], self._seed, self.network.policy)
+        policy = self.network.policy
+        assert policy is not None
+        if isinstance(policy, networks.QPolicy) is not self._valued:
+            self._valued = not self._valued
+            if not self._valued:
+                self.world.policy_map.kind = min(self.world.policy_map.kind, ACTION)
+            self._describe(self._model_choice.index)
+        self.world.begin(COUNTS[self._count], self._seed, policy)
 
     def _begin_anew(self) -> None:
         self._seed = int(self.context.rng.integers(2**31))
         self._begin()
 
     def _turn(self, direction: int) -> None:
-        self.world.shown = (self.shown + direction) % COUNTS[self._count]
+        self.world.shown = (self.world.shown + direction) % COUNTS[self._count]
 
     def _pick(self, point: tuple[float, float]) -> bool:
         """Show the decisions of the lander nearest to a point of the canvas, if one is close."""
@@ -243,12 +239,6 @@ class WatchScene(FormScene):
     def _flown(self) -> str:
         return str(texts.said(ACTION_NAMES[int(self.decision.action[0])]))
 
-    def _map(self) -> str:
-        return self._map_choice.options[self._map_choice.index]
-
-    def _speed(self) -> str:
-        return self._speed_choice.options[self._speed_choice.index]
-
     # Choices
 
     def _known(self) -> networks.Policies:
@@ -269,7 +259,7 @@ class WatchScene(FormScene):
         )  # fmt: skip
         counts = [str(count) for count in COUNTS]
         panel.choice(texts.WATCH_COUNT, counts, self._count, self._choose_count, size)
-        self._speed_choice = self.playback.describe(panel, size)
+        self.playback.describe(panel, size)
         kinds = texts.MAP_KINDS if self._valued else texts.MAP_KINDS[: ACTION + 1]
         self._map_choice = panel.choice(texts.WATCH_MAP, kinds, self.world.policy_map.kind, self._choose_map, size)
         for row, widget, what in zip(panel.rows, part.widgets, texts.EXPLAIN_CHOICES, strict=True):
@@ -339,11 +329,6 @@ class WatchScene(FormScene):
             self.context.pilot.chosen = own_flies
         if network.name not in self._guests and not own_flies:
             self._settings.model = network.name
-        if (valued := isinstance(network.policy, networks.QPolicy)) is not self._valued:
-            self._valued = valued
-            if not valued:
-                self.world.policy_map.kind = min(self.world.policy_map.kind, ACTION)
-            self._describe(self._model_choice.index)
         self._begin()
 
     def _choose_count(self, index: int) -> None:
@@ -366,7 +351,7 @@ class WatchScene(FormScene):
         readouts.draw_hand(canvas, self._said, NET)
         middle.explain((VIEW_SIZE[0] / 2 - 110, 24, 220, 34), texts.EXPLAIN_FLIES, self._who)
         draw_landings(left, (MARGIN, 118), self.swarm.landed, self.swarm.lost)
-        shown = readouts.flight_readouts(self.swarm.env, self.shown)
+        shown = readouts.flight_readouts(self.swarm.env, self.world.shown)
         readouts.draw_readouts(canvas, [shown[name] for name in readouts.PILOT], _READOUTS)
         self._draw_notice(middle)
         self._panel.draw(canvas.at(*self.form.anchor).ungrown)
