@@ -2,12 +2,14 @@
 
 import json
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from multiprocessing import active_children
 from typing import Any, TypeVar
 
 import pygame
 
+from game.core import texts
 from game.core.settings import FILE_NAME
 from game.shell.app import App
 from game.ui.form import Form
@@ -156,3 +158,18 @@ class Driver:
     def resize(self, size: tuple[int, int]) -> None:
         self.app.window.size = size
         self.frames(10)  # until the window has settled
+
+    @contextmanager
+    def speaking(self, language: str) -> Iterator[None]:
+        """Speak another language meanwhile, as once it was chosen in the settings over the scene."""
+        before = texts.LANGUAGE
+        try:
+            self._speak(language)
+            yield
+        finally:
+            self._speak(before)
+
+    def _speak(self, language: str) -> None:
+        self.app.context.settings.language = language
+        self.app.apply_settings()
+        self.frames(2)

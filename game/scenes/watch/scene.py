@@ -108,6 +108,7 @@ class WatchScene(FormScene):
             self.world.set_up_camera()
 
     def reword(self) -> None:
+        self._told = ""
         self._describe(self._model_choice.index)
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:

@@ -344,6 +344,18 @@ def test_a_run_adds_its_point_to_the_plot(open_game: Open):
     assert scene(driver).plot is None
 
 
+def test_another_language_is_spoken_at_once(gallery: Driver, monkeypatch: pytest.MonkeyPatch):
+    gallery.key(pygame.K_g)
+    words = words_written(monkeypatch)
+    with gallery.speaking("de"):
+        words.clear()
+        gallery.frames(1)
+        what, unit, *_ = texts.LAWS[scene(gallery).exhibit.name]
+        assert texts.LAW_AXIS.format(what=what, unit=unit) in words
+        assert texts.LAW_STEP in words
+        assert texts.EXHIBITS["heap"][0] in words
+
+
 def test_the_plot_follows_the_size_of_text_and_of_the_window(gallery: Driver):
     gallery.key(pygame.K_g)
     chart = scene(gallery).plot._chart

@@ -226,3 +226,13 @@ def test_only_a_rate_of_success_has_its_colour(
     monkeypatch.setattr(Canvas, "text", text)
     draw_landings(watching.app.canvas, (0, 0), landed, 10 - landed)
     assert (colours[f"{10 * landed}"] == watching.app.canvas.palette.good) == good
+
+
+def test_another_language_is_spoken_at_once(watching: Driver, written: list[str]):
+    names = ("WATCH_MODEL", "WATCH_COUNT", "WATCH_SPEED", "WATCH_MAP")
+    english = {getattr(texts, name) for name in names}
+    with watching.speaking("de"):
+        written.clear()
+        watching.app.draw()
+        assert {getattr(texts, name) for name in names} <= set(written)
+        assert not set(written) & english - {getattr(texts, name) for name in names}
