@@ -212,6 +212,26 @@ def test_measuring_raises_what_is_wrong(tmp_path: Path):
         MeasuredPilot(path)
 
 
+def test_measuring_keeps_the_order_of_landers_and_says_where_a_loop_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    path = tmp_path / "pilot.py"
+    rows = np.zeros((150, 9), np.float32)
+    rows[:, 0] = np.arange(150) % 6
+    for source in (
+        "def act(o): return int(o[0])",
+        "def act_many(o):\n    assert len(o) == 150\n    return o[:, 0].astype(int)",
+    ):
+        path.write_text(source)
+        pilot = MeasuredPilot(path)
+        assert np.array_equal(pilot.act(rows), rows[:, 0])
+        pilot.close()
+    monkeypatch.setattr(own, "ALONE", 0.2)
+    path.write_text("def act(o):\n    while True:\n        o += 1")
+    pilot = MeasuredPilot(path)
+    with pytest.raises(PilotError, match="line [23]: 64 decisions took longer"):
+        pilot.act(rows)
+    assert pilot._process.gone
+
+
 def test_landers_are_paid_by_a_file(tmp_path: Path):
     path = tmp_path / "pay.py"
     path.write_text("def pay(before, action, after):\n    return after.steps * 2.0 + action")
