@@ -227,7 +227,7 @@ def test_measuring_keeps_the_order_of_landers_and_says_where_a_loop_is(tmp_path:
     monkeypatch.setattr(own, "ALONE", 0.2)
     path.write_text("def act(o):\n    while True:\n        o += 1")
     pilot = MeasuredPilot(path)
-    with pytest.raises(PilotError, match="line [23]: 64 decisions took longer"):
+    with pytest.raises(PilotError, match=r"line [23]: 64 decisions took longer"):
         pilot.act(rows)
     assert pilot._process.gone
 
