@@ -266,6 +266,8 @@ class WatchScene(FormScene):
         for row, widget, what in zip(panel.rows, part.widgets, texts.EXPLAIN_CHOICES, strict=True):
             assert isinstance(widget, ChoiceRow)
             row.what, widget.labels, widget.pad = what, _LABELS, _BETWEEN
+        for old, new in zip(self._rows, part.widgets, strict=False):
+            new.warmth = old.warmth
         self.form.replace(self._rows, part.widgets)
         self._rows = part.widgets
         self._lay_out()
