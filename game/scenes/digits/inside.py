@@ -12,11 +12,11 @@ from ai.nn import ConvolutionLayer, FullyConnectedLayer
 from game.core import texts
 from game.core.scene import push
 from game.digits.cells import CellPicker
-from game.digits.pictures import GREY, SIGNED, Numbers, picture
+from game.digits.pictures import GREY, SIGNED, Numbers, framed
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
 from game.drawing.prose import draw_wrapped
-from game.drawing.tokens import HUMAN, LINE, TITLE
+from game.drawing.tokens import HUMAN, TITLE
 from game.explain.code_listing import draw_listing
 from game.input.controls import Command
 from game.scenes.digits.sums import describe_sum, figure
@@ -221,16 +221,11 @@ class DigitInsideScene(PanelScene):
     def _draw_digit(self, canvas: Canvas, box: pygame.FRect) -> None:
         """Draw the digit, and which part of it the unit depends on."""
         side = min(box.size)
-        self._seen.draw(canvas, (*box.topleft, side, side), side, self._paint_digit)
+        self._seen.draw(canvas, (*box.topleft, side, side), side, framed(self._image))
         if not self.walk.at_answer:
             pixel, (above, beside, below, right) = side / self._image.shape[0], self.walk.field
             corner = (box.left + beside * pixel, box.top + above * pixel)
             canvas.outline((*corner, (right - beside) * pixel, (below - above) * pixel), 1, HUMAN, 1.5)
-
-    def _paint_digit(self, sheet: Canvas) -> None:
-        area = sheet.surface.get_rect()
-        sheet.surface.blit(picture(self._image, area.size), area)
-        pygame.draw.rect(sheet.surface, LINE, area, 1)
 
     def _draw_code(self, canvas: Canvas, box: pygame.FRect) -> None:
         if found := code_of(self.walk):
