@@ -97,7 +97,8 @@ class OwnPilot:
         self._flying: PilotProcess | None = None
         self._before: PilotProcess | None = None  # flew well, and waits in case that the one that flies does not
         self._next: PilotProcess | None = None  # loads the file that was saved last
-        self._late, self._slow, self._until, self._looked = 0, "", 0.0, -_LOOK
+        self._asked, self._slow, self._until = False, "", 0.0  # of the next one: whether, and until when, it may decide
+        self._late, self._looked = 0, -_LOOK
         self._stamp: tuple[int, int] | None = None
         self.look()
 
@@ -152,7 +153,7 @@ class OwnPilot:
             self._next.close()
         self._next = None
         try:
-            self._next, self._until = begin(self.path), now + LOADING
+            self._next, self._asked, self._until = begin(self.path), False, now + LOADING
             self._slow = f"it was not loaded after {LOADING:.0f} seconds"
         except PilotError as error:
             self._refuse(error)
@@ -163,8 +164,11 @@ class OwnPilot:
             if self._next is None or not self._next.ready():
                 return
             if self._next.act(observation, self._patience) is None:
-                self._until = min(self._until, self._clock() + FIRST)
-                self._slow = f"its first decision took longer than {FIRST:.0f} seconds"
+                if not self._asked:
+                    self._asked, self._until = True, self._clock() + FIRST
+                    self._slow = f"its first decision took longer than {FIRST:.0f} seconds"
+                elif self._clock() > self._until:
+                    raise self._next.late(self._slow)
                 return
         except PilotError as error:
             self._refuse(error)

@@ -266,12 +266,9 @@ class ChoiceRow(RowWidget):
     With `on_open`, words for which one line is too short are one alone, the chosen one, and then `all_word`, which
     opens a list of all, as a press of a key does.
 
-    Attributes:
-        labels: points for the label.
-
     """
 
-    labels = _LABELS
+    _labels, _compact = _LABELS, False
 
     def __init__(
         self,
@@ -289,6 +286,10 @@ class ChoiceRow(RowWidget):
         self.options, self.index, self._on_change, self._size = options, index, change, size
         self._on_open, self._all_word = on_open, all_word
         self._places: dict[int, pygame.FRect] = {}
+
+    def compact(self, labels: float, pad: float) -> None:
+        """Take no more room than the words do, with so many points for the label: for choices over a picture."""
+        self._labels, self.pad, self._compact = labels, pad, True
 
     def choose(self, index: int) -> None:
         """Choose an option by its number."""
@@ -308,6 +309,11 @@ class ChoiceRow(RowWidget):
             self.choose(under)
         return None
 
+    def lay(self, cursor: Cursor) -> None:
+        super().lay(cursor)
+        if self._compact and cursor.canvas is None:
+            self.rect.width = round(self.reach + _WORDS / 2)
+
     def shift(self, direction: int) -> bool:
         before = self.index
         self.choose(self.index + direction)
@@ -318,7 +324,7 @@ class ChoiceRow(RowWidget):
         options = dict(enumerate(self.options))
         left, wide = cursor.left, sum(map(words.measured, self.options)) + _WORDS * (len(self.options) - 1)
         if self.label:
-            beside = cursor.left + max(self.labels, words.measured(self.label) + _WORDS)
+            beside = cursor.left + max(self._labels, words.measured(self.label) + _WORDS)
             if beside + wide <= cursor.right or self._on_open:
                 left = beside
                 replace(words).text(self.label)
@@ -342,5 +348,5 @@ class ChoiceRow(RowWidget):
         if cursor.canvas is None:
             self._places = places
             ends = max(place.right for place in places.values()) - _WORDS / 2
-            self.reach = 0.0 if self.label else ends - cursor.left
+            self.reach = 0.0 if self.label and not self._compact else ends - cursor.left
         cursor.y = words.y + LEADING * self._size

@@ -43,6 +43,8 @@ from game.ui.form_scene import FormScene
 from game.ui.hints import HintRow
 from game.ui.panel import Panel
 from game.ui.playback import Playback
+from game.ui.rows import ButtonRow
+from game.ui.widget import Widget
 from game.world.camera import ClearArea, View
 from game.world.path_preview import draw_futures
 from game.world.paths import draw_faint
@@ -223,14 +225,18 @@ class ReplayScene(FormScene):
     # Words
 
     def _build(self) -> None:
-        recording, size = self.record.recording, typeface.grown(SMALL)
+        recording = self.record.recording
         flown = recording.actions, recording.hands
         self._strip = Timeline(self.form.manager, _STRIP, texts.REPLAY_LANES, *flown, self.seek, self._stop_or_go)
         self.form.add(self._strip)
-        part = Part(self.form)
+        self._rows: list[Widget] = []
+        self._describe()
+
+    def _describe(self) -> None:
+        part, self._size = Part(self.form), (size := typeface.grown(SMALL))
         self._panel = Panel(part)
         speeds, verbs = self._panel.beside((2, 3), least=0.0)
-        self.playback.describe(speeds, size).labels = _LABELS
+        self.playback.describe(speeds, size).compact(_LABELS, ButtonRow.pad)
         *_, self._export_word, _ = verbs.words([
             (texts.REPLAY_TAKE_OVER, self._take_over),
             (texts.FRIEND_ANSWER if self.claimed else texts.LOGBOOK_RACE, self._race),
@@ -238,10 +244,13 @@ class ReplayScene(FormScene):
             (texts.REPLAY_EXPORT, self._begin_or_stop_export),
             (texts.BACK, Pop),
         ], size)  # fmt: skip
-        self.form.replace([], part.widgets)
+        self.form.replace(self._rows, part.widgets)
+        self._rows = part.widgets
         self._lay_out()
 
     def _lay_out(self) -> None:
+        if self._size != typeface.grown(SMALL):
+            self._describe()
         scale = self.context.in_window((0, 0, 1000, 0)).width / 1000
         self._panel.lay_out(pygame.FRect(MARGIN, _VERBS, VIEW_SIZE[0] - 2 * MARGIN, 100.0), scale)
 

@@ -33,7 +33,6 @@ from game.ui.form import Part
 from game.ui.form_scene import FormScene
 from game.ui.hints import HintRow
 from game.ui.panel import Panel
-from game.ui.rows import ChoiceRow
 from game.ui.widget import OnPress, Widget
 from game.world.policy_map import ACTION
 
@@ -251,7 +250,7 @@ class WatchScene(FormScene):
 
     def _describe(self, chosen: int) -> None:
         """Describe the rows anew: who flies, how many, how fast, and the map; one without values has none of scores."""
-        part, size = Part(self.form), typeface.grown(SMALL)
+        part, self._size = Part(self.form), (size := typeface.grown(SMALL))
         self._panel = panel = Panel(part)
         names = [brief(networks.word(name), _LONGEST_NAME) for name in self.policies.names]
         self._model_choice = panel.choice(
@@ -259,13 +258,14 @@ class WatchScene(FormScene):
             on_open=self._open_networks, all_word=texts.WATCH_ALL.format(count=len(names)),
         )  # fmt: skip
         counts = [str(count) for count in COUNTS]
-        panel.choice(texts.WATCH_COUNT, counts, self._count, self._choose_count, size)
-        self.playback.describe(panel, size)
+        count = panel.choice(texts.WATCH_COUNT, counts, self._count, self._choose_count, size)
+        speed = self.playback.describe(panel, size)
         kinds = texts.MAP_KINDS if self._valued else texts.MAP_KINDS[: ACTION + 1]
         self._map_choice = panel.choice(texts.WATCH_MAP, kinds, self.world.policy_map.kind, self._choose_map, size)
-        for row, widget, what in zip(panel.rows, part.widgets, texts.EXPLAIN_CHOICES, strict=True):
-            assert isinstance(widget, ChoiceRow)
-            row.what, widget.labels, widget.pad = what, _LABELS, _BETWEEN
+        choices = self._model_choice, count, speed, self._map_choice
+        for row, choice, what in zip(panel.rows, choices, texts.EXPLAIN_CHOICES, strict=True):
+            row.what = what
+            choice.compact(_LABELS, _BETWEEN)
         for old, new in zip(self._rows, part.widgets, strict=False):
             new.warmth = old.warmth
         self.form.replace(self._rows, part.widgets)
@@ -274,9 +274,12 @@ class WatchScene(FormScene):
 
     def _lay_out(self) -> None:
         """Put the rows above the lower edge of the page, whatever their height."""
+        if self._size != typeface.grown(SMALL):
+            self._describe(self._model_choice.index)
         (width, end), scale = _ROWS, self.context.in_window((0, 0, 1000, 0)).width / 1000
-        for height in (end, self._panel.height + 1):
-            self._panel.lay_out(pygame.FRect(MARGIN, end - height, width, height), scale)
+        self._panel.lay_out(pygame.FRect(MARGIN, 0, width, end), scale)
+        height = self._panel.height + 1
+        self._panel.lay_out(pygame.FRect(MARGIN, end - height, width, height), scale)
 
     def _pause(self) -> Transition:
         return push("pause", self, self._begin_anew, texts.PAUSE_NEW_STARTS, self._pause_words)
@@ -288,17 +291,14 @@ class WatchScene(FormScene):
             (texts.PILOTS_OPEN, self._open_pilots),
         ]
 
-    def _want(self, name: str) -> None:
-        self._wanted = name
-
     def _open_networks(self) -> Transition:
-        return push("runs", choose=self._want)
+        return push("runs", choose=partial(setattr, self, "_wanted"))
 
     def _open_pilots(self) -> Transition:
         def choose(path: Path | None) -> None:
             if path:
                 own.take(self.context, path)
-                self._want(path.name)
+                self._wanted = path.name
 
         return push("pilots", choose, now=self.context.pilot.path if self.context.pilot else None)
 

@@ -91,7 +91,7 @@ def test_slower_and_faster(watching: Driver, key: int, times: int, speed: float)
 
 def test_the_mouse_chooses_words_and_landers(watching: Driver):
     choice = watching.choice("16")
-    watching.click((choice.laid()[1][1] + 4, choice.box.centery))
+    watching.click(choice._places[1].center)
     assert scene(watching).swarm.env.num_envs == 16
     scene(watching).playback.stopped = True
     positions = scene(watching).swarm.env.position
