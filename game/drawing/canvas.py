@@ -356,16 +356,9 @@ class Canvas:
         area.size = (max(1, area.width), max(1, area.height))
         return area
 
-    def bar(
-        self,
-        rect: pygame.typing.RectLike,
-        fraction: float,
-        colour: Colour,
-        track: Colour = FAINT,
-        track_alpha: float = 0.6,
-    ) -> None:
+    def bar(self, rect: pygame.typing.RectLike, fraction: float, colour: Colour, track: Colour = FAINT) -> None:
         """Draw a thin rounded track, filled to a fraction from 0 to 1."""
-        self.pill(rect, track, track_alpha)
+        self.pill(rect, track, 0.6)
         if fraction <= 0:
             return
         area, (_, _, width, height) = self._area(rect), rect if isinstance(rect, tuple) else pygame.FRect(rect)

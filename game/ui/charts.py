@@ -22,7 +22,6 @@ _ZOOMS: Final = {
     **dict.fromkeys((pygame.K_0, pygame.K_KP_0), 0),
 }
 _RING: Final = (12, 8)  # points by which the focus ring is wider and higher than the charts
-_WORD_MOST: Final = 8.0  # times to which a press of the word leads, by doubling; the next shows the whole axis
 
 
 class Zoom:
@@ -56,13 +55,6 @@ class Zoom:
             self._middle = float("inf")
         if self.factor == 1.0:
             self.reset()
-
-    def double(self, about: float | None = None) -> None:
-        """Stretch the axis to the next double, and after a few of them show the whole of it again."""
-        if self.factor >= _WORD_MOST:
-            self.reset()
-        else:
-            self.by(2.0, about)
 
     def reach(self, x: float) -> None:
         """Move the part so that x is in it."""

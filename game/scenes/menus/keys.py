@@ -83,7 +83,7 @@ class BindingCell(RowWidget):
         what = self._word(code)
         if not self._bindings.may(self._meaning, code):
             self._on_change(texts.BINDINGS_FIXED.format(key=what))
-        elif poor := self._bindings.bereft(self._meaning, code):
+        elif poor := self._bindings.keyless(self._meaning, code):
             self._on_change(texts.BINDINGS_ONLY.format(key=what, other=texts.BINDINGS[poor.name]))
         else:
             self.stop()

@@ -50,10 +50,14 @@ def test_the_view_reaches_to_the_edges_of_any_window_with_the_page_in_its_middle
         assert moved.points((0, 0)) == pytest.approx(moved.view.topleft, abs=2 * pixel)  # the window's corner
 
 
-@pytest.mark.parametrize("size", SIZES)
-def test_a_click_meets_the_switch_it_sees_and_none_beside_it(open_game, context: Context, size: tuple[int, int]):
+def test_a_click_meets_the_switch_it_sees_and_none_beside_it(open_game, context: Context):
     game: Driver = open_game(SettingsScene)
-    game.resize(size)
+    for size in SIZES:
+        game.resize(size)
+        clicked(game, game.app.context, size)
+
+
+def clicked(game: Driver, context: Context, size: tuple[int, int]) -> None:
     assert game.app.canvas.origin == tuple((w - s) // 2 for w, s in zip(size, game.app.canvas.size, strict=True))
     toggle = game.widget(texts.SETTINGS["reduced_motion"][0])
     for _ in range(9):

@@ -84,7 +84,7 @@ def test_keys_edit_a_line():
     shift, control = pygame.KMOD_LSHIFT, pygame.KMOD_LCTRL
     cases: tuple[tuple[list[Any], str, tuple[int, int]], ...] = (
         (["x"], "x", (1, 1)),  # the first letter takes the place of a suggestion
-        ([([end], none), "!", ([home, right, delete], none), "oo", ([left, back], none)], "Modern!", (2, 2)),
+        ([([end], none), "!", ([home, right, delete], none), "oo", ([left, back], none)], "Modern!", (1, 1)),
         ([([home, left, back, end, right, delete], none)], "Modern", (6, 6)),
         ([([end], none), ([pygame.K_a], control), ([back], none)], "", (0, 0)),
         ([([end], none), ([left, left, left, right], shift)], "Modern", (4, 6)),
