@@ -1,6 +1,7 @@
 """A file is flown as it is saved: what takes over when, and what flies on."""
 
 import os
+import time
 from pathlib import Path
 from typing import ClassVar
 
@@ -197,6 +198,26 @@ def test_a_real_file_flies_as_it_is_saved(tmp_path: Path):
             if (answer := flown(pilot)) == action:
                 break
         assert answer == action
+    pilot.close()
+
+
+def test_a_real_loop_that_was_saved_in_flight_is_told_with_its_line_and_the_last_good_one_flies_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setattr(own, "FIRST", 0.1)
+    path = tmp_path / "pilot.py"
+    path.write_text("def act(o): return 4")
+    pilot = OwnPilot(path, patience=1.0)
+    until = time.monotonic() + 60
+    while flown(pilot) != 4:
+        assert time.monotonic() < until
+    path.write_text("def act(o):\n    while True: pass")
+    while not pilot.problem:
+        flown(pilot)
+        assert time.monotonic() < until
+    assert pilot.problem == "line 2: its first decision took longer than 0 seconds: its process was ended"
+    assert pilot.flies_on
+    assert flown(pilot) == 4
     pilot.close()
 
 
