@@ -82,7 +82,7 @@ def test_exhibits_are_chosen_by_keys_mouse_and_pad(gallery: Driver):
         (lambda: gallery.key(pygame.K_n), 2),
         (lambda: gallery.keys(pygame.K_b, pygame.K_b, pygame.K_b), -1),
         (lambda: gallery.key(pygame.K_n), 0),
-        (lambda: gallery.click(gallery.choice(texts.EXHIBITS[names[0]][0])._places[3].center), 3),  # type: ignore[attr-defined]
+        (lambda: gallery.click(gallery.choice(texts.EXHIBITS[names[0]][0])._places[3].center), 3),
         (lambda: gallery.button(pygame.CONTROLLER_BUTTON_RIGHTSHOULDER), 4),
         (lambda: gallery.button(pygame.CONTROLLER_BUTTON_DPAD_LEFT), 3),
     ):
