@@ -300,7 +300,7 @@ def test_what_is_said_of_ink_is_true(why_not: Driver, modern, monkeypatch):
         after = network.predict(modern.shaped(top.contrast.changed(change.row, change.column, change.ink)))[0]
         before = network.predict(modern.shaped(top.image))[0]
         assert after[7] > before[7]
-        assert f"{figure(float(before[7]))} to {figure(float(after[7]))}" in said
+        assert f"{figure(float(after[7]))} instead of {figure(float(before[7]))}" in said
 
 
 def test_places_are_named_within_the_ink(why_not: Driver):
