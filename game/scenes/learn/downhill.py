@@ -213,7 +213,7 @@ class DownhillChapter(Chapter):
 
     def code(self) -> Sequence[Code]:
         slope = float((self.plain if self.valley else self.line).slopes[0])
-        plain = Code(SGD._fill_step, np.multiply, {np.multiply: f"{slope:+.3f} · {self.rate:.3f}"})
+        plain = Code(SGD._fill_step, np.multiply, {np.multiply: f"{decimal(slope, 3, '+')} · {self.rate:.3f}"})
         adam = Code(Adam._fill_step, np.divide, {np.divide: texts.LEARN_DOWNHILL_ADAM_NOTE})
         return [plain, adam, Code(Optimizer.step, "values")]
 

@@ -25,7 +25,7 @@ from game.drawing.paint import mix
 from game.drawing.tokens import CAPTION, FAINT, HUMAN, INK, LINE, MUTE, NET, NIGHT1, SMALL
 from game.flight import networks
 from game.flight.flight import DECISION_STEPS
-from game.panels.figures import points
+from game.panels.figures import decimal, points
 from game.panels.tables import Part, formula
 from game.scenes.learn.chapter import Chapter, Code
 from game.scenes.learn.pictures import DrawnLander, draw_ground, inside, view_in
@@ -207,7 +207,7 @@ class MomentChapter(Chapter):
         config, told = self.agent.config, self.judged[-1].decision if self.judged else self._first
         assert told.values is not None
         assert told.points is not None
-        best = f"{float(told.values.max()):.3f}"
+        best = decimal(float(told.values.max()), 3)
         scaled = f"{best} / {config.reward_scale:g} = {points(float(told.points.max()), 1)}"
         asked = texts.LEARN_MOMENT_BEST.format(value=best)
         return [

@@ -157,8 +157,11 @@ class NeuronChapter(Chapter):
 
     def code(self) -> Sequence[Code]:
         inputs, weights = self.sensed[0], self.layer.weights[:, 0]
-        total = " ".join(f"{value:+.2f}×{weight:.1f}" for value, weight in zip(inputs, weights, strict=True))
-        sums: dict[Mark, str] = {np.dot: total, "output": f"{float(self.layer.bias[0]):+.1f}"}
+        total = " ".join(
+            f"{decimal(value, 2, '+')}×{decimal(weight, 1)}"
+            for value, weight in zip(inputs.tolist(), weights.tolist(), strict=True)
+        )
+        sums: dict[Mark, str] = {np.dot: total, "output": decimal(float(self.layer.bias[0]), 1, "+")}
         return [Code(FullyConnectedLayer.predict, np.dot, sums)]
 
     def below(self, column: Column) -> None:
