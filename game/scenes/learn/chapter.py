@@ -42,6 +42,7 @@ class Chapter(ABC):
         door: where the same can be done freely.
         shape: height of the picture, as a share of its width.
         tried: whether the player has done what the chapter is about, so that `why` has something to tell.
+        complete: whether all that it asks for was done, beyond a try; then its "see why" makes it done.
         problem: why there is nothing to show or to try; empty if there is.
         changed: set when there are other controls than before; the scene describes them anew.
 
@@ -52,6 +53,7 @@ class Chapter(ABC):
     door: ClassVar[Route]
     shape: ClassVar[float] = 0.52
     problem = ""
+    complete = True
 
     def __init__(self, context: Context) -> None:
         self.context = context

@@ -23,10 +23,12 @@ from game.core.source import Mark
 from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
 from game.drawing.tokens import CAPTION, FAINT, HUMAN, INK, LINE, MUTE, NET, NIGHT1, SMALL
+from game.explain.figures import points
+from game.explain.tables import Part, formula
 from game.flight import networks
 from game.flight.flight import DECISION_STEPS
-from game.panels.figures import decimal, points
-from game.panels.tables import Part, formula
+from game.explain.figures import decimal, points
+from game.explain.tables import Part, formula
 from game.scenes.learn.chapter import Chapter, Code
 from game.scenes.learn.pictures import DrawnLander, draw_ground, inside, view_in
 from game.ui.context import Context
@@ -88,7 +90,7 @@ class MomentChapter(Chapter):
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
-        network = networks.chosen(context.models_dir, context.user_dir)
+        network = networks.load(networks.DEFAULT, context.models_dir / networks.LANDER / networks.DEFAULT)
         self.judged: list[Came] = []
         if isinstance(network.policy, DeepQAgent):
             self.agent = network.policy

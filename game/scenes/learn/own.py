@@ -19,10 +19,10 @@ from game.core.scene import Route, Transition, push
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, SMALL, TITLE
+from game.explain.figures import percent
 from game.flight import networks
 from game.flight import own as own_pilots
 from game.flight.logbook import Records
-from game.panels.figures import percent
 from game.scenes.learn.chapter import Chapter, Code
 from game.scenes.learn.path import Progress
 from game.training.library import Library
@@ -100,6 +100,7 @@ class OwnChapter(Chapter):
             self._runs = [run for run in self._library.runs() if not run.problem or run.flyable]
             self.steps = {name: Step(done, told) for name, (done, told) in self._found(raced_at)}
             self.tried = self.steps["train"].done
+            self.complete = all(step.done for step in self.steps.values())
 
     def _dates(self) -> Iterator[float]:
         """Yield what tells whether the player's files have changed: dates, and the logbook's size."""

@@ -11,7 +11,7 @@ import pygame
 
 from ai.environment import Doubles
 from ai.lander.environment import PARAMS, Outcome
-from ai.training.config import Config
+from ai.training.config import PRESETS, Config
 from ai.training.small_run import Flown, Plan, SmallState, small_runs
 from game.core import texts
 from game.core.worker import Worker, WorkerState
@@ -50,6 +50,15 @@ class RunsChapter(Chapter):
     @abstractmethod
     def configs(self) -> Sequence[Config]:
         """Return the configurations of the runs."""
+
+    @property
+    def words(self) -> dict[str, str]:
+        words, modern, ours = super().words, PRESETS["modern"], self.configs()[0]
+        steps, further = (texts.LEARN_SMALL_STEPS.format(count=each.n_step) for each in (ours, modern))
+        differs = texts.LEARN_SMALL.format(
+            steps=steps, modern_steps=further, batch=ours.batch_size, modern_batch=modern.batch_size
+        )
+        return {**words, "why": f"{words['why']} {differs}"}
 
     @property
     def plan(self) -> Plan:

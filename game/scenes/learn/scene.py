@@ -14,9 +14,9 @@ from game.core.source import Source, source_of
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import HUMAN, INK, MUTE, NET, SMALL, STEP, TEXT, TITLE, Colour
+from game.explain.code_listing import add_listing
+from game.explain.explained import Explained
 from game.input.controls import Command
-from game.panels.code_listing import add_listing
-from game.panels.explained import Explained
 from game.scenes.learn.chapter import Code
 from game.scenes.learn.path import FIRST, PAGES, PATH, Progress, chapter_type, following
 from game.ui.actions import Action, Table
@@ -50,6 +50,8 @@ class ChapterScene(PanelScene):
         self.page = PREDICT if self._progress.done(key) else min(self._progress.page(key), TRY)
         self._function, self._told, self._code = 0, "", list[Code]()
         context.settings.chapter = key
+        if not self.chapter.complete:
+            self._progress.note(key, done=False)
         self.turn_to(self.page)
 
     def close(self) -> None:
@@ -67,15 +69,18 @@ class ChapterScene(PanelScene):
         self.page = page
         self._progress.note(self.key, page=page)
         if page == WHY and self.chapter.tried:
-            self._progress.note(self.key, done=True)
-        self._told = self.chapter.why() if self.chapter.tried else ""
-        # Of what runs on, the numbers of this moment: they could not be read otherwise.
-        self._code = list(self.chapter.code()) if page == CODE and not self.chapter.problem else []
+            self._progress.note(self.key, done=self.chapter.complete)
         self.context.apply_settings()
         self.panel.scrolled = 0.0
-        self.build()
+        self.reword()
         if not on_tabs:
             self.form.focus(self.form.widgets[1])
+
+    def reword(self) -> None:
+        """Describe the page with the numbers of this moment: of what runs on they could not be read otherwise."""
+        self._told = self.chapter.why() if self.chapter.tried else ""
+        self._code = list(self.chapter.code()) if self.page == CODE and not self.chapter.problem else []
+        self.build()
 
     def _restart(self) -> None:
         """Begin the chapter's picture anew."""

@@ -15,8 +15,8 @@ from game.core.source import Source, source_of
 from game.drawing.canvas import Point
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import CAPTION, INK, NET
-from game.panels.code_listing import add_listing
-from game.panels.figures import number, points
+from game.explain.code_listing import add_listing
+from game.explain.figures import number, points, signed
 from game.ui.panel import Column
 
 
@@ -51,6 +51,11 @@ class Frame:
 def in_points(value: float) -> str:
     """Write a number of points with its unit."""
     return texts.LESSON_POINTS.format(points=points(value))
+
+
+def pulled(value: float) -> str:
+    """Write how far something moved a value, in points, with digits that tell it from 0."""
+    return points(value) if abs(value) >= 0.1 else signed(value)
 
 
 _LISTING: Final = 300.0  # height

@@ -14,9 +14,9 @@ from game.core.scene import Transition
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import CAPTION, INK, LINE, MUTE, NET, SMALL
+from game.explain.explained import Explained
+from game.explain.lesson_door import ImageDoor
 from game.input.controls import Command
-from game.panels.explained import Explained
-from game.panels.lesson_door import ImageDoor
 from game.scenes.lesson.frame import CodeWalk, Frame
 from game.scenes.lesson.frames import parts_of
 from game.ui.actions import Action, Table
@@ -118,6 +118,13 @@ class LessonScene(PanelScene):
         self.lesson, self.parts = lesson, parts_of(lesson)
         self.build()
 
+    def reword(self) -> None:
+        """Take the lesson apart anew, in the other language."""
+        alone = getattr(self.parts[0].frame, "alone", None)
+        self._take(self.lesson)
+        if alone is not None:
+            self.parts[0].frame.alone = alone
+
     @property
     def frame(self) -> Frame:
         """The frame that is shown."""
@@ -133,6 +140,7 @@ class LessonScene(PanelScene):
         panel.pair(texts.LESSON_TITLE, self._whose, MUTE)
         frames = [part.frame for part in self.parts]
         self.cards = panel.widget(Cards(self.form.manager, frames, self.current, self.show))
+        panel.explain("")  # each card says what it is
         panel.gap(8)
         panel.text(self.frame.sentence)
         panel.gap(8)

@@ -19,10 +19,10 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import CAPTION, EMBER, FAINT, HUMAN, INK, LINE, MUTE, NET, SMALL
-from game.panels.figures import decimal, number, points, signed
-from game.panels.tables import Line, Part, formula, table, told
+from game.explain.figures import decimal, number, points, signed
+from game.explain.tables import Line, Part, formula, table, told
 from game.scenes.lesson.flight import said_action
-from game.scenes.lesson.frame import Frame, in_points
+from game.scenes.lesson.frame import Frame, in_points, pulled
 from game.scenes.lesson.step import LearningStep, Pulls
 from game.ui.panel import Column
 
@@ -240,8 +240,8 @@ class AfterFrame(Frame):
             before=write(before), after=write(after), target=write(target), by=number(abs(closer))
         )
         if self.pulls is not None:
-            strongest = texts.LESSON_PULL_PARTS[int(np.argmax(np.abs(self._found())))][0]
-            name = strongest.format(count=step.examples - 1)
+            strongest = int(np.argmax(np.abs(self._found())))
+            name = texts.LESSON_PULL_PARTS[strongest][0].format(count=step.examples - (strongest > 0))
             self._told = f"{self._told} {texts.LESSON_STRONGEST.format(name=name)}"
 
     def describe(self, column: Column) -> None:
@@ -284,10 +284,10 @@ class AfterFrame(Frame):
         canvas.line((zero, box.top), (zero, box.bottom), LINE)
         for row, (pull, (word, help_)) in enumerate(zip(found, texts.LESSON_PULL_PARTS, strict=True)):
             y, length = box.top + _ROW * row + 19, 0.16 * box.width * pull / most
-            canvas.text(word.format(count=self.step.examples - 1), (box.left, y), size=SMALL, colour=MUTE,
+            canvas.text(word.format(count=self.step.examples - (row > 0)), (box.left, y), size=SMALL, colour=MUTE,
                         room=_NAMES * box.width)  # fmt: skip
             end = box.left + _FIGURES * box.width
-            canvas.text(points(pull), (end, y), size=SMALL, align="right", tabular=True)
+            canvas.text(pulled(pull), (end, y), size=SMALL, align="right", tabular=True)
             area = canvas.rect(min(zero, zero + length), y - 8, max(abs(length), 1), 7)
             canvas.fill(area, NET if pull * (target - before) >= 0 else EMBER)
-            canvas.explain((box.left, y - 14, box.width, _ROW), help_, partial(points, pull, 3))
+            canvas.explain((box.left, y - 14, box.width, _ROW), help_, partial(pulled, pull))

@@ -33,7 +33,8 @@ _MOUSE: Final = (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN)
 class Explained:
     """Tooltips of one scene: pass it every event before the scene's own, `update` it, and draw it last.
 
-    Where the arrows fly (`flies`), only the key that began goes on to the next area.
+    The key that began ends it again; the arrows go on to other areas. Where they fly (`flies`), that key goes on, and ends
+    it after the last area.
 
     Attributes:
         stepping: whether areas are explained one after the other, without a mouse.
@@ -42,7 +43,7 @@ class Explained:
 
     def __init__(self, flies: bool = False) -> None:
         self.stepping, self._flies = False, flies
-        self._number = self._rest = 0
+        self._number = self._rest = self._areas = 0
         self._ready = False  # whether the mouse has rested for long enough
 
     def action(self) -> Action:
@@ -62,7 +63,10 @@ class Explained:
         command = translate(event)
         if not self.stepping:
             return False
-        if self.action().answers(event) or (command in _AFTER and not self._flies):
+        if self.action().answers(event):
+            self._number += 1
+            self.stepping = self._flies and self._number < self._areas
+        elif command in _AFTER and not self._flies:
             self._number += 1
         elif command in _BEFORE and not self._flies:
             self._number -= 1
@@ -80,6 +84,7 @@ class Explained:
     def draw(self, canvas: Canvas) -> None:
         """Draw the tooltip of the area that is pointed at, or that is the next to be explained."""
         areas = canvas.explained
+        self._areas = len(areas)
         if self.stepping and areas:
             area = areas[self._number % len(areas)]
             canvas.outline(area.box.inflate(8, 6), 6, INK, 1, 0.8)
