@@ -14,7 +14,7 @@ import pygame
 from ai.agent.agent import DeepQAgent
 from ai.agent.decision import Decision, in_points
 from ai.environment import Floats
-from ai.lander.environment import ACTION_NAMES, NUM_ACTIONS, LanderEnv, Outcome
+from ai.lander.environment import ACTION_NAMES, NUM_ACTIONS, PARAMS, LanderEnv, Outcome
 from ai.nn import NeuralNetwork
 from ai.training.config import Config
 from game.core import texts
@@ -23,12 +23,10 @@ from game.core.source import Mark
 from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
 from game.drawing.tokens import CAPTION, FAINT, HUMAN, INK, LINE, MUTE, NET, NIGHT1, SMALL
-from game.explain.figures import points
+from game.explain.figures import decimal, points
 from game.explain.tables import Part, formula
 from game.flight import networks
 from game.flight.flight import DECISION_STEPS
-from game.explain.figures import decimal, points
-from game.explain.tables import Part, formula
 from game.scenes.learn.chapter import Chapter, Code
 from game.scenes.learn.pictures import DrawnLander, draw_ground, inside, view_in
 from game.ui.context import Context
@@ -44,7 +42,7 @@ MOMENTS: Final = (
     (8, "random", 5),
 )
 SCALE: Final = (-150.0, 200.0)  # points, of the line
-_MIDDLE, _METRES = (0.0, 9.4), 50.0  # metres: of the picture, and across it
+_METRES, _BELOW = 50.0, 1.6  # metres: across the picture, and below the ground
 _ANSWERS: Final = (150.0, 80.0, 20.0)  # points of the answers, before that of less than 0
 _ASKED: Final = range(80, 121)  # decisions until the end, that are about the hundred of the question
 _ALIKE: Final = 5.0  # points by which what came of two actions may differ and be about the same
@@ -235,7 +233,8 @@ class MomentChapter(Chapter):
 
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
         world = pygame.FRect(box.left, box.top, box.width, self.sky * box.height)
-        view = view_in(world, _MIDDLE, _METRES, canvas.scale)
+        high = _METRES * world.height / world.width
+        view = view_in(world, (0.0, PARAMS.ground - _BELOW + high / 2), _METRES, canvas.scale)
         with inside(canvas, world):
             draw_ground(canvas, world, view)
             for a, b in pairwise(view.points(self._path).tolist()):
@@ -280,7 +279,7 @@ class ChoiceChapter(MomentChapter):
 
     """
 
-    key, shape, sky = "choice", 0.68, 0.52
+    key, shape, sky = "choice", 0.62, 0.5
 
     def __init__(self, context: Context) -> None:
         self.first: int | None = None

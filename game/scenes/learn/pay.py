@@ -23,8 +23,8 @@ from game.core.scene import Route, push
 from game.core.worker import Worker, WorkerState
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, SMALL
-from game.flight.poses import Poses
 from game.explain.figures import points
+from game.flight.poses import Poses
 from game.scenes.learn.chapter import Chapter, Code
 from game.scenes.learn.pictures import draw_ground, view_in
 from game.ui.context import Context

@@ -137,7 +137,7 @@ class LessonScene(PanelScene):
     # Rows
 
     def describe(self, panel: Panel) -> None:
-        panel.pair(texts.LESSON_TITLE, self._whose, MUTE)
+        panel.text(lambda: f"{texts.LESSON_TITLE}: {self._whose()}", colour=MUTE)
         frames = [part.frame for part in self.parts]
         self.cards = panel.widget(Cards(self.form.manager, frames, self.current, self.show))
         panel.explain("")  # each card says what it is

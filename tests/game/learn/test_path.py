@@ -1,5 +1,6 @@
 """The path: its list, the four pages of a chapter, progress, and every way to move through it."""
 
+import re
 from collections.abc import Callable
 
 import pygame
@@ -138,6 +139,47 @@ def test_a_try_that_ends_while_its_why_is_open_is_waited_for_and_told(open_game:
             assert scene.chapter.why().split()[0] in written(driver, monkeypatch)
         driver.app.close()
         assert not scene.chapter.running or end, "leaving a chapter ends its run"
+
+
+def test_no_hyphen_stands_for_a_minus_and_another_language_changes_all_words_at_once(
+    open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch, subtests: pytest.Subtests
+):
+    settle(context)
+    begin = {"neuron": "hint", "moment": "go"}
+    for key in KEYS:
+        with subtests.test(key):
+            driver = open_game(ChapterScene, key)
+            scene = driver.top
+            scene.turn_to(TRY)
+            if key in begin:
+                getattr(scene.chapter, begin[key])()
+            driver.skip(20)
+            for page in range(len(PAGES)):
+                scene.turn_to(page)
+                said = written(driver, monkeypatch)
+                assert not re.findall(r"(?<![\w.])-\d", said)
+                try:
+                    texts.choose("de")
+                    driver.frames(1)
+                    scene.reword()
+                    german = written(driver, monkeypatch)
+                finally:
+                    texts.choose("en")
+                    scene.reword()
+                assert texts.LEARN[key]["question"] not in german
+
+
+def test_a_chapter_of_steps_is_done_when_all_of_them_are(open_game: Open, context: Context):
+    settle(context, learnt={"own": {"done": True}})
+    driver = open_game(ChapterScene, "own")
+    progress, chapter = Progress(driver.app.context.settings), driver.top.chapter
+    assert not progress.done("own"), "it says 0 of 6"
+    chapter.tried = True
+    driver.top.turn_to(WHY)
+    assert not progress.done("own")
+    chapter.complete = True
+    driver.top.turn_to(WHY)
+    assert progress.done("own")
 
 
 def test_damaged_progress_counts_as_nothing_done_and_the_path_goes_on(open_game: Open, context: Context):

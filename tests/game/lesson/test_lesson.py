@@ -16,10 +16,11 @@ from game.core import texts
 from game.explain.figures import number, percent, points
 from game.scenes.lesson.alone import AloneFrame
 from game.scenes.lesson.flight import in_units, sensed
-from game.scenes.lesson.frame import case_of, shape_of
+from game.scenes.lesson.frame import case_of, pulled, shape_of
 from game.scenes.lesson.frames import parts_of
 from game.scenes.lesson.network import GradientFrame, NetworkFrame
 from game.scenes.lesson.scene import LessonScene
+from game.scenes.lesson.step import Pulls
 from game.scenes.lesson.update import AfterFrame, ErrorFrame
 from tests.support.driver import Driver
 from tests.support.lessons import SMALL, digit_lesson_of, lesson_from, lesson_of, shown
@@ -169,6 +170,42 @@ def test_it_opens_on_this_memory_alone_which_walks_to_its_target_press_by_press(
     assert len(frame.alone.way) == 1
 
 
+def test_why_it_moves_far_alone_and_little_in_the_run_is_said_on_both_frames(driver: Driver, lesson: Lesson):
+    frame, count = driver.top.frame, len(lesson.batch_errors)
+    step, action = frame._step, int(lesson.cell.action)
+    moved = float(lesson.predicted_after[action] - lesson.predicted[action])
+    own = pulled(Pulls.of(step, lesson.derivative, moved).own / lesson.config.reward_scale)
+    assert texts.LESSON_ALONE_MORE.format(count=count, own=own) in " ".join(shown(driver, ALONE))
+    frame.once()
+    alone, run = abs(frame.alone.way[1] - frame.alone.way[0]), abs(float(own.replace("−", "-"))) * step.scale
+    assert alone > 10 * run, "the steps are large there"
+    words = " ".join(shown(driver, AFTER))
+    assert texts.LESSON_PULL_PARTS[0][0].format(count=count) in words
+    assert own in words
+    assert own != "+0.00"
+
+
+def test_another_language_changes_all_words_at_once(driver: Driver):
+    driver.press_on(texts.LESSON_ALONE_ONCE)
+    english = driver.top.frame.sentence
+    try:
+        texts.choose("de")
+        driver.top.reword()
+        assert [part.frame.name for part in driver.top.parts] == [texts.LESSON_FRAMES[name][0] for name in NAMES]
+        assert driver.top.frame.sentence != english
+        assert len(driver.top.frame.alone.way) == 2, "what was tried stays"
+    finally:
+        texts.choose("en")
+
+
+def test_each_frame_is_seen_whole_and_the_strip_of_cards_is_not_covered(driver: Driver):
+    for place, name in enumerate(NAMES):
+        driver.top.show(place)
+        driver.frames(2)
+        assert not driver.top.panel.overflows, name
+        assert texts.LESSON_TITLE not in explained(driver)
+
+
 # The numbers of each frame
 
 
@@ -267,7 +304,6 @@ def test_the_gradient_and_the_step_of_any_weight_are_the_optimizers(driver: Driv
         assert weights[weight.start, weight.end] == step.values_before[index]
         assert {number(float(step.gradient[index])), number(-float(step.taken[index]))} <= words
         assert number(float(step.values_after[index])) in words
-        assert number(float(np.linalg.norm(step.share))) in words
         if lesson.config.optimizer == "adam":
             assert number(0.1 * float(step.optimizer_after["gradient_sum"][index])) in words
             assert number(0.001 * float(step.optimizer_after["square_sum"][index])) in words
