@@ -96,6 +96,9 @@ class Chapter(ABC):
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
         """Draw the picture in a box, in points, `alpha` of the way from the step before to this one."""
 
+    def enter(self) -> None:  # noqa: B027 - only one depends on other screens
+        """Come to the top again, after another screen."""
+
     def update(self) -> None:  # noqa: B027 - nothing moves in some chapters
         """Advance by 1/60 s; called on every page but the first, on which the picture stands still."""
 

@@ -15,7 +15,6 @@ from ai.environment import Doubles
 from ai.training.config import Config
 from ai.training.small_run import SMALL_RUN, TESTED, Plan, SmallState
 from game.core import texts
-from game.core.scene import Route
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.paint import mix
@@ -48,7 +47,7 @@ class MemoryChapter(RunsChapter):
 
     """
 
-    key, door = "memory", Route("train")
+    key = "memory"
     LENGTH = YESTERDAY + TODAY
     PLAN = Plan(heights=(5.0, 8.0), change=YESTERDAY, later=(0.3, 1.0), tested=(5.0, 8.0))
 
@@ -84,8 +83,8 @@ class MemoryChapter(RunsChapter):
         self.seed = 0
         super().start()
 
-    def _take(self, states: tuple[SmallState, ...]) -> None:
-        super()._take(states)
+    def take(self, states: tuple[SmallState, ...]) -> None:
+        super().take(states)
         memory = states[0].memory
         self._oldest = memory.oldest
         for number, pay in enumerate((memory.cells.reward / SMALL_RUN.reward_scale).tolist(), memory.first):
@@ -97,7 +96,7 @@ class MemoryChapter(RunsChapter):
         drawn = memory.drawn[: SMALL_RUN.batch_size]  # for the first of this decision's learning steps
         self.light[np.minimum(drawn // _EACH, len(self.light) - 1)] = 1.0
 
-    def _finish(self) -> None:
+    def finish(self) -> None:
         """Keep the result, to compare it with that of other memories."""
         passed, changed = np.nan_to_num(self.history(0, "passed")), min(YESTERDAY, self.LENGTH)
         self.results[KINDS[self.flown]] = float(passed[changed]), float(passed[changed:].min())

@@ -54,6 +54,10 @@ class ChapterScene(PanelScene):
             self._progress.note(key, done=False)
         self.turn_to(self.page)
 
+    def enter(self) -> None:
+        self.chapter.enter()
+        self.reword()
+
     def close(self) -> None:
         self.chapter.close()
         self.context.apply_settings()

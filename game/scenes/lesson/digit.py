@@ -1,4 +1,4 @@
-"""Frames of a lesson of a network that reads digits: the image, and what it answers, should answer, and sends back."""
+"""Frames of a lesson of a network that reads digits: the image, and tables with a line for each digit."""
 
 from __future__ import annotations
 
@@ -6,14 +6,13 @@ from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
-import pygame
 
 from ai.digits.training import DigitTraining
 from ai.environment import Floats
 from ai.explain.digit_lesson import DigitLesson
 from ai.explain.recorder import Function
 from game.core import texts
-from game.drawing.canvas import Canvas
+from game.digits.pictures import GREY, picture
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import TITLE
 from game.explain.figures import number, signed
@@ -31,64 +30,45 @@ def pixel_name(unit: int) -> str:
     return texts.LESSON_PIXEL.format(row=unit // SIDE + 1, column=unit % SIDE + 1)
 
 
-class ImageFrame(Frame):
-    """Frame of the image: its pixels, each with its number."""
+def image_frame(lesson: DigitLesson) -> Frame:
+    """Return the frame of the image."""
+    said = texts.LESSON_LABEL.format(digit=lesson.labels[lesson.step.row])
 
-    def __init__(self, lesson: DigitLesson) -> None:
-        self._image, self._said = lesson.image, texts.LESSON_LABEL.format(digit=lesson.labels[lesson.step.row])
-        super().__init__(texts.LESSON_DIGIT_FRAMES["image"], self._said, (DigitTraining.advance,), "images")
+    def write(cursor: Cursor) -> None:
+        box = cursor.take(min(cursor.width, _HIGHEST))
+        if canvas := cursor.canvas:
+            area = canvas.rect(box.left, box.top, box.height, box.height)
+            canvas.surface.blit(picture(lesson.image, area.size, GREY), area)
 
-    def describe(self, column: Column) -> None:
+    def describe(column: Column) -> None:
         left, right = column.beside((1, 1), _LEAST)
-        left.add(self._write_image)
-        right.text(self._said, size=TITLE)
+        left.add(write)
+        right.text(said, size=TITLE)
         right.aside(texts.LESSON_IMAGE_NOTE)
 
-    def _write_image(self, cursor: Cursor) -> None:
-        side = min(cursor.width, _HIGHEST)
-        box = cursor.take(side)
-        if canvas := cursor.canvas:
-            self._draw(canvas, pygame.FRect(box.left, box.top, side, side))
-            if canvas.pointer:
-                pixel = side / SIDE
-                column, row = (
-                    int((at - start) // pixel) for at, start in zip(canvas.pointer, box.topleft, strict=True)
-                )
-                if 0 <= row < SIDE and 0 <= column < SIDE:
-                    area = (box.left + column * pixel, box.top + row * pixel, pixel, pixel)
-                    ink = told((texts.LESSON_INK, f"{float(self._image[row, column]):.3f}"))
-                    canvas.explain(area, pixel_name(row * SIDE + column), lambda: ink)
-
-    def _draw(self, canvas: Canvas, box: pygame.FRect) -> None:
-        levels = np.clip(255 * self._image, 0, 255).astype(np.uint8)
-        picture = pygame.surfarray.make_surface(np.repeat(levels.T[:, :, None], 3, axis=2))
-        area = canvas.rect(*box)
-        canvas.surface.blit(pygame.transform.scale(picture, area.size), area)
+    return Frame(texts.LESSON_DIGIT_FRAMES["image"], said, (DigitTraining.advance,), "images", describe)
 
 
-class DigitFrame(Frame):
-    """Frame with a line for each digit, and columns of numbers with bars: some of `OUTPUT` to `BACK`, (10,) each."""
+def digit_frame(
+    words: Sequence[str],
+    figure: str,
+    functions: Sequence[Function],
+    digit: int,
+    columns: Sequence[tuple[int, Floats]],
+) -> Frame:
+    """Return a frame with a line for each digit, and columns of figures: some of `OUTPUT` to `BACK`, (10,) each."""
+    heads, helps = texts.LESSON_DIGIT_COLUMNS, texts.LESSON_DIGIT_HELP
+    shares = [np.abs(values) / max(float(np.abs(values).max()), 1e-9) for _, values in columns]
+    lines = []
+    for each in range(10):
+        figures = [(signed if kind == BACK else number)(float(values[each])) for kind, values in columns]
+        rows = told(*((helps[kind], written) for (kind, _), written in zip(columns, figures, strict=True)))
+        bars = [float(share[each]) for share in shares]
+        lines.append(Line((str(each), *figures), helps[columns[-1][0]], rows, each == digit, bars))
+    head = [heads[0], *(heads[kind] for kind, _ in columns)]
 
-    def __init__(
-        self,
-        words: Sequence[str],
-        figure: str,
-        functions: Sequence[Function],
-        digit: int,
-        columns: Sequence[tuple[int, Floats]],
-    ) -> None:
-        super().__init__(words, figure, functions, "targets")
-        heads, helps = texts.LESSON_DIGIT_COLUMNS, texts.LESSON_DIGIT_HELP
-        shares = [np.abs(values) / max(float(np.abs(values).max()), 1e-9) for _, values in columns]
-        self._head = [heads[0], *(heads[kind] for kind, _ in columns)]
-        self._last, self._digit, what = shares[-1].tolist(), digit, helps[columns[-1][0]]
-        self._lines = []
-        for each in range(10):
-            figures = [(signed if kind == BACK else number)(float(values[each])) for kind, values in columns]
-            rows = told(*((helps[kind], written) for (kind, _), written in zip(columns, figures, strict=True)))
-            bars = [float(share[each]) for share in shares]
-            self._lines.append(Line((str(each), *figures), what, rows, each == digit, bars))
-
-    def describe(self, column: Column) -> None:
+    def describe(column: Column) -> None:
         left, _ = column.beside((3, 2), _LEAST)
-        left.add(table(self._head, lambda: self._lines))
+        left.add(table(head, lambda: lines))
+
+    return Frame(words, figure, functions, "targets", describe)

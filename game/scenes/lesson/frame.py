@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -21,7 +21,7 @@ from game.ui.panel import Column
 
 
 class Frame:
-    """One of the frames of a lesson; a subclass adds its rows.
+    """One of the frames of a lesson; what has a state of its own is a subclass.
 
     Attributes:
         name: its name, on its card.
@@ -33,13 +33,21 @@ class Frame:
     """
 
     def __init__(
-        self, words: Sequence[str], figure: str, functions: Sequence[Function], begin: str = "", sentence: str = ""
+        self,
+        words: Sequence[str],
+        figure: str,
+        functions: Sequence[Function],
+        begin: str = "",
+        describe: Callable[[Column], None] | None = None,
+        sentence: str = "",
     ) -> None:
-        self.name, self.sentence = words[0], sentence or words[1]
+        self.name, self.sentence, self._describe = words[0], sentence or words[1], describe
         self.figure, self.functions, self.begin = figure, tuple(functions), begin
 
     def describe(self, column: Column) -> None:
         """Add the rows."""
+        if self._describe:
+            self._describe(column)
 
     def point(self, place: Point | None) -> None:
         """Follow the pointer, in points; None while it is nowhere."""
@@ -71,14 +79,12 @@ _VALUES_OF: Final = ("DeepQAgent._next_value", "DeepQAgent._learn_from")  # func
 
 def in_points_of_reward(line: Line, scale: float) -> Line:
     """Return a line of the agent's code with its rewards and values in points, as all else on the screen has them."""
-
-    def shown(name: str, value: Value) -> Value:
-        rewards = name in _REWARDS or (name == "values" and line.function in _VALUES_OF)
-        if not rewards or value.case is None:
-            return value
-        return replace(value, case=np.asarray(value.case, float) / scale)
-
-    return replace(line, values={name: shown(name, value) for name, value in line.values.items()})
+    names = _REWARDS | {"values"} if line.function in _VALUES_OF else _REWARDS
+    return replace(line, values={
+        name: replace(value, case=np.asarray(value.case, float) / scale)
+        if name in names and value.case is not None else value
+        for name, value in line.values.items()
+    })  # fmt: skip
 
 
 class CodeWalk:

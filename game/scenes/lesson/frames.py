@@ -20,12 +20,12 @@ from ai.nn.costs import softmax
 from game.core import texts
 from game.explain.figures import number, points, signed
 from game.scenes.lesson.alone import AloneFrame
-from game.scenes.lesson.digit import BACK, OUTPUT, PROBABILITY, SIDE, TARGET, DigitFrame, ImageFrame, pixel_name
-from game.scenes.lesson.flight import HappenedFrame, MomentFrame, said_action
+from game.scenes.lesson.digit import BACK, OUTPUT, PROBABILITY, SIDE, TARGET, digit_frame, image_frame, pixel_name
+from game.scenes.lesson.flight import happened_frame, moment_frame, said_action
 from game.scenes.lesson.frame import CodeWalk, Frame, in_points, in_points_of_reward
 from game.scenes.lesson.network import GradientFrame, NetworkFrame
 from game.scenes.lesson.step import LearningStep
-from game.scenes.lesson.update import AfterFrame, ErrorFrame, TargetFrame
+from game.scenes.lesson.update import AfterFrame, ErrorFrame, target_frame
 
 
 @dataclass(frozen=True)
@@ -70,10 +70,10 @@ def agent_frames(lesson: Lesson) -> list[Frame]:
         sentence = f"{sentence} {texts.LESSON_NOT_THE_BEST.format(action=said_action(best), value=higher)}"
     return [
         AloneFrame(lesson, step),
-        MomentFrame(lesson),
+        moment_frame(lesson),
         NetworkFrame(words["values"], in_points(predicted / scale), sentence, forward_functions(network), step),
-        HappenedFrame(lesson),
-        TargetFrame(lesson),
+        happened_frame(lesson),
+        target_frame(lesson),
         ErrorFrame(lesson),
         GradientFrame(words["gradient"], backward_functions(network, make_optimizer(lesson.config)), step),
         AfterFrame(words["after"], (Optimizer.step, DeepQAgent._update_target), step,
@@ -109,13 +109,14 @@ def digit_frames(lesson: DigitLesson) -> list[Frame]:
     if lesson.config.dropout:
         sentence = f"{sentence} {texts.LESSON_DROPOUT_NOTE}"
     return [
-        ImageFrame(lesson),
+        image_frame(lesson),
         NetworkFrame(words["values"], value, sentence, forward_functions(network), step),
-        DigitFrame(words["answer"], str(lesson.probabilities_before.argmax()), (DigitClassifier.probabilities, softmax),
-                   digit, (output, (PROBABILITY, lesson.probabilities_before))),
-        DigitFrame(words["target"], str(digit), (DigitTraining.advance,), digit, (output, target)),
-        DigitFrame(words["error"], signed(float(lesson.derivative[digit])), cost, digit,
-                   (output, target, (BACK, lesson.derivative))),
+        digit_frame(words["answer"], str(lesson.probabilities_before.argmax()),
+                    (DigitClassifier.probabilities, softmax), digit,
+                    (output, (PROBABILITY, lesson.probabilities_before))),
+        digit_frame(words["target"], str(digit), (DigitTraining.advance,), digit, (output, target)),
+        digit_frame(words["error"], signed(float(lesson.derivative[digit])), cost, digit,
+                    (output, target, (BACK, lesson.derivative))),
         GradientFrame(words["gradient"], backward_functions(network, optimizer), step),
         AfterFrame(words["after"], (Optimizer.step,), step, (before, after, 1.0), None, texts.LESSON_DIGIT_NEARER),
     ]  # fmt: skip

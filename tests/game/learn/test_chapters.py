@@ -25,7 +25,6 @@ from game.scenes.learn import runs as runs_module
 from game.scenes.learn.backwards import BackwardsChapter
 from game.scenes.learn.chapter import Chapter
 from game.scenes.learn.downhill import DownhillChapter
-from game.scenes.learn.duels import DaringChapter, TargetChapter
 from game.scenes.learn.memory import KINDS, MemoryChapter
 from game.scenes.learn.moment import MOMENTS, ChoiceChapter, MomentChapter
 from game.scenes.learn.neuron import GOAL, HINT, NeuronChapter
@@ -33,6 +32,7 @@ from game.scenes.learn.own import OwnChapter
 from game.scenes.learn.path import PATH, chapter_type
 from game.scenes.learn.pay import ASKED, DECISIONS, FLIGHTS, PAYS, Flown, PayChapter, config_of
 from game.scenes.learn.plane import PlaneChapter
+from game.scenes.learn.runs import DaringChapter, TargetChapter
 from game.scenes.learn.scene import placed
 from game.ui.context import Context
 from tests.support import inline_worker
@@ -441,8 +441,7 @@ def test_the_list_ticks_what_was_really_done_and_nothing_before(made: Made, cont
     chapter = made(OwnChapter)
 
     def done() -> set[str]:
-        for _ in range(60):
-            chapter.update()
+        chapter.enter()
         return {name for name, step in chapter.steps.items() if step.done}
 
     assert done() == set()

@@ -10,10 +10,10 @@ from ai.training.small_run import SMALL_RUN, Plan, SmallRun
 from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.scenes.learn import pay
-from game.scenes.learn.duels import BOUND, DARING, NORMALISED, PAY, DaringChapter, TargetChapter, config_of
 from game.scenes.learn.memory import LATEST, MemoryChapter
 from game.scenes.learn.moment import MOMENTS
 from game.scenes.learn.pay import PAYS
+from game.scenes.learn.runs import BOUND, DARING, NORMALISED, PAY, DaringChapter, TargetChapter, config_of
 from game.ui.context import Context
 
 

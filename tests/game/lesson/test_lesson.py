@@ -375,13 +375,6 @@ def test_an_image_is_shown_in_seven_frames_as_well(open_game: Open, preset: str)
     frame = driver.top.parts[1].frame
     assert isinstance(frame, NetworkFrame)
     assert_sums_add_up(frame)
-    driver.top.show(0)
-    driver.frames(2)
-    box = next(row for row in driver.top.panel.rows if row.box.height > 300).box
-    pixel = 400 / 28
-    driver.move((box.left + 10.5 * pixel, box.top + 20.5 * pixel))
-    told = explained(driver)[texts.LESSON_PIXEL.format(row=21, column=11)]
-    assert told.endswith(f"{float(lesson.image[20, 10]):.3f}")
 
 
 def test_a_dueling_network_and_one_without_source_are_shown(open_game: Open, monkeypatch: pytest.MonkeyPatch):
