@@ -109,7 +109,6 @@ class MemoryChapter(RunsChapter):
         return int(np.argmax(lost)) if max(lost) >= _FORGOTTEN else len(KINDS)
 
     def why(self) -> str:
-        """Return for each memory that was tried how it flew from high up before and after."""
         named = dict(zip(KINDS, texts.LEARN_MEMORY_NAMES, strict=True))
         return " ".join(
             texts.LEARN_MEMORY_WHY.format(name=named[kind], before=percent(before), after=percent(after))

@@ -103,8 +103,6 @@ class NeuronChapter(Chapter):
         body.set(velocity=body.velocity + np.array([side * _SHOVE[0], 0.0]), mask=flying)
         body.set(angular_velocity=body.angular_velocity - side * _SHOVE[1], mask=flying)
 
-    # The flight
-
     def _begin(self) -> None:
         lean = _LEANS[self._flights % len(_LEANS)]
         self._flights += 1
@@ -146,10 +144,7 @@ class NeuronChapter(Chapter):
             self.tried = self.tried or any(self.weights)
         self.tried = self.tried or self.best[0] >= GOAL
 
-    # What it tells
-
     def why(self) -> str:
-        """Return for how long the best flight lasted, and with which weights."""
         seconds, weights = self.best
         tilt, spin, speed = (decimal(weight, 1, "+") for weight in weights)
         told = texts.LEARN_NEURON_WHY["flew" if seconds >= GOAL else "fell"]

@@ -196,10 +196,7 @@ class PayChapter(Chapter):
         if trial.over:
             self.results[self.own.name if self.own else self.pay], self.tried, self.changed = trial.flown(), True, True
 
-    # What it tells
-
     def why(self) -> str:
-        """Return how the flights of each run ended."""
         return " ".join(
             texts.LEARN_PAY_WHY.format(name=texts.LEARN_PAY_NAMES.get(key, key), count=FLIGHTS, **flown)
             for key, flown in self.results.items()

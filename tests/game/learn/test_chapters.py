@@ -159,7 +159,8 @@ def test_steps_are_too_short_right_or_too_long_on_the_real_cost(made: Made, subt
             chapter.set_rate(rate)
             descent, (weight,) = chapter.line, chapter.line.trail[0]
             slope = float(descent.slopes[0])
-            higher, lower = descent.cost((weight + 1e-2,)), descent.cost((weight - 1e-2,))
+            higher, lower, here = descent.cost(np.array([[weight + 1e-2], [weight - 1e-2], [weight]]))
+            assert here == pytest.approx(descent.costs[0]), "the curve is that of the network"
             assert slope == pytest.approx((higher - lower) / 2e-2, rel=1e-3)
             for _ in range(15 * (downhill.ENOUGH + 2)):
                 chapter.update()
