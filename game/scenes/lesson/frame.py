@@ -13,8 +13,6 @@ from ai.explain.recorder import Function, Line
 from game.core import texts
 from game.core.source import Source, source_of
 from game.drawing.canvas import Point
-from game.drawing.cursor import Cursor
-from game.drawing.tokens import CAPTION, INK, NET
 from game.explain.code_listing import add_listing
 from game.explain.figures import number, points, signed
 from game.ui.panel import Column
@@ -67,7 +65,6 @@ def pulled(value: float) -> str:
 
 
 _LISTING: Final = 300.0  # height
-_MOST: Final = 6  # values of a line that are shown
 _FEW: Final = 4  # numbers of an array that are written out, at most
 # Variables of the agent's code that are rewards, values or differences of these.
 _REWARDS: Final = frozenset((
@@ -118,7 +115,7 @@ class CodeWalk:
         return source_of(self._functions[self.line.function] if self.line else next(iter(self._functions.values())))
 
     def describe(self, column: Column) -> None:
-        """Add the listing, what goes from line to line, and what the line sets."""
+        """Add the listing, and what goes from line to line."""
         last = len(self.lines) - 1
         if self.source is None:
             column.aside(texts.LESSON_NO_SOURCE)
@@ -129,7 +126,6 @@ class CodeWalk:
                 texts.LESSON_LINE, self.index, (0, last), self._go, step=1,
                 figure=lambda value: texts.LESSON_LINE_OF.format(number=round(value) + 1, count=last + 1),
             )  # fmt: skip
-        column.add(self._write_values)
 
     def _go(self, index: float) -> None:
         self.index = round(index)
@@ -147,19 +143,6 @@ class CodeWalk:
                 notes.setdefault(line.number, _note(list(line.values.values())))
         return source, self.line.number if self.line else None, notes
 
-    def _write_values(self, cursor: Cursor) -> None:
-        """Write the name and the shape of what the current line has set, and the numbers of this case."""
-        if self.line is None:
-            return
-        cursor.aside(texts.LESSON_SETS if self.line.values else texts.LESSON_SETS_NOTHING)
-        values = list(self.line.values.values())
-        for value in values[:_MOST]:
-            row = cursor.in_style(CAPTION, INK, "code")
-            row.pair(f"{value.name} {shape_of(value)}".rstrip(), case_of(value), NET)
-            cursor.y = row.y + 2
-        if len(values) > _MOST:
-            cursor.aside(texts.LESSON_MORE.format(count=len(values) - _MOST))
-
 
 def shape_of(value: Value) -> str:
     """Write the shape of an array: 256 × 9; nothing for a number."""
@@ -167,18 +150,14 @@ def shape_of(value: Value) -> str:
 
 
 def _note(values: list[Value]) -> str:
-    """Write the first of some values: this case's number, or the shape of an array that has several for it."""
+    """Write the first of some values: this case's numbers, or the shape of an array that has many for it."""
     first = values[0]
-    note = case_of(first) if np.size(first.case) == 1 and first.case is not None else shape_of(first)
+    note = case_of(first) if first.case is not None and np.size(first.case) <= _FEW else shape_of(first)
     return note if len(values) == 1 else f"{note} ..."
 
 
 def case_of(value: Value) -> str:
-    """Write this case's numbers of a value, the first few of many."""
-    if value.case is None:
-        return ""
+    """Write this case's numbers of a value."""
     if isinstance(value.case, bool | np.bool_):
         return str(bool(value.case))
-    numbers = np.asarray(value.case).ravel()
-    shown = " ".join(str(each) if isinstance(each, int) else number(each) for each in numbers[:_FEW].tolist())
-    return shown if len(numbers) <= _FEW else f"{shown} ..."
+    return " ".join(str(each) if isinstance(each, int) else number(each) for each in np.ravel(value.case).tolist())
