@@ -70,11 +70,6 @@ class Progress:
         guess = self.guess(key)
         return "" if guess is None else str(texts.LEARN_ANSWERS[key][guess])
 
-    def page(self, key: str) -> int:
-        """Return the page, an index of `PAGES`, on which a chapter was left; 0 before it was opened."""
-        page = self._number(key, "page") or 0
-        return page if page < len(PAGES) else 0
-
     def state(self, key: str) -> int:
         """Return 2 for a chapter that is done, 1 for one that was opened, else 0."""
         return 2 if self._of(key).get("done") is True else int(isinstance(self._settings.learnt.get(key), dict))
@@ -89,7 +84,7 @@ class Progress:
         return self._number("own", "raced")
 
     def note(self, key: str, **values: int | bool) -> None:
-        """Note a `guess`, a `page`, that a chapter is `done`, or when it was `raced`."""
+        """Note that a chapter was opened, and a `guess`, that it is `done`, or when it was `raced`."""
         self._settings.learnt[key] = {**self._of(key), **values}
 
     def _number(self, key: str, name: str) -> int | None:

@@ -47,11 +47,11 @@ class ChapterScene(PanelScene):
         self._progress, self.explained = Progress(context.settings), Explained()
         self.chapter = chapter_type(key)(context)
         # One that is done asks for a guess again. Of any other, a try from an earlier visit is gone with its numbers.
-        self.page = PREDICT if self._progress.done(key) else min(self._progress.page(key), TRY)
+        guessed = self._progress.guess(key) is not None and not self._progress.done(key)
+        self.page = TRY if guessed else PREDICT
         self._function, self._told, self._code = 0, "", list[Code]()
         context.settings.chapter = key
-        if not self.chapter.complete:
-            self._progress.note(key, done=False)
+        self._progress.note(key, done=self._progress.done(key) and self.chapter.complete)
         self.turn_to(self.page)
 
     def enter(self) -> None:
@@ -68,10 +68,9 @@ class ChapterScene(PanelScene):
         return self.chapter.key
 
     def turn_to(self, page: int) -> None:
-        """Show another page, and keep that it was opened."""
+        """Show another page; "see why" makes a chapter done that was tried."""
         on_tabs = page != self.page and self.form.focused is self._tabs
         self.page = page
-        self._progress.note(self.key, page=page)
         if page == WHY and self.chapter.tried:
             self._progress.note(self.key, done=self.chapter.complete)
         self.context.apply_settings()

@@ -74,12 +74,8 @@ def test_all_frames_by_keys_by_mouse_and_by_gamepad(driver: Driver):
         driver.key(pygame.K_RIGHT)
     driver.keys(*[pygame.K_LEFT] * 9)
     assert scene.current == ALONE
-    for place in reversed(range(len(NAMES))):
-        driver.click(scene.cards._boxes[place].center)
-        assert scene.current == place
-    for place in range(len(NAMES)):
-        assert scene.current == place
-        driver.button(pygame.CONTROLLER_BUTTON_RIGHTSHOULDER)
+    driver.click(scene.cards._boxes[AFTER].center)
+    assert scene.current == AFTER
     driver.button(pygame.CONTROLLER_BUTTON_LEFTSHOULDER)
     assert scene.current == AFTER - 1
 
