@@ -87,7 +87,7 @@ class AloneFrame(Frame):
     def _told(self) -> str:
         words = texts.LESSON_ALONE_ARRIVED if self.alone.arrived else texts.LESSON_ALONE_MORE
         pulls = Pulls.of(self._step, self._lesson.derivative, self._moved)
-        return words.format(count=self._step.examples, own=pulled(pulls.own / self._scale if pulls else 0.0))
+        return words.format(count=self._step.examples, own=pulled(pulls.own / self._scale))
 
     def _figures(self) -> list[Part]:
         """Return the value, and its target."""

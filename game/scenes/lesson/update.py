@@ -245,44 +245,35 @@ class AfterFrame(Frame):
         self._values = before, after, target = [value / step.scale for value in values]
         figure, write = (number(after), number) if derivative is None else (in_points(after), points)
         super().__init__(words, figure, functions, "values")
-        self.step, self._pulled = step, derivative is not None
+        self.step, self._write = step, write
         self.pulls = None if derivative is None else Pulls.of(step, derivative, values[1] - values[0])
+        self._found = [pull / step.scale for pull in self.pulls or ()]  # in points, in the order of their texts
         closer = abs(before - target) - abs(after - target)
         self._told = telling[closer <= 0].format(
             before=write(before), after=write(after), target=write(target), by=number(abs(closer))
         )
-        if self.pulls is not None:
-            strongest = int(np.argmax(np.abs(self._found())))
+        if self._found:
+            strongest = int(np.argmax(np.abs(self._found)))
             name = texts.LESSON_PULL_PARTS[strongest][0].format(count=step.examples - (strongest > 0))
             self._told = f"{self._told} {texts.LESSON_STRONGEST.format(name=name)}"
 
     def describe(self, column: Column) -> None:
         column.text(self._told, size=SMALL)
         column.picture(_MOVED, self._draw_value)
-        if self._pulled:
+        if self._found:
             column.gap(8)
-            column.aside(texts.LESSON_PULLS if self.pulls else texts.LESSON_NO_PULL)
-        if self.pulls:
+            column.aside(texts.LESSON_PULLS)
             column.picture(_ROW * len(texts.LESSON_PULL_PARTS), self._draw_pulls)
-
-    def _found(self) -> list[float]:
-        """Return the pulls in points, in the order of their texts."""
-        pulls = self.pulls
-        assert pulls is not None
-        return [pull / self.step.scale for pull in (pulls.own, pulls.others, pulls.earlier, pulls.bend)]
 
     def _draw_value(self, canvas: Canvas, box: pygame.FRect) -> None:
         """Draw the value before and after, and its target."""
         places, y = draw_on_line(canvas, box, (box.left + 10, box.right - 10), self._values), box.centery
         for x, value, word in zip(places, self._values, texts.LESSON_VALUE_MARKS, strict=True):
-            rows = [(texts.LESSON_OWN_SCALE, number(value * self.step.scale))]
-            if self._pulled:
-                rows.append((texts.LESSON_IN_POINTS.format(scale=f"{self.step.scale:g}"), points(value, 3)))
-            canvas.explain((x - 6, y - 6, 12, 12), word, partial(told, *rows))
+            canvas.explain((x - 6, y - 6, 12, 12), word, partial(self._write, value))
 
     def _draw_pulls(self, canvas: Canvas, box: pygame.FRect) -> None:
         """Draw a bar for each pull: blue towards the target, orange away from it."""
-        found, (before, _, target) = self._found(), self._values
+        found, (before, _, target) = self._found, self._values
         most, zero = max(1e-12, *map(abs, found)), box.left + 0.83 * box.width
         canvas.line((zero, box.top), (zero, box.bottom), LINE)
         for row, (pull, (word, help_)) in enumerate(zip(found, texts.LESSON_PULL_PARTS, strict=True)):
