@@ -60,13 +60,13 @@ class RunsChapter(Chapter):
 
     @property
     def words(self) -> dict[str, str]:
-        """The chapter's texts; "why" says how these runs differ from those of Train."""
+        """The chapter's texts, and how these runs differ from those of Train."""
         words, modern, ours = super().words, PRESETS["modern"], self.configs()[0]
         steps, further = (texts.LEARN_SMALL_STEPS.format(count=each.n_step) for each in (ours, modern))
         differs = texts.LEARN_SMALL.format(
             steps=steps, modern_steps=further, batch=ours.batch_size, modern_batch=modern.batch_size
         )
-        return {**words, "why": f"{words['why']} {differs}"}
+        return {**words, "differs": differs}
 
     @property
     def plan(self) -> Plan:

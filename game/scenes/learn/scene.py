@@ -189,7 +189,9 @@ class ChapterScene(PanelScene):
         waits = texts.LEARN_STILL_RUNS if self.chapter.running else texts.LEARN_TRY_FIRST
         column.text(self._told or waits, size=_BODY)
         column.gap(8)
-        column.text(self.chapter.words["why"], size=_BODY, colour=MUTE)
+        for name in ("why", "differs"):
+            column.text(self.chapter.words.get(name, ""), size=_BODY, colour=MUTE)
+            column.gap(8)
 
     def _write_verdict(self, guess: int, came: int | None, cursor: Cursor) -> None:
         """Write the card of a guess: what was said, and what came of this very try."""

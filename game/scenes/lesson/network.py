@@ -22,10 +22,11 @@ from game.scenes.lesson.frame import Frame
 from game.scenes.lesson.step import LearningStep, Weight
 from game.ui.panel import Column
 
-_HEIGHTS: Final[dict[Show, float]] = {"weights": 370.0, "activations": 370.0, "gradients": 170.0}
+_HEIGHTS: Final[dict[Show, float]] = {"weights": 370.0, "activations": 370.0, "gradients": 190.0}
 _TERMS: Final = 6  # products of a unit's sum that are written out one by one; the others are summed
 _MOST_NAMED: Final = 12  # inputs up to which their names stand beside them
 _UNNAMED: Final = (" " * 32,)  # keeps the room of a name free, for the legend below
+_LEAST: Final = 300.0  # width of a column
 _RANKS: Final = 24  # weights to choose from, the steepest first
 
 
@@ -133,11 +134,12 @@ class GradientFrame(NetworkFrame):
         super().describe(column)
         column.gap(8)
         if self._steepest:
-            column.slider(texts.LESSON_PICK_WEIGHT, self.rank + 1, (1, len(self._steepest)), self._pick_rank, step=1,
-                          figure=lambda rank: f"{rank:.0f}")  # fmt: skip
-            column.text(self._title, size=SMALL, colour=HUMAN)
-            column.add(table((), self._parts))
-            column.text(lambda: texts.LESSON_UPHILL if self.uphill else "", size=SMALL)
+            left, right = column.beside((2, 3), _LEAST)
+            left.slider(texts.LESSON_PICK_WEIGHT, self.rank + 1, (1, len(self._steepest)), self._pick_rank, step=1,
+                        figure=lambda rank: f"{rank:.0f}")  # fmt: skip
+            left.text(self._title, size=SMALL, colour=HUMAN)
+            left.text(lambda: texts.LESSON_UPHILL if self.uphill else "", size=SMALL)
+            right.add(table((), self._parts))
 
     def _pick_rank(self, rank: float) -> None:
         self.rank = round(rank) - 1

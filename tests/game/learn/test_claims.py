@@ -47,7 +47,7 @@ def test_chapters_say_how_their_runs_differ_from_those_of_train(context: Context
     modern = PRESETS["modern"]
     for kind in (TargetChapter, MemoryChapter, DaringChapter):
         chapter = kind(context)
-        ours, why = chapter.configs()[0], chapter.words["why"]
+        ours, why = chapter.configs()[0], chapter.words["differs"]
         assert f"{ours.batch_size} memories at a time, not {modern.batch_size}" in why
         assert texts.LEARN_SMALL_STEPS.format(count=ours.n_step) + " ahead" in why
         assert f"not {modern.n_step} decisions" in why or f"not {modern.n_step}," in why
