@@ -181,4 +181,5 @@ def _colours(canvas: Canvas, pay: Doubles) -> NDArray[np.uint8]:
     large, pay = np.abs(pay)[:, None] > _LARGE, pay[:, None]
     tint = np.where(large, np.where(pay > 0, canvas.palette.good, canvas.palette.warn), NET)
     share = np.where(large, 0.55, 0.25 + 0.25 * np.clip(pay / 5.0, -1.0, 1.0))
-    return (NIGHT1 + share * (tint - np.array(NIGHT1))).astype(np.uint8)
+    colours: NDArray[np.uint8] = (NIGHT1 + share * (tint - np.array(NIGHT1))).astype(np.uint8)
+    return colours

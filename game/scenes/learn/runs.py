@@ -112,7 +112,7 @@ class RunsChapter(Chapter):
         return self._worker.problem if self._worker is not None else ""
 
     def update(self) -> None:
-        if self._worker is None or self.over:
+        if self._worker is None or len(self.states) > self.LENGTH:
             return
         for states in self._worker.poll()[: self.LENGTH + 1 - len(self.states)]:
             self.take(states)
@@ -288,7 +288,8 @@ class TargetChapter(DuelChapter):
             np.sign(each) * np.log10(1 + np.abs(each) / _TOP)
             for each in (np.array(_LOWEST), values, np.array(_HIGHEST))
         )
-        return np.clip((value - low) / (high - low), 0.0, 1.0)
+        height: Doubles = np.clip((value - low) / (high - low), 0.0, 1.0)
+        return height
 
     def draw_scale(self, canvas: Canvas, box: pygame.FRect) -> None:
         draw_axis(canvas, box, [(float(self.heights(np.array(tick))), word) for tick, word in _TICKS])

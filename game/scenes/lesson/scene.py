@@ -17,6 +17,7 @@ from game.drawing.tokens import CAPTION, INK, LINE, MUTE, NET, SMALL
 from game.explain.explained import Explained
 from game.explain.lesson_door import ImageDoor
 from game.input.controls import Command
+from game.scenes.lesson.alone import AloneFrame
 from game.scenes.lesson.frame import CodeWalk, Frame
 from game.scenes.lesson.frames import parts_of
 from game.ui.actions import Action, Table
@@ -119,10 +120,10 @@ class LessonScene(PanelScene):
 
     def reword(self) -> None:
         """Take the lesson apart anew, in the other language."""
-        alone = getattr(self.parts[0].frame, "alone", None)
+        before = self.parts[0].frame
         self._take(self.lesson)
-        if alone is not None:
-            self.parts[0].frame.alone = alone
+        if isinstance(before, AloneFrame) and isinstance(now := self.parts[0].frame, AloneFrame):
+            now.alone = before.alone  # what was tried stays
 
     @property
     def frame(self) -> Frame:

@@ -207,6 +207,7 @@ def test_the_blame_is_that_of_the_real_backward_pass(made: Made):
     # An output's blame is the slope of its bias before the last activation has bent it.
     bias = network.layers[-2].parameters[1].gradient
     assert bias == pytest.approx(chapter.blames[3] * (1 - chapter.answers**2), abs=1e-5)
+    assert not chapter.blames[0][image[0] == 0].any(), "nor is such a pixel"
     for start, _, slope in chapter.links[0]:
         assert image[0, start] > 0, "no connection of a pixel without ink is to blame"
         assert slope != 0
@@ -452,6 +453,7 @@ def test_the_list_ticks_what_was_really_done_and_nothing_before(made: Made, cont
     save(training, context.user_dir / "models" / "mine", state=False)
     assert done() == {"train"}
     assert "mine" in chapter.why()
+    assert (chapter.tried, chapter.complete) == (True, False)
     context.settings.model = "mine"
     assert done() == {"train", "choose"}
     records = Records(context.user_dir)
