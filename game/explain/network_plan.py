@@ -17,8 +17,6 @@ Indices = npt.NDArray[np.intp]
 Numbers = npt.NDArray[np.floating[Any]]
 
 _LOYALTY: Final = 2.0  # factor by which a unit must be stronger than a shown one to replace it
-_MEMORY: Final = 0.95  # decay of a unit's average activity from one plan to the next
-_SILENT: Final = 0.1  # weight of a unit that is never active, relative to one of average activity
 _FAINTEST: Final = 0.02  # share of the largest link, below which a link is not drawn
 
 
@@ -82,9 +80,9 @@ def strongest_edges(matrix: Numbers, column: int, most: int) -> list[Edge]:
 class NetworkPlan:
     """Snapshot of a network for drawing: columns of shown units, and the weights of the links between them.
 
-    At most `most` units of a layer are shown: the most important by their weights and recent activity, with a
-    preference for those of the plan `before`; the units `pinned`, by stage and number, come first. Everything is
-    copied, so the network may change afterwards.
+    At most `most` units of a layer are shown: the most important by their weights, with a preference for those of the
+    plan `before`; the units `pinned`, by stage and number, come first. Everything is copied, so the network may change
+    afterwards.
     """
 
     def __init__(
@@ -100,13 +98,8 @@ class NetworkPlan:
         values, known = _values(network, observation, sizes)
         old = before if before and [column.total for column in before.columns] == sizes else None
         self.columns: list[Column] = []
-        self._activity = [np.abs(np.nan_to_num(each.astype(float), posinf=0.0, neginf=0.0)) for each in values]
         for stage, size in enumerate(sizes):
-            if old:
-                self._activity[stage] = _MEMORY * old._activity[stage] + (1 - _MEMORY) * self._activity[stage]
             strength = _strength(found, stage)
-            if 0 < stage < len(sizes) - 1:
-                strength = strength * _liveliness(self._activity[stage])
             wanted = strength.copy()
             wanted[[unit for at, unit in pinned if at == stage and unit < size]] = np.inf
             units = steady_choice(wanted, most, old.columns[stage].units if old else None)
@@ -182,10 +175,3 @@ def _strength(found: Sequence[Link], stage: int) -> Numbers:
         to = np.linalg.norm(found[stage - 1].weights, axis=0) + 0 * found[stage - 1].bias if stage else 1.0
         strength: Numbers = np.asarray(away * to, float)
     return strength
-
-
-def _liveliness(activity: Numbers) -> Numbers:
-    """Return the units' activity relative to the average, so that inactive units count for little."""
-    average = float(activity.mean())
-    lively: Numbers = activity / average + _SILENT if average > 0 else np.ones(len(activity))
-    return lively

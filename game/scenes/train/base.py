@@ -17,7 +17,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import HUMAN, INK, MUTE, PANEL, SMALL, TITLE
 from game.explain.explained import Explained
-from game.explain.run_status import rate_colour
+from game.explain.readouts import rate_colour
 from game.input.controls import Command
 from game.scenes.menus.dialogs import NameDialog
 from game.scenes.train.charts import TrainingCharts
@@ -42,7 +42,6 @@ _MARGIN: Final = 32.0  # of the panel
 _TITLE: Final = (24.0, 16.0)  # corner of the title over the display
 _WIDEST: Final = 372.0
 _FIGURE: Final = (30.0, 60.0, 0.14)  # size at least, at most, and as a share of the picture's height
-_COVER: Final = 0.82  # of the panel behind the title: landers are many, and bright
 _LEAST: Final = 80.0  # points of height for the title above the charts
 _FOOT: Final = 0.8  # share of the panel that its foot takes at most
 MORE: Final = "more"  # what a player can open: the words for all else, every chart, every knob, the network
@@ -390,7 +389,7 @@ class TrainingScene(FormScene, ABC):
         cursor = Cursor(left + 16, top + 10, width - 32, canvas.scale)
         self._write_title(cursor, status)
         box = (left, top, width, cursor.y - top + 8)
-        canvas.panel(box, _COVER)
+        canvas.panel(box, 1.0)
         self._write_title(Cursor(left + 16, top + 10, width - 32, canvas.scale, canvas), status)
         canvas.explain(box, texts.EXPLAIN_TRAINED)
         HintRow(self.hints[:1], (left + width - 16, top + 30), from_right=True).draw(canvas)
@@ -405,7 +404,7 @@ class TrainingScene(FormScene, ABC):
             wide = cursor.in_style(size, weight="light").measured(status.figure, tabular=True)
             if canvas := cursor.canvas:
                 place = cursor.left - 2, cursor.y + 0.92 * size
-                colour = rate_colour(canvas.palette, float(status.figure))
+                colour = rate_colour(canvas, float(status.figure))
                 canvas.text(status.figure, place, size=size, weight="light", tabular=True, colour=colour)
                 canvas.text(status.words, (cursor.left + wide + 10, place[1]), size=SMALL, colour=MUTE,
                             room=cursor.width - wide - 10)  # fmt: skip

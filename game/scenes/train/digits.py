@@ -18,7 +18,7 @@ from game.digits.matrix import ConfusionMatrix
 from game.drawing.canvas import Canvas
 from game.drawing.sky import NightSky
 from game.drawing.tokens import HUMAN, LABEL, MUTE, SMALL
-from game.explain.lesson_door import ImageDoor
+from game.explain.lesson_door import LessonDoor
 from game.scenes.train.base import KNOBS as ALL_KNOBS
 from game.scenes.train.base import TrainingScene
 from game.scenes.train.charts import DIGIT_CHARTS, Beside, TrainingCharts
@@ -77,7 +77,7 @@ class DigitTrainingScene(TrainingScene):
     def _build(self) -> None:
         self._sky = NightSky(np.random.default_rng(12), ember=0.2, stars=40)
         self.charts = TrainingCharts(DIGIT_CHARTS)
-        self.lessons = ImageDoor(self.run, self.context.note)
+        self.lessons = LessonDoor(self.run, self.context.note)
         self.knobs = KnobsPanel(self.form, DIGIT_PRESETS["classic"], 0, self.run.change, self._begin, KNOBS)
         self.film = FilterFilm(self.charts)
         self.matrix = ConfusionMatrix(self.form.manager, (0, 0, 100, 100))
@@ -140,7 +140,7 @@ class DigitTrainingScene(TrainingScene):
         column.choice("", texts.DIGIT_RUN_VIEWS, self.view, self._change_view, SMALL)
         column.line()
         column.words([
-            (texts.LESSON_WHY, self.lessons.open),
+            (texts.LESSON_WHY, self.lessons.ask),
             (texts.DIGIT_RUN_DREAM, lambda: self._show_kept("dream")),
             (texts.DIGIT_RUN_QUIZ, lambda: self._show_kept("quiz")),
             (texts.TRAIN_SAVE, self._save),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Hashable
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import Final
@@ -11,8 +12,10 @@ from typing import Final
 import pygame
 
 from ai.pilots.child import PAY
+from ai.pilots.shelf import Shelf
 from ai.training.config import PRESETS, Config
 from ai.training.experiments import Experiment, differences
+from ai.training.lander_session import CAREFUL
 from game.core import texts
 from game.core.scene import Pop, Push, Transition, push
 from game.core.worker import WorkerState
@@ -73,9 +76,9 @@ class TrainScene(TrainingScene):
         self.swarm, self.past_swarm = LearningSwarm(), LearningSwarm()
         self.charts, self.captions = TrainingCharts(), ChartCaptions()
         self.knobs = KnobsPanel(self.form, PRESETS["modern"], 0, run.change, self._begin)
-        self.laboratory = Laboratory(run, self.knobs, self._split, self._leave_split)
+        self.laboratory = Laboratory(run, self.knobs, self._split, self._leave_split, lambda: self.charts.landed)
         self.split_view, self.inside, self.rewind = SplitView(run), Inside(run), Rewind(run)
-        self.lessons = LessonDoor(run, lambda: self.shown_swarm, lambda: self.moment, self.context.note)
+        self.lessons = LessonDoor(run, self.context.note)
         self._advice = Advice(run, self.knobs.turn)
         self._pace, self._frame = len(PACES) - 1, 0
         self._legend: list[RunRow] = []
@@ -131,7 +134,7 @@ class TrainScene(TrainingScene):
             ]
         else:
             self._laid_pointers = [
-                VirtualPointer(manager, nowhere, self.lessons.follow, hold=texts.LESSON_MARK),
+                VirtualPointer(manager, nowhere, self._choose_lander, hold=texts.LESSON_MARK),
                 VirtualPointer(manager, nowhere, charts.follow),
                 Scrubber(manager, charts, self._scrub, self._duel, charts.zoom_by),
             ]
@@ -149,7 +152,7 @@ class TrainScene(TrainingScene):
         if self.inside.opened:
             self.inside.describe(column)
             column.gap()
-            column.button(texts.LESSON_WHY, self.lessons.open)
+            column.button(texts.LESSON_WHY, self._ask_why)
             self.switch(column, INSIDE)
             return
         self.inside.editing.describe(column, opened=False)
@@ -169,7 +172,7 @@ class TrainScene(TrainingScene):
         column.gap(8)
         column.line()
         column.words([
-            (texts.LESSON_WHY, self.lessons.open),
+            (texts.LESSON_WHY, self._ask_why),
             (texts.TRAIN_DUEL, self._duel),
             (texts.TRAIN_COMPARE, self._compare),
             (texts.TRAIN_TEACH, self._teach),
@@ -219,7 +222,7 @@ class TrainScene(TrainingScene):
         self.inside.follow(event)
         outcome = super().handle_event(event)
         if not self.inside.opened and not self.form.used:
-            self.lessons.follow(event)
+            self._choose_lander(event)
         return outcome
 
     def actions(self) -> Table:
@@ -244,7 +247,7 @@ class TrainScene(TrainingScene):
         self._frame += 1
         if self._frame % _JUDGED == 0:
             self.laboratory.follow()
-        self.inside.update(still)
+        self.inside.update()
         # Tasks that take a millisecond or two take turns, one per frame.
         self.charts.update(at_once=still, turn=not (looked or self.inside.busy))
         return self._finish_update() or self.lessons.update()
@@ -295,6 +298,11 @@ class TrainScene(TrainingScene):
 
     # The run
 
+    def _start(self, config: Config, seed: int, resume: Path | None = None) -> None:
+        with suppress(OSError):
+            self.run.pays = tuple(Shelf(self.context.user_dir, PAY).files().values())
+        super()._start(config, seed, resume)
+
     def _clear(self) -> None:
         for part in (self.split_view, self.swarm, self.rewind, self._advice, self.charts, self.captions, self.inside):
             part.clear()
@@ -309,6 +317,20 @@ class TrainScene(TrainingScene):
     def _suggestion(self) -> str:
         name = texts.TRAIN_TAUGHT_NAME if self.run.demonstrations else texts.TRAIN_NAME
         return name.format(preset=self.knobs.name)
+
+    def _choose_lander(self, event: pygame.event.Event) -> None:
+        """Choose the lander that is clicked, in points; a second click asks for its lesson."""
+        swarm, pressed = self.shown_swarm, event.type == pygame.MOUSEBUTTONDOWN and event.button == 1
+        slot = swarm.slot_at(event.pos) if pressed else None
+        if slot is not None and slot == swarm.chosen:
+            self._ask_why()
+        elif slot is not None:
+            swarm.chosen = slot
+
+    def _ask_why(self) -> None:
+        """Ask for the lesson of the chosen lander, or of the one that explores least, at the moment that is shown."""
+        chosen = self.shown_swarm.chosen
+        self.lessons.ask(CAREFUL if chosen is None else chosen, self.moment)
 
     def _teach(self) -> None:
         """Add the player's landings to the run's training as demonstrations, or start a run with them."""
