@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Hashable
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import pygame
 
@@ -23,7 +23,6 @@ from game.scenes.menus.dialogs import NameDialog
 from game.scenes.train.charts import TrainingCharts
 from game.scenes.train.knobs import KnobsPanel
 from game.scenes.train.layout import Layout, layout
-from game.scenes.train.status import TrainingStatus
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.form import Part
@@ -48,6 +47,15 @@ MORE: Final = "more"  # what a player can open: the words for all else, every ch
 CHARTS: Final = "charts"
 KNOBS: Final = "knobs"
 INSIDE: Final = "inside"
+
+
+class TrainingStatus(NamedTuple):
+    """Title of the screen, a line of text, and a figure in percent with what it counts, empty before it is known."""
+
+    title: str
+    line: str
+    figure: str
+    words: str
 
 
 class TrainingScene(FormScene, ABC):

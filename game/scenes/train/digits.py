@@ -20,11 +20,10 @@ from game.drawing.sky import NightSky
 from game.drawing.tokens import HUMAN, LABEL, MUTE, SMALL
 from game.explain.lesson_door import LessonDoor
 from game.scenes.train.base import KNOBS as ALL_KNOBS
-from game.scenes.train.base import TrainingScene
+from game.scenes.train.base import TrainingScene, TrainingStatus
 from game.scenes.train.charts import DIGIT_CHARTS, Beside, TrainingCharts
 from game.scenes.train.knobs import KnobsPanel
 from game.scenes.train.layout import Layout
-from game.scenes.train.status import TrainingStatus, digit_status
 from game.training.digit_models import DigitModels, runs_dir
 from game.training.run import TrainingRun
 from game.training.run_settings import RunKind
@@ -238,3 +237,21 @@ class DigitTrainingScene(TrainingScene):
         if self._cell.width >= _LEAST:
             canvas.text(texts.MATRIX_AXES, (self._cell.left, place[1]), size=LABEL, colour=MUTE, room=self._cell.width)
             self.matrix.draw_cell(canvas, self._cell)
+
+
+def digit_status(run: TrainingRun) -> TrainingStatus:
+    """Return the epoch, the time and the speed, and the share of images that are read rightly."""
+    history, scores = run.history, run.history.validations
+    line = texts.DIGIT_RUN_LOADING if run.alive else texts.DIGIT_RUN_LINE
+    if len(history):
+        line = texts.DIGIT_RUN_FIGURES.format(
+            epoch=history["epoch"][-1], epochs=run.config.epochs, seconds=history["seconds"][-1],
+            rate=history["images_per_second"][-1],
+        )  # fmt: skip
+    part, words = scores[-1].success if scores else None, texts.DIGIT_RUN_READ
+    if run.test is not None:
+        if run.kept_epoch is not None:
+            read = f"{100 * scores[-1].success:.2f} %" if scores else "–"
+            line = texts.DIGIT_RUN_KEPT_BEST.format(epoch=run.kept_epoch, last=read)
+        part, words = run.test, texts.DIGIT_RUN_TESTED
+    return TrainingStatus(texts.DIGIT_RUN_TITLE, line, "" if part is None else f"{100 * part:.2f}", words)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from functools import partial
-from typing import Literal, NamedTuple
+from functools import cache, partial
+from typing import Any, Final, Literal, NamedTuple
 
+from ai.files import read_json
 from ai.training.config import PRESETS, Config
 from ai.training.experiments import (
     MEASURED,
@@ -22,13 +23,15 @@ from ai.training.experiments import (
     verdict,
 )
 from game.core import texts
+from game.core.assets import ASSETS_DIR
 from game.drawing.tokens import HUMAN, INK, MUTE, NET, SMALL, TITLE
-from game.scenes.train.cards import measured
 from game.scenes.train.knobs import KnobsPanel
 from game.training.knob_descriptions import KnobDescription, figure, label
 from game.training.run import TrainingRun
 from game.training.run_settings import LANDER
 from game.ui.panel import Column
+
+FILE: Final = ASSETS_DIR / "sabotages.json"  # what `python -m benchmarks.sabotages` measured
 
 
 class Chosen(NamedTuple):
@@ -225,3 +228,19 @@ def listed_differences(before: Config, after: Config) -> str:
         word = texts.KNOB_WEIGHTS[part][0] if part in texts.KNOB_WEIGHTS else label(head)
         found.append(texts.LAB_DIFFERS.format(knob=word, before=figure(old), after=figure(new)))
     return ", ".join(found)
+
+
+@cache
+def measurements() -> dict[str, Any]:
+    """Return decisions and seeds, and for each run its mean share that landed, and its interval's ends."""
+    found = read_json(FILE)
+    assert isinstance(found, dict)
+    return found
+
+
+def measured(name: str) -> str:
+    """Say what was measured of a sabotage, beside the preset that nothing was taken from."""
+    found = measurements()
+    other, healthy = ([100 * part for part in found["shares"][each]] for each in (name, MEASURED))
+    told = dict(zip(("other", "low", "high", "healthy", "least", "most"), (*other, *healthy), strict=True))
+    return texts.LAB_MEASURED.format(decisions=found["decisions"], seeds=found["seeds"], **told)

@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import Final
 
+import numpy as np
 import pygame
 
 from ai.pilots.child import PAY
@@ -26,7 +27,7 @@ from game.flight.demonstrations import FILE_NAME, count_demonstrations
 from game.input.controls import Command
 from game.scenes.menus.dialogs import ListDialog
 from game.scenes.train.advice import Advice
-from game.scenes.train.base import CHARTS, INSIDE, KNOBS, TrainingScene
+from game.scenes.train.base import CHARTS, INSIDE, KNOBS, TrainingScene, TrainingStatus
 from game.scenes.train.charts import BY_DECISIONS, SCORE, Beside, ChartCaptions, TrainingCharts
 from game.scenes.train.inside import Inside
 from game.scenes.train.knobs import KnobsPanel
@@ -34,7 +35,6 @@ from game.scenes.train.laboratory import Laboratory
 from game.scenes.train.layout import Layout
 from game.scenes.train.rewind import Rewind
 from game.scenes.train.split_view import SplitView
-from game.scenes.train.status import TrainingStatus, lander_status
 from game.training.beside import take_away
 from game.training.library import Library
 from game.training.run import TrainingRun
@@ -196,9 +196,8 @@ class TrainScene(TrainingScene):
 
     @property
     def _beside(self) -> Beside:
-        emphasised = next((each.style for each in self._legend if each.focused), None)
         chosen = self.laboratory.chosen
-        return self.split_view.beside(chosen.name if chosen else texts.LAB_HEADING, emphasised)
+        return self.split_view.beside(chosen.name if chosen else texts.LAB_HEADING)
 
     def _describe_hint(self, column: Column) -> bool:
         if self._advice.shown:
@@ -445,3 +444,22 @@ class TrainScene(TrainingScene):
                 canvas.text(texts.REWIND_NO_LANDERS, box.center, size=SMALL, colour=MUTE, align="centre")
         canvas.line((box.left, box.bottom), (box.right, box.bottom), LINE)
         self.draw_title(canvas)
+
+
+def lander_status(run: TrainingRun, moment: int | None = None, row: int = -1) -> TrainingStatus:
+    """Return the landers, the time and the decisions so far, and the share that lands.
+
+    `moment`, in decisions, and the `row` of the history say so of an earlier moment.
+    """
+    history, swarm_state = run.history, run.swarm_state
+    if swarm_state is None or not run.measured:
+        line = texts.TRAIN_BEGINS if run.alive else texts.TRAIN_LINE
+        return TrainingStatus(texts.TRAIN_TITLE, line, "", texts.TRAIN_LANDED)
+    line = texts.TRAIN_FIGURES.format(
+        landers=len(swarm_state.outcome),
+        seconds=history["seconds"][row],
+        count=int(swarm_state.decisions) if moment is None else moment,
+    )
+    landed = history["success"][row]
+    figure = "" if np.isnan(landed) else f"{100 * landed:.0f}"
+    return TrainingStatus(texts.TRAIN_TITLE, line, figure, texts.TRAIN_LANDED)

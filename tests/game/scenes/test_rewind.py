@@ -12,8 +12,7 @@ from ai.training.history import COLUMNS, Checkpoint, Point
 from game.core import texts
 from game.core.worker import WorkerState
 from game.scenes.train.base import CHARTS, INSIDE
-from game.scenes.train.scene import TrainScene
-from game.scenes.train.status import lander_status
+from game.scenes.train.scene import TrainScene, lander_status
 from game.ui.scrubber import Scrubber
 from tests.support.driver import Driver
 

@@ -18,9 +18,8 @@ from ai.training.loop import Training
 from game.core import texts
 from game.core.worker import WorkerState
 from game.scenes.train.base import KNOBS
-from game.scenes.train.cards import FILE, measured
 from game.scenes.train.knob import Knob
-from game.scenes.train.laboratory import Chosen, came_words, why
+from game.scenes.train.laboratory import FILE, Chosen, came_words, measured, why
 from game.scenes.train.scene import TrainScene
 from game.training.knob_descriptions import knob_descriptions
 from game.training.library import Library
