@@ -73,7 +73,7 @@ def strongest_edges(matrix: Numbers, column: int, most: int) -> list[Edge]:
     return [
         Edge(column, int(index) // ends, int(index) % ends, float(size[index] / largest), bool(signs[index]))
         for index in chosen
-        if size[index] > 0.02 * largest
+        if size[index] > _FAINTEST * largest
     ]
 
 
@@ -111,15 +111,6 @@ class NetworkPlan:
         for link, left, right in zip(found, self.columns[:-1], self.columns[1:], strict=True):
             part = np.ix_(left.units, right.units)
             self._links.append((link.weights[part], link.gradient[part]))
-
-    def weight(self, layer: int, start: int, end: int) -> float:
-        """Return the weight of the link between two shown units, by their numbers; 0 if one is not shown."""
-        if layer >= len(self._links):
-            return 0.0
-        rows, columns = (
-            np.flatnonzero(self.columns[stage].units == unit) for stage, unit in ((layer, start), (layer + 1, end))
-        )
-        return float(self._links[layer][0][rows[0], columns[0]]) if len(rows) and len(columns) else 0.0
 
     def edges(self, show: Show, most: int) -> list[Edge]:
         """Return the `most` strongest links between each two columns, the faintest first."""

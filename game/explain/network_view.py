@@ -123,10 +123,6 @@ class NetworkView:
     def _places(self) -> list[tuple[int, int]]:
         return [(number, place) for number, column in enumerate(self.centres) for place in range(len(column))]
 
-    def weight(self, layer: int, start: int, end: int) -> float:
-        """Return the weight between two units of the network as it is shown, by their numbers; 0 if there is none."""
-        return self.plan.weight(layer, start, end) if self.plan else 0.0
-
     def name(self, number: int, place: int) -> str:
         """Return the name of a unit, given its column and its place in it."""
         unit = int(self.columns[number].units[place])

@@ -87,7 +87,6 @@ class TrainingScene(FormScene, ABC):
         self.form.in_order = True
         self.run, self._settings = run, context.settings
         self._was_running = self._alive = False
-        self._question: Transition | None = None  # asked after the next update
         self._laid: Hashable = None
         self._layout: Layout | None = None
         self.explained = Explained()
@@ -215,7 +214,7 @@ class TrainingScene(FormScene, ABC):
     def _describe_foot(self, column: Column) -> None:
         """Add what went wrong, or a hint, or help; the run that can go on; and the button that starts."""
         if self.run.problem:
-            column.add(self._write_problem)
+            column.text(lambda: self.run.problem, size=SMALL, colour=HUMAN)
         elif not self._describe_hint(column):
             self.knobs.describe_foot(column)
         if words := self._unfinished:
@@ -223,11 +222,6 @@ class TrainingScene(FormScene, ABC):
         column.gap()
         self.start_button = column.button(self._start_label, self._toggle, size=TITLE, colour=INK)
         self.start_button.pad = 2.0
-
-    def _write_problem(self, cursor: Cursor) -> None:
-        small = cursor.in_style(SMALL, cursor.canvas.palette.warn if cursor.canvas else MUTE)
-        small.text(self.run.problem)
-        cursor.y = small.y
 
     def lay_out(self) -> None:
         """Lay everything out for the window as it is."""
@@ -317,8 +311,7 @@ class TrainingScene(FormScene, ABC):
         if self._rows_key != self._laid and not any(widget.held or widget.typing for widget in self.form.widgets):
             self._lay()
         self.lay_out()
-        question, self._question = self._question, None
-        return outcome or question
+        return outcome
 
     # The run
 

@@ -89,7 +89,21 @@ class DigitTrainingScene(TrainingScene):
 
     @property
     def _status(self) -> TrainingStatus:
-        return digit_status(self.run)
+        run = self.run
+        history, scores = run.history, run.history.validations
+        line = texts.DIGIT_RUN_LOADING if run.alive else texts.DIGIT_RUN_LINE
+        if len(history):
+            line = texts.DIGIT_RUN_FIGURES.format(
+                epoch=history["epoch"][-1], epochs=run.config.epochs, seconds=history["seconds"][-1],
+                rate=history["images_per_second"][-1],
+            )  # fmt: skip
+        part, words = scores[-1].success if scores else None, texts.DIGIT_RUN_READ
+        if run.test is not None:
+            if run.kept_epoch is not None:
+                read = f"{100 * scores[-1].success:.2f} %" if scores else "–"
+                line = texts.DIGIT_RUN_KEPT_BEST.format(epoch=run.kept_epoch, last=read)
+            part, words = run.test, texts.DIGIT_RUN_TESTED
+        return TrainingStatus(texts.DIGIT_RUN_TITLE, line, "" if part is None else f"{100 * part:.2f}", words)
 
     @property
     def _unfinished(self) -> str:
@@ -237,21 +251,3 @@ class DigitTrainingScene(TrainingScene):
         if self._cell.width >= _LEAST:
             canvas.text(texts.MATRIX_AXES, (self._cell.left, place[1]), size=LABEL, colour=MUTE, room=self._cell.width)
             self.matrix.draw_cell(canvas, self._cell)
-
-
-def digit_status(run: TrainingRun) -> TrainingStatus:
-    """Return the epoch, the time and the speed, and the share of images that are read rightly."""
-    history, scores = run.history, run.history.validations
-    line = texts.DIGIT_RUN_LOADING if run.alive else texts.DIGIT_RUN_LINE
-    if len(history):
-        line = texts.DIGIT_RUN_FIGURES.format(
-            epoch=history["epoch"][-1], epochs=run.config.epochs, seconds=history["seconds"][-1],
-            rate=history["images_per_second"][-1],
-        )  # fmt: skip
-    part, words = scores[-1].success if scores else None, texts.DIGIT_RUN_READ
-    if run.test is not None:
-        if run.kept_epoch is not None:
-            read = f"{100 * scores[-1].success:.2f} %" if scores else "–"
-            line = texts.DIGIT_RUN_KEPT_BEST.format(epoch=run.kept_epoch, last=read)
-        part, words = run.test, texts.DIGIT_RUN_TESTED
-    return TrainingStatus(texts.DIGIT_RUN_TITLE, line, "" if part is None else f"{100 * part:.2f}", words)

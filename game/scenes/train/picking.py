@@ -6,6 +6,7 @@ import math
 from typing import Final, NamedTuple
 
 import numpy as np
+import pygame
 
 from ai.training.edits import NetworkEdits
 from game.core import texts
@@ -86,14 +87,11 @@ def _draw_link(canvas: Canvas, view: NetworkView, link: Link, *, cut: bool) -> N
     if not cut:
         canvas.line(start, end, HUMAN, 2.0)
         return
+    first = pygame.Vector2(start)
     count = max(1, round(math.dist(start, end) / _DASH / 2))
     for number in range(count):
-        here, there = (_between(start, end, part / count) for part in (number, number + 0.5))
+        here, there = (tuple(first.lerp(end, part / count)) for part in (number, number + 0.5))
         canvas.line(here, there, HUMAN, 1.5, 0.7)
-
-
-def _between(start: Point, end: Point, share: float) -> Point:
-    return start[0] + share * (end[0] - start[0]), start[1] + share * (end[1] - start[1])
 
 
 def _place(view: NetworkView, unit: Unit) -> int | None:

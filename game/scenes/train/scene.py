@@ -24,7 +24,6 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import LINE, MUTE, NIGHT0, SMALL
 from game.explain.lesson_door import LessonDoor
 from game.flight.demonstrations import FILE_NAME, count_demonstrations
-from game.input.controls import Command
 from game.scenes.menus.dialogs import ListDialog
 from game.scenes.train.advice import Advice
 from game.scenes.train.base import CHARTS, INSIDE, KNOBS, TrainingScene, TrainingStatus
@@ -39,7 +38,6 @@ from game.training.beside import take_away
 from game.training.library import Library
 from game.training.run import TrainingRun
 from game.training.workers import LANDERS, PACES
-from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.panel import Column
 from game.ui.rows import RunRow
@@ -98,11 +96,19 @@ class TrainScene(TrainingScene):
 
     @property
     def _status(self) -> TrainingStatus:
-        status = lander_status(self.run, self.moment, self.rewind.row)
+        run, row, title, landed = self.run, self.rewind.row, texts.TRAIN_TITLE, texts.TRAIN_LANDED
+        if run.swarm_state is None or not run.measured:
+            return TrainingStatus(title, texts.TRAIN_BEGINS if run.alive else texts.TRAIN_LINE, "", landed)
+        line = texts.TRAIN_FIGURES.format(
+            landers=len(run.swarm_state.outcome), seconds=run.history["seconds"][row],
+            count=int(run.swarm_state.decisions) if self.moment is None else self.moment,
+        )  # fmt: skip
+        share = run.history["success"][row]
+        figure = "" if np.isnan(share) else f"{100 * share:.0f}"
         painted = "".join(self.charts.landed[:1])
         if self.moment is None and painted.isdigit():  # one number for the title and its chart
-            status = status._replace(figure=painted)
-        return status
+            figure = painted
+        return TrainingStatus(title, line, figure, landed)
 
     @property
     def _unfinished(self) -> str:
@@ -205,12 +211,8 @@ class TrainScene(TrainingScene):
         return self._advice.shown
 
     def _set_pace(self, pace: int) -> None:
-        self._pace = min(max(pace, 0), len(PACES) - 1)
-        self.run.set_pace(self._pace)
-
-    def _turn_pace(self, direction: int) -> None:
-        self._set_pace(self._pace + direction)
-        self._laid = None  # the choice shows it
+        self._pace = pace
+        self.run.set_pace(pace)
 
     # Events and time
 
@@ -223,12 +225,6 @@ class TrainScene(TrainingScene):
         if not self.inside.opened and not self.form.used:
             self._choose_lander(event)
         return outcome
-
-    def actions(self) -> Table:
-        """Change the pace, and do all that every run has."""
-        *others, explain = super().actions()
-        pace = [Action(Command.SLOWER, lambda: self._turn_pace(-1)), Action(Command.FASTER, lambda: self._turn_pace(1))]
-        return [*others, *pace, explain]
 
     def update(self) -> Transition | None:
         """Receive the worker's messages, and animate the screen."""
@@ -444,22 +440,3 @@ class TrainScene(TrainingScene):
                 canvas.text(texts.REWIND_NO_LANDERS, box.center, size=SMALL, colour=MUTE, align="centre")
         canvas.line((box.left, box.bottom), (box.right, box.bottom), LINE)
         self.draw_title(canvas)
-
-
-def lander_status(run: TrainingRun, moment: int | None = None, row: int = -1) -> TrainingStatus:
-    """Return the landers, the time and the decisions so far, and the share that lands.
-
-    `moment`, in decisions, and the `row` of the history say so of an earlier moment.
-    """
-    history, swarm_state = run.history, run.swarm_state
-    if swarm_state is None or not run.measured:
-        line = texts.TRAIN_BEGINS if run.alive else texts.TRAIN_LINE
-        return TrainingStatus(texts.TRAIN_TITLE, line, "", texts.TRAIN_LANDED)
-    line = texts.TRAIN_FIGURES.format(
-        landers=len(swarm_state.outcome),
-        seconds=history["seconds"][row],
-        count=int(swarm_state.decisions) if moment is None else moment,
-    )
-    landed = history["success"][row]
-    figure = "" if np.isnan(landed) else f"{100 * landed:.0f}"
-    return TrainingStatus(texts.TRAIN_TITLE, line, figure, texts.TRAIN_LANDED)

@@ -12,7 +12,7 @@ from ai.training.history import COLUMNS, Checkpoint, Point
 from game.core import texts
 from game.core.worker import WorkerState
 from game.scenes.train.base import CHARTS, INSIDE
-from game.scenes.train.scene import TrainScene, lander_status
+from game.scenes.train.scene import TrainScene
 from game.ui.scrubber import Scrubber
 from tests.support.driver import Driver
 
@@ -58,7 +58,7 @@ def assert_all_of_it_is_at(driver: Driver, moment: int) -> None:
     row = int(np.abs(history["decisions"] - moment).argmin())
     assert scene.rewind.row == row
     assert scene.inside.paid == pytest.approx(history.parts[row])
-    line = lander_status(run, scene.moment, scene.rewind.row).line
+    line = scene._status.line
     assert f"{moment:,}" in line
     seconds = float(np.interp(moment, history["decisions"], history["seconds"]))
     assert scene.charts.charts[0].marker == pytest.approx(seconds)
