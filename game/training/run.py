@@ -139,7 +139,9 @@ class TrainingRun(OneAfterAnother):
         player, or ""; for a run that must wait, the note comes from `poll`.
         """
         self.leave()
-        put_beside(self.earlier, self.name, self.history)
+        again = (config, seed) == (self.config, self.seed) and not self.history.setting_changes
+        if resume is not None or not again:  # or else both curves would be the same
+            put_beside(self.earlier, self.name, self.history)
         self._clear()
         self.config, self.seed = config, seed
         self.runs += 1

@@ -107,6 +107,7 @@ class Inside:
         column.choice("", texts.NETWORK_VIEW_SHOWS, SHOWN.index(self.view.show), self._choose, SMALL)
         column.aside(lambda: texts.NETWORK_VIEW_LINES[self.view.show])
         self.editing.describe(column, opened=True)
+        column.gap()
         column.caption(texts.REWARD_BAR_LABEL)
         if len(self._run.history):
             column.add(table((), self._paid_lines))

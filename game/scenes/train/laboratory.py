@@ -173,10 +173,10 @@ class Laboratory:
             column.text(texts.LAB_GUESSES[self.chosen.guess], size=SMALL, colour=HUMAN)
             column.gap()
         column.caption(texts.LAB_CAME)
-        column.text(lambda: self._run.twin.problem if self._run.twin else "", size=SMALL, colour=HUMAN)
         column.text(self._figures, size=SMALL, colour=INK)
         for subject, colour in (("came", NET), ("why", INK), ("measured", MUTE)):
             column.text(partial(self._told, subject), size=SMALL, colour=colour)
+        column.text(lambda: self._run.twin.problem if self._run.twin else "", size=SMALL, colour=HUMAN)
         column.words([
             (texts.LAB_KEEP_RUN, partial(self._leave, False)),
             (texts.LAB_KEEP_EXPERIMENT, partial(self._leave, True)),

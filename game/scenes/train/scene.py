@@ -439,4 +439,5 @@ class TrainScene(TrainingScene):
             if self.moment is not None and self.rewind.swarm_state is None:
                 canvas.text(texts.REWIND_NO_LANDERS, box.center, size=SMALL, colour=MUTE, align="centre")
         canvas.line((box.left, box.bottom), (box.right, box.bottom), LINE)
-        self.draw_title(canvas)
+        if not split or box.height > 2 * _HEAD:  # or else it would lie on both swarms, which say the same
+            self.draw_title(canvas)

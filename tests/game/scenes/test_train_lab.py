@@ -280,6 +280,20 @@ def test_each_name_of_the_legend_has_a_curve(train: Driver, monkeypatch: pytest.
     assert len(scene._legend) > 1
 
 
+def test_a_run_that_is_flown_again_from_its_seed_is_not_its_own_earlier_run(train: Driver) -> None:
+    scene = train.top
+    train.press_on(texts.TRAIN_START)
+    train.wait(lambda: np.isfinite(scene.run.history["success"]).any())
+    split(train)
+    train.press_on(texts.LAB_KEEP_RUN)
+    train.frames(3)
+    assert scene.run.earlier == [], "its curve would lie on the other, bit for bit"
+    scene.knobs.turn("discount", 0.9)
+    train.wait(lambda: len(scene.run.history.setting_changes) > 0 and np.isfinite(scene.run.history["success"]).any())
+    split(train)
+    assert len(scene.run.earlier) == 1
+
+
 def test_the_guess_can_be_skipped_or_the_sabotage_flown_alone(train: Driver) -> None:
     scene = train.top
     for sabotage, answer in (("no_normalisation", texts.LAB_ALONE), ("short_sight", texts.LAB_SKIP)):
