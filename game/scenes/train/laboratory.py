@@ -31,6 +31,7 @@ from game.training.run import TrainingRun
 from game.training.run_settings import LANDER
 from game.ui.panel import Column
 
+_DIVERGED: Final = "not finite"  # in the words of a run that ended so: another end says nothing of an experiment
 FILE: Final = ASSETS_DIR / "sabotages.json"  # what `python -m benchmarks.sabotages` measured
 
 
@@ -90,7 +91,7 @@ class Laboratory:
         early = figures = ""
         if len(run.history) and len(twin.history):
             healthy, other = Flown(run.history, run.config), Flown(twin.history, twin.config)
-            self.came = verdict(healthy, other, failed=bool(twin.problem))
+            self.came = verdict(healthy, other, failed=_DIVERGED in twin.problem)
             judged = judged_at(healthy, other)
             early = texts.LAB_JUDGED_AT.format(count=math.ceil(judged)) if math.isfinite(judged) else ""
             figures = texts.LAB_FIGURES_THEN.format(
@@ -99,7 +100,7 @@ class Laboratory:
         self.said = {
             "differs": listed_differences(run.config, twin.config),
             "figures": figures if self.came else "",
-            "came": came_words(self.came, chosen.guess) or early or texts.LAB_TOO_EARLY,
+            "came": came_words(self.came, chosen.guess) or ("" if twin.problem else early or texts.LAB_TOO_EARLY),
             "why": why(self.came, chosen.experiment.sabotage),
             "measured": measured(chosen.experiment.sabotage)
             if self.came and chosen.experiment.sabotage and run.config == PRESETS[MEASURED]

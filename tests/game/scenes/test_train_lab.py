@@ -123,6 +123,8 @@ def test_a_worker_that_dies_leaves_the_other_flying(beside: Driver) -> None:
     beside.wait(lambda: run.turns[0] > before + 3 * AHEAD)
     assert run.state is WorkerState.RUNNING
     assert "SIGKILL" in run.twin.problem
+    beside.frames(21)
+    assert beside.top.laboratory.came is None, "that is no verdict on the experiment"
     beside.press_on(texts.LAB_KEEP_EXPERIMENT)
     assert beside.said == texts.SPLIT_OVER
     assert run.twin is not None
