@@ -16,6 +16,7 @@ from ai.lander.rules import tenths
 from game.core import texts
 from game.drawing.canvas import Canvas, Now, Point
 from game.drawing.paint_cache import PaintCache
+from game.drawing.shapes import Shape
 from game.drawing.tokens import (
     CAPTION,
     FAINT,
@@ -33,6 +34,8 @@ from game.drawing.tokens import (
     Colour,
 )  # fmt: skip
 from game.flight import outcomes
+
+Lamp = tuple[Shape, Colour, float]  # shape, colour and strength of the glow
 
 READOUTS: Final = 80.0  # points at the foot of a page that they take
 PILOT: Final = ("altitude", "descent", "drift", "tilt")  # what a pilot needs in flight, of `GAUGES`
