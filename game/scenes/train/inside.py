@@ -41,7 +41,7 @@ class Inside:
     """
 
     def __init__(self, run: TrainingRun) -> None:
-        self.opened = False
+        self._opened = False
         self._run = run
         self.view = NetworkView((0, 0, 400, 300), texts.INPUTS, tuple(map(texts.said, ACTION_NAMES)))
         self.editing = NetworkEditing(self.view, run)
@@ -54,6 +54,15 @@ class Inside:
         self.paid = np.zeros(len(PARTS))
         self.health = NetworkHealth()
         self.editing.clear()
+
+    @property
+    def opened(self) -> bool:
+        return self._opened
+
+    @opened.setter
+    def opened(self, opened: bool) -> None:
+        self._opened = opened
+        self._look()
 
     @property
     def busy(self) -> bool:
@@ -84,9 +93,14 @@ class Inside:
         self.network, self.shown = network, state
         network.values = state.values
         network.gradients[:] = state.gradients
-        self.view.output_scale = config.reward_scale
-        self.view.set(network, state.observation)
-        self.editing.look(network)
+        self._look()
+
+    def _look(self) -> None:
+        """Let the view follow, while it is seen: to choose what it shows takes a millisecond."""
+        if self._opened and self.network is not None and self.shown is not None:
+            self.view.output_scale = self._run.config.reward_scale
+            self.view.set(self.network, self.shown.observation)
+            self.editing.look(self.network)
 
     def follow(self, event: pygame.event.Event) -> None:
         """Follow the mouse or the virtual pointer; an event's position is in points."""

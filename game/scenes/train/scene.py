@@ -79,6 +79,7 @@ class TrainScene(TrainingScene):
         self.lessons = LessonDoor(run, self.context.note)
         self._advice = Advice(run, self.knobs.turn)
         self._pace, self._frame = len(PACES) - 1, 0
+        self._news = False  # of the network, on which there is no advice yet
         self._legend: list[RunRow] = []
 
     def _show_opened(self) -> None:
@@ -236,6 +237,9 @@ class TrainScene(TrainingScene):
         else:
             self.knobs.show_in_force(run.in_force)
         self._go_to(self.moment)
+        if self._news and run.alive and not looked:  # in a frame of its own
+            self._news, looked = False, True
+            self._advice.follow(self.inside.health)
         looked |= self.charts.look(run.history, self._beside, self._caption)
         self.swarm.update(still)
         self.split_view.update(still, self.moment)
@@ -258,8 +262,7 @@ class TrainScene(TrainingScene):
             return False
         if self.moment is None:
             self.inside.examine(run.network_state)
-        if run.alive and len(run.history):
-            self._advice.follow(self.inside.health)
+        self._news = run.alive and len(run.history) > 0
         return True
 
     def _go_to(self, moment: int | None) -> None:
