@@ -90,8 +90,8 @@ def _draw_link(canvas: Canvas, view: NetworkView, link: Link, *, cut: bool) -> N
     first = pygame.Vector2(start)
     count = max(1, round(math.dist(start, end) / _DASH / 2))
     for number in range(count):
-        here, there = (tuple(first.lerp(end, part / count)) for part in (number, number + 0.5))
-        canvas.line(here, there, HUMAN, 1.5, 0.7)
+        here, there = first.lerp(end, number / count), first.lerp(end, (number + 0.5) / count)
+        canvas.line((here.x, here.y), (there.x, there.y), HUMAN, 1.5, 0.7)
 
 
 def _place(view: NetworkView, unit: Unit) -> int | None:

@@ -3,6 +3,7 @@
 import os
 import signal
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -23,7 +24,7 @@ from game.scenes.train.laboratory import FILE, Chosen, came_words, measured, why
 from game.scenes.train.scene import TrainScene
 from game.training.knob_descriptions import knob_descriptions
 from game.training.library import Library
-from game.training.run import AHEAD
+from game.training.run import AHEAD, TrainingRun
 from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.recordings import growing, recorded
@@ -264,6 +265,11 @@ def test_a_verdict_is_given_once_and_before_it_stand_the_numbers_alone(
     assert (laboratory._figures(), laboratory.said["came"]) == said[-1], "a verdict stays"
 
 
+def flown(run: TrainingRun) -> bool:
+    """Whether a flight of it has ended."""
+    return bool(np.isfinite(run.history["success"]).any())
+
+
 def test_each_name_of_the_legend_has_a_curve(train: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
     scene = train.top
     monkeypatch.setattr(inline_worker, "TURNS", 1)  # so that no flight ends before the experiment begins
@@ -273,8 +279,8 @@ def test_each_name_of_the_legend_has_a_curve(train: Driver, monkeypatch: pytest.
     monkeypatch.setattr(inline_worker, "TURNS", 40)
     for answer in (texts.LAB_KEEP_RUN, texts.LAB_KEEP_EXPERIMENT):
         split(train)
-        both = scene.run, scene.run.twin
-        train.wait(lambda both=both: all(np.isfinite(each.history["success"]).any() for each in both))
+        for each in (scene.run, scene.run.twin):
+            train.wait(partial(flown, each))
         train.press_on(answer)
         train.frames(30)
         curves = {run.series.name for run in scene.charts.charts[0].runs if np.isfinite(run.y).any()}
