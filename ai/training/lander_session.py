@@ -20,7 +20,7 @@ from ai.training.edits import EDITED, Edit, NetworkEditor
 from ai.training.explanations import Explanations
 from ai.training.history import COLUMNS, PARTS, REVERTED, Checkpoint, Point, Validation
 from ai.training.loop import Progress, Training
-from ai.training.messages import NetworkState, SwarmState
+from ai.training.messages import DIVERGED, NetworkState, SwarmState
 from ai.training.run import resume as resume_run
 from ai.training.session import Session
 from ai.training.state import State
@@ -188,7 +188,7 @@ class LanderSession(Session[Training]):
         values = agent.network.values.copy()
         if not np.isfinite(values).all():
             raise FloatingPointError(
-                f"the network was not finite after learning step {agent.gradient_steps}; "
+                f"the network was {DIVERGED} after learning step {agent.gradient_steps}; "
                 f"most likely the learning rate of {agent.optimizer.learning_rate:g} is too high"
             )
         normalizer = agent.normalizer.to_json() if agent.normalizer else None

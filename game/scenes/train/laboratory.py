@@ -22,6 +22,7 @@ from ai.training.experiments import (
     judged_at,
     verdict,
 )
+from ai.training.messages import DIVERGED
 from game.core import texts
 from game.core.assets import ASSETS_DIR
 from game.drawing.tokens import HUMAN, INK, MUTE, NET, SMALL, TITLE
@@ -31,7 +32,6 @@ from game.training.run import TrainingRun
 from game.training.run_settings import LANDER
 from game.ui.panel import Column
 
-_DIVERGED: Final = "not finite"  # in the words of a run that ended so: another end says nothing of an experiment
 FILE: Final = ASSETS_DIR / "sabotages.json"  # what `python -m benchmarks.sabotages` measured
 
 
@@ -91,7 +91,9 @@ class Laboratory:
         early = figures = ""
         if len(run.history) and len(twin.history):
             healthy, other = Flown(run.history, run.config), Flown(twin.history, twin.config)
-            self.came = verdict(healthy, other, failed=_DIVERGED in twin.problem)
+            self.came = verdict(
+                healthy, other, failed=DIVERGED in twin.problem
+            )  # another end says nothing of the experiment
             judged = judged_at(healthy, other)
             early = texts.LAB_JUDGED_AT.format(count=math.ceil(judged)) if math.isfinite(judged) else ""
             figures = texts.LAB_FIGURES_THEN.format(
