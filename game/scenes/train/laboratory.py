@@ -91,9 +91,8 @@ class Laboratory:
         early = figures = ""
         if len(run.history) and len(twin.history):
             healthy, other = Flown(run.history, run.config), Flown(twin.history, twin.config)
-            self.came = verdict(
-                healthy, other, failed=DIVERGED in twin.problem
-            )  # another end says nothing of the experiment
+            # Another end than a network that diverged says nothing of the experiment.
+            self.came = verdict(healthy, other, failed=DIVERGED in twin.problem)
             judged = judged_at(healthy, other)
             early = texts.LAB_JUDGED_AT.format(count=math.ceil(judged)) if math.isfinite(judged) else ""
             figures = texts.LAB_FIGURES_THEN.format(
