@@ -13,7 +13,7 @@ from game.core import texts
 from game.core.worker import WorkerState
 from game.scenes.train.base import CHARTS, INSIDE
 from game.scenes.train.scene import TrainScene
-from game.ui.scrubber import Scrubber
+from game.ui.charts import Scrubber
 from tests.support.driver import Driver
 
 POINTS = 8
