@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ai.files import read_as
+from ai.flights.recording import STEPS, Easing
 from ai.lander.descent import LegStart
 from ai.lander.environment import Outcome
 from ai.lander.missions import MISSIONS
@@ -267,12 +268,21 @@ def test_a_flight_from_before_a_mission_was_changed_is_kept_and_counts_no_more(k
     assert not entry().outdated
 
 
-@given(st.lists(st.sampled_from(range(6)), min_size=1, max_size=300), st.integers(0, 2**40))
-@settings(max_examples=50, deadline=None)
-def test_any_recording_survives_its_file(actions: list[int], seed: int):
+SHARES = st.tuples(st.integers(0, STEPS), st.integers(-STEPS, STEPS))
+
+
+@given(
+    st.lists(st.tuples(st.integers(0, 5), st.none() | SHARES), min_size=1, max_size=300),
+    st.integers(0, 2**40), st.booleans(), st.booleans(),
+)  # fmt: skip
+@settings(max_examples=60, deadline=None)
+def test_any_recording_survives_its_file(steps: list, seed: int, wider: bool, untimed: bool):
+    actions = [action for action, _ in steps]
     hands = [StickHolder.HUMAN if action % 2 else StickHolder.NETWORK for action in actions]
-    leg = LegStart(7, 12.345, bare=True) if seed % 2 else None
-    recording = Recording(seed, "hard", 3, leg=leg, actions=actions, hands=hands)
+    recording = Recording(
+        seed, "hard", 3, leg=LegStart(7, 12.345, bare=True) if seed % 2 else None, actions=actions, hands=hands,
+        shares={number: share for number, (_, share) in enumerate(steps) if share}, easing=Easing(wider, untimed),
+    )  # fmt: skip
     record = Record(recording, replace(entry(), file="x"), (1.0, 2.0, -0.25))
     assert from_text(to_text(record)) == record
     assert json.loads(to_text(record))["version"] == 5
