@@ -6,12 +6,13 @@ Judging only: what comes of a push is flown by `ai.copilot.futures`, beforehand 
 from __future__ import annotations
 
 from enum import IntEnum
+from math import inf
 from typing import Final, NamedTuple
 
 from ai.copilot.futures import KEYS, Future, Here, Known, Plan, Push
 
 _FARTHEST: Final = 12  # decisions of an action after which there must be a landing, with the dial at 1
-_PATIENCE: Final = 180  # steps by which a pilot may put off the landing, from the first correction on
+_PATIENCE: Final = 180  # steps by which the landing may be put off, from the first correction on
 _CALM: Final = 8  # decisions in a row without a correction, after which that begins anew
 
 
@@ -48,7 +49,7 @@ class Guardian:
 
     def __init__(self) -> None:
         self.plan: Plan | None = None
-        self._due: int | None = None  # physics steps flown when it must have landed; None while nothing is corrected
+        self._due = inf  # physics steps flown when it must have landed, as long as corrections follow each other
         self._calm = 0  # decisions in a row without a correction
 
     def knows(self, here: Here, asked: Push, known: Known) -> bool:
@@ -68,24 +69,22 @@ class Guardian:
         pilot flies. What is not `known` in time counts as lost, which never is a risk while a plan is held.
 
         Keys that are held could so keep a craft in the air for ever: pushed, saved, pushed again. From the first
-        correction on, the landing may be put off by three seconds; what lands later than that passes no more.
+        correction on, a landing that was in sight may be put off by three seconds; what lands later passes no more.
         """
         offers, head = self._offers(here, asked, network, whole)
         futures = {push: Future(self.plan) if push == head else known.get(push, Future(None)) for push in offers}
-        plans = {push: future.plan for push, future in futures.items() if future.plan and self._in_time(future.plan)}
+        plans = {push: future.plan for push, future in futures.items() if future.plan and future.plan.ends <= self._due}
         if not plans:
             return Choice(asked)
         push = next((push for push in plans if futures[push].lasts), next(iter(plans)))
         self.plan = plan = plans[push]
-        self._calm = self._calm + 1 if offers[push] is ActionSource.PILOT else 0
+        corrected = offers[push] is not ActionSource.PILOT
+        self._calm = 0 if corrected else self._calm + 1
         if self._calm >= _CALM:
-            self._due = None
-        elif self._calm == 0 and self._due is None:
-            self._due = plan.ends + _PATIENCE
+            self._due = inf
+        elif corrected or self._due < inf:
+            self._due = min(self._due, plan.ends + _PATIENCE)
         return Choice(push, offers[push], held=True)
-
-    def _in_time(self, plan: Plan) -> bool:
-        return self._due is None or plan.ends <= self._due
 
     def _offers(
         self, here: Here, asked: Push, network: Push, whole: bool
@@ -96,7 +95,7 @@ class Guardian:
         """
         head = self.plan.push(here) if self.plan else None
         if head is None:
-            self.plan = self._due = None
+            self.plan, self._due = None, inf
         best, own = head or network, KEYS[asked.action] if whole else asked
         offers = {asked: ActionSource.PILOT}
         offers.setdefault(Push.of(own.main, best.side), ActionSource.PILOT_MAIN)

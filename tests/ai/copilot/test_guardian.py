@@ -72,15 +72,15 @@ def test_the_least_is_corrected_that_lands():
     assert asked == (MAIN_LEFT, "PILOT_MAIN")
 
 
-def held_keys(saved_each, most=400, length=30):
-    """Hold left, which lands as late whenever it is pushed, and is saved in each so many decisions.
+def held_keys(saved_each, most=400, length=30, sooner=None):
+    """Hold left, which lands as late whenever it is pushed but in one decision, and is saved in each so many of them.
 
     Returns the steps flown, and in how many decisions in a row the key was felt at most.
     """
     guardian, steps, felt, longest = Guardian(), 0, 0, 0
     guardian.plan = plan(*(MAIN,) * length)
     while steps < 4 * most and guardian.plan.push(here := HERE._replace(steps=steps)):
-        later = plan(LEFT, *(MAIN,) * length, begin=steps)
+        later = plan(LEFT, *(MAIN,) * (10 if steps // 4 == sooner else length), begin=steps)
         known = {LEFT: Future(None if steps // 4 % saved_each == 0 else later)}
         push = guardian.choose(here, LEFT, COAST, known).push
         felt = felt + 1 if push == LEFT else 0
@@ -92,6 +92,8 @@ def test_held_keys_put_the_landing_off_for_three_seconds_and_no_longer():
     first = 4 * 30  # steps flown when the plan lands that was held at the first correction
     for saved_each in (2, 3, 6):
         assert first + 160 < held_keys(saved_each)[0] <= first + 180, saved_each
+    soonest = 4 * 16  # pushed in its fifth decision, it lands after eleven
+    assert soonest + 160 < held_keys(3, sooner=5)[0] <= soonest + 180
     steps, felt = held_keys(30)
     assert steps == 4 * 400, "who is seldom corrected flies on"
     assert felt == 29
