@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Final
 
 import pygame
@@ -27,7 +28,7 @@ from game.ui.context import Context
 from game.ui.panel import Column, Panel
 from game.ui.panel_scene import PanelScene
 from game.ui.playback import Playback
-from game.ui.rows import ButtonRow, SliderRow
+from game.ui.rows import ButtonRow
 from game.ui.virtual_pointer import PictureRow
 from game.world.bodies import Outlines, draw_contacts, draw_force_scale, draw_grip
 from game.world.camera import View
@@ -41,11 +42,10 @@ _REACH: Final = 8.0  # points by which the mouse may miss a body
 _BUDGET: Final = 6e-3  # seconds of a frame for measuring, during which the exhibit waits
 _REST: Final = 6  # steps without a change after which an exhibit of many bodies is made anew
 _MANY: Final = 24
-_SMOOTHING: Final = 0.05
 
 
 class PhysicsScene(PanelScene):
-    """Physics gallery, one exhibit at a time; `now` is the clock in seconds that times its steps.
+    """Physics gallery, one exhibit at a time; `now` is the clock in seconds by which a range is measured.
 
     Attributes:
         chosen: name of the exhibit.
@@ -85,7 +85,6 @@ class PhysicsScene(PanelScene):
         self._outlines = Outlines(self.exhibit.sprites)
         self._poses = self._poses_before = self.exhibit.poses
         self._clock.begin()
-        self.step_time = 0.0
         if self.plot:
             self.plot = LawPlot(self.exhibit, self._axis, self.results)
 
@@ -100,6 +99,11 @@ class PhysicsScene(PanelScene):
 
     def _turn(self, direction: int) -> None:
         self._choose(list(EXHIBITS).index(self.chosen) + direction)
+
+    def reword(self) -> None:
+        if self.plot:
+            self.plot = LawPlot(self.exhibit, self._axis, self.results)
+        self.build()
 
     def _choose_gravity(self, index: int) -> None:
         self._gravity = index
@@ -157,10 +161,7 @@ class PhysicsScene(PanelScene):
         return super().update()
 
     def _step(self) -> None:
-        before = self._now()
         self.exhibit.step(self.grip)
-        spent = self._now() - before
-        self.step_time += (spent - self.step_time) * (_SMOOTHING if self.step_time else 1.0)
         self._poses_before, self._poses = self._poses, self.exhibit.poses
 
     # Keys
@@ -213,11 +214,10 @@ class PhysicsScene(PanelScene):
         what = texts.EXPLAIN_PHYSICS
         for quantity in self.exhibit.quantities:
             label, figure = texts.QUANTITIES[quantity.name]
-            column.widget(SliderRow(
-                self.form.manager, label, self.exhibit.values[quantity.name], quantity.limits,
-                lambda value, name=quantity.name: self._change(name, value), quantity.step,  # type: ignore[misc]
-                lambda value, figure=figure: figure.format(value=value),  # type: ignore[misc]
-            ))  # fmt: skip
+            column.slider(
+                label, self.exhibit.values[quantity.name], quantity.limits, partial(self._change, quantity.name),
+                step=quantity.step, figure=partial(_filled, figure),
+            )  # fmt: skip
             column.explain(what["slider"])
         buttons = column.words([
             (texts.LAW_START_VALUES, self._reset),
@@ -240,14 +240,8 @@ class PhysicsScene(PanelScene):
         column.explain(what["speed"])
         column.toggle(texts.PHYSICS_CONTACTS, self.contacts_drawn, lambda _: self.toggle_contacts())
         column.explain(what["contacts"])
-        for words, read, key in (
-            (texts.BODIES, lambda: str(len(self.exhibit.bodies)), "bodies"),
-            (texts.CONTACT_POINTS, lambda: str(self.exhibit.contact_count) if self.exhibit.steps else "–", "points"),
-            (texts.KINETIC_ENERGY, lambda: f"{self.exhibit.kinetic_energy:.1f} J", "energy"),
-            (texts.STEP_TIME, lambda: f"{1e3 * self.step_time:.1f} ms", "step"),
-        ):
-            column.pair(words, read)
-            column.explain(what[key])
+        column.pair(texts.KINETIC_ENERGY, lambda: f"{self.exhibit.kinetic_energy:.1f} J")
+        column.explain(what["energy"])
 
     @property
     def more(self) -> bool:
@@ -351,3 +345,7 @@ class PhysicsScene(PanelScene):
         for button, what in self._told:
             canvas.explain(button.box, what)
         self.explained.draw(canvas)
+
+
+def _filled(figure: str, value: float) -> str:
+    return figure.format(value=value)
