@@ -46,8 +46,7 @@ from game.ui.playback import Playback
 from game.ui.rows import ButtonRow
 from game.ui.widget import Widget
 from game.world.camera import ClearArea, View
-from game.world.path_preview import draw_futures
-from game.world.paths import draw_faint
+from game.world.paths import draw_faint, draw_futures
 from game.world.scenery import Scenery
 
 SPEEDS: Final = (0.25, 0.5, 1.0, 2.0)
