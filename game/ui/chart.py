@@ -83,7 +83,6 @@ class Chart:
         self._rested = 0
 
     def move(self, box: pygame.FRect) -> None:
-        """Move to another box."""
         if box != self.box:
             self.box, self._painted = box, None
 
@@ -163,7 +162,6 @@ class Chart:
 
     @property
     def marker(self) -> float | None:
-        """The x of the marker; None without one."""
         return self._marker[0] if self._marker else None
 
     def hover(self, point: Point | None) -> None:
@@ -214,7 +212,6 @@ class Chart:
     # Drawing
 
     def draw(self, canvas: Canvas) -> None:
-        """Draw the chart, and the marker and the cursor over it."""
         if self._painted is None or self._painted[0].scale != canvas.scale:
             self._painted = self._paint(canvas)
         canvas.lay(self._painted[0], self.box.x - _MARGIN, self.box.y - _MARGIN)

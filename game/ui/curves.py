@@ -85,7 +85,6 @@ class Series:
         return Series(self.x, heights, self.name, self.colour, self.dash, self.smooth)
 
     def same(self, other: Series) -> bool:
-        """Whether another run would be drawn the same."""
         alike = (self.name, self.colour, self.dash, self.smooth) == (other.name, other.colour, other.dash, other.smooth)
         return alike and np.array_equal(self.x, other.x) and np.array_equal(self.y, other.y, equal_nan=True)
 

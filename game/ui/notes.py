@@ -78,7 +78,6 @@ class Note:
         return pygame.FRect(across * (view.width - width), down * (view.height - height), width, height)
 
     def draw(self, canvas: Canvas) -> None:
-        """Draw the message, if there is one."""
         if not self._left:
             return
         alpha = min(1.0, self._left / _STEPS_FADING)
