@@ -73,9 +73,9 @@ class Series:
         dash: tuple[float, ...] = (),
         smooth: bool = True,
     ) -> None:
-        places, values = np.array(x, float).ravel(), np.array(y, float).ravel()
+        places, values = np.asarray(x, float).ravel(), np.asarray(y, float).ravel()
         places, values = places[: len(values)], values[: len(places)]
-        self.x: Numbers = places[np.isfinite(places)]
+        self.x: Numbers = places[np.isfinite(places)]  # a copy
         self.y: Numbers = values[np.isfinite(places)]
         self.name, self.colour, self.dash, self.smooth = name, colour, dash, smooth
 
