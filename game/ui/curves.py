@@ -88,6 +88,11 @@ class Series:
         alike = (self.name, self.colour, self.dash, self.smooth) == (other.name, other.colour, other.dash, other.smooth)
         return alike and np.array_equal(self.x, other.x) and np.array_equal(self.y, other.y, equal_nan=True)
 
+    def within(self, x_range: Limits) -> Numbers:
+        """Return the values of a part of the x axis."""
+        values: Numbers = self.y[(self.x >= x_range[0]) & (self.x <= x_range[1])]
+        return values
+
     def nearest(self, x: float, slack: float) -> tuple[float, float] | None:
         """Return the finite point nearest to x; None if x lies more than `slack` outside the run."""
         finite = np.isfinite(self.y)
