@@ -316,7 +316,7 @@ class Walk:
                 driver.resize(window)
                 self._note(driver, f"{stop}, {window}")
             driver.resize(VIEW_SIZE)
-            held = str(stop) in IN_HAND  # another widget in focus would let go of the lander, and leave what explains it
+            held = str(stop) in IN_HAND  # another widget in focus would let go of the lander
             for place, widget in enumerate([] if held else list(self._widgets(driver))):
                 if widget not in self._widgets(driver):
                     break
