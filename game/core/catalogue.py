@@ -126,7 +126,7 @@ def _english(path: Path) -> Iterator[tuple[str, str, str]]:
     """Yield the name, the words, and the words for many or "", of every text in a compiled catalogue."""
     try:
         file = BytesIO(path.read_bytes())
-        found: dict[Any, str] = gettext.GNUTranslations(file)._catalog  # type: ignore[arg-type, attr-defined]
+        found: dict[Any, str] = gettext.GNUTranslations(file)._catalog  # type: ignore[attr-defined]
     except _DAMAGE as error:
         raise ValueError(f"{path} cannot be read") from error
     for key, words in found.items():  # of a text with a count, a key for each form: 0 for one, 1 for many
