@@ -282,6 +282,19 @@ def test_the_same_numbers_are_not_drawn_again(canvas: Canvas) -> None:
         assert chart.redraws > redraws
 
 
+def test_runs_behind_follow_the_axes(drawn: Callable[[Chart], np.ndarray]) -> None:
+    x = np.linspace(0.0, 20.0, 50)
+    runs = [Series(x, x / 40, "this run"), Series(x, 1 - x / 40, "before", *RUN_STYLES[1])]
+    chart, fresh = (Chart(BOX, "LOSS", limits=(0.0, 1.0)) for _ in range(2))
+    pictures = []
+    for end in (20.0, 40.0):
+        chart.set(runs, (0.0, end))
+        settle(chart)
+        pictures.append(drawn(chart))
+    fresh.set(runs, (0.0, 40.0))
+    assert np.array_equal(drawn(fresh), pictures[1])
+
+
 def test_charts_take_turns_and_rest(canvas: Canvas) -> None:
     boxes = [(40, 40 + 100 * number, 300, 90) for number in range(6)]
     charts = Charts([Chart(box, "A") for box in boxes])
