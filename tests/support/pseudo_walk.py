@@ -35,9 +35,9 @@ from game.scenes import scene_of
 from game.scenes.digits.inside import DigitInsideScene
 from game.scenes.error_screen import ErrorScene
 from game.scenes.learn import pay
-from game.scenes.learn.duels import DaringChapter, TargetChapter
 from game.scenes.learn.memory import MemoryChapter
 from game.scenes.learn.path import FIRST
+from game.scenes.learn.runs import DaringChapter, TargetChapter
 from game.scenes.learn.scene import ChapterScene
 from game.scenes.lesson.scene import LessonScene
 from game.scenes.play.scene import PlayScene

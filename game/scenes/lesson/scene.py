@@ -17,6 +17,7 @@ from game.drawing.tokens import CAPTION, INK, LINE, MUTE, NET, SMALL
 from game.explain.explained import Explained
 from game.explain.lesson_door import ImageDoor
 from game.input.controls import Command
+from game.scenes.lesson.alone import AloneFrame
 from game.scenes.lesson.frame import CodeWalk, Frame
 from game.scenes.lesson.frames import parts_of
 from game.ui.actions import Action, Table
@@ -117,6 +118,13 @@ class LessonScene(PanelScene):
         self.lesson, self.parts = lesson, parts_of(lesson)
         self.build()
 
+    def reword(self) -> None:
+        """Take the lesson apart anew, in the other language."""
+        before = self.parts[0].frame
+        self._take(self.lesson)
+        if isinstance(before, AloneFrame) and isinstance(now := self.parts[0].frame, AloneFrame):
+            now.alone = before.alone  # what was tried stays
+
     @property
     def frame(self) -> Frame:
         """The frame that is shown."""
@@ -129,9 +137,10 @@ class LessonScene(PanelScene):
     # Rows
 
     def describe(self, panel: Panel) -> None:
-        panel.pair(texts.LESSON_TITLE, self._whose, MUTE)
+        panel.text(lambda: f"{texts.LESSON_TITLE}: {self._whose()}", colour=MUTE)
         frames = [part.frame for part in self.parts]
         self.cards = panel.widget(Cards(self.form.manager, frames, self.current, self.show))
+        panel.explain("")  # each card says what it is
         panel.gap(8)
         panel.text(self.frame.sentence)
         panel.gap(8)
