@@ -16,7 +16,7 @@ from game.drawing.paint import mix
 from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL
 from game.flight.flight import Flight, StickHolder
 from game.flight.foresight import HELD, SixFutures
-from game.flight.networks import QPolicy
+from game.flight.networks import QPolicy, flew, word
 from game.panels.landings import Landing, Landings, RecentLandings, draw_landings
 from game.panels.q_values import HEIGHT, QValues, decision_words, draw_q_values
 from game.panels.readouts import draw_share
@@ -53,12 +53,16 @@ class CopilotPanel:
         self.shown = False
         self.values: QValues | Landings | None = None
         self.why: Why = ("", "", "")
-        self._names = [texts.PAD_NAMES.get(pad.factor, "") for pad in ground.pads]
+        self._factors = [pad.factor for pad in ground.pads]
         self._likely: list[float] = []  # of each of several pads that it is meant
         self._recent = RecentLandings()
         self._override: Why | None = None  # explanation of the latest override, while it is still shown
         self._stays = 0
         self._seen: object = None
+
+    def forget(self) -> None:
+        """Say anew what is said, in another language."""
+        self._seen = self._override = None
 
     def follow(self, flight: Flight, futures: SixFutures | None = None) -> None:
         """Update the panel after a step; `futures` are those of a flight that nobody shares."""
@@ -115,10 +119,10 @@ class CopilotPanel:
         looks = isinstance(self.values, Landings)
         title = canvas.text(texts.LANDINGS_TITLE if looks else texts.DECISION_TITLE, (left, top + 34), room=_WIDTH - 60)
         room = left + _WIDTH - title.right - 12
-        name = shortened(canvas, network, SMALL, room)
+        name = shortened(canvas, word(network), SMALL, room)
         canvas.text(name, (left + _WIDTH, top + 34), size=SMALL, colour=NET, align="right", room=room)
         if isinstance(self.values, Landings):
-            draw_landings(canvas, self.values, left, top + _VALUES, _WIDTH)
+            draw_landings(canvas, self.values, left, top + _VALUES, _WIDTH, flew(network))
         elif self.values is not None:
             draw_q_values(canvas, self.values, left, top + _VALUES, _WIDTH)
         canvas.line((left, top + _WHY), (left + _WIDTH, top + _WHY), LINE)
@@ -127,7 +131,7 @@ class CopilotPanel:
             self._draw_pads(canvas, left, top + _PADS)
         if share is not None:
             y = top + _WHY + 104 + box.height - _SIZE[1]
-            draw_share(canvas, left, y, _WIDTH, share)
+            draw_share(canvas, left, y, _WIDTH, share, flew(network))
             canvas.explain((left, y - 14, _WIDTH, 30), texts.EXPLAIN_SHARE)
 
     def _draw_why(self, canvas: Canvas, left: float, top: float) -> None:
@@ -144,8 +148,9 @@ class CopilotPanel:
         surest = max(self._likely)
         canvas.text(texts.COPILOT_PANEL_MEANT, (left, top - 20), size=LABEL, colour=MUTE, weight="medium", room=_WIDTH)
         canvas.explain((left, top - 34, _WIDTH, 92), texts.EXPLAIN_COPILOT_MEANT)
-        for number, (name, chance) in enumerate(zip(self._names, self._likely, strict=True)):
+        for number, (factor, chance) in enumerate(zip(self._factors, self._likely, strict=True)):
             y, likeliest = top + 22 * number, chance == surest
+            name = texts.PAD_NAMES.get(factor, "")
             canvas.text(name, (left, y + 4), size=SMALL, colour=INK if likeliest else MUTE)
             bar = (left + _NAME, y - 1.5, _WIDTH - _NAME, 3)
             canvas.bar(bar, chance, HUMAN if likeliest else mix(FAINT, HUMAN, 0.45))

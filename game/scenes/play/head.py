@@ -221,7 +221,7 @@ def head_of(flown: FlownFlight, hints: Sequence[Hint], *, whole: bool) -> Head:
     if flown.begun:
         opening = texts.TUTORIAL_LET_GO if stuck else texts.WAITS_AGAIN
     keys = flight_hints(controls) if opening and told is None else []
-    guided = [(texts.PATH_NETWORK, NET)] if flown.path_preview.asks else []
+    guided = [(texts.PATH_NETWORK.format(who=flown.credit.who), NET)] if flown.path_preview.asks else []
     paths = [(texts.PATH_YOURS, HUMAN), *guided] if keys and challenge.free else []
     return replace(head, sentence=told or opening, lamp=lamp, controls=keys, paths=paths, help=helps, means=means)
 

@@ -139,7 +139,7 @@ class MissionsScene(PanelScene):
         record = self._record(name, rival)
         later = _NAMES[_NAMES.index(name) + 1 :]
         following = partial(self._go_to, later[0]) if later else None
-        ghost = texts.MISSION_GHOSTS[rival] if record else texts.MISSION_RIVAL
+        ghost = texts.MISSION_GHOSTS[rival] if record else ""
         return FlownMission(MISSIONS[name], record, ghost, following)
 
     def _go_to(self, name: str) -> FlownMission:

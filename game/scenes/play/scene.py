@@ -106,6 +106,12 @@ class PlayScene(Scene):
         if not (self.flown.begun or self.flight.over) and (other or self.challenge.chosen() != self._begun_with):
             self._begin(self.flight.recording.seed)
 
+    def reword(self) -> None:
+        self.challenge.word()
+        self.flown.reword()
+        if self.ending.card:
+            self.ending.card = self._sitting.card(self.flown.make_card())
+
     def exit(self) -> None:
         self._stick.release()
         self.context.apply_settings()
@@ -233,19 +239,18 @@ class PlayScene(Scene):
 
     @property
     def leaves(self) -> bool:
-        """Whether Escape goes straight back: in a challenge that has not begun or is over, where nothing is lost."""
-        challenge = self.challenge
-        return not (challenge.free or challenge.stake) and (not self.flown.begun or self.flight.over)
+        """Whether Escape goes straight back: from the card of a challenge, where nothing is lost."""
+        return self.flight.over and not (self.challenge.free or self.challenge.stake)
 
     def pause(self) -> Transition:
         self._away = 0
         return push("flight_pause", self, retry=self.retry, more=self._pause_words)
 
     def _pause_words(self) -> list[tuple[str, OnPress]]:
-        name = networks.word(self.network.name)
+        network, pilot = networks.pause_labels(self.network.name)
         words: list[tuple[str, OnPress]] = [
-            (texts.PAUSE_NETWORK.format(name=name), lambda: push("runs", choose=self.choose_network)),
-            (texts.PILOTS_OPEN, lambda: push("pilots", self._choose_own)),
+            (network, lambda: push("runs", choose=self.choose_network)),
+            (pilot, lambda: push("pilots", self._choose_own)),
         ]
         if self.challenge.next_hint:
             words.append((texts.TUTORIAL_LEAVE, self._leave_challenge))
@@ -389,8 +394,9 @@ class PlayScene(Scene):
             if ending.due:
                 self.retry()
         elif ending.card is None:
-            card = self.flown.make_card(self._best, self._sitting.best_here(self.flight))
-            ending.card = self._sitting.add(self.flown, card)
+            self.flown.best = self._best, self._sitting.best_here(self.flight)
+            self._sitting.add(self.flown)
+            ending.card = self._sitting.card(self.flown.make_card())
             if self._sitting.first:
                 self._sound.play("choose")
             self._remember()

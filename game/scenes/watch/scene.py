@@ -283,11 +283,8 @@ class WatchScene(FormScene):
         return push("pause", self, self._begin_anew, texts.PAUSE_NEW_STARTS, self._pause_words)
 
     def _pause_words(self) -> list[tuple[str, OnPress]]:
-        name = brief(networks.word(self._wanted or self.network.name), _LONGEST_NAME)
-        return [
-            (texts.PAUSE_NETWORK.format(name=name), self._open_networks),
-            (texts.PILOTS_OPEN, self._open_pilots),
-        ]
+        network, pilot = networks.pause_labels(self._wanted or self.network.name)
+        return [(brief(network, _LONGEST_NAME), self._open_networks), (brief(pilot, _LONGEST_NAME), self._open_pilots)]
 
     def _want(self, name: str) -> None:
         self._wanted = name

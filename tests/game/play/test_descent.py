@@ -110,7 +110,7 @@ def test_a_crash_ends_the_run_with_how_far_it_came_and_a_key_flies_the_same_grou
     assert play(game).flown.ghost.name == texts.GHOST_BEFORE
     land(game)
     land(game)
-    assert play(game).flown.ghost.name == texts.MISSION_RIVAL  # so far it has not come before
+    assert play(game).flown.ghost.name == texts.THE_NETWORK  # so far it has not come before
 
 
 def test_a_leg_that_the_network_has_flown_brings_fuel_but_no_points_and_the_run_counts_no_more(

@@ -128,7 +128,7 @@ def test_the_campaign_is_walked_through_by_keys_and_a_landing_is_remembered(open
     land(driver)
     driver.key(pygame.K_RETURN)
     assert play(driver).challenge.name == "aside"  # the next one
-    assert play(driver).flown.ghost.name == texts.MISSION_RIVAL
+    assert play(driver).flown.ghost.name == texts.THE_NETWORK
     driver.key(pygame.K_ESCAPE)
     assert driver.top_name == "MissionsScene"
     assert driver.top.chosen == "aside"
@@ -236,8 +236,8 @@ def test_the_best_flight_of_ones_own_can_be_raced_and_a_damaged_one_is_told_of(o
     driver.key(pygame.K_RETURN)
     land(driver)
     driver.key(pygame.K_ESCAPE)
-    rivals = driver.choice(texts.MISSION_RIVALS["own"])
-    assert rivals.options == [texts.MISSION_RIVALS[name] for name in ("network", "recorded", "own")]
+    rivals = driver.choice(texts.THE_NETWORKS["own"])
+    assert rivals.options == [texts.THE_NETWORKS[name] for name in ("network", "recorded", "own")]
     rivals.choose(2)
     driver.key(pygame.K_RETURN)
     (own,) = Records(context.user_dir).entries()
