@@ -11,7 +11,7 @@ import pygame
 
 from game.core import texts
 from game.drawing.cursor import BASELINE, LEADING, Cursor
-from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MEDALS, MUTE, NET, SMALL, TEXT, TITLE
+from game.drawing.tokens import HUMAN, INK, LABEL, LINE, MEDALS, MUTE, NET, SMALL, TEXT, TITLE
 from game.flight.outcomes import OutcomeCard, RivalOutcome
 from game.panels.readouts import draw_share
 from game.scenes.play.head import LADDER, draw_ladder
@@ -27,7 +27,6 @@ _COVER: Final = 0.94  # opacity: neither the Earth nor a path shines through the
 _AROUND: Final = 16.0  # least points from the sides of the window
 _NARROW, _KEYS = 860.0, 54.0  # in a narrower one, keys stand above the card
 _TOP: Final = 136.0  # of the card, in a window with room
-_NEXT_LAMP, _FLASH = 0.3, 0.22  # seconds from one lamp of a medal to the next, and in which its flash fades
 _LAMP: Final = 13.0  # points from one lamp to the next
 _RING_PARTS: Final = 14
 _FIGURES: Final = LEADING * LABEL + 4 + LEADING * TITLE  # points of a row of figures
@@ -40,8 +39,7 @@ PLACES: Final = (0.5, 0.0, 1.0)
 class ShownCard:
     """Card on the screen: `shown` 0 to 1 of the way in, with its `hints` at the foot.
 
-    `advise` is whether advice is wanted. The lamps of a medal light up one after another; they have done so for `lit`
-    seconds.
+    `advise` is whether advice is wanted.
     """
 
     card: OutcomeCard
@@ -49,7 +47,6 @@ class ShownCard:
     shown: float = 1.0
     advise: bool = True
     rival: RivalOutcome | None = None
-    lit: float = math.inf
 
     def box(self, canvas: Canvas) -> pygame.FRect:
         """Return the card's box, in points of a canvas for text that flows."""
@@ -123,7 +120,7 @@ class ShownCard:
                 last = rows.right - small.measured(card.score, tabular=True) - 14, small.baseline - 4
                 if card.ring:
                     _draw_ring(rows.canvas, last)
-                draw_lamps(rows.canvas, last, card.medal, self.lit)
+                draw_lamps(rows.canvas, last, card.medal)
             small.pair(texts.CARD_SCORE, card.score, HUMAN)
         for words, figure in card.compared:
             small.pair(words, figure, INK)
@@ -184,17 +181,11 @@ def _figure(canvas: Canvas, value: str, unit: str, place: Point, size: float) ->
     canvas.text(unit, (box.right + 4, place[1]), size=LABEL, colour=MUTE)
 
 
-def draw_lamps(canvas: Canvas, last: Point, medal: int, lit: float = math.inf) -> None:
-    """Draw the lamps of a medal from right to left, three for gold, each with a flash as it lights, after `lit` s."""
+def draw_lamps(canvas: Canvas, last: Point, medal: int) -> None:
+    """Draw the lamps of a medal from right to left, three for gold."""
     for lamp in range(medal):
-        age, place = lit - _NEXT_LAMP * (lamp + 1), (last[0] - _LAMP * lamp, last[1])
-        if age < 0:
-            canvas.dot(place, 4, FAINT)
-            continue
-        flash = math.exp(-age / _FLASH)
-        if lit < math.inf:
-            canvas.glow(place, 14 + 30 * flash, MEDALS[medal], 0.35 + 1.6 * flash)
-        canvas.dot(place, 4 + 3 * flash, MEDALS[medal])
+        canvas.glow((last[0] - _LAMP * lamp, last[1]), 14, MEDALS[medal], 0.35)
+        canvas.dot((last[0] - _LAMP * lamp, last[1]), 4, MEDALS[medal])
 
 
 def _draw_ring(canvas: Canvas, place: Point) -> None:

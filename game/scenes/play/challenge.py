@@ -176,34 +176,37 @@ class Challenge:
         """Leave the challenge for free flights."""
 
 
-class Duel(Challenge):
+class _Beside(Challenge):
+    """A flight beside a rival's ghost, called by its name."""
+
+    def __init__(self, title: str, name: str) -> None:
+        self._title, self._name = title, name
+        self.word()
+
+    def word(self) -> None:
+        self.title, self.line = getattr(texts, self._title), texts.DUEL_RIVAL.format(name=self._name)
+        self.opening = texts.DUEL_BEGIN.format(name=self._name)
+
+
+class Duel(_Beside):
     """Duel: one start after another against a rival."""
 
     fixed = False
 
     def __init__(self, rival: Policy, name: str) -> None:
-        self._rival, self._name = rival, name
-        self.word()
-
-    def word(self) -> None:
-        self.title = texts.DUEL
-        self.line, self.opening = (text.format(name=self._name) for text in (texts.DUEL_RIVAL, texts.DUEL_BEGIN))
+        super().__init__("DUEL", name)
+        self._rival = rival
 
     def ghost(self, seed: int, network: Policy | None) -> Ghost:
         return Ghost(Flight(seed, self._rival), self._name)
 
 
-class Race(Challenge):
+class Race(_Beside):
     """Race: the start of a recorded flight, against its ghost."""
 
     def __init__(self, record: Record, name: str) -> None:
-        self._recording, self._name = record.recording, name
-        self.elsewhere = flown_elsewhere(record.recording)
-        self.word()
-
-    def word(self) -> None:
-        self.title = texts.RACE
-        self.line, self.opening = (text.format(name=self._name) for text in (texts.DUEL_RIVAL, texts.DUEL_BEGIN))
+        super().__init__("RACE", name)
+        self._recording, self.elsewhere = record.recording, flown_elsewhere(record.recording)
 
     def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight:
         flight = _as_begun(self._recording, seed, network)

@@ -42,7 +42,6 @@ from game.world.path_preview import PathPreview, draw_futures
 from game.world.scenery import Scenery
 
 if TYPE_CHECKING:
-    from game.scenes.play.ghost import Ghost
     from game.ui.context import Context
 
 _CRAFT: Final = 1.5  # metres from the middle of a craft to its ends
@@ -124,11 +123,6 @@ class FlownFlight:
     def helps(self) -> bool:
         """Whether a network may help in this flight."""
         return self.flight.shares and not self.credit.alone
-
-    @property
-    def rival(self) -> Ghost | None:
-        """The ghost that the card compares the flight with."""
-        return self.ghost if self.challenge.compares else None
 
     @property
     def stuck(self) -> bool:

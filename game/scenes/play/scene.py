@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -40,19 +39,6 @@ _AWAY_STEPS: Final = 10
 _SKIP_ALL: Final = 60  # steps that the key for what comes next is held to leave out the whole tutorial
 _RELEASES: Final = (pygame.KEYUP, pygame.CONTROLLERBUTTONUP, pygame.WINDOWFOCUSLOST)
 _INTERRUPTS: Final = (pygame.WINDOWFOCUSLOST, pygame.WINDOWSIZECHANGED)
-
-
-class _Bare(Scene):
-    """A flight without words, for a picture behind other scenes."""
-
-    flows = True
-
-    def __init__(self, flight: PlayScene) -> None:
-        super().__init__(flight.context)
-        self._flown = flight.flown
-
-    def draw(self, canvas: Canvas, alpha: float) -> None:
-        self._flown.draw(canvas, 1.0, Head(), whole=False, low=math.inf)
 
 
 class PlayScene(Scene):
@@ -279,8 +265,12 @@ class PlayScene(Scene):
 
     @property
     def _card(self) -> ShownCard | None:
-        hints = hints_of(self._card_actions(), self._controls) if self.ending.shown else []
-        return self.ending.shown_card(hints, self.flown.rival, advise=self._settings.show_hints)
+        ending, ghost = self.ending, self.flown.ghost
+        if ending.card is None or ending.shown == 0:
+            return None
+        rival = ghost.row(self.flight.env) if ghost and self.challenge.compares else None
+        hints = hints_of(self._card_actions(), self._controls)
+        return ShownCard(ending.card, hints, ending.shown, self._settings.show_hints, rival)
 
     @property
     def _head(self) -> Head:
@@ -296,11 +286,6 @@ class PlayScene(Scene):
             card.draw(canvas)
         if not self._stick.mouse_flies:  # a mouse that flies asks for nothing
             self.explained.draw(canvas)
-
-    @property
-    def bare(self) -> Scene:
-        """This flight as a scene without words, for a picture behind other ones."""
-        return _Bare(self)
 
     # The flight
 

@@ -211,6 +211,7 @@ def saved(driver: Driver) -> tuple[bool, bool]:
 def test_it_is_offered_until_it_is_flown_or_left_out(open_game: Open, context: Context):
     driver = open_game(MenuScene, tutored=False)
     driver.keys(pygame.K_RETURN, pygame.K_ESCAPE)
+    driver.press_on(texts.PAUSE_LEAVE)
     assert driver.top_name == "MenuScene"
     driver.key(pygame.K_RETURN)
     assert tutorial(driver).lesson.name == "fire"
