@@ -334,15 +334,8 @@ class ReplayScene(FormScene):
         canvas = canvas.at(0, -1)
         figure = canvas.text(f"{seconds} s", (middle, 58), size=22, weight="light", align="centre", tabular=True)
         by_hand = flight.flown_by is StickHolder.HUMAN
-        by = (
-            (
-                texts.YOU_FLEW
-                if by_hand
-                else networks.sentence(texts.NETWORK_FLEW, networks.flew(self.record.entry.network))
-            )
-            if not self.claimed
-            else texts.FRIEND_FLEW[by_hand]
-        )
+        other = networks.sentence(texts.NETWORK_FLEW, networks.flew(self.record.entry.network))
+        by = texts.FRIEND_FLEW[by_hand] if self.claimed else texts.YOU_FLEW if by_hand else other
         if self.ended:
             by = ending_word(flight.outcome.name, intact=flight.intact) if flight.over else by
         canvas.text(by, (middle, 34), size=SMALL, colour=MUTE, align="centre", room=2 * _FIGURE - 16)

@@ -8,6 +8,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Hashable, Iterable, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 from ai.flights.recording import AS_IT_IS
@@ -24,7 +25,7 @@ from game.flight.networks import Network, Policy, titled, who
 from game.flight.outcomes import OutcomeCard
 from game.flight.replay import FlightReplay, ReplayedFlight, flown_elsewhere
 from game.input.controls import Controls
-from game.scenes.play.ghost import Ghost
+from game.scenes.play.ghost import Ghost, Named
 
 if TYPE_CHECKING:
     from game.drawing.canvas import Canvas
@@ -264,7 +265,7 @@ class FlownMission(Challenge):
         self,
         mission: Mission,
         rival: Record | None = None,
-        rival_name: str = "",
+        rival_name: Named = "",
         following: Callable[[], Challenge] | None = None,
     ) -> None:
         self.mission, self.name, self.elsewhere = mission, mission.name, mission.elsewhere
@@ -279,7 +280,7 @@ class FlownMission(Challenge):
         self.goal = texts.MISSION_GOAL.format(fuel=self.mission.gold[0], seconds=self.mission.gold[1])
         self.new_hint = texts.MISSION_NEXT if self._following else ""
         if self._landed:
-            self._rival_name, self.again_hint = texts.GHOST_BEFORE, texts.MISSION_AGAIN
+            self.again_hint = texts.MISSION_AGAIN
 
     def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight:
         return Flight(seed, network, mission=self.name, easing=self.easing)
@@ -287,7 +288,7 @@ class FlownMission(Challenge):
     def ghost(self, seed: int, network: Policy | None) -> Ghost | None:
         if self._rival:
             return Ghost(ReplayedFlight(self._rival), self._rival_name)
-        return Ghost(Flight(seed, network, mission=self.name), who(network)) if network else None
+        return Ghost(Flight(seed, network, mission=self.name), partial(who, network)) if network else None
 
     def following(self) -> Challenge | None:
         return self._following() if self._following else None
@@ -295,7 +296,7 @@ class FlownMission(Challenge):
     def settle(self, flight: Flight, credit: Credit) -> None:
         """Keep a landing as the ghost of the next try."""
         if flight.outcome is Outcome.LANDED and flight.share > 0:
-            self._rival, self._landed = flight.recording, True
+            self._rival, self._rival_name, self._landed = flight.recording, lambda: texts.GHOST_BEFORE, True
             self.word()
 
     def medal(self, flight: Flight) -> int:

@@ -80,8 +80,10 @@ class DailyStart(Challenge):
     def ghost(self, seed: int, network: Policy | None) -> Ghost | None:
         """Begin the player's best flight of that day as a ghost, in practice only."""
         record = self._days.best_flight(self._day) if self.bar else None
-        name = texts.DAILY_GHOST if self._past else texts.DAILY_GHOST_TODAY
-        return Ghost(ReplayedFlight(record.recording), name) if record else None
+        return Ghost(ReplayedFlight(record.recording), self._ghost_name) if record else None
+
+    def _ghost_name(self) -> str:
+        return texts.DAILY_GHOST if self._past else texts.DAILY_GHOST_TODAY
 
     def follow(self, flight: Flight) -> str:
         """Note the first attempt as soon as it begins; it is lost with another start."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -119,8 +120,8 @@ class Descent(Challenge):
         """Begin the ghost: the player's earlier flight of this leg or, without one, the network."""
         number = self.start.number
         if number <= len(self._before):
-            return Ghost(ReplayedFlight(self._before[number - 1]), texts.GHOST_BEFORE)
-        return Ghost(Flight(seed, network, leg=self.start), who(network)) if network else None
+            return Ghost(ReplayedFlight(self._before[number - 1]), lambda: texts.GHOST_BEFORE)
+        return Ghost(Flight(seed, network, leg=self.start), partial(who, network)) if network else None
 
     def settle(self, flight: Flight, credit: Credit) -> None:
         """Count a finished leg: points, the row of landings, and what it brings into the tank."""

@@ -137,7 +137,7 @@ class MissionsScene(PanelScene):
                 self.context.note(str(error))
         later = _NAMES[_NAMES.index(name) + 1 :]
         following = partial(self._mission, later[0]) if later else None
-        return FlownMission(MISSIONS[name], record, texts.MISSION_GHOST, following)
+        return FlownMission(MISSIONS[name], record, lambda: texts.MISSION_GHOST, following)
 
     def _fly(self) -> Transition:
         return push("play", 0, challenge=self._mission(self.chosen))
