@@ -28,7 +28,7 @@ OPENED = {
     "game.core.collection": ({"shutil.copytree"}, "of plain files alone, links as links"),
     "game.drawing.typeface": ({"pygame.font.Font"}, "comes with the program"),
     "game.export.gif": ({"path.open"}, "writes"),
-    "game.panels.lesson_door": ({"self.open"}, "a dialog"),
+    "game.explain.lesson_door": ({"self.open"}, "a dialog"),
     "game.scenes.physics.scene": ({"self.context.settings.open"}, "a part of the panel"),
     "game.scenes.train.base": ({"self._settings.open"}, "a part of the panel"),
     "game.scenes.train.scene": ({"self.open", "self.laboratory.open"}, "a part of the panel"),

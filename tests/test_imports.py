@@ -33,8 +33,8 @@ AI_FLOORS = (
 )  # fmt: skip
 GAME_FLOORS = (
     "game.core", "game.input", "game.audio", "game.drawing", "game.ui", "game.flight", "game.training",
-    "game.world", "game.panels", "game.digits", "game.export", "game.shell", "game.scenes", "game.start", "game.verify",
-    "game.cli",
+    "game.world", "game.explain", "game.digits", "game.export", "game.shell", "game.scenes", "game.start",
+    "game.verify", "game.cli",
 )  # fmt: skip
 # These only describe what is handed to them from above, for the type checker.
 DESCRIBED_FROM_ABOVE = {"game.core.scene"}

@@ -1,7 +1,7 @@
 """Places on a network that is drawn."""
 
 from game.drawing.canvas import Point
-from game.panels.network_view import NetworkView
+from game.explain.network_view import NetworkView
 from game.scenes.train.picking import Link, part_at
 
 

@@ -17,8 +17,8 @@ from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
 from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import HUMAN, LINE, TITLE
+from game.explain.code_listing import draw_listing
 from game.input.controls import Command
-from game.panels.code_listing import draw_listing
 from game.scenes.digits.sums import describe_sum, figure
 from game.scenes.digits.unit_walk import UnitWalk, arrays_of, code_of, deed_of
 from game.ui.actions import Action, Table

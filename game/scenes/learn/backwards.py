@@ -20,7 +20,7 @@ from game.digits.pictures import GREY, SIGNED, picture
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import CAPTION, HUMAN, INK, MUTE, NET, SMALL
-from game.panels.figures import decimal, percent
+from game.explain.figures import decimal, percent
 from game.scenes.learn.chapter import Chapter, Code
 from game.ui.context import Context
 from game.ui.panel import Column

@@ -18,7 +18,7 @@ from game.core.scene import Route
 from game.drawing.canvas import Canvas, Point
 from game.drawing.paint_cache import InPieces, PaintCache, Steps
 from game.drawing.tokens import CAPTION, HUMAN, MUTE, NET, SMALL, Colour
-from game.panels.figures import decimal
+from game.explain.figures import decimal
 from game.scenes.learn.chapter import Chapter, Code
 from game.scenes.learn.pictures import paint_heat
 from game.ui.context import Context

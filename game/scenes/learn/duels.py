@@ -20,7 +20,7 @@ from game.core import texts
 from game.core.scene import Route
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import CAPTION, HUMAN, MUTE, NET, NIGHT0, SMALL
-from game.panels.figures import percent, points
+from game.explain.figures import percent, points
 from game.scenes.learn.chapter import Code
 from game.scenes.learn.pictures import draw_axis, draw_curve
 from game.scenes.learn.runs import RunsChapter, draw_landers

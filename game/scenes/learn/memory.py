@@ -21,7 +21,7 @@ from game.drawing.cursor import Cursor
 from game.drawing.paint import mix
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import CAPTION, HUMAN, INK, MUTE, NET, NIGHT1, SMALL, Colour
-from game.panels.figures import percent
+from game.explain.figures import percent
 from game.scenes.learn.chapter import Code
 from game.scenes.learn.runs import RunsChapter, draw_landers
 from game.ui.context import Context

@@ -23,10 +23,10 @@ from game.core.source import Mark
 from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
 from game.drawing.tokens import CAPTION, FAINT, HUMAN, INK, LINE, MUTE, NET, NIGHT1, SMALL
+from game.explain.figures import points
+from game.explain.tables import Part, formula
 from game.flight import networks
 from game.flight.flight import DECISION_STEPS
-from game.panels.figures import points
-from game.panels.tables import Part, formula
 from game.scenes.learn.chapter import Chapter, Code
 from game.scenes.learn.pictures import DrawnLander, draw_ground, inside, view_in
 from game.ui.context import Context

@@ -19,7 +19,7 @@ from game.core.scene import Route
 from game.core.source import Mark
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import LINE, MUTE, NET, SMALL
-from game.panels.figures import decimal
+from game.explain.figures import decimal
 from game.scenes.learn.chapter import Chapter, Code
 from game.scenes.learn.pictures import DrawnLander, inside, view_in
 from game.ui.context import Context

@@ -19,10 +19,10 @@ from game.core.scene import Route, Transition, push
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, SMALL, TITLE
+from game.explain.figures import percent
 from game.flight import networks
 from game.flight import own as own_pilots
 from game.flight.logbook import Records
-from game.panels.figures import percent
 from game.scenes.learn.chapter import Chapter, Code
 from game.scenes.learn.path import Progress
 from game.training.library import Library

@@ -14,9 +14,9 @@ from game.core.source import Source, source_of
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import HUMAN, INK, MUTE, NET, SMALL, STEP, TEXT, TITLE, Colour
+from game.explain.code_listing import add_listing
+from game.explain.explained import Explained
 from game.input.controls import Command
-from game.panels.code_listing import add_listing
-from game.panels.explained import Explained
 from game.scenes.learn.chapter import Code
 from game.scenes.learn.path import FIRST, PAGES, PATH, Progress, chapter_type, following
 from game.ui.actions import Action, Table

@@ -13,8 +13,8 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
 from game.drawing.tokens import CAPTION, FAINT, HUMAN, INK, LINE, MUTE, NET, NIGHT0, SMALL
-from game.panels.figures import points
-from game.panels.tables import Part, formula
+from game.explain.figures import points
+from game.explain.tables import Part, formula
 from game.scenes.lesson.flight import said_action
 from game.scenes.lesson.frame import Frame
 from game.scenes.lesson.step import LearningStep

@@ -16,8 +16,8 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import TITLE
-from game.panels.figures import number, signed
-from game.panels.tables import Line, table, told
+from game.explain.figures import number, signed
+from game.explain.tables import Line, table, told
 from game.scenes.lesson.frame import Frame
 from game.ui.panel import Column
 

@@ -20,8 +20,8 @@ from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import INK, SMALL, VIEW_SIZE
-from game.panels.figures import decimal, number, points
-from game.panels.tables import Line, table, told
+from game.explain.figures import decimal, number, points
+from game.explain.tables import Line, table, told
 from game.scenes.lesson.frame import Frame, in_points
 from game.ui.panel import Column
 from game.world.camera import HOME, POINTS_PER_METRE, View

@@ -15,8 +15,8 @@ from game.core.source import Source, source_of
 from game.drawing.canvas import Point
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import CAPTION, INK, NET
-from game.panels.code_listing import add_listing
-from game.panels.figures import number, points
+from game.explain.code_listing import add_listing
+from game.explain.figures import number, points
 from game.ui.panel import Column
 
 

@@ -18,7 +18,7 @@ from ai.lander.environment import ACTION_NAMES
 from ai.nn import OPTIMIZERS, Optimizer
 from ai.nn.costs import softmax
 from game.core import texts
-from game.panels.figures import number, points, signed
+from game.explain.figures import number, points, signed
 from game.scenes.lesson.alone import AloneFrame
 from game.scenes.lesson.digit import BACK, OUTPUT, PROBABILITY, SIDE, TARGET, DigitFrame, ImageFrame, pixel_name
 from game.scenes.lesson.flight import HappenedFrame, MomentFrame, said_action

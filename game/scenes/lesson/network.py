@@ -14,10 +14,10 @@ from game.core import texts
 from game.drawing.canvas import Canvas, Point
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import HUMAN, SMALL
-from game.panels.figures import decimal, number, points, signed
-from game.panels.network_plan import Show
-from game.panels.network_view import NetworkView
-from game.panels.tables import Line, table, told
+from game.explain.figures import decimal, number, points, signed
+from game.explain.network_plan import Show
+from game.explain.network_view import NetworkView
+from game.explain.tables import Line, table, told
 from game.scenes.lesson.frame import Frame
 from game.scenes.lesson.step import LearningStep, Weight
 from game.ui.panel import Column

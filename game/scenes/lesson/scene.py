@@ -14,9 +14,9 @@ from game.core.scene import Transition
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import CAPTION, INK, LINE, MUTE, NET, SMALL
+from game.explain.explained import Explained
+from game.explain.lesson_door import ImageDoor
 from game.input.controls import Command
-from game.panels.explained import Explained
-from game.panels.lesson_door import ImageDoor
 from game.scenes.lesson.frame import CodeWalk, Frame
 from game.scenes.lesson.frames import parts_of
 from game.ui.actions import Action, Table

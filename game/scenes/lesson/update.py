@@ -19,8 +19,8 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import CAPTION, EMBER, FAINT, HUMAN, INK, LINE, MUTE, NET, SMALL
-from game.panels.figures import decimal, number, points, signed
-from game.panels.tables import Line, Part, formula, table, told
+from game.explain.figures import decimal, number, points, signed
+from game.explain.tables import Line, Part, formula, table, told
 from game.scenes.lesson.flight import said_action
 from game.scenes.lesson.frame import Frame, in_points
 from game.scenes.lesson.step import LearningStep, Pulls

@@ -9,9 +9,9 @@ from ai.flights.verification import is_true
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import MARGIN, MUTE, TEXT
+from game.explain.readouts import draw_corner
 from game.flight import sharing
 from game.flight.replay import FlightReplay
-from game.panels.readouts import draw_corner
 from game.world.camera import ClearArea
 
 BELOW_CLAIM: Final = ClearArea(head=262.0)  # keeps the world clear of what comes of the check

@@ -17,8 +17,8 @@ from game.core.scene import Transition, push
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NIGHT0, SMALL, Colour
+from game.explain.explained import Explained
 from game.input.controls import Command
-from game.panels.explained import Explained
 from game.scenes.physics.exhibit import BELOW, CLEAR
 from game.scenes.physics.exhibits import EXHIBITS
 from game.scenes.physics.plot import LawPlot, RangeMeasurement, Results

@@ -15,8 +15,8 @@ from game.drawing.canvas import Canvas, Point
 from game.drawing.cursor import Cursor
 from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import INK, LINE, MUTE, NET, SMALL, TEXT, Colour
+from game.explain.code_listing import draw_listing
 from game.input.controls import Command
-from game.panels.code_listing import draw_listing
 from game.scenes.physics.exhibit import Exhibit
 from game.scenes.physics.step import Axis, Impulse, Pair, Piece, StepRecord, written
 from game.ui.actions import Action, Table

@@ -12,8 +12,8 @@ import pygame
 from game.core import texts
 from game.drawing.cursor import BASELINE, LEADING, Cursor
 from game.drawing.tokens import HUMAN, INK, LABEL, LINE, MEDALS, MUTE, NET, SMALL, TEXT, TITLE
+from game.explain.readouts import draw_share
 from game.flight.outcomes import OutcomeCard, RivalOutcome
-from game.panels.readouts import draw_share
 from game.scenes.play.head import LADDER, draw_ladder
 from game.ui.hints import Hint, HintRow, hint_lines
 

@@ -14,12 +14,12 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
 from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL
+from game.explain.landings import Landing, Landings, RecentLandings, draw_landings
+from game.explain.q_values import HEIGHT, QValues, decision_words, draw_q_values
+from game.explain.readouts import draw_share
 from game.flight.flight import Flight, StickHolder
 from game.flight.foresight import HELD, SixFutures
 from game.flight.networks import QPolicy, flew, word
-from game.panels.landings import Landing, Landings, RecentLandings, draw_landings
-from game.panels.q_values import HEIGHT, QValues, decision_words, draw_q_values
-from game.panels.readouts import draw_share
 from game.scenes.play.words import Why, why_by_futures, why_by_values
 from game.ui.listing import shortened
 

@@ -15,6 +15,8 @@ from game.core import texts
 from game.core.pace import SlowMotion
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import VIEW_SIZE
+from game.explain.landings import Landings
+from game.explain.readouts import GAUGES, PILOT, READOUTS, at_touch, draw_flight, flight_readouts
 from game.flight.credit import Credit, eased
 from game.flight.demonstrations import add_demonstration
 from game.flight.flight import Flight, StickHolder
@@ -24,8 +26,6 @@ from game.flight.handicap import OWN
 from game.flight.logbook import Records
 from game.flight.networks import Network
 from game.flight.outcomes import OutcomeCard, outcome_card
-from game.panels.landings import Landings
-from game.panels.readouts import GAUGES, PILOT, READOUTS, at_touch, draw_flight, flight_readouts
 from game.scenes.play.challenge import Challenge
 from game.scenes.play.copilot_panel import CopilotPanel
 from game.scenes.play.ending import FlightEnding, FlownPath

@@ -17,7 +17,7 @@ from game.core import texts
 from game.drawing.canvas import Now
 from game.drawing.cursor import LEADING, Cursor
 from game.drawing.tokens import FAINT, HUMAN, INK, MARGIN, MUTE, NET, SMALL, TEXT, Colour
-from game.panels.readouts import Lamp
+from game.explain.readouts import Lamp
 from game.scenes.play.free import COUNT, rung_of
 from game.scenes.play.words import dial_words, sentence, surroundings
 from game.ui.hints import Hint, HintRow, flight_hints

@@ -9,8 +9,8 @@ from ai.lander.environment import ACTION_NAMES, Outcome
 from ai.lander.pilots import COAST
 from game.core import texts
 from game.drawing.tokens import HUMAN, NET
+from game.explain.readouts import Lamp
 from game.flight.flight import Flight, StickHolder
-from game.panels.readouts import Lamp
 from game.scenes.play.words import changed_by, is_late
 
 if TYPE_CHECKING:

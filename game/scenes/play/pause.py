@@ -11,9 +11,9 @@ import pygame
 from game.core import texts
 from game.core.scene import Pop, Scene, Transition, push
 from game.drawing.tokens import INK
+from game.explain.explained import Explained
+from game.explain.readouts import READOUTS
 from game.input.controls import Command
-from game.panels.explained import Explained
-from game.panels.readouts import READOUTS
 from game.scenes.play.head import Head, head_of
 from game.ui.actions import Action, Table
 from game.ui.hints import HintRow, hint_lines

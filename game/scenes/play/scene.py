@@ -12,12 +12,12 @@ import pygame
 from game.core import texts
 from game.core.scene import Pop, Push, Scene, Transition, push
 from game.drawing.canvas import Canvas
+from game.explain.explained import Explained
 from game.flight import networks, own
 from game.flight.credit import eased
 from game.flight.flight import StickHolder
 from game.flight.logbook import Records, best_alone
 from game.input.controls import Command, translate
-from game.panels.explained import Explained
 from game.scenes.play.card import ShownCard
 from game.scenes.play.challenge import Challenge, Duel
 from game.scenes.play.flight_controls import FlightControls

@@ -9,7 +9,7 @@ from ai.lander.environment import LanderEnv
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK, SMALL
-from game.panels.readouts import draw_arrow
+from game.explain.readouts import draw_arrow
 from game.world.camera import ClearArea, View
 
 _CALM: Final = 0.05  # m/s², below which there is no wind

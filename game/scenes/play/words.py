@@ -12,14 +12,14 @@ from ai.lander.environment import ACTION_NAMES, PARAMS, LanderEnv, Outcome
 from ai.lander.pilots import COAST
 from ai.lander.sensing import near_edges
 from game.core import texts
+from game.explain.landings import Landing, Landings
+from game.explain.readouts import LITTLE_FUEL, LITTLE_TIME
 from game.flight import networks
 from game.flight.credit import Credit
 from game.flight.flight import Flight, StickHolder
 from game.flight.outcomes import TIPPED
 from game.input.bindings import Command, Held
 from game.input.controls import Controls
-from game.panels.landings import Landing, Landings
-from game.panels.readouts import LITTLE_FUEL, LITTLE_TIME
 
 if TYPE_CHECKING:
     from ai.copilot.copilot import CoPilot, SharedDecision

@@ -16,9 +16,9 @@ from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import HUMAN, INK, MUTE, PANEL, SMALL, TITLE
+from game.explain.explained import Explained
+from game.explain.run_status import rate_colour
 from game.input.controls import Command
-from game.panels.explained import Explained
-from game.panels.run_status import rate_colour
 from game.scenes.menus.dialogs import NameDialog
 from game.scenes.train.charts import TrainingCharts
 from game.scenes.train.knobs import KnobsPanel

@@ -18,7 +18,7 @@ from game.digits.matrix import ConfusionMatrix
 from game.drawing.canvas import Canvas
 from game.drawing.sky import NightSky
 from game.drawing.tokens import HUMAN, LABEL, MUTE, SMALL
-from game.panels.lesson_door import ImageDoor
+from game.explain.lesson_door import ImageDoor
 from game.scenes.train.base import KNOBS as ALL_KNOBS
 from game.scenes.train.base import TrainingScene
 from game.scenes.train.charts import DIGIT_CHARTS, Beside, TrainingCharts

@@ -18,7 +18,7 @@ from ai.training.edits import Edit
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, SMALL
-from game.panels.network_view import NetworkView
+from game.explain.network_view import NetworkView
 from game.scenes.train.picking import Link, Part, Unit, draw_marks, name_of, part_at
 from game.training.run import TrainingRun
 from game.ui.panel import Column

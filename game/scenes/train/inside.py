@@ -16,9 +16,9 @@ from ai.training.messages import NetworkState
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import SMALL, TITLE
-from game.panels.network_plan import Show
-from game.panels.network_view import NetworkView
-from game.panels.reward_bar import RewardBar
+from game.explain.network_plan import Show
+from game.explain.network_view import NetworkView
+from game.explain.reward_bar import RewardBar
 from game.scenes.train.editing import NetworkEditing
 from game.training.run import TrainingRun
 from game.ui.panel import Column

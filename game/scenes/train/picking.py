@@ -11,7 +11,7 @@ from ai.training.edits import NetworkEdits
 from game.core import texts
 from game.drawing.canvas import Canvas, Point
 from game.drawing.tokens import HUMAN, NIGHT0
-from game.panels.network_view import NetworkView
+from game.explain.network_view import NetworkView
 
 _NEAR: Final = 5.0  # points from a link within which it is picked
 _CLEAR: Final = 0.04  # share of a link at either end that belongs to its units

@@ -18,9 +18,9 @@ from game.core.scene import Pop, Push, Transition, push
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import LINE, MUTE, NIGHT0, SMALL
+from game.explain.lesson_door import LessonDoor
 from game.flight.demonstrations import FILE_NAME, count_demonstrations
 from game.input.controls import Command
-from game.panels.lesson_door import LessonDoor
 from game.scenes.menus.dialogs import ListDialog
 from game.scenes.train.advice import Advice
 from game.scenes.train.base import CHARTS, INSIDE, KNOBS, TrainingScene

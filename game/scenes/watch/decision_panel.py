@@ -15,8 +15,8 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import INK, LABEL, LINE, MUTE, SMALL
-from game.panels.q_values import FIRST, HEIGHT, ROW, QValues, decision_words, draw_actions, draw_q_values, signed
-from game.panels.readouts import draw_centred_bars
+from game.explain.q_values import FIRST, HEIGHT, ROW, QValues, decision_words, draw_actions, draw_q_values, signed
+from game.explain.readouts import draw_centred_bars
 from game.world.policy_map import ACTION, COLOURS, SCORE, PolicyMap, score_colours
 
 PANEL: Final = pygame.Rect(964, 84, 280, 504)

@@ -14,9 +14,9 @@ from game.core import texts
 from game.core.scene import Pop, Transition, push
 from game.core.worker import Worker, WorkerState
 from game.drawing.tokens import HUMAN, INK, MUTE, TEXT
+from game.explain.figures import percent
 from game.flight import networks, own
 from game.flight.logbook import Records
-from game.panels.figures import percent
 from game.ui.context import Context
 from game.ui.panel import Column, Panel
 from game.ui.panel_scene import PanelScene

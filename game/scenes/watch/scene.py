@@ -19,12 +19,12 @@ from game.core.scene import Transition, push
 from game.drawing import typeface
 from game.drawing.canvas import Canvas, moved
 from game.drawing.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, TEXT, VIEW_SIZE
+from game.explain import readouts
+from game.explain.explained import Explained
+from game.explain.run_status import draw_landings
 from game.flight import networks, own
 from game.flight.swarm import Swarm
 from game.input.controls import Command
-from game.panels import readouts
-from game.panels.explained import Explained
-from game.panels.run_status import draw_landings
 from game.scenes.watch.decision_panel import PANEL, draw_decision
 from game.scenes.watch.touch import Hand
 from game.scenes.watch.watched import SIZES, Watched

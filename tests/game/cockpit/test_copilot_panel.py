@@ -5,8 +5,8 @@ import pytest
 from ai.copilot.copilot import Mode
 from game.core import texts
 from game.drawing.canvas import Canvas
+from game.explain.landings import Landing, Landings, RecentLandings
 from game.flight.flight import Flight
-from game.panels.landings import Landing, Landings, RecentLandings
 from game.scenes.play.copilot_panel import CopilotPanel
 from tests.support.drawn import Drawn, read_panel
 from tests.support.reading import Weighs

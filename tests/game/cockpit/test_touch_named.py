@@ -5,9 +5,9 @@ import pytest
 
 from ai.lander.environment import Cause, Outcome
 from game.core import texts
+from game.explain.readouts import GAUGES, Readout, at_touch, flight_readouts
 from game.flight.flight import Flight
 from game.flight.outcomes import cause_of, outcome_card, struck_side
-from game.panels.readouts import GAUGES, Readout, at_touch, flight_readouts
 
 FIGURES = {gauge.cause: name for name, gauge in GAUGES.items() if gauge.cause}
 

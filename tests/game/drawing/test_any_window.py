@@ -13,7 +13,7 @@ from game.core import texts
 from game.core.scene import Scene
 from game.drawing.canvas import PAGE, Canvas
 from game.drawing.tokens import MARGIN
-from game.panels import readouts
+from game.explain import readouts
 from game.scenes.menus.menu import MenuScene
 from game.scenes.play.help import HELP
 from game.scenes.play.scene import PlayScene

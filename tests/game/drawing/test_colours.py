@@ -21,7 +21,7 @@ from game.drawing.tokens import (
     Colour,
     Palette,
 )
-from game.panels import readouts
+from game.explain import readouts
 
 # How eyes without one kind of cone see linear RGB: Machado, Oliveira and Fernandes, "A Physiologically-based Model for
 # Simulation of Color Vision Deficiency", IEEE Transactions on Visualization and Computer Graphics 15(6), 2009,

@@ -18,8 +18,8 @@ from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.core.scene import Push
 from game.core.source import source_of
+from game.explain.figures import percent, points
 from game.flight.logbook import Records
-from game.panels.figures import percent, points
 from game.scenes.learn import downhill, plane
 from game.scenes.learn import runs as runs_module
 from game.scenes.learn.backwards import BackwardsChapter

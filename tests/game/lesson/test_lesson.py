@@ -13,7 +13,7 @@ from ai.explain.inspection import Link, links
 from ai.explain.learning_step import Value
 from ai.nn.costs import COSTS
 from game.core import texts
-from game.panels.figures import number, percent, points
+from game.explain.figures import number, percent, points
 from game.scenes.lesson.alone import AloneFrame
 from game.scenes.lesson.flight import in_units, sensed
 from game.scenes.lesson.frame import case_of, shape_of

@@ -12,9 +12,9 @@ from ai.lander.missions import MISSIONS
 from game.core import texts
 from game.core.scene import Push
 from game.core.settings import Settings
+from game.explain import explained
 from game.flight import networks
 from game.flight.flight_file import Entry
-from game.panels import explained
 from game.scenes.logbook.scene import LogbookScene
 from game.scenes.menus.menu import FlightsScene
 from game.scenes.play.challenge import FlownMission

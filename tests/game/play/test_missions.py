@@ -11,6 +11,7 @@ from game.core import texts
 from game.core.assets import ASSETS_DIR, MODELS_DIR
 from game.core.scene import Pop
 from game.core.settings import Settings
+from game.explain.readouts import flight_readouts
 from game.flight import flight_file
 from game.flight.credit import Credit
 from game.flight.flight import Flight
@@ -18,7 +19,6 @@ from game.flight.flight_file import Record
 from game.flight.logbook import Records
 from game.flight.outcomes import OutcomeCard, flight_figures
 from game.flight.replay import FlightReplay, ReplayedFlight
-from game.panels.readouts import flight_readouts
 from game.scenes.logbook.replay import ReplayScene
 from game.scenes.logbook.scene import LogbookScene
 from game.scenes.play.challenge import FlownMission

@@ -22,8 +22,8 @@ from ai.training.loop import Training
 from game.core import texts
 from game.core.scene import Push
 from game.core.worker import WorkerState
+from game.explain.network_view import NetworkView
 from game.flight.demonstrations import FILE_NAME
-from game.panels.network_view import NetworkView
 from game.scenes.train.inside import SHOWN
 from game.scenes.train.scene import TrainScene
 from game.training.library import Library

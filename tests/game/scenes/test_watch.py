@@ -10,8 +10,8 @@ from ai.agent.agent import DeepQAgent
 from ai.training.config import Config
 from game.core.settings import SettingsFile
 from game.drawing.canvas import Canvas
+from game.explain.run_status import draw_landings
 from game.flight.flight import DECISION_STEPS
-from game.panels.run_status import draw_landings
 from game.scenes.train.networks import NetworksScene
 from game.scenes.watch.scene import WatchScene
 from game.training.library import Library

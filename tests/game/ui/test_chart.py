@@ -11,7 +11,7 @@ from ai.training.history import History, SettingChange
 from game.core import texts
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
-from game.panels.reward_bar import PART_COLOURS, RewardBar, signed
+from game.explain.reward_bar import PART_COLOURS, RewardBar, signed
 from game.scenes.train.charts import ticks_of
 from game.ui import plotting
 from game.ui.chart import RUN_STYLES, Chart, Series, Tick

@@ -14,8 +14,8 @@ from ai.copilot.copilot import Mode
 from ai.lander.environment import Outcome
 from game.core import texts
 from game.drawing.canvas import Canvas
+from game.explain.q_values import SPAN
 from game.flight.flight import DECISION_STEPS, Flight
-from game.panels.q_values import SPAN
 from game.scenes.play.copilot_panel import CopilotPanel
 from game.scenes.watch.decision_panel import draw_decision
 from game.scenes.watch.scene import WatchScene

@@ -11,7 +11,7 @@ from ai.nn.layer import Layer
 from ai.training.loop import Training
 from game.core.source import source_of
 from game.drawing.canvas import Canvas
-from game.panels.code_listing import draw_listing
+from game.explain.code_listing import draw_listing
 
 
 def test_the_source_has_the_lines_of_the_file_but_not_the_docstring():

@@ -9,8 +9,8 @@ import pytest
 from ai.lander.environment import ACTION_NAMES
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.panels.q_values import QValues, value_words
-from game.panels.readouts import PILOT
+from game.explain.q_values import QValues, value_words
+from game.explain.readouts import PILOT
 from game.scenes.play.scene import PlayScene
 from game.scenes.train.charts import LANDER_CHARTS, TrainingCharts
 from game.scenes.watch.scene import WatchScene

@@ -20,8 +20,8 @@ from game.core import texts
 from game.drawing import typeface
 from game.drawing.canvas import Canvas, Point
 from game.drawing.tokens import LABEL, SMALL
-from game.panels.network_painting import ADDS, LARGE, MARGIN, TAKES, Sheets, paint
-from game.panels.network_plan import Column, Edge, NetworkPlan, Show
+from game.explain.network_painting import ADDS, LARGE, MARGIN, TAKES, Sheets, paint
+from game.explain.network_plan import Column, Edge, NetworkPlan, Show
 from game.ui import plotting
 from game.ui.tooltip import TooltipRow, draw_tooltip
 

@@ -9,8 +9,8 @@ from ai.nn import CostFunctions, FullyConnectedLayer, NeuralNetwork
 from ai.training.config import Config
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.panels.network_plan import Edge, NetworkPlan, steady_choice, strongest_edges
-from game.panels.network_view import NetworkView
+from game.explain.network_plan import Edge, NetworkPlan, steady_choice, strongest_edges
+from game.explain.network_view import NetworkView
 from tests.support.state import state_of
 from tests.support.written import words_written
 

@@ -12,7 +12,7 @@ from ai.lander.pilots import COAST
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, INK, MUTE, NET, SMALL
-from game.panels.q_values import FIRST, NAME, ROW
+from game.explain.q_values import FIRST, NAME, ROW
 
 if TYPE_CHECKING:
     from ai.copilot.copilot import SharedDecision

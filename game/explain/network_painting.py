@@ -11,11 +11,11 @@ import numpy as np
 from game.core import texts
 from game.drawing.canvas import Align, Canvas, Point
 from game.drawing.tokens import EMBER, FAINT, INK, LABEL, MUTE, NET, NIGHT0, NIGHT1, SMALL, Colour
-from game.panels.network_plan import Edge
+from game.explain.network_plan import Edge
 from game.ui import plotting
 
 if TYPE_CHECKING:
-    from game.panels.network_view import NetworkView
+    from game.explain.network_view import NetworkView
 
 Sheets = tuple[Canvas, Canvas]  # additive light, and the signs above it
 
