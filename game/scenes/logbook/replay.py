@@ -27,7 +27,7 @@ from game.drawing.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, VIEW_SIZE
 from game.explain import readouts
 from game.explain.explained import Explained
 from game.explain.timeline import Timeline, runs
-from game.export.export import Export
+from game.export.film import Export
 from game.flight import networks, sharing
 from game.flight.flight import StickHolder
 from game.flight.flight_file import Record

@@ -23,7 +23,7 @@ from game.core import texts, worker
 from game.core.assets import MODELS_DIR
 from game.core.worker import Worker, WorkerState
 from game.core.worker_process import CREDIT, MOST_WAITING, MessageQueue
-from game.export import export
+from game.export import film
 from game.scenes.digits import fixing
 from tests.support import chores
 from tests.support.chores import Echo, Latest, Tick, Trace
