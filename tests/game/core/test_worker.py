@@ -457,9 +457,9 @@ def test_whatever_ends_while_the_window_goes_on_is_not_waited_for(monkeypatch: p
         def close(self, grace: float = 0.5) -> None:
             graces.append(grace)
 
-    for module in (export, fixing):
+    for module in (film, fixing):
         monkeypatch.setattr(module, "Worker", Ending)
-    export.Export(list, None, tmp_path / "film.gif").close()
+    film.Export(list, None, tmp_path / "film.gif").close()
     fix = fixing.FixRunner(tmp_path, MODELS_DIR)
     fix.begin("classic", np.ones((28, 28), np.float32), 3)
     fix.poll()
