@@ -7,12 +7,14 @@ python -m docs.translations de    begin German, or bring it up to date with the 
 from __future__ import annotations
 
 import os
+import re
 import string
 import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import fields
 from datetime import UTC, datetime
 from functools import cache
+from io import BytesIO
 from pathlib import Path
 
 from babel.messages.catalog import Catalog, Message
@@ -35,6 +37,7 @@ from tranquility.__main__ import _parser as parser
 
 DOMAINS = (catalogue.DOMAIN, catalogue.AI_DOMAIN)
 CONTROL = "\n"
+_HEADERS = {"Language", "Plural-Forms", "MIME-Version", "Content-Type"}  # that the game reads
 STUB = ROOT / "game" / "core" / "texts.pyi"
 _HEAD = '''"""Names and shapes of all texts, made by docs/translations.py from tranquility.pot: do not edit."""
 
@@ -189,9 +192,12 @@ def follow(language: str, folder: Path = catalogue.LOCALE) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         texts = template(domain, folder, language)
         if path.exists():
-            texts = merged(translations(path), texts)
-        with path.open("wb") as file:
-            write_po(file, texts, width=120, include_previous=True)
+            before = translations(path)
+            texts.mime_headers = [("Plural-Forms", before.plural_forms)]  # Babel's may be others by now
+            texts = merged(before, texts)
+        written = BytesIO()
+        write_po(written, texts, width=120, include_previous=True)
+        path.write_bytes(re.sub(rb'"Generated-By:.*\n', b"", written.getvalue()))
 
 
 def compile_all(folder: Path = catalogue.LOCALE) -> None:
@@ -216,10 +222,17 @@ def check(folder: Path = catalogue.LOCALE) -> Iterator[str]:
             yield f"{source.parts[-3]}: {each}"
 
 
+class _Compiled(list[Message]):
+    """The texts of a catalogue in order, the head first: all that `write_mo` wants of one."""
+
+    charset = "utf-8"
+
+
 def write_compiled(path: Path, texts: Catalog) -> None:
-    """Write a catalogue as the standard library reads it."""
+    """Write a catalogue as the standard library reads it; of the head only that, so that any Babel writes the same."""
+    head = "\n".join(f"{name}: {value}" for name, value in texts.mime_headers if name in _HEADERS)
     with path.open("wb") as file:
-        write_mo(file, texts)
+        write_mo(file, _Compiled([Message("", head), *list(texts)[1:]]))  # type: ignore[arg-type]
 
 
 if __name__ == "__main__":

@@ -214,6 +214,19 @@ def test_what_the_game_reads_is_what_babel_makes_of_what_people_write():
     assert translations.STUB.read_text(encoding="utf-8") == translations.stub(catalogue.read(folder))
 
 
+def test_every_babel_writes_the_same_bytes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    for path in catalogue.LOCALE.glob("*.pot"):
+        (tmp_path / path.name).write_bytes(path.read_bytes())
+    written = []
+    for version in ("2.18.0", "9.0"):
+        monkeypatch.setattr("babel.messages.catalog.VERSION", version)
+        translations.follow("de", tmp_path)
+        translations.compile_all(tmp_path)
+        written.append({path: path.read_bytes() for path in sorted(tmp_path.rglob("*.*o"))})
+    assert written[0] == written[1]
+    assert len(written[0]) == 5
+
+
 @pytest.fixture
 def german(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., dict[str, object]]:
     """The texts in German, of which so much is translated."""
