@@ -234,6 +234,7 @@ def _asides(flown: FlownFlight) -> list[str]:
         texts.HELP_NOT_HERE if off and challenge.kept and not (flown.begun or flight.over) else "",
         credit.header if credit.alone and not flight.over else "",
         credit.notice or challenge.goal,
+        texts.GHOST_BESIDE.format(name=flown.ghost.name) if flown.ghost and challenge.goal and not flight.over else "",
         *surroundings(flight.env),
         *challenge.asides(flight),
     ]

@@ -226,7 +226,7 @@ class PlayScene(Scene):
     @property
     def leaves(self) -> bool:
         """Whether Escape goes straight back: from the card of a challenge, where nothing is lost."""
-        return self.flight.over and not (self.challenge.free or self.challenge.stake)
+        return self.ending.card is not None and not (self.challenge.free or self.challenge.stake)
 
     def pause(self) -> Transition:
         self._away = 0

@@ -165,7 +165,7 @@ def test_every_word_of_play_and_its_pause_changes_with_the_language(
 
     driver = open_game(PlayScene, 0, challenge=FlownMission(MISSIONS["brake"]))
     try:
-        for pause in (True, False, False, True):
+        for pause in (True, False, False):  # waiting, and with its card
             before = words()
             if pause:
                 driver.key(pygame.K_ESCAPE)
