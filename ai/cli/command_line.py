@@ -7,9 +7,9 @@ import json
 import os
 import signal
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from functools import wraps
+from functools import partial, wraps
 from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Any, Final, NoReturn, TypeVar
@@ -53,19 +53,14 @@ def fail(message: str) -> int:
 class Unheard:
     """Standard error as a bar of progress writes to it: a terminal that is gone ends no work."""
 
-    def write(self, text: str) -> int:
-        """Write a text; what cannot be written is lost."""
-        with suppress(OSError):
-            sys.stderr.write(text)
-        return len(text)
-
-    def flush(self) -> None:
-        """Flush what was written."""
-        with suppress(OSError):
-            sys.stderr.flush()
-
     def __getattr__(self, name: str) -> Any:
-        return getattr(sys.stderr, name)
+        asked = getattr(sys.stderr, name)
+        return partial(_unheard, asked) if name in ("write", "flush") else asked
+
+
+def _unheard(write: Callable[..., Any], *text: str) -> None:
+    with suppress(OSError):
+        write(*text)
 
 
 def progress_bar(total: int, desc: str, **options: Any) -> tqdm[Any]:
@@ -159,40 +154,28 @@ def configured(preset: Settings, given: list[str]) -> Settings:
 def stoppable(*names: str) -> Iterator[list[int]]:
     """Collect Ctrl-C and termination signals in the list, so that they never cut short a step or its save.
 
-    An entry is the number of a signal; `names` are of other signals to collect in place of these. Meant for the main
-    thread; afterwards, signals do what they did before.
+    An entry is the number of a signal; `names` are of other signals to collect in place of these. A hang-up that is
+    ignored (nohup) is none. Meant for the main thread; afterwards, signals do what they did before.
     """
     stop: list[int] = []
-    terminals = [number for number in (1, 2) if os.isatty(number)]
+    terminals, hang_up = [number for number in (1, 2) if os.isatty(number)], getattr(signal, "SIGHUP", None)
 
     def note(number: int, _: FrameType | None) -> None:
         stop.append(number)
-        if number == getattr(signal, "SIGHUP", None):
-            _forget(terminals)
+        if number == hang_up:  # writing to terminals that are closed would fail
+            void = os.open(os.devnull, os.O_WRONLY)
+            for terminal in terminals:
+                os.dup2(void, terminal)
+            os.close(void)
 
-    before = {number: signal.signal(number, note) for number in _requests(names or _REQUESTS)}
+    numbers = [getattr(signal, name) for name in names or _REQUESTS if hasattr(signal, name)]
+    kept = [number for number in numbers if number != hang_up or signal.getsignal(number) is not signal.SIG_IGN]
+    before = {number: signal.signal(number, note) for number in kept}
     try:
         yield stop
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
-
-
-def _requests(names: Sequence[str]) -> list[int]:
-    """Return those signals that this system has; a hang-up that is ignored (nohup) is none."""
-    numbers = [getattr(signal, name) for name in names if hasattr(signal, name)]
-    return [
-        number for number in numbers
-        if number != getattr(signal, "SIGHUP", None) or signal.getsignal(number) is not signal.SIG_IGN
-    ]  # fmt: skip
-
-
-def _forget(terminals: list[int]) -> None:
-    """Redirect closed terminals, given by file descriptor, to the null device: writing to them would fail."""
-    void = os.open(os.devnull, os.O_WRONLY)
-    for number in terminals:
-        os.dup2(void, number)
-    os.close(void)
 
 
 def exit_code(stop: list[int]) -> int:

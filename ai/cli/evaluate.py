@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 from ai.cli import command_line as cli
 
 if TYPE_CHECKING:
-    from ai.agent.agent import DeepQAgent
-    from ai.training.tasks import Score, Task
+    from ai.training.tasks import Score
 
 FLIGHTS: Final = (1, 10**8)
 _SHARES: Final = ("success", "crash", "out_of_bounds", "time_out")
@@ -39,29 +38,12 @@ def add_commands(commands: Any) -> None:
 @cli.refusing
 def _evaluate(arguments: argparse.Namespace) -> int:
     from ai.lander.spawns import SPAWNS
-    from ai.training.config import LANDER
+    from ai.training.statistics import wilson
 
     cli.check_ranges(arguments, episodes=FLIGHTS, seed=cli.SEEDS, workers=cli.WORKERS)
     if arguments.spawn not in (None, *SPAWNS):
         raise ValueError(f"--spawn is one of {', '.join(SPAWNS)}, not {arguments.spawn}")
-    if arguments.pilot:
-        return _told(arguments, _own(arguments))
-    agent, task, env = _agent_and_task(arguments)
-    episodes = arguments.episodes or task.test_episodes
-    if env == LANDER:
-        score: Score = _flown(arguments, agent, episodes)
-    elif arguments.workers is not None or episodes > cli.EPISODES[1]:
-        raise ValueError(f"--workers and more than {cli.EPISODES[1]:,} episodes are for the lander on the moon")
-    elif arguments.spawn is not None:
-        raise ValueError(f"--spawn is for the lander on the moon; this network is for {env}")
-    else:
-        score = task.evaluate(agent, episodes, arguments.seed)
-    return _told(arguments, score)
-
-
-def _told(arguments: argparse.Namespace, score: Score) -> int:
-    from ai.training.statistics import wilson
-
+    score = _own(arguments) if arguments.pilot else _score(arguments)
     told: dict[str, Any] = score.to_json()
     if score.success is not None:
         told["success_interval"] = wilson(score.success, score.episodes)
@@ -79,10 +61,12 @@ def _told(arguments: argparse.Namespace, score: Score) -> int:
     return 0
 
 
-def _agent_and_task(arguments: argparse.Namespace) -> tuple[DeepQAgent, Task[Any], str]:
-    """Read the network, what it is measured by, and its environment; raises ValueError where they do not fit."""
-    from ai.training.config import load_agent
+def _score(arguments: argparse.Namespace) -> Score:
+    """Measure a network, the lander's in shards; raises ValueError for options that do not fit its environment."""
+    from ai.sweep.shards import results, shards
+    from ai.training.config import LANDER, load_agent
     from ai.training.loop import task_of
+    from ai.training.tasks import Evaluation
 
     agent, config = load_agent(arguments.model, env=arguments.env)
     if arguments.env not in (None, config.env):
@@ -90,7 +74,18 @@ def _agent_and_task(arguments: argparse.Namespace) -> tuple[DeepQAgent, Task[Any
     task = task_of(config)
     if (agent.num_features, agent.num_actions) != (task.num_features, task.num_actions):
         raise ValueError(f"the network in {arguments.model} is not made for {config.env}")
-    return agent, task, config.env
+    episodes = arguments.episodes or task.test_episodes
+    if config.env == LANDER:
+        parts = shards(arguments.model, episodes, arguments.seed, arguments.spawn or "random")
+        with cli.progress_bar(len(parts), "flying", unit="shard", disable=True if len(parts) == 1 else None) as bar:
+            sums = results(parts, arguments.workers or 1, bar.update)
+        return Evaluation.of(sum(sums[1:], sums[0]))
+    if arguments.workers is not None or episodes > cli.EPISODES[1]:
+        raise ValueError(f"--workers and more than {cli.EPISODES[1]:,} episodes are for the lander on the moon")
+    if arguments.spawn is not None:
+        raise ValueError(f"--spawn is for the lander on the moon; this network is for {config.env}")
+    score: Score = task.evaluate(agent, episodes, arguments.seed)
+    return score
 
 
 def _own(arguments: argparse.Namespace) -> Score:
@@ -104,17 +99,6 @@ def _own(arguments: argparse.Namespace) -> Score:
     with closing(MeasuredPilot(arguments.pilot)) as pilot:
         episodes = arguments.episodes or LanderTask.test_episodes
         return evaluate(pilot, episodes, arguments.seed, arguments.spawn or "random")
-
-
-def _flown(arguments: argparse.Namespace, agent: DeepQAgent, episodes: int) -> Score:
-    """Fly the flights, in shards; in several processes if that is asked for."""
-    from ai.sweep.shards import results, shards
-    from ai.training.tasks import Evaluation
-
-    parts = shards(agent, episodes, arguments.seed, arguments.spawn or "random")
-    with cli.progress_bar(len(parts), "flying", unit="shard", disable=True if len(parts) == 1 else None) as bar:
-        sums = results(parts, arguments.workers or 1, bar.update)
-    return Evaluation.of(sum(sums[1:], sums[0]))
 
 
 @cli.refusing

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import sys
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -13,19 +12,19 @@ from ai.cli import command_line as cli
 
 if TYPE_CHECKING:
     from ai.sweep.plan import Plan
-    from ai.sweep.study import FinishedTrial, Study
+    from ai.sweep.study import Study
 
-RUNS: Final = (1, 1000)  # seeds of a trial, members of a population
-BUDGET: Final = (1, 10**12)
+_RUNS: Final = (1, 1000)  # seeds of a trial, members of a population
+_BUDGET: Final = (1, 10**12)
 _RANGES: Final = {
-    "trials": (1, 100_000), "seeds": RUNS, "population": RUNS, "decisions": BUDGET, "epochs": BUDGET, "every": BUDGET,
+    "trials": (1, 100_000), "seeds": _RUNS, "population": _RUNS, "decisions": _BUDGET, "every": _BUDGET,
     "validation": cli.EPISODES, "seed": cli.SEEDS, "workers": cli.WORKERS,
 }  # fmt: skip
 # Options of a plan, which a study keeps: as they are, and what they are made into.
 _PLAN: Final = (
     "seeds", "metric", "search", "population", "stop_early", "decisions", "every", "validation", "seed",
 )  # fmt: skip
-_OF_A_NEW_ONE: Final = (*_PLAN, "knobs", "space", "epochs", "preset", "changes", "digits")
+_OF_A_NEW_ONE: Final = (*_PLAN, "knobs", "space", "preset", "changes", "digits")
 
 
 def add_commands(commands: Any) -> None:
@@ -48,7 +47,6 @@ def add_commands(commands: Any) -> None:
     add("--population", type=int, metavar="N", help="members of a generation (default: 8)")
     add("--stop-early", action="store_true", default=None, help="end trials that fall behind (ASHA)")
     add("--decisions", type=int, metavar="N", help="length of each run (default: 250,000)")
-    add("--epochs", type=int, metavar="N", help="length of each run of digits (default: the preset's)")
     add("--every", type=int, metavar="N", help="decisions or epochs between two measurements")
     add("--validation", type=int, metavar="N", help="episodes of a measurement, as for train")
     add("--env", metavar="NAME", help="an environment of Gymnasium (default: our own lander); with --resume only to"
@@ -82,7 +80,7 @@ def _sweep(arguments: argparse.Namespace) -> int:
     study = _resumed(arguments, place) if arguments.resume else Study.create(place, _plan(arguments))
     with study.claimed(), cli.stoppable() as stop:
         code = 0 if study.complete else _run(arguments, study, stop)
-    _tell(study)
+    _print(study)
     if not study.complete:
         named = f" --env {arguments.env}" if ":" in (arguments.env or "") else ""
         kept = f"{len(study.trials)} of {study.plan.trials} trials are kept"
@@ -93,6 +91,21 @@ def _sweep(arguments: argparse.Namespace) -> int:
 def _run(arguments: argparse.Namespace, study: Study, stop: list[int]) -> int:
     """Run the trials that a study has left; return the exit code: that of a failure if some could not be made."""
     from ai.sweep.cluster import joined
+    from ai.sweep.report import settings
+
+    shown = study.best()
+
+    def show() -> None:
+        nonlocal shown
+        words, best = f"{len(driver.jobs)} running", study.best()
+        if best:
+            described = f"best {study.shown(best.value)}, trial {best.number}: {settings(best.params)}"
+            words += f", {described}"
+            if bar.disable and best is not shown:
+                cli.fail(f"{len(study.trials)} of {study.plan.trials} trials: {described}")
+        shown = best
+        bar.set_postfix_str(words)
+        bar.update(len(study.trials) - bar.n)
 
     with joined(arguments.address, arguments.workers) as workers:
         if stop:
@@ -100,18 +113,7 @@ def _run(arguments: argparse.Namespace, study: Study, stop: list[int]) -> int:
         from ai.sweep.driver import Driver
 
         with cli.progress_bar(study.plan.trials, study.folder.name, initial=len(study.trials), unit="trial") as bar:
-            best = study.best()
-
-            def told() -> None:
-                nonlocal best
-                new = study.best()
-                if new and new is not best and bar.disable:
-                    cli.fail(f"{len(study.trials)} of {study.plan.trials} trials: best {_described(study, new)}")
-                best = new
-                bar.set_postfix_str(f"{len(driver.jobs)} running{f', best {_described(study, new)}' if new else ''}")
-                bar.update(len(study.trials) - bar.n)
-
-            driver = Driver(study, workers, lambda line: bar.write(cli.readable(line), file=cli.Unheard()), told)
+            driver = Driver(study, workers, lambda line: bar.write(cli.readable(line), file=cli.Unheard()), show)
             driver.run(stop)
     with suppress(OSError):  # it is made from the rest
         study.importance = driver.search.importance()
@@ -122,22 +124,17 @@ def _run(arguments: argparse.Namespace, study: Study, stop: list[int]) -> int:
     return 0
 
 
-def _described(study: Study, trial: FinishedTrial) -> str:
-    from ai.sweep.report import settings
-
-    return f"{study.shown(trial.value)}, trial {trial.number}: {settings(trial.params)}"
-
-
 def _place(arguments: argparse.Namespace) -> Path:
-    """Return the folder of the study; raises ValueError for a name that cannot be one."""
+    """Return the folder of the study, among the user's or where a path leads; raises ValueError for no such name."""
     from ai.files import user_dir
-    from ai.sweep.study import find
+    from ai.sweep.study import STUDIES
 
+    name = arguments.study
     try:
-        cli.folder(arguments.study)
+        cli.folder(name)
     except argparse.ArgumentTypeError as error:
         raise ValueError(str(error)) from error
-    return find(arguments.study, arguments.user_dir or user_dir())
+    return Path(name) if "/" in name or "\\" in name else (arguments.user_dir or user_dir()) / STUDIES / name
 
 
 def _resumed(arguments: argparse.Namespace, place: Path) -> Study:
@@ -149,15 +146,14 @@ def _resumed(arguments: argparse.Namespace, place: Path) -> Study:
     from ai.sweep.trial import check_ready
     from ai.training.config import Config, check_env
 
-    kept = "a study that has begun keeps its plan"
     if given := [name for name in _OF_A_NEW_ONE if getattr(arguments, name) is not None]:
         named = ", ".join(f"--{'set' if name == 'changes' else name.replace('_', '-')}" for name in given)
-        raise ValueError(f"{kept}: {named} can only be given without --resume")
+        raise ValueError(f"a study that has begun keeps its plan: {named} can only be given without --resume")
     study = Study.load(place)
     config = study.plan.config
     env = config.env if isinstance(config, Config) else None
     if arguments.env not in (None, env):
-        raise ValueError(f"{kept}: it is not for --env {arguments.env}")
+        raise ValueError(f"a study that has begun keeps its plan: it is not for --env {arguments.env}")
     if env is not None:
         check_env(env, arguments.env)
     if arguments.trials not in (None, study.plan.trials):
@@ -170,15 +166,12 @@ def _resumed(arguments: argparse.Namespace, place: Path) -> Study:
 def _plan(arguments: argparse.Namespace) -> Plan:
     """Return the plan of a new study; raises ValueError or OSError for what makes no sense."""
     from ai.cli.train import digit_config, lander_config
-    from ai.sweep.plan import Plan
-    from ai.sweep.space import knob_space, read_space
+    from ai.sweep.plan import Plan, knob_space, read_space
     from ai.sweep.trial import check_ready
 
-    arguments.changes = arguments.changes or []
+    arguments.changes, arguments.epochs = arguments.changes or [], None
     if arguments.digits and (arguments.env or arguments.decisions):
-        raise ValueError("--env and --decisions are not for digits: these train for --epochs")
-    if arguments.epochs and not arguments.digits:
-        raise ValueError("--epochs is for --digits: agents train for --decisions")
+        raise ValueError("--env and --decisions are not for digits: these train for --set epochs=N")
     if arguments.knobs is not None and arguments.space is not None:
         raise ValueError("say what to search with --knobs or with --space, not with both")
     config: Any = (digit_config if arguments.digits else lander_config)(arguments)
@@ -205,14 +198,12 @@ def _study(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(json.dumps(report(study), indent=2))
     else:
-        _tell(study)
+        _print(study)
     return 0
 
 
-def _tell(study: Study) -> None:
+def _print(study: Study) -> None:
+    """Print the table of a study, whose texts may be a stranger's."""
     from ai.sweep.report import told
 
-    print(
-        "\n".join(cli.readable(line, len(line)) for line in told(study).splitlines())
-    )  # its texts may be a stranger's
-    sys.stdout.flush()
+    print("\n".join(cli.readable(line, len(line)) for line in told(study).splitlines()), flush=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Final
@@ -29,8 +28,6 @@ Help = tuple[str, float]  # alone, or how the co-pilot helps; and how much
 GUARD: Final[Help] = (Mode.GUARDIAN, 0.04)  # there must be a landing after one decision of an action
 HELPS: Final[tuple[Help, ...]] = ((ALONE, 0.0), (Mode.TOLERANCE, 0.4), (VALUES, 0.4), GUARD)
 _STARTS: Final = 0x5AFE7AB1E  # beside the seed, so that no start is one that anything was trained with
-_SAMPLE: Final = 4  # decisions that are timed
-_DECISIONS: Final = 550  # as long as the first ones, that guarded flights take
 
 
 @dataclass(frozen=True)
@@ -73,18 +70,6 @@ TABLES: Final[dict[str, tuple[MakeEnv, tuple[str, ...]]]] = {
     "three_pads": (_hills, SOME),
     "other_worlds": (AnywhereEnv, SOME),
 }
-
-
-def seconds(
-    agent: DeepQAgent, good: Pilot, table: str, names: Sequence[str], help_: Help, episodes: int, seed: int
-) -> float:
-    """Return about how much processor time rows with a guardian take, in seconds: their first decisions are timed."""
-    env, pilots = _begun(good, table, names, episodes, seed)
-    copilot = CoPilot(agent, help_[1], Mode.GUARDIAN)
-    fly(env, agent, pilots, copilot, most=1)  # environments for futures are built then
-    begun = time.process_time()
-    fly(env, agent, pilots, copilot, most=_SAMPLE)
-    return _DECISIONS / _SAMPLE * (time.process_time() - begun)
 
 
 def rows(
@@ -140,9 +125,8 @@ def fly(
     copilot: CoPilot | None,
     *,
     by_values: bool = False,
-    most: float = np.inf,
 ) -> tuple[Doubles, Doubles, Bools]:
-    """Fly until all have ended, or for so many decisions at `most`, with as many slots for every pilot.
+    """Fly until all have ended, with as many slots for every pilot.
 
     Returns each flight's overridden decisions, its decisions, and whether a plan was ever held, (n,) each.
     """
@@ -151,7 +135,7 @@ def fly(
     each = env.num_envs // len(pilots)
     hands = [(pilot, slice(number * each, (number + 1) * each)) for number, pilot in enumerate(pilots)]
     foresees = copilot is not None and copilot.mode is Mode.GUARDIAN and not by_values
-    while (flying := env.outcome == Outcome.FLYING).any() and decisions.max() < most:
+    while (flying := env.outcome == Outcome.FLYING).any():
         wished, action, shares = env.observe(), env.actions.copy(), env.shares.copy()
         asked: list[Push | None] = [None] * env.num_envs
         for pilot, mine in hands:

@@ -47,9 +47,8 @@ def cores() -> int:
 
 def worker_environment() -> dict[str, str]:
     """Return the environment of workers: our own code first, and one thread, as `train` has."""
-    path = os.pathsep.join([str(_ROOT), *filter(None, [os.environ.get("PYTHONPATH", "")])])
-    threads = {f"{library}_NUM_THREADS": "1" for library in ("OPENBLAS", "OMP", "MKL")}
-    return {"PYTHONPATH": path, **threads}
+    path = os.pathsep.join(filter(None, [str(_ROOT), os.environ.get("PYTHONPATH")]))
+    return {"PYTHONPATH": path} | {f"{library}_NUM_THREADS": "1" for library in ("OPENBLAS", "OMP", "MKL")}
 
 
 @contextmanager
@@ -72,7 +71,7 @@ def joined(address: str | None = None, workers: int | None = None) -> Iterator[i
     import ray
     from ray._private import worker
 
-    worker.print_to_stdstream = _tell
+    worker.print_to_stdstream = _print_lost
     try:
         try:
             with _own_signals():
@@ -98,10 +97,10 @@ def answering(address: str) -> str:
         with socket.create_connection((parts[1], int(parts[2])), _PATIENCE) as link:
             link.settimeout(_PATIENCE)
             link.sendall(_PREFACE)
-            told = link.recv(9)
+            answer = link.recv(9)
     except (OSError, OverflowError, UnicodeError) as error:
         raise ConnectionError(f"no cluster answers at {address}: {getattr(error, 'strerror', '') or error}") from error
-    if "RAY_USE_TLS" not in os.environ and told[3:4] != b"\4":
+    if "RAY_USE_TLS" not in os.environ and answer[3:4] != b"\4":
         raise ConnectionError(f"what answers at {address} is no head of a Ray cluster")
     return address
 
@@ -136,7 +135,7 @@ def _own_signals() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, mask)
 
 
-def _tell(news: Mapping[str, Any], ignore_prefix: bool = False) -> None:  # noqa: ARG001 - as Ray calls it
-    """Tell what Ray has to tell of workers and nodes that die, a line each: it would print pages among our results."""
+def _print_lost(news: Mapping[str, Any], ignore_prefix: bool = False) -> None:  # noqa: ARG001 - as Ray calls it
+    """Print what Ray says of workers and nodes that die, a line each: it would print pages among our results."""
     for text in news["lines"]:
         print(f"Ray: {brief(text.strip().partition('. ')[0].replace(chr(10), ' '))}", file=sys.stderr)

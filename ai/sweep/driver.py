@@ -1,7 +1,6 @@
 """Trials of a study on Ray: each is a task that yields a result at every mark, and what was lost goes on elsewhere.
 
-Comes with the extra `sweep`. What is to be tried comes from `ai.sweep.search` or `ai.sweep.population`, and this
-process alone writes the study.
+Comes with the extra `sweep`. What is to be tried comes from `ai.sweep.search`, and this process alone writes the study.
 """
 
 from __future__ import annotations
@@ -9,8 +8,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
-from typing import Any, Final, TypeVar
+from typing import Any, Final
 
 import ray
 from ray.exceptions import RayError, RayTaskError
@@ -18,32 +16,28 @@ from ray.exceptions import RayError, RayTaskError
 from ai.files import brief
 from ai.nn import ModelFormatError
 from ai.sweep.plan import Plan
-from ai.sweep.population import Population
-from ai.sweep.search import Search
-from ai.sweep.study import Files, FinishedTrial, Study
-from ai.sweep.trial import Asked, Trial, check_ready, fingerprint
+from ai.sweep.search import search_of
+from ai.sweep.study import Asked, Files, FinishedTrial, Study
+from ai.sweep.trial import Trial, check_ready, fingerprint
 
-CHECKPOINT_SECONDS: Final = 20.0  # between two checkpoints of a trial
 TRIES: Final = 4  # of a trial whose worker dies; after that it waits for --resume
 _TURN: Final = 0.2  # seconds after which a wait for workers looks around
-_PATIENCE: Final = 600.0  # seconds in which a full disk may get room
-
-Kept = TypeVar("Kept")
 
 
 def trained(
-    code: str, plan: Plan, asked: Asked, runs: Files, so_far: FinishedTrial | None
+    code: str, plan: Plan, asked: Asked, source: FinishedTrial | None, runs: Files, checkpoint: float
 ) -> Iterator[tuple[FinishedTrial, Files, bool]]:
     """Train a trial; yield at every mark the result, the runs if there are new ones to keep, and whether it is over.
 
-    Raises RuntimeError, ImportError, ValueError or ModelFormatError for what is no result of a trial: a node that
-    has other code, or not all that is needed.
+    `source` and `runs` are those of a `Trial`; `checkpoint` are the seconds between two times that runs are kept.
+    Raises RuntimeError, ImportError, ValueError or ModelFormatError for what is no result of a trial: a node that has
+    other code, or not all that is needed.
     """
     if code != fingerprint():
         raise RuntimeError("this node has another version of Tranquility than the one that runs the study")
     check_ready(plan.config)
     try:
-        trial = Trial(plan, asked, runs, so_far)
+        trial = Trial(plan, asked, source, runs)
     except ModelFormatError:  # of its parent
         raise
     except ValueError as error:
@@ -53,7 +47,7 @@ def trained(
     while not trial.done:
         trial.step()
         if not trial.done:
-            due = time.monotonic() - kept >= CHECKPOINT_SECONDS
+            due = time.monotonic() - kept >= checkpoint
             kept = time.monotonic() if due else kept
             yield trial.result(), trial.checkpoint() if due else {}, False
     yield *trial.finish(), True
@@ -64,8 +58,8 @@ class _Job:
     """Trial under way: what it would go on from, and how often it was begun."""
 
     asked: Asked
+    source: FinishedTrial | None
     runs: Files
-    so_far: FinishedTrial | None = None
     tries: int = 0
 
 
@@ -79,34 +73,39 @@ class Driver:
         search: what is to be tried.
         jobs: trials under way, by Ray's generator of their results.
         lost: why trials could not be made, by number.
+        checkpoint: seconds between two checkpoints of a trial.
 
     """
 
     def __init__(self, study: Study, workers: int, say: Callable[[str], None], told: Callable[[], None]) -> None:
         self._study, self._workers, self._say, self._told = study, workers, say, told
-        self.search = Population(study) if study.plan.population else Search(study)
+        self.search = search_of(study)
         self.jobs: dict[Any, _Job] = {}
         self.lost: dict[int, str] = {}
+        self.checkpoint = 20.0
 
     def run(self, stop: Sequence[int]) -> None:
         """Run until all is done, nothing more can be, or the user says stop; raises OSError for a full disk."""
+        study = self._study
         while not stop:
-            while len(self.jobs) < self._workers and (asked := self._written(self.search.next, stop)):
-                self._start(_Job(asked, self._study.runs_of(asked.parent.number) if asked.parent else {}))
+            while len(self.jobs) < self._workers and (asked := self.search.next()):
+                study.begin(asked)
+                parent = None if asked.parent is None else study.trials[asked.parent]
+                self._start(_Job(asked, parent, study.runs_of(parent) if parent else {}))
             if not self.jobs:
                 break
             for results in ray.wait(list(self.jobs), timeout=_TURN)[0]:
-                self._take(results, stop)
+                self._take(results)
             self._told()
 
     def _start(self, job: _Job) -> None:
         """Begin a trial, or go on with it from its last checkpoint. A worker waits until its results are taken."""
-        options = {"num_cpus": 1, "max_retries": 0, "_generator_backpressure_num_objects": 1}
         job.tries += 1
-        train = ray.remote(**options)(trained)
-        self.jobs[train.remote(fingerprint(), self._study.plan, job.asked, job.runs, job.so_far)] = job
+        train = ray.remote(num_cpus=1, max_retries=0, _generator_backpressure_num_objects=1)(trained)
+        given = (self._study.plan, job.asked, job.source, job.runs, self.checkpoint)
+        self.jobs[train.remote(fingerprint(), *given)] = job
 
-    def _take(self, results: Any, stop: Sequence[int]) -> None:
+    def _take(self, results: Any) -> None:
         """Take what a worker yields: the trial has come to a mark, is over, or is lost."""
         job = self.jobs.pop(results)
         try:
@@ -119,31 +118,16 @@ class Driver:
             else:
                 self._lose(job, str(error).strip().rpartition("\n")[2])
         else:
-            behind = not over and self._written(partial(self.search.falls_behind, result), stop)
-            if behind:
-                ray.cancel(results)
-            if over or behind:
-                self._written(partial(self._study.record, result, runs if over else {}), stop)
-                self._written(partial(self.search.tell, result), stop)
+            if over or self.search.falls_behind(result):
+                if not over:
+                    ray.cancel(results)
+                self._study.record(result, runs if over else {})
+                self.search.tell(result)
                 return
             if runs:
-                job.runs, job.so_far = runs, result
+                job.source, job.runs = result, runs
             self.jobs[results] = job
 
     def _lose(self, job: _Job, why: str) -> None:
         self.lost[job.asked.number] = brief(why)
         self._say(f"a trial failed: {brief(why)}")
-
-    def _written(self, write: Callable[[], Kept], stop: Sequence[int]) -> Kept:
-        """Do what writes to the study; while the disk is full, wait for room, and let trials go on meanwhile."""
-        end, said = time.monotonic() + _PATIENCE, False
-        while True:
-            try:
-                return write()
-            except OSError as error:
-                if stop or time.monotonic() > end:
-                    raise
-                if not said:
-                    self._say(f"could not write to {self._study.folder}: {error.strerror or error}; it is tried again")
-                said = True
-                time.sleep(_TURN)

@@ -1,31 +1,148 @@
-"""Plan of a study: all that was asked for when it began."""
+"""Plan of a study: what is trained, which knobs are searched where, and what trials are compared by.
+
+A curve is measured without random actions on validation episodes, at fixed numbers of decisions (digits: epochs on
+the images held out), so a metric is the same on a slow machine and on a fast one.
+"""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
-from dataclasses import dataclass
+import math
+import re
+import statistics
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields
+from pathlib import Path
 from typing import Annotated, Any, Final, Self
 
+import numpy as np
+
 from ai.digits.config import DigitConfig
-from ai.files import Count, OneOf, Seed, Sized, Within
-from ai.files.knobs import Knobs
-from ai.sweep.metric import Metric
-from ai.sweep.space import Dimension
+from ai.files import Count, OneOf, Seed, Share, Sized, Within, read_as, read_json
+from ai.files.knobs import Knobs, field_problem
 from ai.training.config import ANYWHERE, LANDER, Config
 
 AGENT, DIGITS = "agent", "digits"  # kinds of run
 TPE, RANDOM, POPULATION = "tpe", "random", "population"
-_MEASURED: Final = 5  # times that a run is measured, unless told otherwise
+_MEASURED: Final = 5  # times that a run is measured, unless asked otherwise
+
+
+@dataclass(frozen=True)
+class Point:
+    """Point of a learning curve."""
+
+    at: Count  # decisions so far, or epochs
+    success: Share | None  # of episodes that ended well, or of digits read right; None where that is not defined
+    mean_return: float  # sum of rewards; for digits the share again
+
+
+@dataclass(frozen=True)
+class Metric:
+    """What is read off a curve: "success", "return", "mean" or the "time" to a `share` of success."""
+
+    kind: str
+    share: float = 0.0
+
+    @classmethod
+    def named(cls, name: str) -> Self:
+        """Return the metric of that name; raises ValueError for none."""
+        if (time := re.fullmatch(r"time_to_(\d{1,3})", name)) and 0 < int(time[1]) <= 100:
+            return cls("time", int(time[1]) / 100)
+        if name in ("success", "accuracy", "return", "mean"):
+            return cls("success" if name == "accuracy" else name)
+        raise ValueError(f"--metric is success, accuracy, return, mean, or time_to_99 with any percentage; not {name}")
+
+    @property
+    def sign(self) -> int:
+        """1 where less is better, -1 where more is."""
+        return 1 if self.kind == "time" else -1
+
+    def of(self, curve: Sequence[Point], budget: int, diverged: bool = False) -> float | None:
+        """Return the value of one seed's curve so far, of a run of `budget`; None before the first point.
+
+        A share that has not been reached counts as more than the whole budget: the more, the farther it was missed.
+        A run that diverged has the worst value there is, or of a return the worst that was measured.
+        """
+        if self.kind == "return":
+            returns = [point.mean_return for point in curve]
+            return (min(returns) if diverged else returns[-1]) if returns else None
+        if diverged:
+            return budget * (1 + self.share) if self.kind == "time" else 0.0
+        if not curve:
+            return None
+        shares = [point.success or 0.0 for point in curve]
+        if self.kind == "success":
+            return shares[-1]
+        if self.kind == "mean":
+            return statistics.fmean(shares)
+        reached = (point.at for point, share in zip(curve, shares, strict=True) if share >= self.share)
+        return float(next(reached, budget * (1 + self.share - max(shares))))
+
+    def shown(self, value: float | None, budget: int) -> str:
+        """Return a value as a table shows it."""
+        if value is None:
+            return "–"
+        if self.kind == "time" and value > budget:
+            return "not reached"
+        kinds = {"time": ",.0f", "return": ".1f"}
+        return format(value, ".3g" if abs(value) >= 1e12 else kinds.get(self.kind, ".2%"))
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """Dimension of a search space: the range of a knob, or the values to choose from."""
+
+    low: float = 0.0
+    high: float = 0.0  # included
+    log: bool = False  # whether the range is searched by factors, not by differences
+    whole: bool = False
+    choices: tuple[Any, ...] = ()  # values in place of a range, as JSON holds them
+
+    def __post_init__(self) -> None:
+        if not self.choices and not (self.low < self.high and (self.low > 0 or not self.log)):
+            raise ValueError("low lies below high, and above 0 where log is true")
+
+    @property
+    def ends(self) -> tuple[Any, Any]:
+        """First and last value."""
+        return (self.choices[0], self.choices[-1]) if self.choices else (self.low, self.high)
+
+    def place(self, value: Any) -> float:
+        """Return where a value lies in the range, 0 to 1; of a choice, its number over that of the last.
+
+        Raises ValueError or TypeError for what is no such value.
+        """
+        if self.choices:
+            return self.choices.index(value) / max(1, len(self.choices) - 1)
+        if not self.low <= value <= self.high or (self.whole and value % 1):
+            raise ValueError("out of its range")
+        low, high, at = map(math.log, (self.low, self.high, value)) if self.log else (self.low, self.high, value)
+        return min(1.0, (at - low) / (high - low))
+
+    def at(self, place: float) -> Any:
+        """Return the value at a place; before 0 and after 1 the first and the last."""
+        place = min(1.0, max(0.0, place))
+        if self.choices:
+            return self.choices[round(place * (len(self.choices) - 1))]
+        value = self.low * (self.high / self.low) ** place if self.log else self.low + (self.high - self.low) * place
+        value = min(self.high, max(self.low, value))
+        return round(value) if self.whole else value
+
+    def draw(self, rng: np.random.Generator) -> Any:
+        """Return a value drawn at random, by the scale of the range."""
+        return self.choices[int(rng.integers(len(self.choices)))] if self.choices else self.at(float(rng.random()))
+
+
+Space = dict[str, Dimension]
 
 
 @dataclass(frozen=True)
 class Plan:
-    """Plan of a study."""
+    """All that was asked for when a study began."""
 
     kind: Annotated[str, OneOf((AGENT, DIGITS))]  # of its runs
     settings: dict[str, Any]  # of every run, but for the knobs that are searched
-    space: dict[str, Dimension]  # where each knob is searched, by its name
+    space: Space  # where each knob is searched, by its name
     seeds: Annotated[tuple[Seed, ...], Sized(1000, 1)]  # of each trial's runs
     budget: Annotated[int, Within(1, 10**12)]  # decisions or epochs of a run; in a population, of all generations
     every: Annotated[int, Within(1, 10**12)]  # decisions or epochs between two measurements
@@ -39,9 +156,8 @@ class Plan:
 
     @classmethod
     def of(
-        cls, config: Knobs, space: Mapping[str, Dimension], *, seeds: int = 3, decisions: int = 250_000,
-        every: int | None = None, metric: str | None = None, search: str = TPE, trials: int = 64,
-        population: int | None = None, **others: Any,
+        cls, config: Knobs, space: Space, *, seeds: int = 3, decisions: int = 250_000, every: int | None = None,
+        metric: str | None = None, search: str = TPE, trials: int = 64, population: int | None = None, **others: Any,
     ) -> Self:  # fmt: skip
         """Return the plan of a study of runs with these settings, with what is usual for their kind."""
         settings = json.loads(json.dumps(config.to_json()))
@@ -53,7 +169,7 @@ class Plan:
             population = population or 8
             every = every or budget // max(1, trials // population)
         return cls(
-            kind=DIGITS if digits else AGENT, settings=settings, space=dict(space), seeds=tuple(range(seeds)),
+            kind=DIGITS if digits else AGENT, settings=settings, space=space, seeds=tuple(range(seeds)),
             budget=budget, every=every or max(1, budget // _MEASURED), metric=metric or usual, search=search,
             trials=trials, population=population or 0, **others,
         )  # fmt: skip
@@ -84,6 +200,13 @@ class Plan:
                 "a population has two members or more, trials are a multiple of them, and none is stopped early"
             )
 
+    def check_params(self, params: Mapping[str, Any]) -> None:
+        """Raise ValueError or TypeError for settings that are not of this study's space."""
+        if set(params) != set(self.space):
+            raise ValueError("of another study")
+        for name, dimension in self.space.items():
+            dimension.place(params[name])
+
     @property
     def generations(self) -> int:
         """Number of generations; 1 without a population."""
@@ -102,3 +225,59 @@ class Plan:
     def unit(self) -> str:
         """Word for what the budget counts."""
         return "epochs" if self.kind == DIGITS else "decisions"
+
+
+def knob_dimension(config: Knobs, name: str, asked: Any = None) -> Dimension:
+    """Return the dimension of a knob; raises ValueError where there is none.
+
+    `asked` is what a file says of it: a list of values, or {"low": …, "high": …, "log": …}, each of which may be left
+    out for the knob's own.
+    """
+    item = next((item for item in fields(config) if item.name == name), None)
+    if item is None:
+        raise ValueError(f"there is no setting called {name}")
+    kind, described = str(item.type), item.metadata
+    choices = described["choices"] or described["offers"] or ((False, True) if kind == "bool" else ())
+    if asked:
+        choices = asked if isinstance(asked, list) else ()
+    if not choices and (described["low"] is None or kind not in ("int", "float")):
+        raise ValueError(f"{name} has no range and no choices to search; give it choices in a file")
+    if choices:
+        dimension = Dimension(choices=tuple(list(each) if isinstance(each, tuple) else each for each in choices))
+    else:
+        own = {end: described[end] for end in ("low", "high", "log")}
+        if asked and not (isinstance(asked, Mapping) and set(asked) <= set(own)):
+            raise ValueError(f"{name}: a range is low, high and log, or a list of choices")
+        try:
+            dimension = read_as(Dimension, own | {"whole": kind == "int"} | (asked or {}))
+        except ValueError as error:
+            raise ValueError(f"{name}: {error}") from error
+    for value in dimension.choices or dimension.ends:
+        if problem := field_problem(item, config.value_from_json(name, int(value) if dimension.whole else value)):
+            raise ValueError(problem)
+    return dimension
+
+
+def knob_space(config: Knobs, names: Iterable[str]) -> Space:
+    """Return the space of knobs by their own ranges; a name may also be that of a group of knobs, as "learning".
+
+    Of a group, knobs that change nothing because another one is off are left out. Raises ValueError for other names.
+    """
+    space: Space = {}
+    for name in map(config.name_now, names):
+        group = [item.name for item in fields(config) if item.metadata["group"] == name]
+        for each in [each for each in group if each not in config.unused()] or [name]:
+            space[each] = knob_dimension(config, each)
+    return space
+
+
+def read_space(config: Knobs, file: Path) -> Space:
+    """Read a space from a file of JSON, a range or a list of choices by the name of each knob.
+
+    {"learning_rate": {"low": 1e-4, "high": 1e-2}, "n_step": {}, "optimizer": ["adam", "momentum"]}. Raises OSError, or
+    ValueError for what makes no sense.
+    """
+    asked = read_json(file)
+    if not isinstance(asked, dict) or not asked:
+        raise ValueError(f"{file}: a space is a range by the name of each knob")
+    return {(now := config.name_now(name)): knob_dimension(config, now, each) for name, each in asked.items()}

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable
 from dataclasses import asdict
 from html import escape
 from typing import Any, Final
 
 from ai.files import brief
-from ai.sweep.space import shown_value
 from ai.sweep.study import FinishedTrial, Study
 
 _BEST: Final = 10  # rows of the table
@@ -69,6 +69,13 @@ def told(study: Study, most: int = _BEST) -> str:
 def settings(params: dict[str, Any]) -> str:
     """Return the settings of a trial in one line."""
     return " ".join(f"{name}={shown_value(value)}" for name, value in params.items())
+
+
+def shown_value(value: Any) -> str:
+    """Return a knob's value as a table shows it."""
+    if isinstance(value, float):
+        return f"{value:.3g}"
+    return value if isinstance(value, str) else json.dumps(value).replace('"', "")
 
 
 def page(study: Study) -> str:

@@ -1,157 +1,92 @@
-"""Optuna's part of a study: it keeps trials and settings in a journal, proposes settings and stops trials early.
+"""What a study tries next: settings that Optuna proposes, or the members of a population.
 
-Comes with the extra `sweep`. Optuna is handed its journal by us, each line checked: what a stranger's study says is
-bounded, and nothing of it starts code.
+Comes with the extra `sweep`. Optuna holds its study in memory. When a study goes on, it gets the finished trials again
+in their order, through the calls that it got them by at first; each was checked when it was read. So nothing of a
+study that somebody else has made reaches Optuna but settings and values, and there are no two files that could differ.
 """
 
 from __future__ import annotations
 
 import json
 import warnings
-from collections.abc import Iterator
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Annotated, Any, Final
+from typing import Any, Final
 
+import numpy as np
 import optuna
-from optuna.storages import JournalStorage
-from optuna.storages.journal import BaseJournalBackend
-from optuna.trial import Trial, TrialState
+from optuna.trial import TrialState
 
-from ai.files import Count, OneOf, Sized, Within, brief, parse_json, read_as, read_text, write_text
-from ai.sweep.plan import RANDOM
-from ai.sweep.space import Dimension
-from ai.sweep.study import FinishedTrial, Study, StudyError
-from ai.sweep.trial import Asked
+from ai.sweep.plan import POPULATION, RANDOM, Dimension, Space
+from ai.sweep.study import Asked, FinishedTrial, Study
 
-JOURNAL: Final = "journal.jsonl"
 LEAST: Final = 8  # trials below which nothing is said of importance
 _REDUCTION: Final = 3  # successive halving: one trial in three goes on at each rung
-_MOST: Final = 64_000_000  # bytes of a journal
-_Word = Annotated[str, Sized(100)]
-
-
-@dataclass(frozen=True)
-class _Line:
-    """Line of a journal: the operations of Optuna that a study needs, by their numbers, and what they come with."""
-
-    op_code: Annotated[int, OneOf((0, 4, 5, 6, 7, 8, 9))]
-    worker_id: _Word
-    study_name: Annotated[str, OneOf(("study",))] = "study"
-    directions: tuple[Annotated[int, Within(1, 2)], ...] = ()
-    study_id: Annotated[int, Within(0, 0)] = 0
-    trial_id: Count = 0
-    datetime_start: _Word | None = None
-    datetime_complete: _Word | None = None
-    param_name: _Word = ""
-    param_value_internal: float = 0.0
-    distribution: Annotated[str, Sized(10_000)] = ""
-    state: Annotated[int, Within(0, 4)] = 0
-    values: tuple[float, ...] | None = None
-    step: Count = 0
-    intermediate_value: float = 0.0
-    user_attr: dict[str, Any] | None = None
-    system_attr: dict[str, Any] | None = None
-
-
-class Journal(BaseJournalBackend):
-    """Journal in a file that one process writes; a line that was cut off by a kill is left out.
-
-    Raises OSError, or ValueError for a line that is none of Optuna's.
-    """
-
-    def __init__(self, path: Path) -> None:
-        self._path = path
-        text = read_text(path, _MOST) if path.exists() else ""
-        whole = text[: text.rfind("\n") + 1]
-        self._lines = [parse_json(line) for line in whole.splitlines()]
-        for line in self._lines:
-            read_as(_Line, line, strict=True)
-        if whole != text:
-            write_text(path, whole)
-
-    def read_logs(self, log_number_from: int) -> Iterator[dict[str, Any]]:
-        """Yield the lines from a number on."""
-        yield from self._lines[log_number_from:]
-
-    def append_logs(self, logs: list[dict[str, Any]]) -> None:
-        """Append lines, all or none; raises OSError."""
-        with self._path.open("ab") as file:
-            end = file.tell()
-            try:
-                file.write("".join(json.dumps(line) + "\n" for line in logs).encode())
-                file.flush()
-            except OSError:
-                file.truncate(end)
-                raise
-        self._lines += json.loads(json.dumps(logs))
+_SHARE: Final = 4  # one member in four is replaced by a copy of one of the best quarter
+_REDRAWN: Final = 0.25  # chance that a copied knob is drawn anew, as in the paper
+_FACTORS: Final = (0.8, 1.2)
 
 
 class Search:
-    """Optuna's study beside ours, as the driver asks it for trials; raises StudyError for one that cannot be read.
-
-    Our study's files are right where the two differ, and Optuna is told.
-    """
+    """Optuna's study beside ours, as the driver asks it for trials."""
 
     def __init__(self, study: Study) -> None:
         optuna.logging.set_verbosity(optuna.logging.ERROR)
         warnings.simplefilter("ignore", optuna.exceptions.ExperimentalWarning)
-        self._study, self._room = study, study.plan.trials - len(study.trials)
-        try:
-            self._optuna = _opened(study)
-            rows = self._optuna.trials
-            if strange := [number for number in (*study.trials, *study.damaged) if number >= len(rows)]:
-                raise ValueError(f"it does not know trial {strange[0]}")
-            self.left = [row.number for row in rows if self._is_left(row)]  # under way when the study was interrupted
-        except OSError:
-            raise
-        except Exception as error:  # Optuna trusts its journal: any nonsense in one may surface as anything
-            raise StudyError(f"{study.folder} has a {JOURNAL} that cannot be read: {brief(error)}") from error
+        plan = study.plan
+        # Another seed each time, or a study that goes on would propose once more what it began with.
+        seed = plan.seed * 1_000_003 + len(study.trials) & 0x7FFFFFFF
+        tpe = optuna.samplers.TPESampler
+        self._study = study
+        self._optuna = optuna.create_study(
+            sampler=optuna.samplers.RandomSampler(seed)
+            if plan.search == RANDOM
+            else tpe(seed=seed, constant_liar=True),
+            pruner=optuna.pruners.SuccessiveHalvingPruner(min_resource=1, reduction_factor=_REDUCTION),
+            direction="minimize" if study.metric.sign == 1 else "maximize",
+        )
+        self._distributions = {name: _distribution(dimension) for name, dimension in plan.space.items()}
+        self._trials: dict[int, optuna.Trial] = {}  # under way, by our number
+        for number, trial in sorted(study.trials.items()):
+            self._ask(number, trial.params)
+            at = plan.every
+            while at <= trial.at:  # where a rung of the pruner is; elsewhere it looks at nothing
+                self.falls_behind(study.so_far(trial, at))
+                at *= _REDUCTION
+            self.tell(trial)
 
-    def _is_left(self, row: Any) -> bool:
-        """Whether a trial of the journal is to be run; tell Optuna what the study's files say of any other."""
-        if row.state.is_finished() or row.number in self._study.damaged:
-            return False
-        if (done := self._study.trials.get(row.number)) is not None:
-            self.tell(done)
-            return False
-        try:
-            for name, distribution in _distributions(self._study).items():  # it may have been cut off amid these
-                self._trial(row.number)._suggest(name, distribution)
-            self._study.check_params(self.params(row.number))
-        except (ValueError, TypeError, KeyError):
-            self._optuna.tell(row.number, state=TrialState.FAIL)
-            return False
-        return True
-
-    def _trial(self, number: int) -> Trial:
-        return Trial(self._optuna, self._optuna._storage.get_trial_id_from_study_id_trial_number(0, number))
-
-    def params(self, number: int) -> dict[str, Any]:
-        """Return the settings of a trial."""
-        space, asked = self._study.plan.space, self._trial(number).params
-        return {name: json.loads(value) if space[name].choices else value for name, value in asked.items()}
+    def _ask(self, number: int, params: dict[str, Any] | None = None) -> Asked:
+        """Begin a trial, with these settings or such as Optuna proposes."""
+        space = self._study.plan.space
+        if params is not None:
+            self._optuna.enqueue_trial({
+                name: json.dumps(value) if space[name].choices else value for name, value in params.items()
+            })  # fmt: skip
+        trial = self._trials[number] = self._optuna.ask(self._distributions)
+        drawn = {name: json.loads(each) if space[name].choices else each for name, each in trial.params.items()}
+        return Asked(number, drawn)
 
     def next(self) -> Asked | None:
-        """Return the next trial, one that was interrupted or a new one; None for no more. Raises OSError."""
-        if not self._room:
+        """Return the next trial, one that was interrupted or a new one; None for no more."""
+        study = self._study
+        if len(study.trials) + len(self._trials) >= study.plan.trials:
             return None
-        number = self.left[0] if self.left else self._optuna.ask(_distributions(self._study)).number
-        self.left, self._room = self.left[1:], self._room - 1
-        return Asked(number, self.params(number))
+        for number, asked in sorted(study.under_way.items()):
+            if number not in self._trials:
+                return self._ask(number, asked.params)
+        known = (*study.trials, *study.damaged, *study.under_way, *self._trials)
+        return self._ask(1 + max(known, default=-1))
 
     def falls_behind(self, trial: FinishedTrial) -> bool:
         """Note how good a trial is so far; return whether others are so much better that it should end."""
         if not self._study.plan.stop_early or trial.value is None:
             return False
-        noted = self._trial(trial.number)
+        noted = self._trials[trial.number]
         noted.report(trial.value, trial.at // self._study.plan.every)
         return bool(noted.should_prune())
 
     def tell(self, trial: FinishedTrial) -> None:
-        """Note the end of a trial; raises OSError."""
+        """Note the end of a trial."""
         state = TrialState.FAIL if trial.value is None else TrialState.COMPLETE
-        self._optuna.tell(trial.number, trial.value, state=state)
+        self._optuna.tell(self._trials.pop(trial.number), trial.value, state=state)
 
     def importance(self) -> dict[str, float]:
         """Return the share that each knob has in setting the best trials apart, the most important first.
@@ -166,23 +101,76 @@ class Search:
         return shares
 
 
-def _opened(study: Study) -> optuna.Study:
+class Population:
+    """Population-based training (Jaderberg et al. 2017), in generations, in place of a `Search`.
+
+    Every member of a generation trains for the same number of decisions. Then the worst quarter goes on with copies of
+    runs of the best quarter, and with their knobs, changed a little; the others go on with their own.
+
+    The paper lets members copy whenever they are ready. Here a generation waits for its last member. So what a member
+    is asked to do follows from the finished trials and the study's seed alone: not from the number of workers, nor
+    from who was first, nor from whether the study was interrupted.
+    """
+
+    def __init__(self, study: Study) -> None:
+        self._study = study
+        known = {*study.trials, *study.damaged}
+        self._left = [number for number in range(study.plan.trials) if number not in known]
+
+    def next(self) -> Asked | None:
+        """Return the next trial; None for no more, or as long as the generation before it is not whole."""
+        asked = proposed(self._study, self._left[0]) if self._left else None
+        if asked is not None:
+            self._left.pop(0)
+        return asked
+
+    def falls_behind(self, trial: FinishedTrial) -> bool:  # noqa: ARG002
+        """Return False: the worst are replaced when a generation ends."""
+        return False
+
+    def tell(self, trial: FinishedTrial) -> None:
+        """Pass over the end of a trial: the study has it."""
+
+    def importance(self) -> dict[str, float]:
+        """Return nothing: knobs change on the way."""
+        return {}
+
+
+def search_of(study: Study) -> Search | Population:
+    """Return what says which trials a study has left."""
+    return Population(study) if study.plan.search == POPULATION else Search(study)
+
+
+def proposed(study: Study, number: int) -> Asked | None:
+    """Return what trial `number` of a population is asked; None as long as the generation before it is not whole."""
     plan = study.plan
-    # Another seed each time, or a study that goes on would propose once more what it began with.
-    seed = plan.seed * 1_000_003 + len(study.trials) & 0x7FFFFFFF
-    tpe = optuna.samplers.TPESampler
-    return optuna.create_study(
-        storage=JournalStorage(Journal(study.folder / JOURNAL)),
-        sampler=optuna.samplers.RandomSampler(seed) if plan.search == RANDOM else tpe(seed=seed, constant_liar=True),
-        pruner=optuna.pruners.SuccessiveHalvingPruner(min_resource=1, reduction_factor=_REDUCTION),
-        study_name="study",
-        direction="minimize" if study.metric.sign == 1 else "maximize",
-        load_if_exists=True,
-    )
+    rng, generation = np.random.default_rng([plan.seed, number]), plan.generation(number)
+    if generation == 0:
+        return Asked(number, {name: dimension.draw(rng) for name, dimension in plan.space.items()})
+    before = study.generation(generation - 1)
+    if len(before) < plan.population:
+        return None
+    own, few, sign = before[number % plan.population], max(1, plan.population // _SHARE), study.metric.sign
+    ranked = sorted(before, key=lambda trial: (trial.value is None, sign * (trial.value or 0.0), trial.number))
+    if all(own is not each for each in ranked[-few:]):
+        return Asked(number, own.params, own.number)
+    source = ranked[int(rng.integers(few))]
+    return Asked(number, explored(source.params, plan.space, rng), source.number)
 
 
-def _distributions(study: Study) -> dict[str, Any]:
-    return {name: _distribution(dimension) for name, dimension in study.plan.space.items()}
+def explored(params: dict[str, Any], space: Space, rng: np.random.Generator) -> dict[str, Any]:
+    """Return knobs near those given: each times 0.8 or 1.2, or the next choice, or now and then drawn anew."""
+    changed = {}
+    for name, dimension in space.items():
+        if rng.random() < _REDRAWN:
+            changed[name] = dimension.draw(rng)
+        elif dimension.choices:
+            step = 1 / max(1, len(dimension.choices) - 1)
+            changed[name] = dimension.at(dimension.place(params[name]) + step * rng.choice((-1, 1)))
+        else:
+            value = min(dimension.high, max(dimension.low, params[name] * rng.choice(_FACTORS)))
+            changed[name] = round(value) if dimension.whole else float(value)
+    return changed
 
 
 def _distribution(dimension: Dimension) -> Any:

@@ -1,10 +1,10 @@
-"""Study on disk: its plan, Optuna's journal, and the finished trials, each whole or not there.
+"""Study on disk: its plan, and the finished trials, each whole or not there.
 
-    study.json            the plan, the best run so far, and which knobs matter
-    journal.jsonl         Optuna's: every trial that has begun, with its settings (`ai.sweep.search`)
+    study.json            the plan, trials under way with their settings, the best run so far, which knobs matter
     trials/0007/          a finished trial: trial.json with its curves, and seed-N/ with the run as `train` keeps it
 
-Only the process that runs a study writes it. It gets results through Ray, so workers need no common disk.
+Only the process that runs a study writes it. It gets results through Ray, so workers need no common disk. Optuna keeps
+nothing on disk: what it has to know is read from here, checked, and handed to it (`ai.sweep.search`).
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from __future__ import annotations
 import errno
 import json
 import re
+import statistics
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, replace
@@ -21,12 +22,13 @@ from typing import Annotated, Any, Final, Self
 from ai.files import (
     Count,
     Duration,
-    OneOf,
     Seed,
     Share,
     Sized,
+    Within,
     atomic_folder,
     brief,
+    check_header,
     read_as,
     read_bytes,
     read_json,
@@ -36,8 +38,7 @@ from ai.files import (
     write_bytes,
     write_text,
 )
-from ai.sweep.metric import Metric, Point
-from ai.sweep.plan import Plan
+from ai.sweep.plan import Metric, Plan, Point
 
 STUDIES: Final = "studies"  # folder of all studies, in the user's
 STUDY_FILE: Final = "study.json"
@@ -56,6 +57,15 @@ class StudyError(ValueError):
 
 
 @dataclass(frozen=True)
+class Asked:
+    """What is asked of one trial."""
+
+    number: Annotated[int, Within(0, 999_999)]  # in its study
+    params: dict[str, Any]  # values of the knobs that are searched
+    parent: Count | None = None  # the trial whose runs it goes on with, in a population
+
+
+@dataclass(frozen=True)
 class SeedResult:
     """Result of one seed of a trial."""
 
@@ -66,10 +76,17 @@ class SeedResult:
     seconds: Duration  # of training, by the clock
     figures: dict[str, Any]  # of the network kept, as its command tells them; empty for a run that was stopped early
 
+    @property
+    def rank(self) -> tuple[float, float]:
+        """How good its network is, by the figures of its own validation."""
+        numbers = [self.figures.get(name) for name in ("success", "held_out", "mean_return")]
+        success, held_out, mean = (float(number) if isinstance(number, int | float) else 0.0 for number in numbers)
+        return success + held_out, mean
+
 
 @dataclass(frozen=True)
 class FinishedTrial:
-    """Result of a trial."""
+    """Result of a trial, whole or so far."""
 
     number: Count  # in its study
     params: dict[str, Any]  # values of the knobs that were searched
@@ -78,7 +95,7 @@ class FinishedTrial:
     stopped: bool  # early, because others were better
     seconds: Duration  # that it took, by the clock, with all measuring and saving
     seeds: Annotated[tuple[SeedResult, ...], Sized(1000)]  # none if the settings made no sense
-    parent: Count | None = None  # the trial whose runs it went on with, in a population
+    parent: Count | None = None  # as it was `Asked`
     problem: _Words = ""  # why there is no result; empty if there is one
     restarts: Count = 0  # times that it went on from its last checkpoint, as its worker had died
 
@@ -89,39 +106,29 @@ class FinishedTrial:
 
     @property
     def best_seed(self) -> SeedResult | None:
-        """Seed whose network is the best, by the figures of its own validation; None if none was kept."""
-        return max((seed for seed in self.seeds if seed.figures), key=_rank, default=None)
-
-
-def _rank(seed: SeedResult) -> tuple[float, float]:
-    numbers = [seed.figures.get(name) for name in ("success", "held_out", "mean_return")]
-    success, held_out, mean = (float(number) if isinstance(number, int | float) else 0.0 for number in numbers)
-    return success + held_out, mean
+        """Seed whose network is the best; None if none was kept."""
+        return max((seed for seed in self.seeds if seed.figures), key=lambda seed: seed.rank, default=None)
 
 
 @dataclass(frozen=True)
 class StudyFile:
-    """What study.json says; `run` is the folder of the best run, `importance` what `ai.sweep.search` says of knobs."""
+    """What study.json says."""
 
     plan: Plan
-    format: Annotated[str, OneOf((FORMAT,))] = FORMAT
-    version: Annotated[int, OneOf((VERSION,))] = VERSION
-    run: Annotated[str, Sized(200)] | None = None
-    importance: dict[str, Share] | None = None
+    format: str = FORMAT
+    version: int = VERSION
+    run: Annotated[str, Sized(200)] | None = None  # folder of the best run
+    importance: dict[str, Share] | None = None  # share of each knob in setting the best trials apart
+    under_way: Annotated[tuple[Asked, ...], Sized(1000)] = ()
 
     @classmethod
     def read(cls, folder: Path) -> Self:
         """Read it; raises StudyError for a folder that is no study."""
         try:
-            values = read_json(folder / STUDY_FILE)
-            if isinstance(values, dict) and (values.get("format"), values.get("version")) == (FORMAT, 1):
-                raise StudyError(f"{folder} is a study of an earlier version, which this one does not read")
-            file = read_as(cls, values)
+            file = read_as(cls, check_header(read_json(folder / STUDY_FILE), FORMAT, (VERSION,)))
             file.plan.check()
         except OSError as error:
             raise StudyError(f"{folder} is no study: {STUDY_FILE}: {error.strerror or error}") from error
-        except StudyError:
-            raise
         except (ValueError, TypeError, RecursionError) as error:
             raise StudyError(f"{folder} is no study that can be read: {brief(error)}") from error
         return file
@@ -130,11 +137,12 @@ class StudyFile:
 class Study:
     """Study in a folder. Reading it changes nothing on disk."""
 
-    def __init__(self, folder: Path, plan: Plan) -> None:
-        self.folder, self.plan, self.metric = folder, plan, Metric.named(plan.metric)
+    def __init__(self, folder: Path, file: StudyFile) -> None:
+        self.folder, self.plan, self.metric = folder, file.plan, Metric.named(file.plan.metric)
         self.trials: dict[int, FinishedTrial] = {}  # finished ones by number
         self.damaged: list[int] = []  # numbers of trials whose files cannot be read
-        self.importance: dict[str, float] = {}  # as StudyFile's
+        self.under_way = {asked.number: asked for asked in file.under_way}
+        self.importance = {name: share for name, share in (file.importance or {}).items() if name in self.plan.space}
 
     @classmethod
     def create(cls, folder: Path, plan: Plan) -> Self:
@@ -142,42 +150,40 @@ class Study:
         plan.check()
         if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
             raise StudyError(f"{folder} exists already: --resume goes on with it, or choose another name")
-        folder.mkdir(parents=True, exist_ok=True)
-        study = cls(folder, plan)
+        study = cls(folder, StudyFile(plan))
         study.write()
         return study
 
     @classmethod
     def load(cls, folder: Path) -> Self:
         """Read a study; raises StudyError for a folder that is none. Trials that cannot be read are `damaged`."""
-        file = StudyFile.read(folder)
-        study = cls(folder, file.plan)
-        study.importance = {name: share for name, share in (file.importance or {}).items() if name in file.plan.space}
-        for number in _numbers(folder / "trials"):
-            try:
-                trial = read_as(FinishedTrial, read_json(study.trial_folder(number) / TRIAL_FILE, _MOST))
-                study._check(number, trial)
-                study.trials[number] = trial
-            except _UNREADABLE:
-                study.damaged.append(number)
+        study = cls(folder, StudyFile.read(folder))
+        with suppress(OSError):
+            names = [path.name for path in (folder / "trials").iterdir() if re.fullmatch(r"[0-9]{4,6}", path.name)]
+            for number in sorted(map(int, names)):
+                try:
+                    trial = read_as(FinishedTrial, read_json(study.trial_folder(number) / TRIAL_FILE, _MOST))
+                    study._check(number, trial)
+                    study.trials[number] = trial
+                except _UNREADABLE:
+                    study.damaged.append(number)
+        for number, asked in list(study.under_way.items()):
+            with suppress(*_UNREADABLE):
+                study.plan.check_params(asked.params)
+                if number not in (*study.trials, *study.damaged):
+                    continue
+            del study.under_way[number]
         return study
 
     def _check(self, number: int, trial: FinishedTrial) -> None:
         """Raise ValueError or TypeError for what a file says of a trial if it cannot be one of this study."""
-        self.check_params(trial.params)
+        self.plan.check_params(trial.params)
         senseless = not trial.seeds and trial.value is None
         seeds = tuple(seed.seed for seed in trial.seeds)
         if trial.number != number or not (senseless or seeds == self.plan.seeds):
             raise ValueError("of another trial, or of other seeds")
         if trial.value is not None and len(trial.values) < len(trial.seeds):
             raise ValueError("a value without that of a seed")
-
-    def check_params(self, params: dict[str, Any]) -> None:
-        """Raise ValueError or TypeError for settings that are not of this study's space."""
-        if set(params) != set(self.plan.space):
-            raise ValueError("of another study")
-        for name, dimension in self.plan.space.items():
-            dimension.place(params[name])
 
     # Writing
 
@@ -201,8 +207,15 @@ class Study:
         best = self.best()
         run = self.best_run(best) if best else None
         name = run.relative_to(self.folder).as_posix() if run else None
-        file = StudyFile(self.plan, run=name, importance=self.importance)
+        under_way = tuple(self.under_way.values())
+        file = StudyFile(self.plan, run=name, importance=self.importance, under_way=under_way)
         write_text(self.folder / STUDY_FILE, json.dumps(asdict(file), indent=2) + "\n")
+
+    def begin(self, asked: Asked) -> None:
+        """Note that a trial is under way, so that it keeps its settings if the study is interrupted; raises OSError."""
+        if asked.number not in self.under_way:
+            self.under_way[asked.number] = asked
+            self.write()
 
     def record(self, trial: FinishedTrial, runs: Files) -> None:
         """Keep a finished trial and the files of its runs, whole or not at all; raises OSError."""
@@ -210,6 +223,7 @@ class Study:
             write_files(runs, new)
             write_text(new / TRIAL_FILE, json.dumps(asdict(trial)) + "\n", flush=False)
         self.trials[trial.number] = trial
+        self.under_way.pop(trial.number, None)
         generation = self.plan.generation(trial.number)
         if generation and len(self.generation(generation)) == self.plan.population:
             for before in self.generation(generation - 1):  # nobody goes on from there any more
@@ -233,9 +247,9 @@ class Study:
         """Return the folder of a trial's best run; None if none was kept."""
         return self.run_folder(trial, trial.best_seed.seed) if trial.best_seed else None
 
-    def runs_of(self, number: int) -> Files:
+    def runs_of(self, trial: FinishedTrial) -> Files:
         """Return the files of the runs of a finished trial; raises OSError."""
-        return files_in(self.trial_folder(number))
+        return files_in(self.trial_folder(trial.number))
 
     def ranked(self) -> list[FinishedTrial]:
         """Return the trials that have a value, the best first; those that ran to their end before those stopped."""
@@ -255,6 +269,15 @@ class Study:
         """Return the finished members of a generation, by number."""
         return [each for _, each in sorted(self.trials.items()) if self.plan.generation(each.number) == number]
 
+    def so_far(self, trial: FinishedTrial, at: int) -> FinishedTrial:
+        """Return a trial as it was after so many decisions or epochs."""
+        curves = [tuple(point for point in seed.curve if point.at <= at) for seed in trial.seeds]
+        values = [
+            self.metric.of(curve, self.plan.budget, bool(seed.problem) and curve == seed.curve)
+            for curve, seed in zip(curves, trial.seeds, strict=True)
+        ]
+        return replace(trial, at=at, value=median(values))
+
     @property
     def complete(self) -> bool:
         """Whether all trials are finished."""
@@ -265,11 +288,10 @@ class Study:
         return self.metric.shown(value, self.plan.budget)
 
 
-def _numbers(folder: Path) -> list[int]:
-    """Return the numbers that name something in the folder of a study's trials, sorted."""
-    with suppress(OSError):
-        return sorted({int(path.name) for path in folder.iterdir() if re.fullmatch(r"[0-9]{4,6}", path.name)})
-    return []
+def median(values: list[float | None]) -> float | None:
+    """Return the value of a trial from those of its seeds; None if one has none."""
+    known = [value for value in values if value is not None]
+    return statistics.median(known) if known and len(known) == len(values) else None
 
 
 def files_in(folder: Path) -> Files:
@@ -296,8 +318,3 @@ def write_files(files: Files, folder: Path) -> None:
 def seed_folder(seed: int) -> str:
     """Return the name of the folder of a seed's run within its trial's."""
     return f"seed-{seed}"
-
-
-def find(name: str, user_dir: Path) -> Path:
-    """Return the folder of a study: among the user's by name, or where a path leads."""
-    return Path(name) if "/" in name or "\\" in name else user_dir / STUDIES / name

@@ -10,7 +10,6 @@ import hashlib
 import tempfile
 import time
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any, Final
@@ -21,9 +20,8 @@ from ai.digits.config import DigitConfig
 from ai.digits.mnist import TRAIN, load_part
 from ai.digits.training import DigitTraining
 from ai.files.knobs import Knobs
-from ai.sweep.metric import Metric, Point, median
-from ai.sweep.plan import DIGITS, Plan
-from ai.sweep.study import Files, FinishedTrial, SeedResult, files_in, seed_folder, write_files
+from ai.sweep.plan import DIGITS, Metric, Plan, Point
+from ai.sweep.study import Asked, Files, FinishedTrial, SeedResult, files_in, median, seed_folder, write_files
 from ai.training.config import Config
 from ai.training.loop import Training, task_of
 from ai.training.run import Limit, resume, save
@@ -33,72 +31,59 @@ _ROOT: Final = Path(__file__).parents[2]
 _MOST_SENT: Final = 100_000_000  # bytes of a checkpoint; a larger one goes without the memories, and so on with none
 
 
-@dataclass(frozen=True)
-class Asked:
-    """What is asked of one trial."""
-
-    number: int  # in its study
-    params: dict[str, Any]  # values of the knobs that are searched
-    parent: FinishedTrial | None = None  # whose runs it goes on with, in a population
-
-
-class SeedRun:
-    """Run of one seed: new, or going on, with other live knobs, from what a run kept in `parent`.
+def seed_run(plan: Plan, params: dict[str, Any], seed: int, parent: Path | None) -> Any:
+    """Return the run of one seed: new, or going on, with other live knobs, from what a run kept in `parent`.
 
     Raises ValueError for settings that make no sense, ModelFormatError for a parent that cannot be read. The settings
     are the user's: their environment is named.
     """
+    config: Any = type(plan.config).from_json(plan.settings | params)
+    kind: Any = DigitTraining if plan.kind == DIGITS else Training
+    if kind is DigitTraining and not config.held_out:
+        raise ValueError("a study of digits needs images held out: held_out was 0")
+    run = resume(kind, parent, env=getattr(config, "env", None)) if parent else kind(config, seed)
+    if parent:
+        run.apply_live(config)
+    if kind is Training:
+        run.validation_episodes = plan.validation or run.validation_episodes
+    return run
 
-    def __init__(self, plan: Plan, params: dict[str, Any], seed: int, parent: Path | None) -> None:
-        config: Any = type(plan.config).from_json(plan.settings | params)
-        kind: Any = DigitTraining if plan.kind == DIGITS else Training
-        if kind is DigitTraining and not config.held_out:
-            raise ValueError("a study of digits needs images held out: held_out was 0")
-        self.run: Any = resume(kind, parent, env=getattr(config, "env", None)) if parent else kind(config, seed)
-        if parent:
-            self.run.apply_live(config)
-        self.pace = self.run.steps_per_epoch if kind is DigitTraining else 1  # steps to a unit of the budget
-        if kind is Training:
-            self.run.validation_episodes = plan.validation or self.run.validation_episodes
 
-    def advance(self, mark: int) -> Point:
-        """Train up to so many decisions or epochs, and measure; raises FloatingPointError if it diverges."""
-        run, last = self.run, None
-        for progress in Limit(moment=mark * self.pace).run(run):
-            last = progress
-        if isinstance(run, DigitTraining):
-            return Point(mark, run.history[-1]["held_out"], run.history[-1]["held_out"])
-        score = last.evaluation if last else None
-        score = score or run.task.evaluate(run.agent, run.validation_episodes, VALIDATION_SEED)
-        return Point(run.moment, score.success, score.mean_return)
-
-    def save(self, folder: Path, *, final: bool = False, state: bool = False) -> dict[str, Any]:
-        """Save the run as its command does; return the figures of the network that is kept, of a `final` one."""
-        told = save(self.run, folder, final=final, state=state)
-        return told.get("best") or {name: told[name] for name in ("held_out", "test") if name in told}
+def trained_to(run: Any, mark: int) -> Point:
+    """Train a run up to so many decisions or epochs, and measure it; raises FloatingPointError if it diverges."""
+    last = None
+    for progress in Limit(moment=mark * getattr(run, "steps_per_epoch", 1)).run(run):
+        last = progress
+    if isinstance(run, DigitTraining):
+        return Point(mark, run.history[-1]["held_out"], run.history[-1]["held_out"])
+    score = last.evaluation if last else None
+    score = score or run.task.evaluate(run.agent, run.validation_episodes, VALIDATION_SEED)
+    return Point(run.moment, score.success, score.mean_return)
 
 
 class Trial:
     """Trial that goes from mark to mark.
 
-    `runs` are files of runs to go on with: its parent's, or its own, as `checkpoint` gave them with what was `so_far`.
-    Raises ValueError for settings that make no sense, ModelFormatError for runs that cannot be read.
+    `runs` are files of runs to go on with, and `source` is what these have come to: its parent's, or its own, as
+    `checkpoint` and `result` gave them. Raises ValueError for settings that make no sense, ModelFormatError for runs
+    that cannot be read.
     """
 
-    def __init__(self, plan: Plan, asked: Asked, runs: Files, so_far: FinishedTrial | None = None) -> None:
+    def __init__(
+        self, plan: Plan, asked: Asked, source: FinishedTrial | None = None, runs: Files | None = None
+    ) -> None:
         self.plan, self.asked, self.metric = plan, asked, Metric.named(plan.metric)
         self.at, self.end = plan.span(asked.number)
         self._restarts, self._began = 0, time.monotonic()
-        if so_far:
-            self.at, self._restarts, self._began = so_far.at, so_far.restarts + 1, self._began - so_far.seconds
-        source = so_far or asked.parent
+        if source and source.number == asked.number:
+            self.at, self._restarts, self._began = source.at, source.restarts + 1, self._began - source.seconds
         self.curves = [list(seed.curve) for seed in source.seeds] if source else [[] for _ in plan.seeds]
         self.problems = [""] * len(plan.seeds)
         with tempfile.TemporaryDirectory() as folder:
-            write_files(runs, Path(folder))
+            write_files(runs or {}, Path(folder))
             kept = {seed: Path(folder, seed_folder(seed)) for seed in plan.seeds}
             self.runs = [  # what diverged at once has kept nothing, and begins anew
-                SeedRun(plan, asked.params, seed, run if run.is_dir() else None) for seed, run in kept.items()
+                seed_run(plan, asked.params, seed, run if run.is_dir() else None) for seed, run in kept.items()
             ]
 
     @property
@@ -112,24 +97,22 @@ class Trial:
         for index, run in enumerate(self.runs):
             if not self.problems[index]:
                 try:
-                    self.curves[index].append(run.advance(mark))
+                    self.curves[index].append(trained_to(run, mark))
                 except FloatingPointError as error:
                     self.problems[index] = str(error)
         self.at = mark
 
     def result(self, figures: dict[int, dict[str, Any]] | None = None) -> FinishedTrial:
-        """Return what there is to tell of the trial; `figures` are those of the networks kept, by seed."""
+        """Return what the trial has come to; `figures` are those of the networks kept, by seed."""
         seeds = tuple(
             SeedResult(seed, tuple(curve), self.metric.of(curve, self.plan.budget, bool(problem)), problem,
-                       round(run.run.seconds, 3), (figures or {}).get(seed, {}))
+                       round(run.seconds, 3), (figures or {}).get(seed, {}))
             for seed, curve, problem, run in zip(self.plan.seeds, self.curves, self.problems, self.runs, strict=True)
         )  # fmt: skip
-        value = median(seed.value for seed in seeds)
-        parent = self.asked.parent.number if self.asked.parent else None
-        seconds = round(time.monotonic() - self._began, 3)
+        value, seconds = median([seed.value for seed in seeds]), round(time.monotonic() - self._began, 3)
         return FinishedTrial(
-            self.asked.number, self.asked.params, value, self.at, self.at < self.end, seconds, seeds, parent,
-            restarts=self._restarts,
+            self.asked.number, self.asked.params, value, self.at, self.at < self.end, seconds, seeds,
+            self.asked.parent, restarts=self._restarts,
         )  # fmt: skip
 
     def checkpoint(self) -> Files:
@@ -138,7 +121,7 @@ class Trial:
             return {}
         with tempfile.TemporaryDirectory() as temporary:
             for seed, run in zip(self.plan.seeds, self.runs, strict=True):
-                run.save(Path(temporary, seed_folder(seed)), state=True)
+                save(run, Path(temporary, seed_folder(seed)))
             files = files_in(Path(temporary))
         large = sum(map(len, files.values())) > _MOST_SENT
         return {name: content for name, content in files.items() if not (large and name.startswith("."))}
@@ -151,11 +134,14 @@ class Trial:
             for seed, problem, run in zip(self.plan.seeds, self.problems, self.runs, strict=True):
                 folder = Path(temporary, seed_folder(seed))
                 if not problem:
-                    figures[seed] = run.save(folder, final=True, state=goes_on)
+                    said = save(run, folder, final=True, state=goes_on)
+                    figures[seed] = said.get("best") or {
+                        name: said[name] for name in ("held_out", "test") if name in said
+                    }
                 else:
-                    run.run.restore_best()
+                    run.restore_best()
                     with suppress(ValueError):  # its numbers were never finite after a step
-                        run.save(folder)
+                        save(run, folder, state=False)
             return self.result(figures), files_in(Path(temporary))
 
 

@@ -4,11 +4,9 @@ import json
 import shutil
 from pathlib import Path
 
-from ai.sweep.metric import Point
-from ai.sweep.plan import Plan
-from ai.sweep.space import knob_space
-from ai.sweep.study import FinishedTrial, SeedResult, Study, files_in
-from ai.sweep.trial import Asked, Trial
+from ai.sweep.plan import Plan, Point, knob_space
+from ai.sweep.study import Asked, FinishedTrial, SeedResult, Study, files_in
+from ai.sweep.trial import Trial
 from ai.training.config import PRESETS, gym_config
 from game.core.assets import MODELS_DIR
 
@@ -27,9 +25,9 @@ def tiny_plan(**changes):
     return Plan(**(told | changes))
 
 
-def run_alone(plan, asked, parents=None):
+def run_alone(plan, asked, parent=None, runs=None):
     """Train a trial to its end in this process."""
-    trial = Trial(plan, asked, parents or {})
+    trial = Trial(plan, asked, parent, runs)
     while not trial.done:
         trial.step()
     return trial.finish()

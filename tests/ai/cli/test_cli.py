@@ -16,7 +16,7 @@ import ai.training.loop
 import ai.training.run
 from ai.agent.agent import DeepQAgent
 from ai.agent.storage import write_agent
-from ai.cli.command_line import configured
+from ai.cli.command_line import configured, stoppable
 from ai.training.config import PRESETS
 from ai.training.loop import Training
 from ai.training.tasks import VALIDATION_SEED, Evaluation, LanderTask
@@ -112,6 +112,17 @@ def test_whoever_ends_a_run_by_a_signal_keeps_the_work(tmp_path, name, code, cap
     assert described["best"]["episodes"] == 4, "what is kept is measured"
     assert (tmp_path / "run" / "last" / "config.json").exists()
     assert signal.getsignal(getattr(signal, name)) == before
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="there is no such signal")
+@pytest.mark.usefixtures("heard")
+def test_a_hang_up_that_is_ignored_as_under_nohup_ends_no_run():
+    for handler, collected in ((signal.SIG_IGN, []), (signal.SIG_DFL, [signal.SIGHUP])):
+        signal.signal(signal.SIGHUP, handler)
+        with stoppable() as stop:
+            signal.raise_signal(signal.SIGHUP)
+        assert stop == collected
+        assert signal.getsignal(signal.SIGHUP) is handler
 
 
 def test_the_network_of_the_last_moment_stands_for_election_too(tmp_path, monkeypatch):

@@ -84,7 +84,6 @@ CASES: list[list[str]] = [
       for value in (*COUNTS, "1000000000")),
     *([*command, "--preset", word] for command in (TRAIN, TRAIN_DIGITS) for word in WORDS),
     *([*EVALUATE, "--spawn", word] for word in WORDS),
-    *(["copilot-table", "--good", word] for word in WORDS),
     *(["physics", "--exhibit", word] for word in (*WORDS, *COUNTS)),
     *([*TRAIN, "--env", env] for env in ENVS),
     *([*TRAIN, "--set", setting] for setting in SETTINGS),

@@ -52,7 +52,6 @@ def test_without_the_extra_the_command_says_what_to_install(tmp_path, capsys, mo
         (["--search", "population", "--knobs", "n_step"], "n_step"),
         (["--search", "population", "--knobs", "tau", "--trials", "7"], "multiple"),
         (["--set", "n_step=many"], "n_step"),
-        (["--epochs", "3"], "--digits"),
         (["--digits", "--env", "CartPole-v1"], "--env"),
         (["--resume"], "no study"),
     ],

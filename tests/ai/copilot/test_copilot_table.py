@@ -7,7 +7,7 @@ from ai.agent.agent import DeepQAgent
 from ai.cli.copilot import MODEL
 from ai.copilot import measurement
 from ai.copilot.hands import HANDS
-from ai.copilot.measurement import ALONE, GUARD, TABLES, VALUES, rows, seconds
+from ai.copilot.measurement import ALONE, GUARD, TABLES, VALUES, rows
 from ai.lander.environment import LanderEnv
 from ai.training.statistics import wilson
 
@@ -43,7 +43,6 @@ def test_the_co_pilot_helps(agent, few):
         assert 0.0 <= low <= row.success <= high <= 1.0
     assert [row.success for row in found if row.mode == "guardian"] == [1.0, 1.0]
     assert found[3].success == 0.0
-    assert seconds(agent, agent, "one_pad", ("laggy", "holds right"), GUARD, 1, 1) > 0
 
 
 def test_every_table_has_pilots_that_there_are():
@@ -57,15 +56,13 @@ def test_an_interval_holds_the_share_and_shrinks_with_the_number_of_trials():
     assert wilson(0.5, 100) == pytest.approx((0.4038, 0.5962), abs=1e-4)
 
 
-def test_the_command_says_how_long_it_takes_and_prints_tables_that_follow_from_the_seed(few, monkeypatch, capsys):
-    monkeypatch.setattr(measurement, "seconds", lambda *_: 60.0)
+def test_the_command_prints_tables_that_follow_from_the_seed(few, monkeypatch, capsys):
     monkeypatch.setattr(measurement, "HELPS", ((ALONE, 0.0), (VALUES, 0.4)))
     told = []
     for form in (["--json"], ["--json"], []):
         assert main.main(["copilot-table", "--episodes", "1", *form]) == 0
-        printed = capsys.readouterr()
-        assert "this takes about 3.0 minutes" in printed.err
-        told.append(json.loads(printed.out) if form else printed.out)
+        printed = capsys.readouterr().out
+        told.append(json.loads(printed) if form else printed)
     assert told[0] == told[1]
     assert [len(told[0][name]) for name in TABLES] == [4, 4, 4]
     assert "own pad" in told[2]
@@ -73,6 +70,5 @@ def test_the_command_says_how_long_it_takes_and_prints_tables_that_follow_from_t
 
 def test_the_command_says_what_is_wrong(capsys, tmp_path):
     assert main.main(["copilot-table", "--episodes", "0"]) == 1
-    assert main.main(["copilot-table", "--assist", "2"]) == 1
     assert main.main(["copilot-table", "--model", str(tmp_path)]) == 1
     assert str(tmp_path) in capsys.readouterr().err

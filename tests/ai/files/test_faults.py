@@ -13,7 +13,6 @@ import zipfile
 from contextlib import contextmanager
 from itertools import product
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -412,36 +411,6 @@ def test_training_replaces_only_what_is_its_own(saved, tmp_path, capsys, subtest
 def test_what_systems_leave_in_a_folder_is_no_obstacle(run):
     (run / ".DS_Store").write_bytes(b"\0")
     save(Training(SMALL, validation_episodes=1), run, state=False)
-
-
-def test_places_that_cannot_be_written_are_told_in_a_sentence(tmp_path, monkeypatch, capsys, subtests):
-    monkeypatch.chdir(tmp_path)
-    Path("mine").touch()
-    Path("loop").symlink_to("loop")
-    for output in ("/", ".", "x" * 300, "loop/run"):
-        with subtests.test(output=output[:9]):
-            try:
-                code: Any = main(["train", "--decisions", "9", "--set", "num_envs=2", "--output", output])
-            except SystemExit as end:  # of what can be no folder anywhere
-                code = end.code
-            assert code in (1, 2)
-            assert "\n" not in capsys.readouterr().err.strip()
-            assert {path.name for path in tmp_path.iterdir()} == {"mine", "loop"}
-
-
-def test_what_is_put_into_a_run_meanwhile_is_kept_and_so_is_the_run(tmp_path, monkeypatch, capsys):
-    advance = Training.advance
-
-    def meddled(training):
-        (tmp_path / "run").mkdir(exist_ok=True)
-        (tmp_path / "run" / "diary").write_text("dear")
-        return advance(training)
-
-    monkeypatch.setattr(Training, "advance", meddled)
-    assert main(["train", "--decisions", "9", "--set", "num_envs=2", "--output", str(tmp_path / "run")]) == 0
-    assert (tmp_path / "run" / "diary").read_text() == "dear"
-    assert resume(Training, tmp_path / "run 2")
-    assert "run 2" in capsys.readouterr().out
 
 
 def test_the_second_training_of_a_folder_is_told(tmp_path, capsys):

@@ -17,10 +17,8 @@ from typing import Any
 
 import pytest
 
-from ai.sweep.search import Search
-from ai.sweep.study import Files, Study, write_files
-from ai.sweep.trial import Asked
-from tests.support.studies import TINY, networks_in, run_alone
+from ai.sweep.study import Asked, Files, Study, write_files
+from tests.support.studies import TINY, networks_in, run_alone, tiny_plan
 
 pytestmark = [
     pytest.mark.slow,
@@ -75,8 +73,7 @@ def finished(folder):
 
 def under_way(folder):
     """The settings of trials that have begun and are not finished, by number."""
-    search = Search(Study.load(folder))
-    return {number: search.params(number) for number in search.left}
+    return {number: asked.params for number, asked in Study.load(folder).under_way.items()}
 
 
 def wait_for(condition, driver):
@@ -136,7 +133,7 @@ def assert_as_alone(folder):
     kept: dict[int | None, Files] = {None: {}}
     for number, trial in sorted(study.trials.items()):
         parent = None if trial.parent is None else study.trials[trial.parent]
-        alone, runs = run_alone(study.plan, Asked(number, trial.params, parent), kept[trial.parent])
+        alone, runs = run_alone(study.plan, Asked(number, trial.params, trial.parent), parent, kept[trial.parent])
         kept[number] = runs
         write_files(runs, folder.parent / f"alone-{number}")
         assert networks_in(folder.parent / f"alone-{number}" / "seed-1") == networks_in(
@@ -152,22 +149,6 @@ def test_a_population_on_two_nodes_is_what_it_is_alone(nodes, tmp_path):
         ended(driver)
     assert_as_alone(folder)
     assert any(trial.parent is not None for trial in Study.load(folder).trials.values())
-
-
-def test_a_study_goes_on_where_fewer_cores_are_left_than_trials_were_begun(tmp_path):
-    """As after the loss of a node: a trial waits for the core that another one has, and gets it."""
-    program = f"""
-from pathlib import Path
-from ai.sweep.cluster import joined
-from ai.sweep.study import Study
-from tests.support.studies import tiny_plan
-study = Study.create(Path({str(tmp_path / "study")!r}), tiny_plan(trials=3))
-with joined(None, 1):
-    from ai.sweep.driver import Driver
-    Driver(study, 2, print, lambda: None).run([])
-"""
-    subprocess.run([sys.executable, "-c", program], cwd=ROOT, check=True, timeout=LONG)
-    assert len(finished(tmp_path / "study")) == 3
 
 
 def test_without_an_address_nothing_listens_but_on_this_machine_and_no_token_is_written(tmp_path):
@@ -221,18 +202,28 @@ def test_a_termination_ends_in_143_whenever_it_comes_and_the_study_goes_on(tmp_p
 
 def test_a_trial_goes_on_from_its_last_checkpoint_when_its_worker_is_killed(tmp_path):
     folder = tmp_path / "study"  # its trial must last longer than until its worker is killed
-    options = ["--trials", "1", "--decisions", "480000", "--every", "4000", "--workers", "1"]
-    with sweep(folder, *NEW, *options) as driver:
-        (worker,) = wait_for(lambda: training_workers(driver.pid), driver)
-        from ai.sweep.driver import CHECKPOINT_SECONDS
-
-        time.sleep(CHECKPOINT_SECONDS + 20)
+    Study.create(folder, tiny_plan(trials=1, budget=16_000, every=1000))
+    program = f"""
+from pathlib import Path
+from ai.sweep.cluster import joined
+from ai.sweep.study import Study
+with joined(None, 1):
+    from ai.sweep.driver import Driver
+    driver = Driver(Study.load(Path({str(folder)!r})), 1, print, lambda: None)
+    driver.checkpoint = 0.5
+    driver._told = lambda: print("kept" * any(job.runs for job in driver.jobs.values()), flush=True)
+    driver.run([])
+"""
+    command = [sys.executable, "-c", program]
+    with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as driver:
+        assert "kept\n" in iter(driver.stdout.readline, "")
+        (worker,) = training_workers(driver.pid)
         os.kill(worker, signal.SIGKILL)
         out = ended(driver)
     assert "raylet" not in out, "Ray tells it elsewhere than among the results"
     (trial,) = Study.load(folder).trials.values()
     assert trial.restarts == 1
-    assert [point.at for point in trial.seeds[0].curve] == list(range(4000, 484000, 4000))
+    assert [point.at for point in trial.seeds[0].curve] == list(range(1000, 17_000, 1000))
 
 
 def test_what_is_missing_on_a_node_is_a_failure_and_no_finished_trial(tmp_path):

@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 
-from ai.sweep.population import explored, proposed
-from ai.sweep.space import Dimension
-from ai.sweep.study import FinishedTrial, SeedResult, Study
+pytest.importorskip("optuna")
+
+from ai.sweep.plan import Dimension
+from ai.sweep.search import explored, proposed
+from ai.sweep.study import FinishedTrial, SeedResult, Study, write_files
 from ai.training.loop import Training
 from ai.training.run import resume, save
 from tests.support.studies import networks_in, run_alone, tiny_plan
@@ -26,10 +28,10 @@ def test_the_worst_goes_on_with_a_copy_of_the_best_and_the_others_with_their_own
     ranked = sorted(study.trials.values(), key=lambda trial: -trial.value)
     asked = {number: proposed(study, number) for number in range(4, 8)}
     worst = asked[4 + ranked[-1].number]
-    assert worst.parent.number == ranked[0].number
+    assert worst.parent == ranked[0].number
     assert worst.params != ranked[0].params
     for trial in ranked[:-1]:
-        assert (asked[4 + trial.number].parent.number, asked[4 + trial.number].params) == (trial.number, trial.params)
+        assert (asked[4 + trial.number].parent, asked[4 + trial.number].params) == (trial.number, trial.params)
 
 
 def test_what_is_asked_does_not_depend_on_when_it_is_asked(study):
@@ -39,17 +41,16 @@ def test_what_is_asked_does_not_depend_on_when_it_is_asked(study):
 
 def test_a_copy_begins_with_the_networks_of_its_parent_and_goes_on_as_train_does(study, tmp_path):
     asked = proposed(study, 4)
-    result, runs = run_alone(study.plan, asked, study.runs_of(asked.parent.number))
-    assert result.parent == asked.parent.number
+    parent = study.trials[asked.parent]
+    result, runs = run_alone(study.plan, asked, parent, study.runs_of(parent))
+    assert result.parent == asked.parent
     assert [point.at for point in result.seeds[0].curve] == [200, 400]
-    training = resume(Training, study.run_folder(asked.parent, 0))
+    training = resume(Training, study.run_folder(parent, 0))
     assert not training.lost, "it has its whole state"
     training.validation_episodes = study.plan.validation
     training.apply_live(training.config.changed(**asked.params))
     while training.agent.decisions < 400:
         training.advance()
-    from ai.sweep.study import write_files
-
     save(training, tmp_path / "alone", final=True, state=False)
     write_files(runs, tmp_path / "swept")
     assert networks_in(tmp_path / "alone") == networks_in(tmp_path / "swept" / "seed-0")

@@ -1,9 +1,6 @@
 """Evaluations in shards: the same flights as in one batch, however they are cut."""
 
 import json
-import os
-import pickle
-import shutil
 
 import numpy as np
 import pytest
@@ -12,7 +9,7 @@ from ai.agent.agent import DeepQAgent
 from ai.copilot import measurement
 from ai.lander.environment import LanderEnv
 from ai.sweep import shards as module
-from ai.sweep.shards import packed, parts_of, received, results, shards
+from ai.sweep.shards import parts_of, results, shards
 from ai.training.tasks import Evaluation, evaluate
 from game.core.assets import MODELS_DIR
 from main import main
@@ -25,7 +22,7 @@ def test_flights_are_those_of_one_batch_whatever_the_size_of_a_shard(monkeypatch
     whole = evaluate(AGENT, 40, 3, "hard")
     for size, lengths in ((7, [7] * 5 + [5]), (40, [40])):
         monkeypatch.setattr(module, "SHARD", size)
-        parts = shards(AGENT, 40, 3, "hard")
+        parts = shards(MODERN, 40, 3, "hard")
         assert [len(part.args[1]) for part in parts] == lengths
         cut = Evaluation.of(sum(results(parts)))
         assert (cut.episodes, cut.success, cut.crash) == (whole.episodes, whole.success, whole.crash), size
@@ -37,7 +34,7 @@ def test_flights_are_those_of_one_batch_whatever_the_size_of_a_shard(monkeypatch
 @pytest.mark.slow
 def test_processes_give_what_this_one_gives_in_the_same_order(monkeypatch):
     monkeypatch.setattr(module, "SHARD", 2)
-    parts, told = shards(AGENT, 6, 3, "random"), []
+    parts, told = shards(MODERN, 6, 3, "random"), []
     assert np.array_equal(results(parts, 2, lambda: told.append(1)), results(parts))
     assert len(told) == 3
 
@@ -62,43 +59,7 @@ def test_the_copilots_table_is_the_same_in_parts(monkeypatch):
     table = (lambda slots, rng: LanderEnv(slots, rng, "rung_1"), names)
     monkeypatch.setattr(measurement, "TABLES", {"one_pad": table})
     monkeypatch.setattr(module, "PILOTS", 1)
-    asked = parts_of({"one_pad": AGENT}, False, helps, 3, 2)
+    asked = parts_of({"one_pad": MODERN}, helps, 3, 2)
     assert [name for name, _ in asked] == ["one_pad"] * 2
     rows = [row for _, part in asked for row in part()]
     assert rows == list(measurement.rows(AGENT, AGENT, "one_pad", names, helps, 3, 2))
-
-
-def test_evaluating_a_model_sends_what_was_read_and_leaves_nothing_behind(monkeypatch, tmp_path, capsys):
-    """Beside the files of a network lie a link to a secret, a pipe and a file of 30 GB, all but empty."""
-    (tmp_path / "secret").write_text("a secret")
-    shutil.copytree(MODERN, tmp_path / "model")
-    (tmp_path / "model" / "online" / "layer-9-weights.npy").symlink_to(tmp_path / "secret")
-    os.mkfifo(tmp_path / "model" / "pipe")
-    with (tmp_path / "model" / "large").open("wb") as file:
-        file.truncate(30 << 30)
-    (tmp_path / "temporary").mkdir()
-    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "temporary"))
-    asked = []
-
-    def here(tasks, processes, told):
-        asked.extend(tasks)
-        return results(tasks)
-
-    monkeypatch.setattr(module, "results", here)
-    command = ["evaluate", "--model", str(tmp_path / "model"), "--episodes", "3", "--workers", "2"]
-    assert main(command) == 0
-    capsys.readouterr()
-    assert asked
-    for shard in asked:
-        sent = pickle.dumps(shard)
-        assert b"a secret" not in sent
-        assert len(sent) < 1_000_000
-    assert not list((tmp_path / "temporary").iterdir())
-
-
-def test_an_agent_that_was_sent_flies_alike():
-    (shard,) = shards(AGENT, 5, 3, "hard")
-    assert np.array_equal(pickle.loads(pickle.dumps(shard))(), shard())
-    sent = received(packed(AGENT))
-    assert np.array_equal(sent.network.values, AGENT.network.values)
-    assert not sent.folder.exists()
