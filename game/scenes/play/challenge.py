@@ -180,12 +180,12 @@ class Challenge:
 class _Beside(Challenge):
     """A flight beside a rival's ghost, called by its name."""
 
-    def __init__(self, title: str, name: str) -> None:
-        self._title, self._name = title, name
+    def __init__(self, name: str) -> None:
+        self._name = name
         self.word()
 
     def word(self) -> None:
-        self.title, self.line = getattr(texts, self._title), texts.DUEL_RIVAL.format(name=self._name)
+        self.title, self.line = texts.RACE, texts.DUEL_RIVAL.format(name=self._name)
         self.opening = texts.DUEL_BEGIN.format(name=self._name)
 
 
@@ -195,8 +195,12 @@ class Duel(_Beside):
     fixed = False
 
     def __init__(self, rival: Policy, name: str) -> None:
-        super().__init__("DUEL", name)
+        super().__init__(name)
         self._rival = rival
+
+    def word(self) -> None:
+        super().word()
+        self.title = texts.DUEL
 
     def ghost(self, seed: int, network: Policy | None) -> Ghost:
         return Ghost(Flight(seed, self._rival), self._name)
@@ -206,7 +210,7 @@ class Race(_Beside):
     """Race: the start of a recorded flight, against its ghost."""
 
     def __init__(self, record: Record, name: str) -> None:
-        super().__init__("RACE", name)
+        super().__init__(name)
         self._recording, self.elsewhere = record.recording, flown_elsewhere(record.recording)
 
     def flight(self, seed: int, network: Policy | None, spawn: str = "") -> Flight:
