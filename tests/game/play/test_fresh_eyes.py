@@ -22,6 +22,7 @@ from game.scenes.play.free import FreeFlight
 from game.scenes.play.help import HELP
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
+from game.ui.tooltip import draw_tooltip
 from game.world.lander import LANDER, WRECK, painted
 from game.world.wreck import Wreck
 from tests.support.driver import Driver
@@ -61,8 +62,7 @@ def test_the_page_of_play_names_the_rung_that_the_next_flight_begins_on(open_gam
 def test_no_tooltip_of_help_covers_its_words(open_game: Open, monkeypatch: pytest.MonkeyPatch, size, letters: str):
     monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", Weighs()))
     boxes: list[pygame.FRect] = []
-    draw = explained.draw_tooltip
-    monkeypatch.setattr(explained, "draw_tooltip", lambda *given: boxes.append(draw(*given)))
+    monkeypatch.setattr(explained, "draw_tooltip", lambda *given: boxes.append(draw_tooltip(*given)))
     driver = open_game(PlayScene, 4)
     driver.resize(size)
     driver.write_in(letters)
