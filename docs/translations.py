@@ -46,7 +46,6 @@ from typing import Final
 from game.core.catalogue import Plural
 
 LANGUAGE: Final[str]
-damaged: Final[str]  # the path of a catalogue that cannot be read
 
 def said(sentence: str, /) -> str: ...
 def choose(language: str = "") -> bool: ...

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Final
 
-from ai.cli.command_line import readable
 from game.core import texts
 
 _FIRST: Final = "stack"
@@ -16,8 +14,6 @@ _FIRST: Final = "stack"
 
 def add_commands(commands: Any) -> None:
     """Add the commands `physics` and `verify` to a parser's sub-commands."""
-    if texts.damaged:
-        print(readable(texts.LANGUAGE_DAMAGED.format(path=texts.damaged)), file=sys.stderr)
     physics = commands.add_parser("physics", help=texts.CLI_PHYSICS)
     names = sorted(texts.EXHIBITS)
     physics.add_argument("--exhibit", choices=names, default=_FIRST, help=texts.CLI_EXHIBIT.format(name=_FIRST))

@@ -61,8 +61,8 @@ def play(folder: Path | None = None, full_screen: bool | None = None, begin: Rou
         print(texts.NO_DISPLAY.format(reason=error), file=sys.stderr)
         return 2
     context.sound.open()
-    if file.problem or texts.damaged:
-        context.note(file.problem or texts.LANGUAGE_DAMAGED.format(path=texts.damaged))
+    if file.problem:
+        context.note(file.problem)
     if begin is not None:
         app.show(begin)
     # Exclude objects that live as long as the game from garbage collection, which took 20 ms each time.

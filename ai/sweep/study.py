@@ -1,10 +1,10 @@
 """Study on disk: its plan, and the finished trials, each whole or not there.
 
     study.json            the plan, trials under way with their settings, the best run so far, which knobs matter
+    journal.jsonl         Optuna's, written and never read (`ai.sweep.search`)
     trials/0007/          a finished trial: trial.json with its curves, and seed-N/ with the run as `train` keeps it
 
-Only the process that runs a study writes it. It gets results through Ray, so workers need no common disk. Optuna keeps
-nothing on disk: what it has to know is read from here, checked, and handed to it (`ai.sweep.search`).
+Only the process that runs a study writes it. It gets results through Ray, so workers need no common disk.
 """
 
 from __future__ import annotations

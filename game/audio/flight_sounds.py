@@ -11,7 +11,7 @@ from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.sensing import near_edges
 from game.audio.instruments import RUNGS, altitude_key
 from game.audio.mixer import Sound
-from game.core.pace import SlowMotion
+from game.core.clock import TimeScale
 
 _ENDS: Final = {
     Outcome.LANDED: "landed",
@@ -42,8 +42,8 @@ class FlightSound:
 
     """
 
-    def __init__(self, sound: Sound, env: LanderEnv, pace: SlowMotion | None = None, *, warns: bool = True) -> None:
-        self._sound, self._env, self._pace, self._warns = sound, env, pace or SlowMotion(), warns
+    def __init__(self, sound: Sound, env: LanderEnv, pace: TimeScale | None = None, *, warns: bool = True) -> None:
+        self._sound, self._env, self._pace, self._warns = sound, env, pace or TimeScale(), warns
         self._slot = -1
         self._time = 0.0
         self._outcome = Outcome.FLYING

@@ -27,16 +27,6 @@ def clock(seconds: float) -> Signal:
     return np.arange(round(seconds * RATE)) / RATE
 
 
-def decibels(gain: float) -> float:
-    """Return a gain in dB; minus infinity for 0."""
-    return float(20 * np.log10(gain)) if gain > 0 else -np.inf
-
-
-def gain_of(level: float) -> float:
-    """Return the gain, a factor, of a level in dB."""
-    return float(10 ** (level / 20))
-
-
 # Oscillators
 
 
@@ -221,7 +211,7 @@ def unit(signal: Signal) -> Signal:
 def at_peak(signal: Signal, level: float) -> Signal:
     """Return a signal whose greatest sample is at a level in dB below full scale; silence stays silence."""
     peak = np.abs(signal).max(initial=0.0)
-    return np.asarray(signal * (gain_of(level) / peak) if peak else signal)
+    return np.asarray(signal * (10 ** (level / 20) / peak) if peak else signal)
 
 
 def pcm(signal: Signal) -> NDArray[np.int16]:

@@ -19,8 +19,7 @@ AI_DOMAIN: Final = "ai"  # what `ai` says in English, which knows nothing of pla
 ENGLISH: Final = "en"
 VARIABLES: Final = ("LANGUAGE", "LC_ALL", "LC_MESSAGES", "LANG")  # of the environment
 LOCALE = Path(__file__).parents[1] / "locale"  # a test reads another
-_CONTEXT_ENDS, _FORM_ENDS = "\x04", "\0"
-_MAGIC: Final = 0x950412DE  # what a compiled catalogue begins with
+_CONTEXT_ENDS: Final = "\x04"
 _DAMAGE: Final = (OSError, ValueError, LookupError, ArithmeticError, struct.error)  # what reading a cut one raises
 
 
@@ -66,8 +65,8 @@ def read(folder: Path) -> dict[str, Any]:
 
 def language(folder: Path) -> str:
     """Return the code of the language that texts are in, as far as they are translated."""
-    path = gettext.find(DOMAIN, folder)
-    return Path(path).parts[-3] if path and not damaged(folder) else ENGLISH
+    readable = isinstance(_translation(DOMAIN, folder), gettext.GNUTranslations)
+    return Path(gettext.find(DOMAIN, folder) or "").parts[-3] if readable else ENGLISH
 
 
 def languages(folder: Path) -> dict[str, str]:
@@ -92,27 +91,17 @@ def system() -> str:
     return ":".join(each["language"] for each in get_pref_locales())
 
 
-def damaged(folder: Path) -> str:
-    """Return the path of a catalogue of the player's language that cannot be read; empty if all can.
-
-    English stands in for the whole language then.
-    """
-    for domain in (DOMAIN, AI_DOMAIN):
-        for path in gettext.find(domain, folder, all=True):
-            try:
-                gettext.translation(domain, folder, [Path(path).parts[-3]]).ngettext("", "", 2)
-            except _DAMAGE:
-                return path
-    return ""
-
-
 def said_in(folder: Path) -> Callable[[str], str]:
     """Return what turns a sentence of `ai` into the player's language; one that is not in its catalogue stays."""
     return _translation(AI_DOMAIN, folder).gettext
 
 
 def _translation(domain: str, folder: Path) -> gettext.NullTranslations:
-    return gettext.NullTranslations() if damaged(folder) else gettext.translation(domain, folder, fallback=True)
+    """Return a catalogue of the player's language; without one that can be read, English stands in."""
+    try:
+        return gettext.translation(domain, folder, fallback=True)
+    except _DAMAGE:
+        return gettext.NullTranslations()
 
 
 def _plural(language: gettext.NullTranslations, name: str, one: str, many: str) -> Plural:
@@ -133,21 +122,14 @@ def _key(part: str) -> str | int:
 
 
 def _english(path: Path) -> Iterator[tuple[str, str, str]]:
-    """Yield the name, the words, and the words for many or "", of every text in a compiled catalogue.
-
-    The format is described in the manual of GNU gettext, 10.3. The standard library answers for one message at a time.
-    """
+    """Yield the name, the words, and the words for many or "", of every text in a compiled catalogue."""
     try:
-        data = path.read_bytes()
-        magic, _, count, table = struct.unpack_from("<4I", data)
-        places = list(struct.iter_unpack("<2I", data[table : table + 8 * count]))
-        messages = [data[start : start + length].decode() for length, start in places]
+        with path.open("rb") as file:
+            found: dict[Any, str] = gettext.GNUTranslations(file)._catalog  # type: ignore[attr-defined]
     except _DAMAGE as error:
         raise ValueError(f"{path} cannot be read") from error
-    if magic != _MAGIC or len(places) < count or any(sum(place) >= len(data) for place in places):
-        raise ValueError(f"{path} is damaged")
-    for message in messages:
-        name, ends, words = message.partition(_CONTEXT_ENDS)
-        if ends:  # without a context, it is the catalogue's head
-            one, _, many = words.partition(_FORM_ENDS)
-            yield name, one, many
+    for key, words in found.items():  # of a text with a count, a key for each form: 0 for one, 1 for many
+        message, form = key if isinstance(key, tuple) else (key, None)
+        name, ends, _ = message.partition(_CONTEXT_ENDS)
+        if ends and form in (None, 0):  # without a context, it is the catalogue's head
+            yield name, words, "" if form is None else found[message, 1]

@@ -5,6 +5,9 @@ from __future__ import annotations
 from typing import Final
 
 STEP: Final = 1 / 60
+_SLOW: Final = 0.35  # time scale in slow motion, as a share of the rate
+_HELD: Final = 40  # updates of 1/60 s at full slow motion
+_BACK: Final = 22  # updates in which the rate returns to normal
 
 
 class FixedStep:
@@ -33,7 +36,9 @@ class FixedStep:
 
 
 class TimeScale:
-    """Time scale of a scene: how many of its steps are due in an update of 1/60 s.
+    """Time scale of a scene: how many of its steps are due in an update of 1/60 s; and moments of slow motion.
+
+    No step is left out; in slow motion, steps only come later.
 
     Attributes:
         rate: steps per update; may be a fraction.
@@ -43,21 +48,37 @@ class TimeScale:
     def __init__(self, rate: float = 1.0) -> None:
         self.rate = rate
         self._due = 0.0
+        self._slow = 0  # updates of slow motion that are left
+
+    @property
+    def slow(self) -> bool:
+        """Whether slow motion is on."""
+        return self._slow > 0
 
     @property
     def now(self) -> float:
         """Steps per update at this moment."""
-        return self.rate
+        gone = 1 - min(self._slow, _BACK) / _BACK
+        return self.rate * (_SLOW + (1 - _SLOW) * gone * gone * (3 - 2 * gone)) if self.slow else self.rate
 
     def begin(self) -> None:
-        """Reset the fraction of the next step that has passed."""
-        self._due = 0.0
+        """Reset the fraction of the next step that has passed, and end slow motion."""
+        self._due, self._slow = 0.0, 0
+
+    def slow_down(self) -> None:
+        """Begin slow motion."""
+        self._slow = _HELD + _BACK
+
+    def hurry(self) -> None:
+        """End slow motion at once."""
+        self._slow = 0
 
     def steps(self) -> int:
         """Count one update, and return the number of steps due in it."""
         self._due = self.now + (self._due if self.now % 1 else 0.0)  # whole steps leave nothing over
         steps = int(self._due)
         self._due -= steps
+        self._slow -= self.slow
         return steps
 
     def between(self, alpha: float) -> float:

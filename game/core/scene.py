@@ -24,13 +24,12 @@ class Scene:
         takes_files: whether files can be dropped here that are no flights.
         typing: whether a text is being typed, which then takes what is pasted.
         takes_switch: whether a press of the one switch is the scene's own now, and chooses nothing on it.
-        fills: whether it is laid out for the whole view, which changes with the window; otherwise for a page of
-            1280 × 720 points, in the middle of the window.
-        flows: whether it is laid out anew for each window and size of text, on `Canvas.reading`.
+        flows: whether it is laid out anew for each window and size of text, on `Canvas.reading`; otherwise for a page
+            of 1280 × 720 points, and what the window shows beside it.
 
     """
 
-    takes_files = typing = takes_switch = fills = flows = False
+    takes_files = typing = takes_switch = flows = False
 
     def __init__(self, context: Context) -> None:
         self.context = context
@@ -71,12 +70,8 @@ class Scene:
         return canvas.whole.reading if self.flows else canvas.whole
 
     def draw_on(self, canvas: Canvas, alpha: float) -> None:
-        """Draw into the whole window, or onto its page where the scene is laid out for that."""
-        if self.fills or self.flows:
-            self.draw(self.laid_on(canvas), alpha)
-        else:
-            canvas.whole.clear_around()
-            self.draw(canvas.whole.page, alpha)
+        """Draw into the whole window."""
+        self.draw(self.laid_on(canvas), alpha)
 
 
 @dataclass(frozen=True)

@@ -6,10 +6,10 @@ import copy
 import json
 import logging
 import os
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
 from queue import SimpleQueue
-from threading import Event, Thread
 from typing import Annotated, Any, Final
 
 from ai.files import Share, Within, parse_json, read_text, sound_fields, take, write_text
@@ -157,12 +157,11 @@ class SettingsWriter:
         self._unread = settings.unread  # True until an unreadable file has been put aside
         self._lock = take(file.path.with_name(f".{FILE_NAME}.lock"))
         self._problems: SimpleQueue[str] = SimpleQueue()
-        self._wanted: SimpleQueue[Settings | Event | None] = SimpleQueue()
-        self._thread: Thread | None = None
+        self._thread = ThreadPoolExecutor(1, "settings")
 
     def save(self, settings: Settings) -> None:
         """Queue the present settings for writing. Never waits."""
-        self._put(copy.deepcopy(settings))
+        self._thread.submit(self._attempt, copy.deepcopy(settings))
 
     def problem(self) -> str:
         """Return why the last write failed, once only; empty if it succeeded."""
@@ -173,37 +172,22 @@ class SettingsWriter:
 
     def wait(self) -> None:
         """Wait until every queued change has been written or has failed."""
-        if self._thread:
-            done = Event()
-            self._put(done)
-            done.wait()
+        self._thread.submit(int).result()
 
     def close(self, settings: Settings) -> None:
         """Write the settings one last time, wait for the thread to end, and let another window write."""
         self.save(settings)
-        self._put(None)
-        if self._thread:
-            self._thread.join()
-            self._thread = None
+        self._thread.shutdown()
+        self._thread = ThreadPoolExecutor(1, "settings")  # which runs only once something is saved
         if self._lock:
             self._lock.close()
 
-    def _put(self, wanted: Settings | Event | None) -> None:
-        if self._thread is None:
-            self._thread = Thread(target=self._work, name="settings", daemon=True)
-            self._thread.start()
-        self._wanted.put(wanted)
-
-    def _work(self) -> None:
-        while (wanted := self._wanted.get()) is not None:
-            if isinstance(wanted, Event):
-                wanted.set()
-                continue
-            try:
-                self._write(wanted)
-            except Exception as error:  # the thread must live on, or `wait` never returns
-                _log.exception("writing the settings")
-                self._problems.put(texts.SETTINGS_NOT_SAVED.format(reason=error))
+    def _attempt(self, settings: Settings) -> None:
+        try:
+            self._write(settings)
+        except Exception as error:  # which would else be seen by nobody
+            _log.exception("writing the settings")
+            self._problems.put(texts.SETTINGS_NOT_SAVED.format(reason=error))
 
     def _write(self, settings: Settings) -> None:
         values = settings.to_dict()

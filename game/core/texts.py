@@ -31,7 +31,6 @@ def _read() -> None:
         catalogue.read(catalogue.LOCALE),
         said=catalogue.said_in(catalogue.LOCALE),
         LANGUAGE=catalogue.language(catalogue.LOCALE),
-        damaged=catalogue.damaged(catalogue.LOCALE),
     )
 
 

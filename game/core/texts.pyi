@@ -5,7 +5,6 @@ from typing import Final
 from game.core.catalogue import Plural
 
 LANGUAGE: Final[str]
-damaged: Final[str]  # the path of a catalogue that cannot be read
 
 def said(sentence: str, /) -> str: ...
 def choose(language: str = "") -> bool: ...
@@ -505,7 +504,6 @@ LANDINGS: Final[dict[str, str]]
 LANDINGS_HEADING: Final[str]
 LANDINGS_TITLE: Final[str]
 LANGUAGE_CHOICE: Final[str]
-LANGUAGE_DAMAGED: Final[str]
 LANGUAGE_NAME: Final[str]
 LAST_CHANCE: Final[str]
 LAST_CHANCE_NONE: Final[str]

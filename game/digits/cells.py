@@ -17,8 +17,7 @@ from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import HUMAN, INK, LINE
 from game.input.controls import Command, Controls, presses_main, translate
 from game.ui.hints import Hint
-from game.ui.rows import RowWidget
-from game.ui.widget import PointsManager
+from game.ui.widget import PointsManager, RowWidget
 
 _WAYS: Final = {Command.UP: (-1, 0), Command.DOWN: (1, 0), Command.LEFT: (0, -1), Command.RIGHT: (0, 1)}
 _AFTER, _EVERY = 18, 4  # updates that an arrow is held before the cell moves on, and between two moves

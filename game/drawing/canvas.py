@@ -55,7 +55,6 @@ class Canvas:
         origin: where the page's top left corner lies on the surface, in pixels.
         moved: how far the page was moved to an edge of the view by `at`, in points.
         size: the page's width and height in pixels.
-        offset: where the page's top left corner lies in the window, in pixels.
         palette: the player's colours for within and beyond limits.
         zoom: factor by which the player wants text enlarged; `reading` follows it.
         grows: whether small text is enlarged by `typeface.grow`, instead of everything by `zoom`.
@@ -71,7 +70,6 @@ class Canvas:
         self.scale, self.zoom, self.grows = 0.0, 1.0, True
         self.view = PAGE.copy()
         self._whole: Canvas | None = None
-        self._corner = (0, 0)  # of the surface in the window, in pixels
         self.moved: Point = (0.0, 0.0)
         self.pointer: Point | None = None
         self.words: list[pygame.Rect] = []
@@ -86,30 +84,18 @@ class Canvas:
         width, height = window.get_size()
         scale = max(min(width / VIEW_SIZE[0], height / VIEW_SIZE[1]), 0.01)
         self.size = (max(1, round(VIEW_SIZE[0] * scale)), max(1, round(VIEW_SIZE[1] * scale)))
-        self.offset = ((width - self.size[0]) // 2, (height - self.size[1]) // 2)
         if scale != self.scale:
             typeface.forget()
             shapes.forget()
         self.scale = scale
         window.fill(NIGHT0)
-        self.surface, self.origin = window, self.offset
-        self.view.update(-self.offset[0] / scale, -self.offset[1] / scale, width / scale, height / scale)
+        self.surface, self.origin = window, ((width - self.size[0]) // 2, (height - self.size[1]) // 2)
+        self.view.update(-self.origin[0] / scale, -self.origin[1] / scale, width / scale, height / scale)
 
     @property
     def whole(self) -> Canvas:
-        """The canvas of the whole window, of which this one may be the page."""
+        """The canvas of the whole window, of which this one may be a view."""
         return self._whole or self
-
-    @property
-    def page(self) -> Canvas:
-        """The page alone, as a canvas of 1280 × 720 points that clips what lies outside it; points stay the same."""
-        if self.surface.get_size() == self.size:
-            return self
-        page = copy(self)
-        page._whole, page._corner, page.origin = self, self.offset, (0, 0)
-        page.view = PAGE.copy()
-        page.surface = self.surface.subsurface(pygame.Rect(self.offset, self.size).clip(self.surface.get_rect()))
-        return page
 
     @property
     def reading(self) -> Canvas:
@@ -122,7 +108,7 @@ class Canvas:
         reading = copy(whole)
         reading._whole, reading.grows = whole, False
         reading.scale = max(whole.scale, 1.0) * self.zoom
-        reading.size, reading.offset, reading.origin = whole.surface.get_size(), (0, 0), (0, 0)
+        reading.size, reading.origin = whole.surface.get_size(), (0, 0)
         width, height = reading.size
         reading.view = pygame.FRect(0, 0, width / reading.scale, height / reading.scale)
         reading.pointer = None if whole.pointer is None else reading.points(whole.pixels(whole.pointer))
@@ -142,19 +128,6 @@ class Canvas:
         canvas._whole, canvas.moved = self.whole, (self.moved[0] + x, self.moved[1] + y)
         canvas.pointer = None if self.pointer is None else (self.pointer[0] - x, self.pointer[1] - y)
         return canvas
-
-    def clear_around(self) -> None:
-        """Fill what the window shows beside, above and below the page."""
-        page = pygame.Rect(self.offset, self.size)
-        if self.surface.get_size() != page.size:
-            width, height = self.surface.get_size()
-            for bar in (
-                (0, 0, width, page.top),
-                (0, page.bottom, width, height - page.bottom),
-                (0, 0, page.left, height),
-                (page.right, 0, width - page.right, height),
-            ):
-                self.surface.fill(NIGHT0, bar)
 
     def px(self, points: float) -> int:
         """Return a length in whole pixels."""
@@ -202,7 +175,7 @@ class Canvas:
 
     def _own(self) -> None:
         """Begin at the corner of a surface of its own, which is no part of the window."""
-        self.offset = self.origin = self._corner = (0, 0)
+        self.origin = (0, 0)
         self.moved = (0.0, 0.0)
         self.view, self._whole = PAGE.copy(), None
 
@@ -212,11 +185,11 @@ class Canvas:
 
     def cover(self, area: pygame.Rect) -> None:
         """Note an area of the surface, in pixels, that holds something to read, for stars and notes to avoid."""
-        self._covered.append(area.move(self._corner))
+        self._covered.append(area)
 
     def look_at(self, area: pygame.typing.RectLike) -> None:
         """Note an area of the surface, in pixels, that a player looks at, for notes to avoid."""
-        self._seen.append(pygame.Rect(area).move(self._corner))
+        self._seen.append(pygame.Rect(area))
 
     @contextmanager
     def unnoted(self) -> Iterator[None]:
@@ -250,15 +223,10 @@ class Canvas:
         """Note what stands in a box, in points, and a function that says what it means now, for those who ask."""
         self.explained.append(Explanation(pygame.FRect(box).move(self.moved), what, now))
 
-    def to_points(self, window_position: Point) -> Point:
-        """Convert a position from the window's pixels, such as the mouse's, to points."""
-        x, y = window_position
-        return (x - self.offset[0]) / self.scale, (y - self.offset[1]) / self.scale
-
     def in_window(self, rect: pygame.typing.RectLike) -> pygame.Rect:
         """Convert a rectangle from points to the window's pixels."""
         box = pygame.FRect(rect)
-        return self.rect(box.x, box.y, box.width, box.height).move(self._corner)
+        return self.rect(box.x, box.y, box.width, box.height)
 
     # Text
 
@@ -360,14 +328,11 @@ class Canvas:
 
     def dot(self, centre: Point, radius: float, colour: Colour, alpha: float = 1.0) -> None:
         """Draw a filled anti-aliased circle, positioned to a quarter of a pixel."""
-        self._shape("circle", centre, radius, colour, alpha)
+        self._blit(*self.stamp("circle", centre, radius, colour), alpha)
 
     def marker(self, shape: shapes.Shape, centre: Point, size: float, colour: Colour, alpha: float = 1.0) -> None:
         """Draw a small shape, `size` points across, so that meaning never depends on colour alone."""
-        self._shape(shape, centre, size / 2, colour, alpha)
-
-    def _shape(self, shape: shapes.Shape, centre: Point, radius: float, colour: Colour, alpha: float) -> None:
-        self._blit(*self.stamp(shape, centre, radius, colour), alpha)
+        self._blit(*self.stamp(shape, centre, size / 2, colour), alpha)
 
     def stamp(self, shape: shapes.Shape, centre: Point, radius: float, colour: Colour) -> Stamp:
         """Return a shape, positioned to a quarter of a pixel, and the corner where it is drawn on the surface."""
@@ -378,21 +343,18 @@ class Canvas:
         middle = surface.get_width() // 2
         return surface, (column - middle, row - middle)
 
-    def bar(
-        self,
-        rect: pygame.typing.RectLike,
-        fraction: float,
-        colour: Colour,
-        track: Colour = FAINT,
-        track_alpha: float = 0.6,
-    ) -> None:
+    def _area(self, rect: pygame.typing.RectLike) -> pygame.Rect:
+        """Return a rectangle in pixels, of which nothing is too small to be seen."""
+        area = self.rect(*(rect if isinstance(rect, tuple) else pygame.FRect(rect)))
+        area.size = (max(1, area.width), max(1, area.height))
+        return area
+
+    def bar(self, rect: pygame.typing.RectLike, fraction: float, colour: Colour, track: Colour = FAINT) -> None:
         """Draw a thin rounded track, filled to a fraction from 0 to 1."""
-        x, y, width, height = rect if isinstance(rect, tuple) else pygame.FRect(rect)
-        self.pill((x, y, width, height), track, track_alpha)
+        self.pill(rect, track, 0.6)
         if fraction <= 0:
             return
-        area = self.rect(x, y, width, height)
-        area.size = (max(1, area.width), max(1, area.height))
+        area, (_, _, width, height) = self._area(rect), rect if isinstance(rect, tuple) else pygame.FRect(rect)
         whole = shapes.rounded(area.size, min(width, height) / 2 * self.scale, colour)
         end = (area.height + 1) // 2  # cut from the whole bar, or each length would be painted anew
         length = max(self.px(max(width * min(fraction, 1.0), height)), end)
@@ -406,9 +368,8 @@ class Canvas:
 
     def rounded(self, rect: pygame.typing.RectLike, radius: float, colour: Colour, alpha: float = 1.0) -> None:
         """Fill a rectangle with round corners."""
-        area = self.rect(*(rect if isinstance(rect, tuple) else pygame.FRect(rect)))
-        size = (max(1, area.width), max(1, area.height))
-        self._blit(shapes.rounded(size, radius * self.scale, colour), area.topleft, alpha)
+        area = self._area(rect)
+        self._blit(shapes.rounded(area.size, radius * self.scale, colour), area.topleft, alpha)
 
     def outline(
         self,
@@ -419,17 +380,14 @@ class Canvas:
         alpha: float = 1.0,
     ) -> None:
         """Draw the edge of a rectangle with round corners, inside it."""
-        box = pygame.FRect(rect)
-        area = self.rect(box.x, box.y, box.width, box.height)
-        area.size = (max(1, area.width), max(1, area.height))
+        area = self._area(rect)
         edge = shapes.rounded(area.size, radius * self.scale, colour, max(1, self.px(width)))
         self._blit(edge, area.topleft, alpha)
 
     def panel(self, rect: pygame.typing.RectLike, alpha: float = PANEL_ALPHA, shown: float = 1.0) -> None:
         """Draw a translucent panel; all panels of the game look like this. `shown` is how far it has come, 0 to 1."""
         if shown >= 1:
-            area = self.rect(*pygame.FRect(rect))
-            area.size = (max(1, area.width), max(1, area.height))
+            area = self._area(rect)
             opaque = not self.surface.get_flags() & pygame.SRCALPHA
             surface = shapes.rounded(area.size, 8 * self.scale, PANEL, cover=alpha, premultiplied=opaque)
             flags = pygame.BLEND_PREMULTIPLIED if opaque else 0

@@ -199,7 +199,7 @@ class Bindings:
             return True
         return code not in device.taken and not any(code in codes for codes in device.fixed.values())
 
-    def bereft(self, meaning: Meaning, code: int) -> Meaning | None:
+    def keyless(self, meaning: Meaning, code: int) -> Meaning | None:
         """Return the meaning that would lose its last key if `code` were bound to `meaning`; None if there is none."""
         owner = self._owner(meaning, code)
         if owner is None or owner in self.device.fixed or owner in GIVE_WAY or self._left(owner, meaning, code):
@@ -212,7 +212,7 @@ class Bindings:
         A meaning that loses its only key gets the keys that `meaning` gives up, as far as allowed. Raises ValueError
         if none of them is allowed: no meaning is ever left without a key.
         """
-        if (poor := self.bereft(meaning, code)) is not None:
+        if (poor := self.keyless(meaning, code)) is not None:
             raise ValueError(f"{poor.name} would be left without any key")
         loser = self._owner(meaning, code)
         if loser is not None:

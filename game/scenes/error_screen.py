@@ -9,13 +9,16 @@ import pygame
 from game.core import texts
 from game.core.scene import Replace, Route, Scene, Transition
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import MARGIN, MUTE, NIGHT0, TITLE
+from game.drawing.cursor import Cursor
+from game.drawing.tokens import INK, MARGIN, MUTE, NIGHT0, TITLE
 from game.input.controls import Command, translate
 from game.ui.context import Context
 
 
 class ErrorScene(Scene):
     """Error screen in place of all scenes; any confirmation leads to the menu."""
+
+    flows = True
 
     def __init__(self, context: Context, error: Exception, log: Path) -> None:
         super().__init__(context)
@@ -30,8 +33,11 @@ class ErrorScene(Scene):
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw what happened and what to do."""
         canvas.surface.fill(NIGHT0)
-        canvas.text(texts.ERROR_TITLE, (MARGIN, 296), size=TITLE, weight="light")
-        canvas.text(texts.ERROR_KEPT, (MARGIN, 336), colour=MUTE)
-        canvas.text(self._reason[:140], (MARGIN, 368), colour=MUTE)
-        canvas.text(texts.ERROR_LOG.format(path=self._log), (MARGIN, 392), colour=MUTE)
-        canvas.text(texts.ERROR_BACK.format(key=self.context.controls.word(Command.CONFIRM)), (MARGIN, 440))
+        view, margin = canvas.view, min(MARGIN, 0.05 * canvas.view.width)
+        words = Cursor(margin, 0.37 * view.height, view.width - 2 * margin, canvas.scale, canvas, colour=MUTE)
+        words.styled(texts.ERROR_TITLE, TITLE, INK, "light")
+        for each in (texts.ERROR_KEPT, self._reason[:140], texts.ERROR_LOG.format(path=self._log)):
+            words.gap()
+            words.text(each)
+        words.gap(24)
+        words.styled(texts.ERROR_BACK.format(key=self.context.controls.word(Command.CONFIRM)), colour=INK)

@@ -200,7 +200,7 @@ class App:
         if not self.scenes.running:
             return
         if event.type in _MOUSE:
-            self.canvas.pointer = self.canvas.to_points(event.pos)
+            self.canvas.pointer = self.canvas.points(event.pos)
             event = self._in_points(event)
         elif not self.context.controls.mouse_in_use:
             self.canvas.pointer = None
@@ -249,7 +249,7 @@ class App:
 
     def _in_points(self, event: pygame.event.Event) -> pygame.event.Event:
         canvas = self.scenes.top.laid_on(self.canvas)
-        values = {**event.dict, "pos": canvas.to_points(event.pos)}
+        values = {**event.dict, "pos": canvas.points(event.pos)}
         if event.type == pygame.MOUSEMOTION:
             values["rel"] = (event.rel[0] / canvas.scale, event.rel[1] / canvas.scale)
         return pygame.event.Event(event.type, values)

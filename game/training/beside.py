@@ -14,7 +14,7 @@ class EarlierRun:
 
     name: str
     run: History
-    style: int  # number for game.ui.series.run_style; 0 is the current run's
+    style: int  # number for game.ui.curves.run_style; 0 is the current run's
 
 
 def put_beside(runs: list[EarlierRun], name: str, run: History) -> None:

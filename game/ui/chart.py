@@ -18,9 +18,8 @@ from game.drawing.canvas import Align, Canvas, Point
 from game.drawing.paint import mix
 from game.drawing.tokens import FAINT, INK, LABEL, LINE, MUTE, NIGHT0, SMALL, TEXT
 from game.ui import plotting
-from game.ui.curves import Axes, PaintedRuns, paint_run, trace_run
+from game.ui.curves import RUN_STYLES, Axes, Series, Tick, paint_run, paint_ticks, trace_run
 from game.ui.plotting import Limits, Numbers
-from game.ui.series import RUN_STYLES, SavedSeries, Series, Tick, paint_ticks
 from game.ui.tooltip import TooltipRow, draw_tooltip
 
 __all__ = ["RUN_STYLES", "Chart", "Series", "Tick"]
@@ -68,7 +67,7 @@ class Chart:
         self._log, self._read = log, read
         self.fixed = limits
         self.redraws = 0  # number of times the sheet was drawn
-        self.runs: list[SavedSeries] = []  # as shown, the current one first
+        self.runs: list[Series] = []  # as shown, the current one first
         self._ticks: tuple[Tick, ...] = ()
         self.x_range: Limits = (0.0, 1.0)  # ends of the horizontal axis
         self._told: tuple[float, ...] = ()  # both ends of the x axis, or one if they are the same
@@ -80,7 +79,6 @@ class Chart:
         self.caption = self.painted_caption = ""  # below the chart: as set, and as the sheet was painted
         self.painted_latest: tuple[str, ...] = ()  # of each run, as the sheet was painted
         self._painted: Painted | None = None  # until the numbers or the window change
-        self._behind = PaintedRuns()
         self._stale = True
         self._rested = 0
 
@@ -111,7 +109,7 @@ class Chart:
         """The latest value of the current run, as it is written; a dash before any."""
         return self._latest(self.runs[0]) if self.runs else "–"
 
-    def _latest(self, run: SavedSeries) -> str:
+    def _latest(self, run: Series) -> str:
         value = run.last()
         return "–" if value is None else self.read(value)
 
@@ -135,7 +133,7 @@ class Chart:
 
         What is said of the numbers, the `caption`, is `painted_caption` from the frame on that shows them.
         """
-        runs = [SavedSeries(each, log=self._log) for each in series]
+        runs = [each.logarithmic() if self._log else each for each in series]
         if len(runs) == len(self.runs):  # of one that is the same, what was painted stays
             runs = [old if run.same(old) else run for run, old in zip(runs, self.runs, strict=True)]
         start, end = (float(x) if math.isfinite(x) else 0.0 for x in x_range)
@@ -239,15 +237,14 @@ class Chart:
             self._paint_grid(sheet, plot)
         else:
             self._paint_empty(sheet, plot)
-        self._behind.lay(sheet, area, self.runs[1:], traces[1:], axes)
-        if self.runs:
-            paint_run(sheet, area, self.runs[0], traces[0], axes)
+        for run, values in reversed(list(zip(self.runs, traces, strict=True))):
+            paint_run(sheet, area, run, values, axes)
         paint_ticks(sheet, plot, self._ticks, self.x_range)
         return sheet, traces
 
     def _paint_header(self, sheet: Canvas, box: pygame.FRect) -> None:
         value = self.runs[0].last() if self.runs else None
-        figure, colour = ("–", FAINT) if value is None else (self.read(value), self.runs[0].series.colour)
+        figure, colour = ("–", FAINT) if value is None else (self.read(value), self.runs[0].colour)
         right = (box.right - _GUTTER, box.y + 13)
         taken = sheet.text(figure, right, size=TEXT, colour=colour, align="right", tabular=True)
         room = taken.left - _APART - box.x
@@ -314,8 +311,8 @@ class Chart:
         for run in self.runs if self.pointed else self.runs[:_DOTTED]:
             point = run.nearest(x, slack)
             if point:
-                canvas.dot(self.place(*point), 3, run.series.colour)
-                rows.append(TooltipRow(run.series.name, self.read(point[1]), run.series.colour, run.series.dash))
+                canvas.dot(self.place(*point), 3, run.colour)
+                rows.append(TooltipRow(run.name, self.read(point[1]), run.colour, run.dash))
         if self.pointed:
             tick = self._tick_at(across)
             # Below the label and the figure.

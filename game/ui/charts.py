@@ -1,19 +1,27 @@
-"""Group of charts with a common x axis, redrawn in turns so that no frame redraws more than one."""
+"""Charts with a common x axis, redrawn in turns so that no frame redraws more than one; and a widget over them."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Final
 
 import pygame
 
+from game.core.scene import Transition
 from game.drawing.canvas import Canvas, Point
+from game.drawing.tokens import INK
 from game.ui.chart import Chart
 from game.ui.plotting import Limits
+from game.ui.widget import OnPress, PointsManager, Widget
 
 MOST: Final = 64.0  # times that the axis can be stretched
 STEP: Final = 1.25  # times for a notch of the wheel, or a press of + or -
-_WORD_MOST: Final = 8.0  # times to which a press of the word leads, by doubling; the next shows the whole axis
+_ZOOMS: Final = {
+    **dict.fromkeys((pygame.K_PLUS, pygame.K_EQUALS, pygame.K_KP_PLUS), 2),
+    **dict.fromkeys((pygame.K_MINUS, pygame.K_KP_MINUS), -2),
+    **dict.fromkeys((pygame.K_0, pygame.K_KP_0), 0),
+}
+_RING: Final = (12, 8)  # points by which the focus ring is wider and higher than the charts
 
 
 class Zoom:
@@ -47,13 +55,6 @@ class Zoom:
             self._middle = float("inf")
         if self.factor == 1.0:
             self.reset()
-
-    def double(self, about: float | None = None) -> None:
-        """Stretch the axis to the next double, and after a few of them show the whole of it again."""
-        if self.factor >= _WORD_MOST:
-            self.reset()
-        else:
-            self.by(2.0, about)
 
     def reach(self, x: float) -> None:
         """Move the part so that x is in it."""
@@ -133,3 +134,55 @@ class Charts:
         """Draw all charts, the one with the tooltip last so that nothing covers it."""
         for chart in sorted(self.charts, key=lambda chart: chart.pointed):
             chart.draw(canvas)
+
+
+class Scrubber(Widget):
+    """Scrubber over all charts. `on_move` gets an x, a float, or a step, the int -1 or 1.
+
+    `on_zoom` gets how many steps to stretch the axis, or 0 for the whole of it.
+    """
+
+    def __init__(
+        self,
+        manager: PointsManager,
+        charts: Charts,
+        on_move: Callable[[float | int], None],
+        on_press: OnPress,
+        on_zoom: Callable[[int], None],
+    ) -> None:
+        # For the arrows, its box is the first row: the virtual pointer over all charts is reached from there.
+        first, *others = (chart.box for chart in charts.charts)
+        super().__init__(manager, first.unionall([box for box in others if box.top == first.top]), "")
+        self._charts, self._on_move, self._on_press, self._on_zoom = charts, on_move, on_press, on_zoom
+
+    def hover_point(self, hover_x: float, hover_y: float) -> bool:
+        """Whether a point is on any of the charts."""
+        return self._charts.box.collidepoint(hover_x, hover_y)
+
+    def press(self) -> Transition | None:
+        return self._on_press() if self.ringed else None
+
+    def shift(self, direction: int) -> bool:
+        self._on_move(direction)
+        return True
+
+    def take(self, event: pygame.event.Event) -> bool:
+        steps = _ZOOMS.get(event.key) if event.type == pygame.KEYDOWN else None
+        if steps is None:
+            return False
+        self._on_zoom(steps)
+        return True
+
+    def process_event(self, event: pygame.event.Event) -> bool:
+        if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
+            self._charts.grip(event.pos)
+        return super().process_event(event)
+
+    def drag(self, x: float) -> None:
+        place = self._charts.gripped(x)
+        if place is not None:
+            self._on_move(float(place))
+
+    def paint(self, canvas: Canvas) -> None:
+        if self.ringed and self.warmth > 0.02:
+            canvas.outline(self._charts.box.inflate(*_RING), 8, INK, 1, 0.4 * self.warmth)

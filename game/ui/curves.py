@@ -1,19 +1,24 @@
-"""Drawing of a run's curve on a chart's sheet: a smoothed line over raw points, with arrows for values outside."""
+"""Curves of a chart: the numbers of runs, how they are drawn on its sheet, and ticks for special moments.
+
+A curve is a smoothed line over raw points, with arrows for values outside.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from typing import Final, NamedTuple
+from dataclasses import dataclass
+from typing import Final, Literal, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 import pygame
 
 from game.drawing.canvas import Canvas
 from game.drawing.shapes import Shape
-from game.drawing.tokens import Colour
+from game.drawing.tokens import FAINT, HUMAN, NET, Colour
 from game.ui import plotting
 from game.ui.plotting import Bools, Limits, Numbers
-from game.ui.series import SavedSeries
 
 _LINE_WIDTH: Final = 1.6
 _SPECK: Final = 0.55  # radius of a raw point, in points
@@ -23,6 +28,104 @@ _ROOM: Final = 0.15  # share of the vertical axis: values are clipped this far o
 _BEYOND: Final = 0.01  # share of the vertical axis: values further outside get an arrow
 _ARROWS_APART: Final = 14.0
 _BLEED: Final = 3.0  # points that a line may reach out of the plot
+_TICK_SPACING: Final = 4.0  # points
+
+# Blue is the current run; the others differ from it and from each other in dashes, and in colour, for eyes of
+# every kind: neighbours in both, and no two of them are alike in both.
+_COLOURS: Final[tuple[Colour, ...]] = (
+    (236, 140, 190), (222, 214, 160), (144, 98, 244), (168, 182, 96), (204, 208, 220), (206, 118, 236),
+)  # fmt: skip
+_DASHES: Final[tuple[tuple[float, ...], ...]] = ((7.0, 5.0), (2.0, 4.0), (10.0, 4.0, 2.0, 4.0), (16.0, 5.0))
+_OTHERS: Final = len(_COLOURS) * len(_DASHES)
+RUN_STYLES: Final[tuple[tuple[Colour, tuple[float, ...]], ...]] = (
+    (NET, ()),
+    *(
+        (_COLOURS[number % len(_COLOURS)], _DASHES[(number + number // len(_COLOURS)) % len(_DASHES)])
+        for number in range(_OTHERS)
+    ),
+)
+
+
+def run_style(number: int) -> tuple[Colour, tuple[float, ...]]:
+    """Return colour and dashes of a run, 0 for the current one; beyond those there are, they begin again."""
+    return RUN_STYLES[number] if number == 0 else RUN_STYLES[1 + (number - 1) % _OTHERS]
+
+
+class Series:
+    """Curve of one run, with its own copy of the numbers, so that later changes of the arrays do not matter.
+
+    Args:
+        x: (n,) rising; points with a value that is not finite are left out.
+        y: (n,) values; a value that is not finite makes a gap.
+        name: of the run.
+        colour: of the line.
+        dash: on, off, ... in points; empty for a solid line, which also shows its raw points.
+        smooth: whether the line is smoothed; not for data without noise.
+
+    """
+
+    def __init__(
+        self,
+        x: npt.ArrayLike,
+        y: npt.ArrayLike,
+        name: str,
+        colour: Colour = NET,
+        dash: tuple[float, ...] = (),
+        smooth: bool = True,
+    ) -> None:
+        places, values = np.array(x, float).ravel(), np.array(y, float).ravel()
+        places, values = places[: len(values)], values[: len(places)]
+        self.x: Numbers = places[np.isfinite(places)]
+        self.y: Numbers = values[np.isfinite(places)]
+        self.name, self.colour, self.dash, self.smooth = name, colour, dash, smooth
+
+    def logarithmic(self) -> Series:
+        """Return it for a logarithmic axis: the logarithms to base 10; a value that is not positive makes a gap."""
+        heights = np.log10(np.where(self.y > 0, self.y, np.nan))
+        return Series(self.x, heights, self.name, self.colour, self.dash, self.smooth)
+
+    def same(self, other: Series) -> bool:
+        """Whether another run would be drawn the same."""
+        alike = (self.name, self.colour, self.dash, self.smooth) == (other.name, other.colour, other.dash, other.smooth)
+        return alike and np.array_equal(self.x, other.x) and np.array_equal(self.y, other.y, equal_nan=True)
+
+    def nearest(self, x: float, slack: float) -> tuple[float, float] | None:
+        """Return the finite point nearest to x; None if x lies more than `slack` outside the run."""
+        finite = np.isfinite(self.y)
+        at, y = self.x[finite], self.y[finite]
+        if not len(at) or not at[0] - slack <= x <= at[-1] + slack:
+            return None
+        index = int(np.abs(at - x).argmin())
+        return float(at[index]), float(y[index])
+
+    def last(self) -> float | None:
+        """Return the latest finite value."""
+        finite = np.flatnonzero(np.isfinite(self.y))
+        return float(self.y[finite[-1]]) if len(finite) else None
+
+
+@dataclass(frozen=True)
+class Tick:
+    """Mark below the chart for a moment: a checkpoint, or a knob that was turned."""
+
+    x: float
+    text: str
+    kind: Literal["checkpoint", "knob"] = "checkpoint"
+
+
+def paint_ticks(sheet: Canvas, plot: pygame.FRect, ticks: Sequence[Tick], x_range: Limits) -> None:
+    """Draw the ticks of the shown part of the x axis below a plot, of those too close together only the first."""
+    start, end = x_range
+    last, top, height = -math.inf, sheet.px(plot.bottom + 2), sheet.px(3)
+    for tick in ticks:
+        if not start <= tick.x <= end:
+            continue
+        x = plot.x + min(max((tick.x - start) / (end - start), 0.0), 1.0) * plot.width
+        if tick.kind == "knob":
+            sheet.marker("diamond", (x, plot.bottom), 8, HUMAN)
+        elif x - last >= _TICK_SPACING:
+            sheet.surface.fill(FAINT, (sheet.px(x), top, max(1, sheet.px(1)), height))
+            last = x
 
 
 class Axes(NamedTuple):
@@ -39,23 +142,17 @@ class Axes(NamedTuple):
         return places
 
 
-def trace_run(run: SavedSeries, axes: Axes, columns: int) -> Numbers:
+def trace_run(run: Series, axes: Axes, columns: int) -> Numbers:
     """Return the value of a run's smoothed line in each pixel column (columns,), NaN for no line."""
-    known = run.traced
-    if known is not None and known[0] == (axes.x_range, axes.goal, columns):
-        return known[1]
     low, high = axes.goal
     room = _ROOM * (high - low)
     heights = np.where(np.isfinite(run.y), np.clip(run.y, low - room, high + room), np.nan)
-    radius = round(_SMOOTHING * columns) if run.series.smooth else 0
-    values = plotting.trace(run.x, heights, axes.x_range, columns, radius)
-    run.traced = (axes.x_range, axes.goal, columns), values
-    return values
+    return plotting.trace(run.x, heights, axes.x_range, columns, round(_SMOOTHING * columns) if run.smooth else 0)
 
 
-def paint_run(sheet: Canvas, area: pygame.Rect, run: SavedSeries, values: Numbers, axes: Axes) -> None:
+def paint_run(sheet: Canvas, area: pygame.Rect, run: Series, values: Numbers, axes: Axes) -> None:
     """Draw a run into an area of the sheet, in pixels; `values` is its `trace_run`."""
-    colour, scale, bleed = run.series.colour, sheet.scale, sheet.px(_BLEED)
+    colour, scale, bleed = run.colour, sheet.scale, sheet.px(_BLEED)
     low, high = axes.shown
     size = (area.width, area.height + 2 * bleed)
     corner = (area.x, area.y - bleed)
@@ -65,13 +162,13 @@ def paint_run(sheet: Canvas, area: pygame.Rect, run: SavedSeries, values: Number
         clipped: Numbers = np.clip(row, -4.0 * bleed, size[1] + 4.0 * bleed)
         return clipped
 
-    if not run.series.dash and run.series.smooth:
+    if not run.dash and run.smooth:
         shown = plotting.thinned(run.x, run.y, axes.x_range, area.width)
         columns = axes.across(run.x[shown], area.width)
         dots = plotting.specks(columns, rows(run.y[shown]), size, _SPECK * scale)
         _cover(sheet.surface, corner, colour, dots, _SPECK_ALPHA)
     heights = rows(values)
-    dash = tuple(length * scale for length in run.series.dash)
+    dash = tuple(length * scale for length in run.dash)
     first, line = plotting.stroke(heights, size[1], _LINE_WIDTH * scale, dash)
     _cover(sheet.surface, (corner[0], corner[1] + first), colour, line)
     for column in plotting.alone(values):
@@ -79,32 +176,7 @@ def paint_run(sheet: Canvas, area: pygame.Rect, run: SavedSeries, values: Number
     _paint_arrows(sheet, area, run, axes)
 
 
-class PaintedRuns:
-    """Curves of the runs behind the current one, painted once and copied until any of them or the axes change."""
-
-    def __init__(self) -> None:
-        self._runs: list[SavedSeries] = []
-        self._key: tuple[object, ...] = ()
-        self._sheet: Canvas | None = None
-
-    def lay(
-        self, sheet: Canvas, area: pygame.Rect, runs: Sequence[SavedSeries], traces: Sequence[Numbers], axes: Axes
-    ) -> None:
-        """Draw runs, the last one first, with their `traces`, into an area of the sheet, in pixels."""
-        if not runs:
-            self._sheet = None
-            return
-        key = (*map(id, runs), axes, tuple(area), sheet.size, sheet.scale)
-        if self._sheet is None or key != self._key:
-            width, height = sheet.size
-            self._runs, self._key = [*runs], key  # kept, so that no other run gets the same id
-            self._sheet = sheet.sheet(width / sheet.scale, height / sheet.scale)
-            for run, values in reversed(list(zip(runs, traces, strict=True))):
-                paint_run(self._sheet, area, run, values, axes)
-        sheet.lay(self._sheet, 0, 0)
-
-
-def _paint_arrows(sheet: Canvas, area: pygame.Rect, run: SavedSeries, axes: Axes) -> None:
+def _paint_arrows(sheet: Canvas, area: pygame.Rect, run: Series, axes: Axes) -> None:
     """Draw arrows for values beyond the chart, also for a single one that smoothing hides."""
     (low, high), (start, end) = axes.goal, axes.x_range
     slack = _BEYOND * (high - low)
@@ -116,7 +188,7 @@ def _paint_arrows(sheet: Canvas, area: pygame.Rect, run: SavedSeries, axes: Axes
         if beyond.any():
             places = (area.x + axes.across(at, area.width)) / scale
             for x in plotting.starts(beyond, places, _ARROWS_APART):
-                sheet.marker(shape, (x, row / scale), 8, run.series.colour)
+                sheet.marker(shape, (x, row / scale), 8, run.colour)
 
 
 def _cover(

@@ -1,28 +1,117 @@
 """Text entry of one line: it begins with a suggestion, which a gamepad's A accepts unchanged.
 
-A `TextLine` is edited; here it is drawn, found by the mouse, and begun, accepted or cancelled on any device.
+pygame_gui keeps the text, the caret and the selection, and knows the keys and the clipboard that change them. Here it
+is drawn in our type, a text that is pasted is fitted instead of refused, and a key repeat is counted in steps.
+docs/adr/0014-what-pygame-gui-carries.md says why.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING, Final
 
 import pygame
+from pygame_gui.core.utility import clipboard_paste
+from pygame_gui.elements import UITextEntryLine
 
-from game.core.scene import Transition
-from game.drawing import typeface
-from game.drawing.canvas import Canvas
-from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, MUTE, TEXT
+from game.drawing.tokens import FAINT, HUMAN, TEXT
 from game.input.controls import Command, translate
-from game.ui.text_line import Fits, TextLine, printable
-from game.ui.widget import PointsManager, Widget
+from game.ui.widget import NOWHERE, OnPress, PointsManager, RowWidget
+
+if TYPE_CHECKING:
+    from game.core.scene import Transition
+    from game.drawing.canvas import Canvas
+    from game.drawing.cursor import Cursor
+
+Fits = Callable[[str], str]
+_HEIGHT: Final = 28.0
+_CONTROL: Final = pygame.KMOD_CTRL | pygame.KMOD_META
+_REPEAT_AFTER: Final = 24  # steps before a held key repeats, and between repeats
+_REPEAT_EVERY: Final = 3
 
 
-class Entry(Widget):
-    """Text entry: a `TextLine` under a label. Enter or a gamepad's A starts typing, then accepts; Escape cancels.
+class TextLine(UITextEntryLine):
+    """Text with a caret and a selection; the owner passes events to it while it is edited.
 
-    Up, down and Tab leave it and accept the text. `on_accept` is given the text, stripped
-    and never empty; `on_cancel` is called when typing is cancelled.
+    `fits` removes from a text all that is not allowed; `limit` is the largest number of letters.
+    """
+
+    def __init__(self, manager: PointsManager, text: str, limit: int, fits: Fits) -> None:
+        self._fits, self._limit = fits, limit
+        super().__init__(pygame.Rect(NOWHERE), manager, visible=0)  # the manager gives it no events of its own
+        self.is_focused = True  # its `focus` would switch on pygame's key repeat, for the whole game
+        self.font = self.hidden_font  # without any, Backspace does nothing
+        self.set(text)
+
+    def rebuild_from_changed_theme_data(self) -> None:
+        """Load no font and paint nothing."""
+
+    def set(self, text: str) -> None:
+        """Replace the text, and select all of it."""
+        self.text = self._fits(text)[: self._limit]
+        self.edit_position = len(self.text)
+        self.select_range = [0, len(self.text)]
+        self.rest()
+
+    def rest(self) -> None:
+        """Let go of a held key."""
+        self._held: pygame.event.Event | None = None
+
+    @property
+    def selection(self) -> tuple[int, int]:
+        """First letter of the selection and the letter after it; both the caret's if nothing is selected."""
+        low, high = sorted(self.select_range)
+        return (low, high) if low < high else (self.edit_position, self.edit_position)
+
+    def place(self, caret: int) -> None:
+        """Move the caret to before a letter of the text, and clear the selection."""
+        self.edit_position = min(max(caret, 0), len(self.text))
+        self.select_range = [self.edit_position, self.edit_position]
+
+    def insert(self, text: str) -> None:
+        """Put as much of a text as is allowed in place of the selection."""
+        low, high = self.selection
+        before, after = self.text[:low], self.text[high:]
+        text = self._fits(text)[: self._limit - len(before + after)]
+        self.text = before + text + after
+        self.place(low + len(text))
+
+    def process_event(self, event: pygame.event.Event) -> bool:
+        if event.type == pygame.TEXTINPUT:
+            self.insert(event.text)
+            return True
+        if event.type == pygame.KEYUP and self._held and event.key == self._held.key:
+            self._held = None
+        if event.type != pygame.KEYDOWN:
+            return False
+        known = self._edit(event)
+        self._held, self._held_steps = event if known else None, 0
+        return known
+
+    def update(self, time_delta: float) -> None:
+        super().update(time_delta)
+        if self._held:
+            self._held_steps += 1
+            since = self._held_steps - _REPEAT_AFTER
+            if since >= 0 and since % _REPEAT_EVERY == 0:
+                self._edit(self._held)
+
+    def _edit(self, event: pygame.event.Event) -> bool:
+        if event.key in (pygame.K_RETURN, pygame.K_KP_ENTER):
+            return False
+        try:
+            if event.key == pygame.K_v and getattr(event, "mod", 0) & _CONTROL:
+                self.insert(clipboard_paste())  # type: ignore[no-untyped-call]
+                return True
+            return bool(super().process_event(event))
+        except pygame.error:
+            return True  # there is no clipboard
+
+
+class EntryRow(RowWidget):
+    """Line to type in. Enter or a gamepad's A starts typing, then accepts; Escape cancels.
+
+    Up, down and Tab leave it and keep the text. `accept` is given the text, stripped and never empty.
     """
 
     spells = True
@@ -30,23 +119,18 @@ class Entry(Widget):
     def __init__(
         self,
         manager: PointsManager,
-        box: pygame.typing.RectLike,
-        label: str,
         text: str,
-        on_accept: Callable[[str], Transition | None],
-        *,
-        on_cancel: Callable[[], Transition | None] = lambda: None,
-        limit: int = 40,
-        fits: Fits = printable,
-        size: float = TEXT,
+        accept: Callable[[str], Transition | None],
+        cancel: OnPress,
+        limit: int,
+        fits: Fits,
     ) -> None:
-        super().__init__(manager, box, label)
-        self.line = TextLine(manager, box, text, limit, fits)
-        self._on_accept, self._on_cancel, self._size = on_accept, on_cancel, size
+        super().__init__(manager, NOWHERE, "")
+        self.line = TextLine(manager, text, limit, fits)
+        self._accept, self._cancelled = accept, cancel
         self._before = self.line.text
         self._fresh = False
-        self._first = 0  # the first letter that is shown
-        self._pressed: int | None = None  # the caret's index where the mouse was pressed
+        self._lefts = [0.0]  # where each letter begins, and the last one ends, in points
 
     def kill(self) -> None:
         self.line.kill()  # type: ignore[no-untyped-call]
@@ -76,7 +160,7 @@ class Entry(Widget):
             return None
         self.typing = False
         self.line.rest()
-        return self._on_accept(self.line.text.strip())
+        return self._accept(self.line.text.strip())
 
     def take(self, event: pygame.event.Event) -> bool:
         if not self.typing:
@@ -112,109 +196,42 @@ class Entry(Widget):
     def _cancel(self) -> None:
         self.typing = False
         self.line.set(self._before)
-        self.outcome = self._on_cancel()
+        self.outcome = self._cancelled()
 
     def process_event(self, event: pygame.event.Event) -> bool:
-        if event.type == pygame.MOUSEMOTION and self.typing and self._pressed is not None:
-            letter = self._letter(event.pos[0])
-            self.line.selection_in_progress |= letter != self._pressed
-            if self.line.selection_in_progress:
-                self.line.place(self._pressed)
-                self.line.place(letter, extend=True)
-            return True
-        if event.type == pygame.MOUSEBUTTONUP and self._pressed is not None:
-            self._pressed = None
-            self.line.process_event(event)
-            return True
         if event.type != pygame.MOUSEBUTTONDOWN or event.button != 1 or not self.hover_point(*event.pos):
             return False
-        self._pressed = self._letter(event.pos[0])
         if self.typing:
-            self.line.edit_position = self._pressed
-            self.line.process_event(event)
-            if not self.line.selection_in_progress:  # the second click has selected a word
-                self._pressed = None
+            self.line.place(min(range(len(self._lefts)), key=lambda letter: abs(self._lefts[letter] - event.pos[0])))
         self.begin()
         return True
-
-    @property
-    def start(self) -> tuple[float, float]:
-        """Left end of the text on its baseline, in points."""
-        return self.box.left, self.box.bottom - 9
-
-    def _first_shown(self) -> int:
-        return first_shown(self.line.shown, self.line.caret, self._size, self.box.width, self._first)
-
-    def _letter(self, x: float) -> int:
-        """Return the caret's index for a click at x; before the first letter shown, that of the letter before it."""
-        text, first = self.line.text, self._first_shown()
-        if first and x < self.start[0]:
-            return first - 1
-        lefts = [typeface.width(text[first:end], self._size, "regular") for end in range(first, len(text) + 1)]
-        return first + min(range(len(lefts)), key=lambda number: abs(self.start[0] + lefts[number] - x))
 
     def ease(self, at_once: bool) -> None:
         super().ease(at_once)
         self._fresh = False
-        self._first = self._first_shown()
         self.typing = self.typing and self.focused
         if not self.typing:
-            self._pressed = None
             self.line.rest()
 
-    def paint(self, canvas: Canvas) -> None:
-        box = self.box
-        canvas.text(self.label, (box.left, box.top - 6), size=LABEL, weight="medium", colour=MUTE)
-        if self.typing and pygame.display.get_init():  # an input method shows its suggestions below
-            pygame.key.set_text_input_rect(canvas.in_window(box))
-        draw_line(canvas, self.line, self.start, box.width, self._size, self._first, typing=self.typing)
-        y = box.bottom - 1
+    def write(self, cursor: Cursor) -> None:
+        box, text, caret = cursor.take(_HEIGHT), self.line.text, self.line.edit_position
+        reach = max(cursor.measured(text[:caret]) + 2 - box.width, 0.0)  # the caret is in sight
+        lefts = [box.left - reach + cursor.measured(text[:letter]) for letter in range(len(text) + 1)]
+        if canvas := cursor.canvas:
+            with canvas.clipped(box.inflate(8, 8)):
+                self._paint(canvas, box, lefts)
+        else:
+            self._lefts = lefts
+
+    def _paint(self, canvas: Canvas, box: pygame.FRect, lefts: list[float]) -> None:
+        size, caret, (low, high) = TEXT, lefts[self.line.edit_position], self.line.selection
+        y, baseline = box.bottom - 1, box.bottom - 9
+        if self.typing and low < high:
+            canvas.rounded((lefts[low] - 3, baseline - size, lefts[high] - lefts[low] + 6, 1.4 * size), 3, HUMAN, 0.2)
+        canvas.text(self.line.text, (lefts[0], baseline), size=size)
+        if self.typing:
+            canvas.line((caret + 0.5, baseline - 0.95 * size), (caret + 0.5, baseline + 0.3 * size), HUMAN, 1.5)
         canvas.line((box.left, y), (box.right, y), FAINT, 1)
         reach = box.width * (1.0 if self.typing else self.warmth)
         if reach > 1:
             canvas.line((box.left, y), (box.left + reach, y), HUMAN, 2, 1.0 if self.typing else 0.5 * self.warmth)
-
-
-def draw_line(
-    canvas: Canvas,
-    line: TextLine,
-    start: tuple[float, float],
-    room: float,
-    size: float,
-    first: int = 0,
-    *,
-    typing: bool,
-) -> None:
-    """Draw a line on a baseline, within `room` points from a letter near `first` on.
-
-    While `typing`, also its caret, its selection and the line under composed letters.
-    """
-    left, baseline = start
-    text, caret = line.shown, line.caret
-    first = first_shown(text, caret, size, room, first)
-    last = len(text)
-    while last > first and canvas.text_width(text[first:last], size=size) > room:
-        last -= 1
-
-    def x(letter: int) -> float:
-        return left + canvas.text_width(text[first : min(letter, last)], size=size)
-
-    low, high = line.selection
-    if typing and low < high:
-        begin, end = x(low) - 3 * (low == 0), x(high) + 3 * (high == len(text))
-        canvas.rounded((begin, baseline - size, end - begin, 1.4 * size), 3, HUMAN, 0.2)
-    canvas.text(text[first:last], start, size=size, colour=INK)
-    if typing and line.composition:
-        canvas.line((x(caret - len(line.composition)), baseline + 4), (x(caret), baseline + 4), HUMAN, 1)
-    if typing:
-        canvas.line((x(caret) + 0.5, baseline - 0.95 * size), (x(caret) + 0.5, baseline + 0.3 * size), HUMAN, 1.5)
-
-
-def first_shown(text: str, caret: int, size: float, room: float, first: int = 0) -> int:
-    """Return the index of the first letter to show, near `first`: the caret is visible, and the room is used."""
-    first = min(first, caret)
-    while first < caret and typeface.width(text[first:caret], size, "regular") > room:
-        first += 1
-    while first and typeface.width(text[first - 1 :], size, "regular") <= room:
-        first -= 1
-    return first

@@ -1,62 +1,87 @@
-"""Scrolling list of rows to choose from."""
+"""Scrolling list of rows to choose from, in a panel."""
 
 from __future__ import annotations
 
 import math
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import pygame
 
-from game.core.scene import Transition
-from game.drawing.canvas import Canvas
 from game.drawing.tokens import FAINT, INK, LINE, MUTE, NET, SMALL, TEXT
 from game.input.controls import Command, translate
-from game.ui.widget import PointsManager, Widget, mix
+from game.ui.widget import NOWHERE, PointsManager, RowWidget, mix
+
+if TYPE_CHECKING:
+    from game.core.scene import Transition
+    from game.drawing.canvas import Canvas
+    from game.drawing.cursor import Cursor
 
 Row = tuple[str, ...]  # its name, then the text of each further column
+_ROWS: Final = 8
 _BAR: Final = 3.0
 _BETWEEN: Final = 8.0  # points between two columns
 _GAP: Final = 12.0  # points between a row's text and the scroll bar
 
 
-class Listing(Widget):
-    """List of rows, one of them chosen; the wheel, the arrows and Page Up and Down scroll.
+class ListRow(RowWidget):
+    """List to choose from, as high as its rows: at most eight of them, or as many as a window has room for.
 
-    `on_choose` is called with the number of each newly chosen row; `on_press` on Enter, a gamepad's A or a
-    second click on it. At either end, the arrows lead to the next widget. `columns` gives the distance from the right
-    end to the right end of each cell after the first, in points. With `numbered`, the rows' numbers from 1 stand in a
-    column of that width before the names.
+    The wheel, the arrows and Page Up and Down scroll; at either end, the arrows lead to the next widget.
+
+    Args:
+        manager: the form's manager.
+        rows: the rows.
+        press: called with a row's number on Enter, a gamepad's A or a second click on it.
+        empty: what stands there without rows.
+        index: the chosen row.
+        around: height of all else in the window, in points; 0 for at most eight rows.
+        first: the row at which the list begins.
+        on_choose: called with the number of each newly chosen row.
+        columns: distance from the right end to the right end of each cell after the first, in points.
+        pitch: of the rows, in points.
+        size: of the names.
+        numbered: width of a column before the names for the rows' numbers, from 1, in points; 0 for none.
+
     """
 
     def __init__(
         self,
         manager: PointsManager,
-        box: pygame.typing.RectLike,
         rows: Sequence[Row],
-        index: int = 0,
-        *,
-        on_choose: Callable[[int], None] = lambda _: None,
-        on_press: Callable[[int], Transition | None] = lambda _: None,
+        press: Callable[[int], Transition | None],
         empty: str = "",
+        *,
+        index: int = 0,
+        around: float = 0.0,
+        first: int = 0,
+        on_choose: Callable[[int], None] = lambda _: None,
         columns: Sequence[float] = (0.0,),
         pitch: float = 32,
         size: float = TEXT,
         numbered: float = 0.0,
     ) -> None:
-        super().__init__(manager, box, "")
-        self._on_choose, self._on_press, self._empty = on_choose, on_press, empty
+        super().__init__(manager, NOWHERE, "")
+        self._on_choose, self._on_press, self._empty = on_choose, press, empty
         self._columns, self._pitch, self._size, self._numbered = columns, pitch, size, numbered
+        self._around, self._most, self.first = around, _ROWS, first
         self._pressed = -1
-        self.first = 0
-        self.set_rows(rows, index)
-
-    def set_rows(self, rows: Sequence[Row], index: int = 0) -> None:
-        """Replace the rows, without calling `on_choose`."""
         self.rows = list(rows)
         self.index = min(max(index, 0), max(0, len(self.rows) - 1))
-        self._show_chosen()
+
+    def lay(self, cursor: Cursor) -> None:
+        before = self.room
+        super().lay(cursor)
+        if self.room != before:
+            self._show_chosen()
+
+    def write(self, cursor: Cursor) -> None:
+        if self._around and cursor.seen and cursor.canvas is None:
+            self._most = max(4, int((cursor.seen.height - self._around) / self._pitch))
+        cursor.take(self._pitch * min(max(len(self.rows), 1), self._most))
+        if cursor.canvas:
+            self._paint(cursor.canvas)
 
     @property
     def room(self) -> int:
@@ -122,7 +147,7 @@ class Listing(Widget):
     def _look(self, first: int) -> None:
         self.first = min(max(first, 0), max(0, len(self.rows) - self.room))
 
-    def paint(self, canvas: Canvas) -> None:
+    def _paint(self, canvas: Canvas) -> None:
         box = self.box
         canvas.cover(canvas.rect(*box))  # the row that it stands in draws the ring
         if not self.rows:

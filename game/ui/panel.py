@@ -7,30 +7,29 @@ the room that there is.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Final, TypeVar
+from typing import TYPE_CHECKING, Concatenate, Final, ParamSpec, TypeVar
 
 import pygame
 
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import FAINT, INK, MUTE, NET, SMALL, STEP, TEXT, Colour
 from game.drawing.typeface import Weight
-from game.ui.rows import ButtonRow, ChoiceRow, EntryRow, ListRow, RowWidget, SliderRow, ToggleRow
-from game.ui.widget import Widget
+from game.ui.entry import EntryRow
+from game.ui.listing import ListRow
+from game.ui.rows import ButtonRow, ChoiceRow, SliderRow, ToggleRow, Words, said
+from game.ui.widget import PointsManager, RowWidget, Widget
 
 if TYPE_CHECKING:
-    from game.core.scene import Transition
     from game.drawing.canvas import Canvas, Now
     from game.ui.form import Form, Part
-    from game.ui.listing import Row as Cells
     from game.ui.widget import OnPress
 
 W = TypeVar("W", bound=RowWidget)
+P = ParamSpec("P")
 Write = Callable[[Cursor], object]
-Words = str | Callable[[], str]  # a function for words that change
 _ABOVE: Final = 24.0  # points kept above and below the widget in focus while the panel scrolls
 _WORDS: Final = 28.0  # points between two words side by side
 _WHEEL: Final = 48.0  # points for one notch of the mouse's wheel
@@ -46,12 +45,21 @@ class Row:
     box: pygame.FRect = field(default_factory=lambda: pygame.FRect(0, 0, 0, 0))
 
 
+def _adding(kind: Callable[Concatenate[PointsManager, P], W]) -> Callable[Concatenate[Column, P], W]:
+    """Return a method that adds a widget of a kind, made of all that it takes but the manager."""
+
+    def add(column: Column, /, *given: P.args, **more: P.kwargs) -> W:
+        return column.widget(kind(column.manager, *given, **more))
+
+    return add
+
+
 class Column:
     """Rows that are described one after another; each call adds one, and returns its widget if it has one."""
 
     def __init__(self, form: Form | Part) -> None:
         self.rows: list[Row] = []
-        self._form, self._widgets = form, list[Widget]()
+        self._form, self._widgets, self.manager = form, list[Widget](), form.manager
 
     def add(self, write: Write, what: str = "", now: Now = str) -> Row:
         """Add a row of one's own."""
@@ -84,7 +92,7 @@ class Column:
         tabular: bool = False,
     ) -> None:
         """Add a paragraph; `tabular` if its figures change."""
-        self.add(lambda cursor: cursor.styled(_said(words), size, colour, weight, tabular=tabular))
+        self.add(lambda cursor: cursor.styled(said(words), size, colour, weight, tabular=tabular))
 
     def aside(self, words: Words) -> None:
         """Add small muted words that explain what stands above."""
@@ -96,7 +104,7 @@ class Column:
 
     def pair(self, words: str, figure: Words, colour: Colour | None = None) -> None:
         """Add words, and a figure at the right end."""
-        self.add(lambda cursor: cursor.pair(words, _said(figure), colour))
+        self.add(lambda cursor: cursor.pair(words, said(figure), colour))
 
     def bar(self, share: Callable[[], float], colour: Colour = NET) -> None:
         """Add a bar."""
@@ -128,23 +136,8 @@ class Column:
         self._widgets.append(widget)
         return self._form.add(widget)
 
-    def button(
-        self,
-        label: str,
-        press: OnPress,
-        aside: Words = "",
-        *,
-        figure: Words = "",
-        size: float = TEXT,
-        weight: Weight = "regular",
-        colour: Colour = MUTE,
-    ) -> ButtonRow:
-        """Add a word to press, with words that explain it below, and a figure at its right."""
-        return self.widget(
-            ButtonRow(
-                self._form.manager, label, press, partial(_said, aside), partial(_said, figure), size, weight, colour
-            )
-        )
+    button, toggle, choice = _adding(ButtonRow), _adding(ToggleRow), _adding(ChoiceRow)
+    slider, entry, listing = _adding(SliderRow), _adding(EntryRow), _adding(ListRow)
 
     def words(self, words: Sequence[tuple[str, OnPress]]) -> list[ButtonRow]:
         """Add words to press, side by side on as many lines as they need."""
@@ -152,43 +145,6 @@ class Column:
         self._widgets += buttons
         self.add(partial(_write_words, buttons))
         return buttons
-
-    def toggle(self, label: str, value: bool, change: Callable[[bool], None], aside: str = "") -> ToggleRow:
-        """Add a switch."""
-        return self.widget(ToggleRow(self._form.manager, label, value, change, aside))
-
-    def choice(
-        self, label: str, options: Sequence[str], index: int, change: Callable[[int], None], size: float = TEXT
-    ) -> ChoiceRow:
-        """Add a choice of one word."""
-        return self.widget(ChoiceRow(self._form.manager, label, options, index, change, size))
-
-    def slider(
-        self,
-        label: str,
-        value: float,
-        limits: tuple[float, float],
-        change: Callable[[float], None],
-        *,
-        step: float,
-        figure: Callable[[float], str],
-        aside: str = "",
-        ticks: Mapping[float, str] = MappingProxyType({}),
-    ) -> SliderRow:
-        """Add a slider."""
-        return self.widget(SliderRow(self._form.manager, label, value, limits, change, step, figure, aside, ticks))
-
-    def entry(
-        self, text: str, accept: Callable[[str], Transition | None], cancel: OnPress, limit: int, fits: object
-    ) -> EntryRow:
-        """Add a line to type in."""
-        return self.widget(EntryRow(self._form.manager, text, accept, cancel, limit, fits))
-
-    def listing(
-        self, rows: Sequence[Cells], press: Callable[[int], Transition | None], empty: str = "", **more: Any
-    ) -> ListRow:
-        """Add a list to choose from; `more` is as for a `ListRow`."""
-        return self.widget(ListRow(self._form.manager, rows, press, empty, **more))
 
     # Columns
 
@@ -298,7 +254,3 @@ def _write_words(buttons: Sequence[ButtonRow], cursor: Cursor) -> None:
         button.lay(place)
         left, below = left + width + _WORDS, max(below, place.y)
     cursor.y = below
-
-
-def _said(words: Words) -> str:
-    return words if isinstance(words, str) else words()

@@ -18,6 +18,7 @@ Limits = tuple[float, float]
 
 _WILD: Final = 300.0  # a range this many times wider than the interquartile range is cut
 _WITHIN: Final = 10.0  # interquartile ranges on either side to which it is cut
+_MOST_LINES: Final = 4
 _STEPS: Final = (1.0, 2.0, 2.5, 5.0, 10.0)
 _STEEP: Final = 3.0  # slope in rows per column above which a line grows no thicker, or it would end in spikes
 _FAR: Final = -1e6  # a row outside the plot
@@ -72,17 +73,17 @@ def robust_range(values: Numbers) -> Limits | None:
     return low, high
 
 
-def grid(low: float, high: float, most: int = 4) -> Numbers:
-    """Return two to `most` grid lines: evenly spaced round numbers that enclose low to high."""
+def grid(low: float, high: float) -> Numbers:
+    """Return two to four grid lines: evenly spaced round numbers that enclose low to high."""
     low, high = max(low, -1e300), min(high, 1e300)
     if high / 2 - low / 2 <= 1e-9 * max(abs(low), abs(high)):
         around = max(abs(low), abs(high)) / 10 or 1.0
         low, high = low - around, high + around
-    wide = (high - low) / (most - 1)
+    wide = (high - low) / (_MOST_LINES - 1)
     power = 10.0 ** math.floor(math.log10(wide))
     for step in (power * factor for factor in (*_STEPS, 20.0, 50.0)):
         first, last = math.floor(low / step + _ROUNDING), math.ceil(high / step - _ROUNDING)
-        if last - first < most:
+        if last - first < _MOST_LINES:
             break
     return np.arange(first, last + 1) * step
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Final
+from typing import Final
 
 import pygame
 
@@ -14,66 +14,23 @@ from game.core.scene import Transition
 from game.drawing.cursor import BASELINE, LEADING, Cursor
 from game.drawing.tokens import HUMAN, INK, MUTE, NET, SMALL, STEP, TEXT, Colour
 from game.drawing.typeface import Weight
-from game.ui.entry import Entry
-from game.ui.listing import Listing, Row
-from game.ui.series import run_style
+from game.ui.curves import run_style
 from game.ui.tooltip import draw_swatch
-from game.ui.widget import EASE, OnPress, PointsManager, Widget, mix
+from game.ui.widget import EASE, NOWHERE, OnPress, PointsManager, RowWidget, mix
 from game.ui.widgets import Choice, TextButton, draw_switch
 
-if TYPE_CHECKING:
-    from game.drawing.canvas import Canvas
-
-_NOWHERE: Final = (0, 0, 1, 1)  # until it is laid out
-_PAD: Final = 8.0  # points above and below what a row says
+Words = str | Callable[[], str]  # a function for words that change
 _SWITCH: Final = (32.0, 16.0)
 _LABELS: Final = 150.0  # points for the label before a slider or a choice
 _FIGURES: Final = 66.0
 _TRACK: Final = 120.0  # the shortest track beside its label
 _WORDS: Final = 24.0  # between two options
-_ROWS: Final = 8  # of a list, at most
 _SWATCH: Final = 27.0  # points for a piece of a line before a name
 
 
-class RowWidget(Widget):
-    """Widget that is a row of a panel, and has no place of its own.
-
-    Attributes:
-        pad: points above and below what it says.
-        reach: how far from the left its ring reaches, in points; 0 for the whole column.
-        seen: the part of its panel that is not scrolled away.
-
-    """
-
-    pad, reach = _PAD, 0.0
-    seen: pygame.FRect | None = None
-
-    def lay(self, cursor: Cursor) -> None:
-        top = cursor.y
-        if cursor.canvas and self.ringed and self.warmth > 0.02:
-            ring = pygame.Rect(self.box.topleft, (round(self.reach) or self.box.width, self.box.height))
-            colour, strength = (HUMAN, 0.9) if self.typing else (INK, 0.4)
-            cursor.canvas.outline(ring.inflate(24, 2), 8, colour, 1, strength * self.warmth)
-        cursor.gap(self.pad)
-        self.write(cursor)
-        cursor.gap(self.pad)
-        if cursor.canvas is None:
-            self.seen = cursor.seen
-            left, above = round(cursor.left), round(top)  # rows that touch, touch in whole points as well
-            box = pygame.Rect(left, above, round(cursor.width), round(cursor.y) - above)
-            self.rect = self.relative_rect = box
-
-    def write(self, cursor: Cursor) -> None:
-        raise NotImplementedError
-
-    def hover_point(self, hover_x: float, hover_y: float) -> bool:
-        """Whether a point is on it and not scrolled away."""
-        return bool(self.rect.collidepoint(hover_x, hover_y)) and (
-            self.seen is None or self.seen.collidepoint(hover_x, hover_y)
-        )
-
-    def paint(self, canvas: Canvas) -> None:
-        """Do nothing: the panel paints it."""
+def said(words: Words) -> str:
+    """Return words as they are now."""
+    return words if isinstance(words, str) else words()
 
 
 class ButtonRow(RowWidget, TextButton):
@@ -84,13 +41,14 @@ class ButtonRow(RowWidget, TextButton):
         manager: PointsManager,
         label: str,
         press: OnPress,
-        aside: Callable[[], str] = str,
-        figure: Callable[[], str] = str,
+        aside: Words = "",
+        *,
+        figure: Words = "",
         size: float = TEXT,
         weight: Weight = "regular",
         colour: Colour = MUTE,
     ) -> None:
-        super().__init__(manager, _NOWHERE, label, press, size=size, weight=weight, colour=colour)
+        super().__init__(manager, NOWHERE, label, press, size=size, weight=weight, colour=colour)
         self._aside, self._figure = aside, figure
 
     def measured(self, cursor: Cursor) -> float:
@@ -99,7 +57,7 @@ class ButtonRow(RowWidget, TextButton):
 
     def write(self, cursor: Cursor) -> None:
         label, top = cursor.in_style(self._size, self.tint(), self._weight), cursor.y
-        wide, figure = min(label.measured(self.label), cursor.width), self._figure()
+        wide, figure = min(label.measured(self.label), cursor.width), said(self._figure)
         label.text(self.label)
         if cursor.canvas and self.warmth * wide > 1:
             y = label.y - 0.05 * self._size + 2
@@ -114,7 +72,7 @@ class ButtonRow(RowWidget, TextButton):
                 beside.text(figure)
                 label.y = beside.y
         cursor.y = label.y
-        if aside := self._aside():
+        if aside := said(self._aside):
             cursor.gap(3)
             cursor.aside(aside)
 
@@ -127,7 +85,7 @@ class ButtonRow(RowWidget, TextButton):
 
     def _reach(self, cursor: Cursor) -> float:
         """Return how far to the right a pointer finds it."""
-        figure, aside = self._figure(), self._aside()
+        figure, aside = said(self._figure), said(self._aside)
         beside = _WORDS + cursor.in_style(TEXT).measured(figure) if figure else 0.0
         below = cursor.in_style(SMALL).measured(aside) if aside else 0.0
         return max(self.measured(cursor) + beside, below) + _WORDS
@@ -156,7 +114,7 @@ class ToggleRow(RowWidget):
     def __init__(
         self, manager: PointsManager, label: str, value: bool, change: Callable[[bool], None], aside: str = ""
     ) -> None:
-        super().__init__(manager, _NOWHERE, label)
+        super().__init__(manager, NOWHERE, label)
         self.value, self._on_change, self._aside = value, change, aside
         self._slid = float(value)
 
@@ -206,12 +164,13 @@ class SliderRow(RowWidget):
         value: float,
         limits: tuple[float, float],
         change: Callable[[float], None],
+        *,
         step: float,
         figure: Callable[[float], str],
         aside: str = "",
         ticks: Mapping[float, str] = MappingProxyType({}),
     ) -> None:
-        super().__init__(manager, _NOWHERE, label)
+        super().__init__(manager, NOWHERE, label)
         self.value, self.limits, self._on_change = value, limits, change
         self._step, self._figure, self._aside, self._ticks = step, figure, aside, ticks
         self._track = (0.0, 1.0)
@@ -303,7 +262,7 @@ class ChoiceRow(RowWidget, Choice):
         change: Callable[[int], None],
         size: float = TEXT,
     ) -> None:
-        super().__init__(manager, _NOWHERE, label, options, index, change, size=size)
+        super().__init__(manager, NOWHERE, label, options, index, change, size=size)
         self._places: list[pygame.FRect] = []
 
     def press(self) -> Transition | None:
@@ -344,57 +303,3 @@ class ChoiceRow(RowWidget, Choice):
             self._places = places
             self.reach = 0.0 if self.label else max(place.right for place in places) - _WORDS / 2 - cursor.left
         cursor.y = words.y + LEADING * self._size
-
-
-class EntryRow(RowWidget, Entry):
-    """Line to type in."""
-
-    def __init__(
-        self,
-        manager: PointsManager,
-        text: str,
-        accept: Callable[[str], Transition | None],
-        cancel: OnPress,
-        limit: int,
-        fits: Any,
-    ) -> None:
-        super().__init__(manager, _NOWHERE, "", text, accept, on_cancel=cancel, limit=limit, fits=fits)
-
-    def write(self, cursor: Cursor) -> None:
-        cursor.take(28.0)
-        if cursor.canvas:
-            Entry.paint(self, cursor.canvas)
-
-
-class ListRow(RowWidget, Listing):
-    """List to choose from, as high as its rows: at most eight of them, or as many as a window has room for.
-
-    `around` is the height of all else in that window, in points, and `first` the row at which the list begins; `more`
-    is as for a `Listing`.
-    """
-
-    def __init__(
-        self,
-        manager: PointsManager,
-        rows: Sequence[Row],
-        press: Callable[[int], Transition | None],
-        empty: str = "",
-        around: float = 0.0,
-        first: int = 0,
-        **more: Any,
-    ) -> None:
-        super().__init__(manager, _NOWHERE, rows, on_press=press, empty=empty, **more)
-        self._around, self._most, self.first = around, _ROWS, first
-
-    def lay(self, cursor: Cursor) -> None:
-        before = self.room
-        super().lay(cursor)
-        if self.room != before:
-            self._show_chosen()
-
-    def write(self, cursor: Cursor) -> None:
-        if self._around and cursor.seen and cursor.canvas is None:
-            self._most = max(4, int((cursor.seen.height - self._around) / self._pitch))
-        cursor.take(self._pitch * min(max(len(self.rows), 1), self._most))
-        if cursor.canvas:
-            Listing.paint(self, cursor.canvas)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -14,8 +13,8 @@ from game.drawing.tokens import HUMAN
 from game.input.controls import Command, Held
 from game.ui.context import Context
 from game.ui.form import Form
-from game.ui.hints import Hint, HintRow
-from game.ui.listing import Listing
+from game.ui.hints import Hint
+from game.ui.listing import ListRow
 from game.ui.widget import Widget
 
 DWELL: Final = 75  # steps for which each choice is marked
@@ -50,13 +49,10 @@ class SwitchScan:
 
     def stops(self, scene: Scene, canvas: Canvas) -> list[Stop]:
         """Return what can be chosen: the widgets in their order, and then the hints that a click would run."""
-        form = getattr(scene, "form", None)
-        widgets = form.widgets if isinstance(form, Form) else []
-        confirm = form.confirm if isinstance(form, Form) else None
-        found = [stop for widget in widgets for stop in _stops_of(widget)]
-        canvas = scene.laid_on(canvas)
-        rows: Sequence[HintRow] = scene.hint_rows(canvas)
-        for row in reversed(rows):  # the hints of a card come before those of the flight behind it
+        form, canvas = _form_of(scene), scene.laid_on(canvas)
+        confirm = form.confirm if form else None
+        found = [stop for widget in (form.widgets if form else ()) for stop in _stops_of(widget)]
+        for row in reversed(scene.hint_rows(canvas)):  # the hints of a card come before those of the flight behind it
             for hint, box in zip(row.hints, row.boxes(canvas), strict=True):
                 if hint.run and hint.run != confirm:
                     found.append(Stop(box, hint=hint))
@@ -117,18 +113,16 @@ class SwitchScan:
     def _mark(self, scene: Scene, canvas: Canvas) -> None:
         """Move the focus to what is marked."""
         stops = self.stops(scene, canvas)
-        stop = stops[self.index % len(stops)] if stops else None
-        if stop and stop.widget and isinstance(form := getattr(scene, "form", None), Form) and not form.typing:
+        stop, form = stops[self.index % len(stops)] if stops else None, _form_of(scene)
+        if stop and stop.widget and form and not form.typing:
             form.focus(stop.widget)
-            if isinstance(stop.widget, Listing) and self._since == 0:
+            if isinstance(stop.widget, ListRow) and self._since == 0:
                 stop.widget.choose(stop.row)
 
     def _choose(self, scene: Scene, stop: Stop) -> Transition | None:
-        if stop.hint:
-            return stop.hint.run() if stop.hint.run else None
-        widget, form = stop.widget, getattr(scene, "form", None)
-        if widget is None or not isinstance(form, Form):
-            return None
+        widget, form = stop.widget, _form_of(scene)
+        if widget is None or form is None:
+            return stop.hint.run() if stop.hint and stop.hint.run else None
         form.focus(widget)
         if not widget.by_arrows:
             return form.confirm()
@@ -137,24 +131,27 @@ class SwitchScan:
 
     def _is_press(self, event: pygame.event.Event, scene: Scene) -> bool:
         """Whether an event presses the switch; Up, which fires the engine too, still moves the focus."""
-        controls, form = self._context.controls, getattr(scene, "form", None)
-        if isinstance(form, Form) and form.typing:
+        controls, form = self._context.controls, _form_of(scene)
+        if form and form.typing:
             return False
         if event.type == pygame.MOUSEBUTTONDOWN:
             return bool(event.button == 1 and self._mouse_still >= _STILL)
-        for kind, bindings, name in (
-            (pygame.KEYDOWN, controls.keys, "key"), (pygame.CONTROLLERBUTTONDOWN, controls.buttons, "button"),
-        ):  # fmt: skip
-            if event.type == kind:
-                code = getattr(event, name)
-                switches = bindings.codes(Held.MAIN) + bindings.codes(Command.CONFIRM)
-                return code in switches and code not in bindings.codes(Command.UP)
-        return False
+        if event.type not in (pygame.KEYDOWN, pygame.CONTROLLERBUTTONDOWN):
+            return False
+        by_key = event.type == pygame.KEYDOWN
+        bindings, code = (controls.keys, event.key) if by_key else (controls.buttons, event.button)
+        switches = bindings.codes(Held.MAIN) + bindings.codes(Command.CONFIRM)
+        return code in switches and code not in bindings.codes(Command.UP)
+
+
+def _form_of(scene: Scene) -> Form | None:
+    form = getattr(scene, "form", None)
+    return form if isinstance(form, Form) else None
 
 
 def _stops_of(widget: Widget) -> list[Stop]:
     box = pygame.FRect(widget.box)
-    if not isinstance(widget, Listing):
+    if not isinstance(widget, ListRow):
         return [Stop(box, widget=widget)]
     seen = range(widget.first, min(len(widget.rows), widget.first + widget.room))
     pitch = widget.baseline(1) - widget.baseline(0)

@@ -7,7 +7,7 @@ draws itself in the window's own pixels, so nothing is laid out again when the w
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import pygame
 from pygame_gui import UIManager
@@ -17,11 +17,15 @@ from pygame_gui.core.utility import set_default_manager
 
 from game.core.scene import Transition
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import INK, MUTE, VIEW_SIZE, Colour
+from game.drawing.tokens import HUMAN, INK, MUTE, VIEW_SIZE, Colour
 from game.input.controls import Controls
 from game.ui.hints import Hint
 
+if TYPE_CHECKING:
+    from game.drawing.cursor import Cursor
+
 OnPress = Callable[[], Transition | None]
+NOWHERE: Final = (0, 0, 1, 1)  # where a row is until it is laid out
 EASE: Final = 0.22  # share of the remaining difference, per sixtieth of a second
 
 
@@ -153,6 +157,47 @@ class Widget(UIElement):
     def tint(self) -> Colour:
         """Return the label's colour: muted, or ink when in focus."""
         return mix(MUTE, INK, self.warmth)
+
+
+class RowWidget(Widget):
+    """Widget that is a row of a panel, and has no place of its own.
+
+    Attributes:
+        pad: points above and below what it says.
+        reach: how far from the left its ring reaches, in points; 0 for the whole column.
+        seen: the part of its panel that is not scrolled away.
+
+    """
+
+    pad, reach = 8.0, 0.0
+    seen: pygame.FRect | None = None
+
+    def lay(self, cursor: Cursor) -> None:
+        top = cursor.y
+        if cursor.canvas and self.ringed and self.warmth > 0.02:
+            ring = pygame.Rect(self.box.topleft, (round(self.reach) or self.box.width, self.box.height))
+            colour, strength = (HUMAN, 0.9) if self.typing else (INK, 0.4)
+            cursor.canvas.outline(ring.inflate(24, 2), 8, colour, 1, strength * self.warmth)
+        cursor.gap(self.pad)
+        self.write(cursor)
+        cursor.gap(self.pad)
+        if cursor.canvas is None:
+            self.seen = cursor.seen
+            left, above = round(cursor.left), round(top)  # rows that touch, touch in whole points as well
+            box = pygame.Rect(left, above, round(cursor.width), round(cursor.y) - above)
+            self.rect = self.relative_rect = box
+
+    def write(self, cursor: Cursor) -> None:
+        raise NotImplementedError
+
+    def hover_point(self, hover_x: float, hover_y: float) -> bool:
+        """Whether a point is on it and not scrolled away."""
+        return bool(self.rect.collidepoint(hover_x, hover_y)) and (
+            self.seen is None or self.seen.collidepoint(hover_x, hover_y)
+        )
+
+    def paint(self, canvas: Canvas) -> None:
+        """Do nothing: the panel paints it."""
 
 
 def mix(a: Colour, b: Colour, fraction: float) -> Colour:

@@ -11,7 +11,7 @@ import pygame
 from game.core.scene import Transition
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import FAINT, INK, MUTE, NET, SMALL, TEXT, Colour
+from game.drawing.tokens import FAINT, INK, MUTE, NET, TEXT, Colour
 from game.drawing.typeface import Weight
 from game.ui.widget import OnPress, PointsManager, Widget, mix
 
@@ -62,7 +62,8 @@ class TextButton(Widget):
 class Choice(Widget):
     """Choice of one word in a row, with a line under the chosen one.
 
-    Words that do not fit into the box go on further pages, one of which is shown at a time, between arrows.
+    Words that do not fit into the box go on further pages, one of which is shown at a time, between arrows. `on_open`
+    opens a list of all: with Enter, a gamepad's A, or a click on `all_word`, which stands behind such pages.
     """
 
     def __init__(
@@ -76,12 +77,12 @@ class Choice(Widget):
         *,
         label_width: float = 0,
         size: float = TEXT,
-        gap: float = GAP,
+        on_open: OnPress | None = None,
+        all_word: str = "",
     ) -> None:
         super().__init__(manager, box, label)
         self.options, self.index, self._on_change, self._size = options, index, on_change, size
-        self._label_room = max(label_width - 10, 0)
-        self.row = TextButtonRow(options, self.box.left + label_width, self.box.right, size, gap)
+        self._label_width, self._on_open, self._all_word = label_width, on_open, all_word
 
     def choose(self, index: int) -> None:
         """Choose an option by its number."""
@@ -91,7 +92,11 @@ class Choice(Widget):
             self._on_change(index)
 
     def press(self) -> Transition | None:
-        self.choose(self.row.pressed(self.mouse_x, self.index))
+        x = self.mouse_x
+        pages, _, right = self.laid()
+        if self._on_open and (x is None or (len(pages) > 1 and x >= right + _BESIDE - 4)):
+            return self._on_open()
+        self.choose((self.index + 1) % len(self.options) if x is None else self._at(x))
         return None
 
     def shift(self, direction: int) -> bool:
@@ -99,128 +104,66 @@ class Choice(Widget):
         self.choose(self.index + direction)
         return self.index != before
 
-    def paint(self, canvas: Canvas) -> None:
-        super().paint(canvas)
-        baseline = self.box.centery + 0.36 * self._size
-        canvas.text(self.label, (self.box.left, baseline), size=self._size, colour=self.tint(), room=self._label_room)
-        self.row.paint(canvas, baseline, self.index)
-
-
-class ChoiceOrList(Choice):
-    """Choice that can also be made from a list: Enter, a gamepad's A or a click on `all_word` calls `on_open`.
-
-    The word is shown at the right end if not all options fit into the row.
-    """
-
-    def __init__(
-        self,
-        manager: PointsManager,
-        box: pygame.typing.RectLike,
-        label: str,
-        options: Sequence[str],
-        index: int,
-        on_change: Callable[[int], None],
-        on_open: OnPress,
-        all_word: str,
-        *,
-        label_width: float = 0,
-        size: float = SMALL,
-    ) -> None:
-        super().__init__(manager, box, label, options, index, on_change, label_width=label_width, size=size)
-        self._on_open, self._all_word = on_open, all_word
-        self._open_left = float(self.box.right)
-        if len(self.row.pages) > 1:
-            self._open_left -= typeface.width(all_word, size, "regular")
-            self.row = TextButtonRow(options, self.box.left + label_width, self._open_left - _BESIDE, size)
-
-    def press(self) -> Transition | None:
-        x = self.mouse_x
-        return self._on_open() if x is None or x >= self._open_left - 4 else super().press()
-
-    def paint(self, canvas: Canvas) -> None:
-        super().paint(canvas)
-        if len(self.row.pages) > 1:
-            baseline = self.box.centery + 0.36 * self._size
-            canvas.text(self._all_word, (self._open_left, baseline), size=self._size, colour=self.tint())
-
-
-class TextButtonRow:
-    """Row of words from `left` to `right`, in points. One page is shown at a time, between arrows.
-
-    Attributes:
-        pages: the numbers of the words on each page.
-        lefts: the left end of each word, in points.
-        right: the right end of the row, in points.
-
-    """
-
-    def __init__(self, words: Sequence[str], left: float, right: float, size: float, gap: float = GAP) -> None:
-        self.words, self._size, self._gap, self._left, self.right = words, size, gap, left, right
-        self._growth = 0.0
-        self._lay_out()
-
-    def _lay_out(self) -> None:
-        """Lay out the words again if the size of text has changed."""
-        if self._growth == typeface.growth():
-            return
-        self._growth = typeface.growth()
-        left, gap = self._left, self._gap
-        widths = [typeface.width(word, self._size, "regular") for word in self.words]
-        room = self.right - left
-        if sum(widths) + gap * (len(widths) - 1) > room + 1:
-            room -= 2 * _ARROW
-        self.pages = _pages(widths, room, gap)
-        self.lefts = [
+    def laid(self) -> tuple[list[range], list[float], float]:
+        """Return the numbers of the words on each page, the left end of each word, and the right end of the row."""
+        left, right = self.box.left + self._label_width, float(self.box.right)
+        widths = [typeface.width(word, self._size, "regular") for word in self.options]
+        if sum(widths) + GAP * (len(widths) - 1) <= right - left + 1:
+            pages = [range(len(widths))]
+        else:
+            right -= typeface.width(self._all_word, self._size, "regular") + _BESIDE if self._all_word else 0.0
+            pages = _pages(widths, right - left - 2 * _ARROW)
+        lefts = [
             left + (_ARROW if page.start else 0) + place
-            for page in self.pages
-            for place in accumulate((widths[number] + gap for number in page[:-1]), initial=0.0)
+            for page in pages
+            for place in accumulate((widths[number] + GAP for number in page[:-1]), initial=0.0)
         ]
+        return pages, lefts, right
 
-    def _page(self, chosen: int) -> range:
-        self._lay_out()
-        return next(page for page in self.pages if chosen in page)
-
-    def at(self, x: float, chosen: int) -> int:
+    def _at(self, x: float) -> int:
         """Return the number of the word at x on the chosen word's page, or of the word that an arrow there leads to."""
-        page = self._page(chosen)
-        if page.stop < len(self.words) and x > self.right - _ARROW:
+        pages, lefts, right = self.laid()
+        page = next(page for page in pages if self.index in page)
+        if page.stop < len(self.options) and x > right - _ARROW:
             return page.stop
-        if page.start and self.lefts[page.start] - _ARROW <= x < self.lefts[page.start] - 4:
+        if page.start and lefts[page.start] - _ARROW <= x < lefts[page.start] - 4:
             return page.start - 1
-        return max((number for number in page if self.lefts[number] - self._gap / 2 <= x), default=chosen)
+        return max((number for number in page if lefts[number] - GAP / 2 <= x), default=self.index)
 
-    def pressed(self, x: float | None, chosen: int) -> int:
-        """Return the number that a press chooses: that of the word at x, or without a mouse that of the next word."""
-        return (chosen + 1) % len(self.words) if x is None else self.at(x, chosen)
-
-    def paint(self, canvas: Canvas, baseline: float, chosen: int) -> None:
-        """Draw the page of the chosen word, with a line under it."""
-        page, size = self._page(chosen), self._size
+    def paint(self, canvas: Canvas) -> None:
+        super().paint(canvas)
+        baseline, size = self.box.centery + 0.36 * self._size, self._size
+        room = max(self._label_width - 10, 0)
+        canvas.text(self.label, (self.box.left, baseline), size=size, colour=self.tint(), room=room)
+        pages, lefts, right = self.laid()
+        page = next(page for page in pages if self.index in page)
         if page.start:
-            canvas.text("‹", (self.lefts[page.start] - 16, baseline), size=size, colour=INK)
-        if page.stop < len(self.words):
-            canvas.text("›", (self.right, baseline), size=size, colour=INK, align="right")
+            canvas.text("‹", (lefts[page.start] - 16, baseline), size=size)
+        if page.stop < len(self.options):
+            canvas.text("›", (right, baseline), size=size, align="right")
+        if len(pages) > 1:
+            canvas.text(self._all_word, (right + _BESIDE, baseline), size=size, colour=self.tint())
         for number in page:
-            left, colour = self.lefts[number], INK if number == chosen else MUTE
-            box = canvas.text(self.words[number], (left, baseline), size=size, colour=colour)
-            if number == chosen:
+            left, colour = lefts[number], INK if number == self.index else MUTE
+            box = canvas.text(self.options[number], (left, baseline), size=size, colour=colour)
+            if number == self.index:
                 canvas.line((left, baseline + 8), (left + box.width, baseline + 8), NET, 2)
 
 
-def _pages(widths: Sequence[float], room: float, gap: float) -> list[range]:
+def _pages(widths: Sequence[float], room: float) -> list[range]:
     """Return the numbers of the words on each page; a page has at least one word."""
     starts, x = [0], 0.0
     for number, width in enumerate(widths):
         if x and x + width > room:
             starts.append(number)
             x = 0.0
-        x += width + gap
+        x += width + GAP
     return [range(start, stop) for start, stop in pairwise([*starts, len(widths)])]
 
 
-def draw_switch(canvas: Canvas, rect: tuple[float, float, float, float], slid: float, colour: Colour = NET) -> None:
+def draw_switch(canvas: Canvas, rect: tuple[float, float, float, float], slid: float) -> None:
     """Draw a switch; `slid` is the position of its knob, from 0, off, to 1, on."""
     left, top, width, height = rect
-    canvas.pill(rect, mix(FAINT, colour, slid))
+    canvas.pill(rect, mix(FAINT, NET, slid))
     half = height / 2
     canvas.dot((left + half + (width - height) * slid, top + half), half - 2.5, INK)

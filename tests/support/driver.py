@@ -103,7 +103,7 @@ class Driver:
 
     def to_window(self, points: tuple[float, float]) -> tuple[int, int]:
         canvas = self.top.laid_on(self.app.canvas)
-        x, y = (round(p * canvas.scale + o) for p, o in zip(points, canvas.offset, strict=True))
+        x, y = (round(p * canvas.scale + o) for p, o in zip(points, canvas.origin, strict=True))
         return x, y
 
     def move(self, points: tuple[float, float]) -> None:

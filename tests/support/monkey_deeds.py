@@ -1,4 +1,4 @@
-"""What the monkey can do: each deed posts events, or spoils something, and says in a few words what it did."""
+"""What the monkey can do: each posts events, or spoils something, and says in a few words what it did."""
 
 from __future__ import annotations
 
@@ -30,30 +30,16 @@ _BOUND = [pygame.K_UP, pygame.K_DOWN, pygame.K_LEFT, pygame.K_RIGHT, pygame.K_w,
 _OTHERS = [*range(pygame.K_SPACE, pygame.K_z + 1), *range(pygame.K_F1, pygame.K_F11), pygame.K_DELETE, pygame.K_HOME,
            pygame.K_END, pygame.K_INSERT, pygame.K_LSHIFT, pygame.K_CAPSLOCK, pygame.K_MENU, 0]  # fmt: skip
 _MODS = (0, 0, 0, pygame.KMOD_SHIFT, pygame.KMOD_CTRL, pygame.KMOD_ALT, pygame.KMOD_META)
-_TEXTS = (
-    "a",
-    "7",
-    " ",
-    ".",
-    "é",
-    "月",
-    "🚀",
-    "CON",
-    "../..",
-    "",
-    "\x00",
-    "\u202e",
-    "x" * 300,
-    "NUL.txt",
-    "-1e999",
-    "nan",
-)
+_TEXTS = ("a", "7", " ", ".", "é", "月", "🚀", "CON", "../..", "", "\x00", "\u202e", "x" * 300, "NUL.txt", "-1e999",
+          "nan")  # fmt: skip
 _PAD_BUTTONS = [*range(21), *range(15), *range(8)]
 _PAD_AXES = [*range(6), 7]
 _WINDOW = ("WINDOWFOCUSLOST", "WINDOWFOCUSGAINED", "WINDOWMINIMIZED", "WINDOWRESTORED", "WINDOWEXPOSED",
            "WINDOWENTER", "WINDOWLEAVE", "WINDOWHIDDEN", "WINDOWSHOWN", "WINDOWMAXIMIZED", "WINDOWMOVED",
            "WINDOWDISPLAYCHANGED", "WINDOWSIZECHANGED", "WINDOWRESIZED", "WINDOWTAKEFOCUS", "CLIPBOARDUPDATE",
            "KEYMAPCHANGED", "RENDER_TARGETS_RESET", "APP_LOWMEMORY", "LOCALECHANGED")  # fmt: skip
+_STRANGE = (pygame.DROPFILE, pygame.FINGERDOWN, pygame.FINGERUP, pygame.USEREVENT, pygame.JOYBUTTONDOWN,
+            pygame.AUDIODEVICEREMOVED, pygame.AUDIODEVICEADDED)  # fmt: skip
 _NONSENSE = (b"", b"\x00\xff\xfe" * 200, b"{", b"[]", b"null", b'{"format": 1e999}', b"NaN\n" * 50, b"[" * 5000)
 _FULL = 40  # frames that the disk stays full
 
@@ -100,7 +86,6 @@ class Hands:
     # Keys and text
 
     def press(self, key: int) -> str:
-        """Press a key, and let go of it now or some day."""
         mod = self._one(_MODS)
         letter = chr(key) if 32 <= key < 127 else ""
         self.post(pygame.KEYDOWN, key=key, mod=mod, unicode=letter, scancode=0)
@@ -111,39 +96,26 @@ class Hands:
         return f"key {pygame.key.name(key) or key}"
 
     def bound_key(self) -> str:
-        """Press a key that means something somewhere."""
         return self.press(self._one(_BOUND))
 
     def other_key(self) -> str:
-        """Press any other."""
         return self.press(self._one(_OTHERS))
 
     def let_go(self) -> str:
-        """Let go of a key, or of one that was never pressed."""
         key = self._keys.pop() if self._keys else self._one(_BOUND)
         self.post(pygame.KEYUP, key=key, mod=0, unicode="", scancode=0)
         return "key up"
 
     def type_text(self) -> str:
-        """Type, compose, paste."""
         text = self._one(_TEXTS)
         if self.rng.random() < 0.2:
             self.post(pygame.TEXTEDITING, text=text, start=0, length=len(text))
         self.post(pygame.TEXTINPUT, text=text)
         return f"text {text[:10]!r}"
 
-    def full_screen(self) -> str:
-        """Go to full screen or back."""
-        return self.press(pygame.K_F11)
-
-    def screenshot(self) -> str:
-        """Take a picture."""
-        return self.press(pygame.K_F12)
-
     # The mouse
 
     def click(self) -> str:
-        """Press a widget, or a place; once, twice, with any button."""
         self._move(self._target())
         button = int(self.rng.choice([1, 1, 1, 1, 2, 3, 4, 6]))
         for _ in range(int(self.rng.choice([1, 1, 1, 2]))):
@@ -153,7 +125,6 @@ class Hands:
         return f"click {button} at {self._mouse}"
 
     def drag(self) -> str:
-        """Press, pull somewhere, and mostly let go."""
         self._move(self._target())
         self.post(pygame.MOUSEBUTTONDOWN, pos=self._mouse, button=1, touch=False)
         start, end = self._mouse, self._target()
@@ -166,13 +137,11 @@ class Hands:
         return f"drag to {end}"
 
     def wheel(self) -> str:
-        """Turn the wheel."""
         x, y = (int(each) for each in self.rng.integers(-9, 10, 2))
         self.post(pygame.MOUSEWHEEL, x=x, y=y, precise_x=float(x), precise_y=float(y), flipped=False, touch=False)
         return "wheel"
 
     def hover(self) -> str:
-        """Move the mouse."""
         self._move(self._target())
         return f"move to {self._mouse}"
 
@@ -196,7 +165,6 @@ class Hands:
     # Pads
 
     def pad_button(self) -> str:
-        """Press a button of one of two pads."""
         pad, button = int(self.rng.integers(2)), self._one(_PAD_BUTTONS)
         self.post(pygame.CONTROLLERBUTTONDOWN, instance_id=pad, button=button)
         if self.rng.random() < 0.7:
@@ -204,14 +172,12 @@ class Hands:
         return f"pad button {button}"
 
     def pad_axis(self) -> str:
-        """Push a stick or a trigger, or let it spring back."""
         value = int(self.rng.choice([-32768, 32767, 0, 0, int(self.rng.integers(-32768, 32768))]))
         axis = self._one(_PAD_AXES)
         self.post(pygame.CONTROLLERAXISMOTION, instance_id=int(self.rng.integers(2)), axis=axis, value=value)
         return f"pad axis {axis}: {value}"
 
     def pad_comes_or_goes(self) -> str:
-        """Plug a pad in, or pull one out that may have been there."""
         if self.rng.random() < 0.5:
             self.post(pygame.CONTROLLERDEVICEADDED, device_index=int(self.rng.integers(4)), guid="")
         else:
@@ -221,43 +187,32 @@ class Hands:
     # The window, sound and the like
 
     def window(self) -> str:
-        """Let something happen to the window."""
         name = self._one(_WINDOW)
         self.post(getattr(pygame, name), x=0, y=0, window=None, display_index=0)
         return name
 
     def come_back(self) -> str:
-        """Let the window be seen and used."""
         self.post(pygame.WINDOWRESTORED, window=None)
         self.post(pygame.WINDOWFOCUSGAINED, window=None)
         return "window is back"
 
     def resize(self) -> str:
-        """Pull at the window's edge."""
         size = self._one(SIZES)
         self.app.window.size = size
         self.posted += 1
         return f"resize to {size}"
 
     def strange(self) -> str:
-        """Let something come in that the game has no use for."""
-        kind = self._one((pygame.DROPFILE, pygame.FINGERDOWN, pygame.FINGERUP, pygame.USEREVENT, pygame.JOYBUTTONDOWN))
-        self.post(kind, file="/nowhere", x=0.5, y=0.5, dx=0.0, dy=0.0, finger_id=1, touch_id=1, button=0)
-        return pygame.event.event_name(kind)
-
-    def device(self) -> str:
-        """Lose the sound device, or find one."""
-        kind = self._one((pygame.AUDIODEVICEREMOVED, pygame.AUDIODEVICEADDED))
-        self.post(kind, which=0, iscapture=False)
+        kind = self._one(_STRANGE)
+        self.post(kind, file="/nowhere", x=0.5, y=0.5, dx=0.0, dy=0.0, finger_id=1, touch_id=1, button=0, which=0,
+                  iscapture=False)  # fmt: skip
         return pygame.event.event_name(kind)
 
     def close_window(self) -> str:
-        """Press the window's close button."""
         self.post(pygame.QUIT)
         return "close"
 
     def wait(self) -> str:
-        """Look on for a while."""
         self.posted += 1
         frames = int(self.rng.integers(10, 120))
         all(self.pass_frame() for _ in range(frames))
@@ -266,7 +221,6 @@ class Hands:
     # Bad days
 
     def damage(self) -> str:
-        """Spoil a file of the player's or a shipped network."""
         context = self.app.context
         files = [
             path
@@ -300,7 +254,6 @@ class Hands:
         return f"{how} {path.parent.name}/{path.name}"
 
     def fill_disk(self) -> str:
-        """Let no file grow for a while."""
         self._limit_files(0)
         self._full_until = self._frame + _FULL
         self.posted += 1
@@ -313,7 +266,6 @@ class Hands:
             resource.setrlimit(resource.RLIMIT_FSIZE, (hard if size is None else size, hard))
 
     def kill_child(self) -> str:
-        """Kill a process that trains."""
         children = active_children()
         for child in children[:1]:
             child.kill()
@@ -329,7 +281,8 @@ Deed = Callable[[Hands], str]
 DEEDS: dict[Deed, float] = {
     Hands.bound_key: 24, Hands.other_key: 3, Hands.let_go: 8, Hands.type_text: 2, Hands.click: 12, Hands.drag: 3,
     Hands.wheel: 3, Hands.hover: 6, Hands.wait: 0.5, Hands.pad_button: 8, Hands.pad_axis: 6,
-    Hands.pad_comes_or_goes: 0.3, Hands.window: 0.6, Hands.come_back: 0.6, Hands.strange: 0.3, Hands.device: 0.1,
-    Hands.resize: 0.05, Hands.full_screen: 0.03, Hands.screenshot: 0.03, Hands.close_window: 0.02,
+    Hands.pad_comes_or_goes: 0.3, Hands.window: 0.6, Hands.come_back: 0.6, Hands.strange: 0.4,
+    Hands.resize: 0.05, lambda hands: hands.press(pygame.K_F11): 0.03,
+    lambda hands: hands.press(pygame.K_F12): 0.03, Hands.close_window: 0.02,
     Hands.damage: 0.15, Hands.fill_disk: 0.05, Hands.kill_child: 0.05,
 }  # fmt: skip

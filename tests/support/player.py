@@ -4,7 +4,7 @@ import pygame
 
 from ai.lander.pilots import Pilot, ScriptedPilot
 from game.scenes.play.scene import PlayScene
-from game.ui.listing import Listing
+from game.ui.listing import ListRow
 from game.ui.widget import Widget
 from tests.support.driver import Driver
 
@@ -59,7 +59,7 @@ class Player(Driver):
     def lead_on(self, direction: str) -> None:
         """Press a direction until the focus moves, as often as a list has rows, or a choice options."""
         before = self.form.focused
-        steps = len(before.rows) if isinstance(before, Listing) else len(getattr(before, "options", "  "))
+        steps = len(before.rows) if isinstance(before, ListRow) else len(getattr(before, "options", "  "))
         for _ in range(steps + 1):
             self.press(direction)
             if self.form.focused is not before:

@@ -28,10 +28,8 @@ import numpy as np
 import pygame
 
 from game.core import texts
-from game.core.scene import Scene
-from game.core.settings import Settings
+from game.core.settings import Settings, SettingsFile
 from game.core.worker import WorkerState
-from game.drawing.canvas import Canvas
 from game.drawing.tokens import VIEW_SIZE
 from game.scenes import scene_of
 from game.scenes.digits.inside import DigitInsideScene
@@ -39,6 +37,7 @@ from game.scenes.error_screen import ErrorScene
 from game.scenes.learn import pay
 from game.scenes.learn.duels import DaringChapter, TargetChapter
 from game.scenes.learn.memory import MemoryChapter
+from game.scenes.learn.path import FIRST
 from game.scenes.learn.scene import ChapterScene
 from game.scenes.lesson.scene import LessonScene
 from game.scenes.play.scene import PlayScene
@@ -48,12 +47,13 @@ from game.training.beside import put_beside
 from game.training.run import TrainingRun
 from game.ui.context import Context
 from game.ui.widgets import Choice
+from tests.game.tour.stops import STOPS, Stop
 from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.lessons import digit_lesson_of
 from tests.support.networks import on_a_link
 from tests.support.pen import SEVEN, stroke
-from tests.support.screens import FLOWN, OVER_OTHERS, SCREENS, Make, crashed, opened, reader, settle, seven, shared
+from tests.support.screens import FLOWN, Make, crashed, reader, seven
 from tests.support.small import DIGITS, LANDERS
 from tests.support.tour import stock
 from tests.support.written import Written, misplaced
@@ -186,23 +186,6 @@ def told(driver: Driver) -> None:
     driver.frames(2)
 
 
-def touched(driver: Driver) -> None:
-    """Take the lander of Watch in the hand, under a map of actions."""
-    driver.frames(3)
-    driver.keys(pygame.K_m, pygame.K_g)
-    driver.post(pygame.KEYDOWN, key=pygame.K_LEFT, mod=0, unicode="", scancode=0)
-    driver.frames(20)
-
-
-def explained(driver: Driver) -> None:
-    """Have something explained in Watch, under a map of scores."""
-    driver.frames(3)
-    driver.keys(pygame.K_m, pygame.K_m, pygame.K_SPACE)
-    driver.frames(30)
-    driver.keys(*[pygame.K_F1] * 5)
-    driver.frames(2)
-
-
 def tried(*labels: str, steps: int) -> Happens:
     """Return what tries a chapter: presses on widgets, each for so many steps; then it is asked why."""
 
@@ -255,90 +238,59 @@ def reset(driver: Driver) -> None:
     driver.frames(5)
 
 
-def rest(driver: Driver) -> None:
-    """Draw frames until a message has moved away from what has moved."""
-    for _ in range(3):
-        driver.frames(1)
-
-
-class Blank(Scene):
-    """Nothing, for a dialog to stand over."""
-
-    def draw(self, canvas: Canvas, alpha: float) -> None:
-        """Draw nothing."""
-        canvas.surface.fill((0, 0, 0))
-
-
 OTHERS: dict[str, Make] = {
-    "tutorial": PlayScene,
+    "the tutorial": PlayScene,
     "a digit's lesson": lambda context: LessonScene(context, digit_lesson_of("modern")),
     "modern inside": lambda context: DigitInsideScene(context, reader("modern"), seven()),
     "error": lambda context: ErrorScene(context, ValueError(), Path("/home/somebody/log")),
 }
-# What happens in a scene: its name, settings, and what is done there.
-STATES: dict[str, tuple[str, dict[str, object], Happens]] = {
-    "a crash": ("Play", {}, crashed),
-    "a mission's crash": ("mission", {}, crashed),
-    "a day's crash": ("daily", {}, crashed),
-    "a claim": ("friend", {}, lambda driver: driver.skip(240)),
-    "sharing the stick": ("Play", {"assist": 0.6, "three_pads": True}, shared),
-    "practice": ("Play", {"gravity": 0.8, "pace": 0.7, "hands": "laggy"}, shared),
-    "assists": ("Play", {"wider_pads": True, "untimed": True, "pace": 0.5, "toggle_thrust": True}, crashed),
-    "a share of thrust": ("Play", {}, half_way),
-    "one switch": ("MenuScene", {"one_switch": True}, lambda driver: driver.skip(30)),
-    "bringing it back": ("flights", {}, reset),
-    "the tutorial": ("tutorial", {"tutored": False}, lambda _: None),
-    "an error": ("error", {}, lambda _: None),
-    "a message": ("MenuScene", {}, told),
-    "all knobs": ("TrainScene", {"opened": "charts knobs more"}, lambda _: None),
-    "the laboratory": ("TrainScene", {}, listed),
-    "a guess": ("TrainScene", {}, asked),
-    "training": ("TrainScene", {}, trained),
-    "an experiment": ("TrainScene", {}, experimented),
-    "an earlier moment": ("TrainScene", {}, rewound),
-    "an edited network": ("TrainScene", {}, edited),
-    "its swarm": ("TrainScene", {}, edited_and_back),
-    "training to read": ("DigitTrainingScene", {}, taught_to_read),
-    **{f"frame {number + 1}": ("LessonScene", {}, frame(number)) for number in range(7)},
-    "a law": ("PhysicsScene", {}, measured),
-    "a step": ("PhysicsStepScene", {}, taken_apart),
-    **{f"frame {number + 1} of a digit": ("a digit's lesson", {}, frame(number)) for number in range(7)},
-    "a digit": ("DigitsScene", {}, drawn),
-    "a switch": ("DigitsScene", {}, switched),
-    **{f"inside, {steps}": ("DigitInsideScene", {}, partial(inside, steps)) for steps in (1, 6, 20)},
-    "inside, modern": ("modern inside", {}, partial(inside, 3)),
-    "inside, code": ("modern inside", {}, in_code),
-    "why not": ("WhyNotScene", {}, lambda driver: driver.skip(120)),
-    "the quiz": ("QuizScene", {}, handed_in),
-    "the quiz, answered": ("QuizScene", {}, answered),
-    "Watch, touched": ("WatchScene", {}, touched),
-    "Watch, explained": ("WatchScene", {}, explained),
-    "a swarm": ("swarm", {}, lambda driver: driver.skip(400)),
-    "a neuron, tried": ("ChapterScene", {}, tried(texts.LEARN_NEURON_HINT, steps=640)),
-    "a plane, tried": ("chapter, plane", {}, tried(steps=320)),
-    "downhill, tried": ("chapter, downhill", {}, tried(steps=340)),
-    "backwards, tried": (
-        "chapter, backwards",
-        {},
-        tried(
-            texts.LEARN_BACKWARDS_BACK,
-            texts.LEARN_BACKWARDS_BACK,
-            texts.LEARN_BACKWARDS_BACK,
-            texts.LEARN_BACKWARDS_BACK,
-            texts.LEARN_BACKWARDS_STEP,
-            steps=2,
-        ),
+# Screens in states that take long to reach, or say much: beside those of the tour.
+STATES = [
+    Stop("daily", "a crash", crashed),
+    Stop("friend", "a claim", lambda driver: driver.skip(240)),
+    Stop("Play", "assists", crashed, {"wider_pads": True, "untimed": True, "pace": 0.5, "toggle_thrust": True}),
+    Stop("Play", "a share of thrust", half_way),
+    Stop("MenuScene", "one switch", lambda driver: driver.skip(30), {"one_switch": True}),
+    Stop("flights", "bringing it back", reset),
+    Stop("the tutorial", settings={"tutored": False}),
+    Stop("error"),
+    Stop("MenuScene", "a message", told),
+    Stop("TrainScene", "all knobs", settings={"opened": "charts knobs more"}),
+    Stop("TrainScene", "the laboratory", listed),
+    Stop("TrainScene", "a guess", asked),
+    Stop("TrainScene", "training", trained),
+    Stop("TrainScene", "an experiment", experimented),
+    Stop("TrainScene", "an earlier moment", rewound),
+    Stop("TrainScene", "an edited network", edited),
+    Stop("TrainScene", "its swarm", edited_and_back),
+    Stop("DigitTrainingScene", "training to read", taught_to_read),
+    *(Stop("LessonScene", f"frame {number + 1}", frame(number)) for number in range(7)),
+    Stop("PhysicsScene", "a law", measured),
+    Stop("PhysicsStepScene", "a step", taken_apart),
+    *(Stop("a digit's lesson", f"frame {number + 1}", frame(number)) for number in range(7)),
+    Stop("DigitsScene", "a digit", drawn),
+    Stop("DigitsScene", "a switch", switched),
+    *(Stop("DigitInsideScene", f"inside, {steps}", partial(inside, steps)) for steps in (1, 6, 20)),
+    Stop("modern inside", "inside", partial(inside, 3)),
+    Stop("modern inside", "code", in_code),
+    Stop("WhyNotScene", "why not", lambda driver: driver.skip(120)),
+    Stop("QuizScene", "read", handed_in),
+    Stop("QuizScene", "answered", answered),
+    *(
+        Stop(f"chapter, {key}" if key != FIRST else "ChapterScene", "tried", tried(*labels, steps=steps))
+        for key, labels, steps in (
+            ("neuron", [texts.LEARN_NEURON_HINT], 640),
+            ("plane", [], 320),
+            ("downhill", [], 340),
+            ("backwards", [*[texts.LEARN_BACKWARDS_BACK] * 4, texts.LEARN_BACKWARDS_STEP], 2),
+            ("pay", [texts.LEARN_PAY_TRAIN], 850),
+            ("moment", [texts.LEARN_MOMENT_GO, texts.LEARN_MOMENT_NEXT, texts.LEARN_MOMENT_GO], 480),
+            ("target", [texts.LEARN_RUNS_START[0]], SHORT_RUN + 5),
+            ("memory", [texts.LEARN_MEMORY_START], SHORT_RUN + 5),
+            ("daring", [texts.LEARN_RUNS_START[0]], SHORT_RUN + 5),
+        )
     ),
-    "pay, tried": ("chapter, pay", {}, tried(texts.LEARN_PAY_TRAIN, steps=850)),
-    "a moment, tried": (
-        "chapter, moment",
-        {},
-        tried(texts.LEARN_MOMENT_GO, texts.LEARN_MOMENT_NEXT, texts.LEARN_MOMENT_GO, steps=480),
-    ),
-    "target, tried": ("chapter, target", {}, tried(texts.LEARN_RUNS_START[0], steps=SHORT_RUN + 5)),
-    "memory, tried": ("chapter, memory", {}, tried(texts.LEARN_MEMORY_START, steps=SHORT_RUN + 5)),
-    "daring, tried": ("chapter, daring", {}, tried(texts.LEARN_RUNS_START[0], steps=SHORT_RUN + 5)),
-}
+]
 
 
 class Walk:
@@ -352,35 +304,25 @@ class Walk:
         self._written = Written(setattr)
         self._whole = {text for text in strings(vars(texts)) if text.endswith("…")}
 
-    def visit(self, name: str, sizes: Sequence[str], settings: dict[str, object], happens: Happens) -> None:
-        """Open a scene; note what stands there at some sizes of text, and at the last with each widget and option."""
-        *others, size = sizes
-        driver = self._open(name, size, settings)
+    def visit(self, stop: Stop) -> None:
+        """Open a screen; note what stands there at all sizes of text, and at the largest with each widget's options."""
+        driver = stop.open(self._open, Context(self.user_dir, Settings(), rng=np.random.default_rng(1)))
         try:
-            happens(driver)
-            self._note(driver, f"{name}, {size}")
-            for other in others:
-                driver.write_in(other)
-                rest(driver)
-                self._note(driver, f"{name}, {other}")
-            if others:
+            for size in ("largest",) if stop.state else (*SIZES[:2], "largest"):
                 driver.write_in(size)
-                rest(driver)
+                self._note(driver, f"{stop}, {size}")
             for window in self._windows:
                 driver.resize(window)
-                rest(driver)
-                self._note(driver, f"{name}, {size}, {window}")
+                self._note(driver, f"{stop}, {window}")
             driver.resize(VIEW_SIZE)
             for place, widget in enumerate(list(self._widgets(driver))):
                 if widget not in self._widgets(driver):
                     break
                 driver.form.focus(widget)
-                rest(driver)
-                self._note(driver, f"{name}, widget {place}, {size}")
+                self._note(driver, f"{stop}, widget {place}")
                 for number in range(len(widget.options)) if isinstance(widget, Choice) else ():
                     widget.choose(number)
-                    rest(driver)
-                    self._note(driver, f"{name}, widget {place}, option {number}, {size}")
+                    self._note(driver, f"{stop}, widget {place}, option {number}")
         finally:
             driver.app.close()
 
@@ -388,17 +330,16 @@ class Walk:
         form = getattr(driver.top, "form", None)
         return form.widgets if form else []
 
-    def _open(self, name: str, size: str, settings: dict[str, object]) -> Driver:
-        context = Context(self.user_dir, Settings(), rng=np.random.default_rng(1))
-        settle(context, text_size=size, **settings)
-
-        def open_game(make: Make) -> Driver:
-            frames = count()
-            return Driver(App(context, make, now=lambda: next(frames) / 60, scene_of=scene_of, capped=False))
-
-        return open_game(OTHERS[name]) if name in OTHERS else opened(open_game, name, below=Blank)
+    def _open(self, make: Make) -> Driver:
+        context, frames = (
+            Context(self.user_dir, SettingsFile(self.user_dir).load(), rng=np.random.default_rng(1)),
+            count(),
+        )
+        return Driver(App(context, make, now=lambda: next(frames) / 60, scene_of=scene_of, capped=False))
 
     def _note(self, driver: Driver, place: str) -> None:
+        for _ in range(3):  # until a message has moved away from what has moved
+            driver.frames(1)
         page = self._written.turn(driver.app.canvas)
         driver.app.draw()
         for note in page.notes:
@@ -429,10 +370,9 @@ def main() -> None:
     with TemporaryDirectory() as folder:
         walk = Walk(Path(folder), sys.argv[2:])
         stock(Context(Path(folder), Settings(), rng=np.random.default_rng(1)))
-        for name in (*SCREENS, *FLOWN, *OVER_OTHERS):
-            walk.visit(name, SIZES, {}, lambda _: None)
-        for name, settings, happens in STATES.values():
-            walk.visit(name, SIZES[-1:], settings, happens)
+        FLOWN.update(OTHERS)
+        for stop in (*STOPS, *STATES):
+            walk.visit(stop)
         json.dump({"seen": walk.seen, "wrong": walk.wrong}, sys.stdout)
 
 

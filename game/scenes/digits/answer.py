@@ -16,8 +16,7 @@ from game.drawing.tokens import HUMAN, INK, LABEL, MUTE, NET, SMALL, TEXT, TITLE
 from game.input.controls import Command, translate
 from game.scenes.digits.reader import LEAST_INK, Reading, Verdict, best_two
 from game.training.digit_models import called
-from game.ui.rows import RowWidget
-from game.ui.widget import PointsManager, mix
+from game.ui.widget import PointsManager, RowWidget, mix
 
 _DIGITS: Final = 10
 _ROW: Final = 22.0

@@ -11,10 +11,9 @@ from game.drawing.tokens import HUMAN, INK, MUTE, SMALL, TITLE
 from game.scenes.learn.path import FIRST, PATH, Progress
 from game.ui.actions import Table
 from game.ui.context import Context
-from game.ui.listing import Row
+from game.ui.listing import ListRow, Row
 from game.ui.panel import Panel
 from game.ui.panel_scene import PanelScene
-from game.ui.rows import ListRow
 
 _KEYS: Final = tuple(PATH)
 _LEAST, _AROUND = 300.0, 100.0  # points of a column, and above and below the list

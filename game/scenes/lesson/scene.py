@@ -23,8 +23,7 @@ from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.panel import Panel
 from game.ui.panel_scene import PanelScene
-from game.ui.rows import RowWidget
-from game.ui.widget import PointsManager
+from game.ui.widget import PointsManager, RowWidget
 
 _CARD: Final = 132.0  # the least width of a card, in points
 _HIGH, _GAP = 54.0, 8.0

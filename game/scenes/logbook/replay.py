@@ -15,10 +15,9 @@ from ai.flights.recording import SharedFlight
 from ai.lander.environment import Outcome
 from game.audio.flight_sounds import FlightSound
 from game.core import texts
-from game.core.clock import STEP
+from game.core.clock import STEP, TimeScale
 from game.core.collection import exports_dir
 from game.core.names import LONGEST_NAME, fitting
-from game.core.pace import SlowMotion
 from game.core.scene import Pop, Transition, push
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
@@ -71,12 +70,12 @@ class ReplayScene(FormScene):
 
     """
 
-    fills = takes_tab = True
+    takes_tab = True
 
     def __init__(self, context: Context, record: Record, friend: SharedFlight | None = None) -> None:
         super().__init__(context)
         self.record = record
-        self._pace = SlowMotion()
+        self._pace = TimeScale()
         self.playback = Playback(self._pace, SPEEDS, self._fly)
         self._warned = False
         self._asks, self._looked = False, -1  # whether futures are asked for, and of which step they are

@@ -14,8 +14,7 @@ from game.input.bindings import Bindings, Meaning
 from game.input.controls import Command, Controls, Held, key_name
 from game.ui.actions import Action, Table
 from game.ui.panel_scene import PanelScene
-from game.ui.rows import RowWidget
-from game.ui.widget import PointsManager, mix
+from game.ui.widget import PointsManager, RowWidget, mix
 
 if TYPE_CHECKING:
     from game.drawing.cursor import Cursor
@@ -84,7 +83,7 @@ class BindingCell(RowWidget):
         what = self._word(code)
         if not self._bindings.may(self._meaning, code):
             self._on_change(texts.BINDINGS_FIXED.format(key=what))
-        elif poor := self._bindings.bereft(self._meaning, code):
+        elif poor := self._bindings.keyless(self._meaning, code):
             self._on_change(texts.BINDINGS_ONLY.format(key=what, other=texts.BINDINGS[poor.name]))
         else:
             self.stop()

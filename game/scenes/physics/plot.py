@@ -14,8 +14,8 @@ from game.drawing.tokens import HUMAN, INK, MUTE, SMALL, Colour
 from game.scenes.physics.exhibit import Exhibit
 from game.ui import plotting
 from game.ui.chart import Chart
+from game.ui.curves import Series
 from game.ui.panel import Column
-from game.ui.series import Series
 
 _HEIGHT: Final = 190.0
 _CURVE: Final = 65  # places at which the law is evaluated

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Final
 
 import pygame
@@ -27,7 +28,7 @@ from game.ui.context import Context
 from game.ui.panel import Column, Panel
 from game.ui.panel_scene import PanelScene
 from game.ui.playback import Playback
-from game.ui.rows import ButtonRow, SliderRow
+from game.ui.rows import ButtonRow
 from game.ui.virtual_pointer import PictureRow
 from game.world.bodies import Outlines, draw_contacts, draw_force_scale, draw_grip
 from game.world.camera import View
@@ -213,11 +214,10 @@ class PhysicsScene(PanelScene):
         what = texts.EXPLAIN_PHYSICS
         for quantity in self.exhibit.quantities:
             label, figure = texts.QUANTITIES[quantity.name]
-            column.widget(SliderRow(
-                self.form.manager, label, self.exhibit.values[quantity.name], quantity.limits,
-                lambda value, name=quantity.name: self._change(name, value), quantity.step,  # type: ignore[misc]
-                lambda value, figure=figure: figure.format(value=value),  # type: ignore[misc]
-            ))  # fmt: skip
+            column.slider(
+                label, self.exhibit.values[quantity.name], quantity.limits, partial(self._change, quantity.name),
+                step=quantity.step, figure=partial(_filled, figure),
+            )  # fmt: skip
             column.explain(what["slider"])
         buttons = column.words([
             (texts.LAW_START_VALUES, self._reset),
@@ -351,3 +351,7 @@ class PhysicsScene(PanelScene):
         for button, what in self._told:
             canvas.explain(button.box, what)
         self.explained.draw(canvas)
+
+
+def _filled(figure: str, value: float) -> str:
+    return figure.format(value=value)

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from ai.environment import Doubles
-from game.core.pace import SlowMotion
+from game.core.clock import TimeScale
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, NET, VIEW_SIZE
 from game.flight.flight import Flight, StickHolder
@@ -37,7 +37,7 @@ class FlightEnding:
 
     """
 
-    def __init__(self, flight: Flight, pace: SlowMotion, reduced_motion: bool) -> None:
+    def __init__(self, flight: Flight, pace: TimeScale, reduced_motion: bool) -> None:
         self._flight, self._pace, self.calm = flight, pace, reduced_motion
         self._since = 0
         self.whole: CameraTarget | None = None

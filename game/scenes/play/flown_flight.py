@@ -12,7 +12,7 @@ from ai.flights.verification import landing_score
 from ai.lander.environment import Outcome
 from game.audio.flight_sounds import FlightSound
 from game.core import texts
-from game.core.pace import SlowMotion
+from game.core.clock import TimeScale
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import VIEW_SIZE
 from game.explain.landings import Landings
@@ -104,7 +104,7 @@ class FlownFlight:
         calm = self._settings.reduced_motion
         self.clear, self._earth = ClearArea(), EARTH
         self.scenery = Scenery(self.flight, calm, ClearArea(head=_WAITING))
-        self.pace = SlowMotion()
+        self.pace = TimeScale()
         self._heard = FlightSound(context.sound, self.flight.env, self.pace)
         self.path = FlownPath(self.flight)
         self.ending = FlightEnding(self.flight, self.pace, calm)

@@ -20,9 +20,8 @@ from game.flight.logbook import Records, rank
 from game.scenes.play.card import draw_lamps
 from game.scenes.play.challenge import FlownMission
 from game.ui.actions import Table
-from game.ui.listing import Row
+from game.ui.listing import ListRow, Row
 from game.ui.panel_scene import PanelScene
-from game.ui.rows import ListRow
 
 if TYPE_CHECKING:
     from game.drawing.canvas import Canvas

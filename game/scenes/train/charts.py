@@ -28,8 +28,8 @@ from game.training.beside import EarlierRun
 from game.training.knob_descriptions import figure, label, told
 from game.ui.chart import Chart, Series, Tick
 from game.ui.charts import Charts
+from game.ui.curves import run_style
 from game.ui.plotting import Limits
-from game.ui.series import run_style
 
 AXES: Final = ("seconds", "decisions")  # what the horizontal axis counts: see texts.TRAIN_AXES
 BY_DECISIONS: Final = 1

@@ -29,9 +29,9 @@ from game.training.digit_models import DigitModels, runs_dir
 from game.training.run import TrainingRun
 from game.training.run_settings import RunKind
 from game.training.workers import DIGITS
+from game.ui.charts import Scrubber
 from game.ui.context import Context
 from game.ui.panel import Column
-from game.ui.scrubber import Scrubber
 from game.ui.virtual_pointer import VirtualPointer
 from game.ui.widget import Widget
 

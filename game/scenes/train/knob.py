@@ -19,8 +19,7 @@ from game.drawing.cursor import Cursor
 from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, MUTE, NET, PANEL, SMALL, Colour
 from game.input.controls import Command, translate
 from game.training.knob_descriptions import KnobDescription, figure
-from game.ui.rows import RowWidget
-from game.ui.widget import PointsManager, mix
+from game.ui.widget import PointsManager, RowWidget, mix
 
 _LABELS, _FIGURES = 150.0, 62.0  # points from the label to the track, and from the track to the right end
 _HEIGHT: Final = 20.0

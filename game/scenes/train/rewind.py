@@ -136,8 +136,9 @@ class _Timeline(SliderRow):
 
     def __init__(self, manager: PointsManager, rewind: Rewind) -> None:
         super().__init__(
-            manager, texts.REWIND_TIMELINE, rewind.share, (0.0, 1.0), rewind.seek_share, 0.001, rewind.seconds_at
-        )
+            manager, texts.REWIND_TIMELINE, rewind.share, (0.0, 1.0), rewind.seek_share, step=0.001,
+            figure=rewind.seconds_at,
+        )  # fmt: skip
         self._rewind = rewind
 
     def shift(self, direction: int) -> bool:

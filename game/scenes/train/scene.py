@@ -37,10 +37,10 @@ from game.training.library import Library
 from game.training.run import TrainingRun
 from game.training.workers import LANDERS, PACES
 from game.ui.actions import Action, Table
+from game.ui.charts import Scrubber
 from game.ui.context import Context
 from game.ui.panel import Column
 from game.ui.rows import RunRow
-from game.ui.scrubber import Scrubber
 from game.ui.virtual_pointer import VirtualPointer
 from game.ui.widget import Widget
 from game.world.swarm import LearningSwarm

@@ -16,7 +16,7 @@ from game.drawing.tokens import LINE, NET, NIGHT0, SMALL, TEXT
 from game.scenes.train.charts import Beside
 from game.training.beside import EarlierRun
 from game.training.run import TrainingRun
-from game.ui.series import RUN_STYLES
+from game.ui.curves import RUN_STYLES
 from game.world.swarm import LearningSwarm
 
 _SAID: Final = 66.0  # height of the words below each half

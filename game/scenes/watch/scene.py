@@ -34,7 +34,7 @@ from game.ui.form_scene import FormScene
 from game.ui.hints import HintRow
 from game.ui.playback import LABEL_WIDTH
 from game.ui.widget import OnPress
-from game.ui.widgets import GAP, Choice, ChoiceOrList
+from game.ui.widgets import GAP, Choice
 from game.world.camera import Camera
 from game.world.policy_map import ACTION
 
@@ -61,8 +61,6 @@ class WatchScene(FormScene):
         problem: why another network cannot fly; empty if it can.
 
     """
-
-    fills = True
 
     def __init__(
         self, context: Context, count: int = 1, seed: int | None = None, guest: tuple[str, Path] | None = None
@@ -266,12 +264,12 @@ class WatchScene(FormScene):
         width = LABEL_WIDTH + sum(typeface.width(word, SMALL, "regular") + GAP for word in words) - GAP
         return pygame.Rect(x, y + row * pitch, math.ceil(min(width, _WIDEST)), _ROW_HEIGHT)
 
-    def _network_row(self, index: int) -> ChoiceOrList:
+    def _network_row(self, index: int) -> Choice:
         words = [brief(networks.word(name), _LONGEST_NAME) for name in self.policies.names]
         box, everything = self._row_box(0, words), texts.WATCH_ALL.format(count=len(words))
-        return ChoiceOrList(
-            self.form.manager, box, texts.WATCH_MODEL, words, index, self._choose_network, self._open_networks,
-            everything, label_width=LABEL_WIDTH,
+        return Choice(
+            self.form.manager, box, texts.WATCH_MODEL, words, index, self._choose_network, label_width=LABEL_WIDTH,
+            size=SMALL, on_open=self._open_networks, all_word=everything,
         )  # fmt: skip
 
     def _map_row(self, values: bool = True) -> Choice:

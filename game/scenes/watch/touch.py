@@ -16,8 +16,8 @@ from game.core import texts
 from game.drawing.canvas import PAGE, Align, Canvas, Point
 from game.drawing.tokens import HUMAN, INK, NIGHT0, SMALL
 from game.input.controls import Command, Controls, translate
-from game.ui.held_directions import HeldDirections
 from game.ui.hints import Hint
+from game.ui.virtual_pointer import HeldDirections
 from game.ui.widget import PointsManager, Widget
 
 if TYPE_CHECKING:

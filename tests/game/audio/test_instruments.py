@@ -4,7 +4,6 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from game.audio import synth
 from game.audio.instruments import GROUPS, INSTRUMENTS, RUNGS, altitude_key, rung
 from game.audio.synth import RATE
 from game.core.settings import Settings
@@ -18,6 +17,10 @@ def sound(key):
     return INSTRUMENTS[key].render(key) / 32_767
 
 
+def decibels(gain):
+    return 20 * np.log10(gain)
+
+
 def band(key, low, high):
     """The share of a sound's power between two frequencies."""
     power = (np.abs(np.fft.rfft(sound(key), axis=0)) ** 2).sum(axis=1)
@@ -26,13 +29,13 @@ def band(key, low, high):
 
 
 def rms(key):
-    return synth.decibels(np.sqrt(np.mean(sound(key) ** 2)))
+    return decibels(np.sqrt(np.mean(sound(key) ** 2)))
 
 
 def test_every_sound_has_its_level_and_no_offset(subtests):
     for key in INSTRUMENTS:
         with subtests.test(key=key):
-            assert synth.decibels(np.abs(sound(key)).max()) == pytest.approx(INSTRUMENTS[key].level, abs=0.1)
+            assert decibels(np.abs(sound(key)).max()) == pytest.approx(INSTRUMENTS[key].level, abs=0.1)
             assert np.abs(sound(key).mean(axis=0)).max() < 0.002
             assert INSTRUMENTS[key].group in GROUPS
 

@@ -1,16 +1,16 @@
 import pytest
 
-from game.core.pace import SlowMotion
+from game.core.clock import TimeScale
 
 
 def test_at_its_own_pace_every_update_is_a_step():
-    pace = SlowMotion()
+    pace = TimeScale()
     assert all(pace.steps() == 1 for _ in range(100))
     assert pace.between(0.4) == 0.4
 
 
 def test_slow_motion_takes_about_a_second_for_a_third_of_the_steps_and_then_is_over():
-    pace = SlowMotion()
+    pace = TimeScale()
     pace.slow_down()
     steps = updates = 0
     while pace.slow:
@@ -23,7 +23,7 @@ def test_slow_motion_takes_about_a_second_for_a_third_of_the_steps_and_then_is_o
 
 def test_a_picture_never_runs_backward():
     """The moment that is drawn, in steps, grows from picture to picture."""
-    pace = SlowMotion()
+    pace = TimeScale()
     pace.slow_down()
     steps, last = 1, 0.0  # it begins with a step, that of the crash
     for update in range(120):
@@ -36,7 +36,7 @@ def test_a_picture_never_runs_backward():
 
 
 def test_slow_motion_can_be_cut_short():
-    pace = SlowMotion()
+    pace = TimeScale()
     pace.slow_down()
     for _ in range(5):
         pace.steps()
@@ -46,7 +46,7 @@ def test_slow_motion_can_be_cut_short():
 
 
 def test_the_players_own_pace_holds_for_as_long_as_it_is_wished():
-    pace = SlowMotion(0.5)
+    pace = TimeScale(0.5)
     assert sum(pace.steps() for _ in range(200)) == 100
     pace.rate = 1.0
     assert all(pace.steps() == 1 for _ in range(10))

@@ -18,7 +18,7 @@ from game.input.analogue import pushed
 from game.scenes.logbook.replay import ReplayScene
 from game.scenes.logbook.scene import LogbookScene
 from game.ui.context import Context
-from game.ui.rows import ListRow
+from game.ui.listing import ListRow
 from tests.support.driver import Driver
 from tests.support.flights import NOON, fly_out, kept, scripted
 from tests.support.written import words_written

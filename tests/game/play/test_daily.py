@@ -20,7 +20,7 @@ from game.scenes.logbook.replay import ReplayScene
 from game.scenes.play.daily import DailyStart, DaysScene
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
-from game.ui.rows import ListRow
+from game.ui.listing import ListRow
 from tests.support.driver import Driver
 from tests.support.flights import kept, play
 

@@ -26,7 +26,7 @@ from game.scenes.play.missions import MissionsScene
 from game.scenes.play.wind import wind
 from game.scenes.play.words import surroundings
 from game.ui.context import Context
-from game.ui.rows import ListRow
+from game.ui.listing import ListRow
 from tests.support.driver import Driver
 from tests.support.flights import kept, play, scripted
 from tests.support.missions import fly, pilots

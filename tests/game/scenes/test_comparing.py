@@ -31,7 +31,7 @@ def train(open_game: Callable[..., Driver]) -> Driver:
 def test_a_run_is_seen_before_others_and_taken_away(train: Driver, device: str) -> None:
     def colours() -> dict[str, object]:
         train.frames(30)
-        return {run.series.name: run.series.colour for run in train.top.charts.charts[0].runs}
+        return {run.name: run.colour for run in train.top.charts.charts[0].runs}
 
     row = next(each for each in train.form.widgets if isinstance(each, RunRow) and each.label == "two")
     plain = colours()

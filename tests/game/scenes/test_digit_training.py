@@ -29,7 +29,7 @@ from game.training.knob_descriptions import knob_descriptions
 from game.training.run import TrainingRun
 from game.training.run_settings import RunSettings
 from game.training.workers import DIGITS
-from game.ui.scrubber import Scrubber
+from game.ui.charts import Scrubber
 from tests.support.driver import Driver
 from tests.support.player import Player
 from tests.support.small import DIGITS as SMALL

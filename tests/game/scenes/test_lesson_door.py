@@ -6,7 +6,7 @@ from game.core import texts
 from game.core.worker import WorkerState
 from game.scenes.lesson.scene import LessonScene
 from game.scenes.train.scene import TrainScene
-from game.ui.scrubber import Scrubber
+from game.ui.charts import Scrubber
 from game.ui.virtual_pointer import VirtualPointer
 from tests.support.driver import Driver
 from tests.support.small import LANDERS

@@ -3,11 +3,8 @@ from pathlib import Path
 
 import pytest
 
-from game.core.settings import Settings
 from game.scenes.menus.menu import MenuScene
-from game.ui.context import Context
 from tests.support.monkey import Monkey, playground
-from tests.support.tour import dialogs, makers, scene_types
 
 
 @pytest.fixture
@@ -48,14 +45,3 @@ def test_it_does_find_scenes_that_stay_in_memory(folder: Path, monkeypatch: pyte
     monkey = Monkey(folder, open_sound=False)
     monkey.play(10)
     assert "1 × MenuScene still in memory" in monkey.left_behind()
-
-
-def test_every_scene_can_be_entered_or_is_reached_from_another(folder: Path):
-    context = Context(folder / "user", Settings())
-    scenes = [make() for make in (*makers(context).values(), *dialogs(MenuScene(context)).values())]
-    for scene in scenes:
-        if scene is not None:
-            scene.close()
-    made = {type(scene).__name__ for scene in scenes}
-    inner = {"ChoicesScene", "Dialog", "ErrorScene", "FlightPauseScene", "PauseScene"}  # no screens
-    assert {each.__name__ for each in scene_types()} - made - inner <= {"ReplayScene"}  # there is no flight yet

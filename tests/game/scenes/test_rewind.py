@@ -14,7 +14,7 @@ from game.core.worker import WorkerState
 from game.scenes.train.base import CHARTS, INSIDE
 from game.scenes.train.scene import TrainScene
 from game.scenes.train.status import lander_status
-from game.ui.scrubber import Scrubber
+from game.ui.charts import Scrubber
 from tests.support.driver import Driver
 
 POINTS = 8

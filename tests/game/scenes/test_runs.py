@@ -17,8 +17,8 @@ from game.scenes.menus.menu import MenuScene
 from game.scenes.train.networks import NetworksScene
 from game.training.library import Library
 from game.ui.context import Context
-from game.ui.entry import Entry
-from game.ui.rows import ListRow
+from game.ui.entry import EntryRow
+from game.ui.listing import ListRow
 from tests.support.driver import Driver
 
 Open = Callable[..., Driver]
@@ -93,7 +93,7 @@ def verbs(driver: Driver) -> list[str]:
 
 
 def naming(driver: Driver) -> bool:
-    return any(isinstance(widget, Entry) for widget in driver.form.widgets)
+    return any(isinstance(widget, EntryRow) for widget in driver.form.widgets)
 
 
 def click(driver: Driver, label: str) -> None:

@@ -28,9 +28,9 @@ from game.scenes.train.inside import SHOWN
 from game.scenes.train.scene import TrainScene
 from game.training.library import Library
 from game.training.run import TrainingRun
-from game.ui import focus
-from game.ui.rows import EntryRow
-from game.ui.scrubber import Scrubber
+from game.ui.charts import Scrubber
+from game.ui.entry import EntryRow
+from game.ui.form import DOWN, LEFT, RIGHT, UP, neighbour
 from game.ui.widget import Widget
 from game.ui.widgets import Choice
 from tests.support.driver import Driver
@@ -272,8 +272,8 @@ def test_every_widget_can_be_reached_by_directions_alone(train: Driver) -> None:
             index = frontier.pop()
             # Left and right turn some, and lead nowhere; a choice leads on at its ends.
             turns = type(form.widgets[index]).shift not in (Widget.shift, Choice.shift)
-            ways = (focus.UP, focus.DOWN) if turns else (focus.UP, focus.DOWN, focus.LEFT, focus.RIGHT)
-            fresh = {focus.neighbour(boxes, index, way, in_order=True) for way in ways} - reached
+            ways = (UP, DOWN) if turns else (UP, DOWN, LEFT, RIGHT)
+            fresh = {neighbour(boxes, index, way, in_order=True) for way in ways} - reached
             reached |= fresh
             frontier += fresh
         missed = [widget.label or type(widget).__name__ for n, widget in enumerate(form.widgets) if n not in reached]

@@ -13,7 +13,7 @@ from game.scenes.menus.menu import MenuScene
 from game.scenes.menus.settings import GROUPS_OF_SETTINGS
 from game.scenes.play.scene import PlayScene
 from game.ui.context import Context
-from game.ui.rows import ListRow
+from game.ui.listing import ListRow
 from tests.support.driver import Driver
 from tests.support.player import DEVICES, Player
 from tests.support.screens import OVER_OTHERS, SCREENS, flown, settle

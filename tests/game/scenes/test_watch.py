@@ -16,7 +16,6 @@ from game.scenes.train.networks import NetworksScene
 from game.scenes.watch.scene import WatchScene
 from game.training.library import Library
 from game.ui.context import Context
-from game.ui.widgets import ChoiceOrList
 from game.world.camera import Camera
 from tests.support.driver import Driver
 
@@ -90,7 +89,7 @@ def test_slower_and_faster(watching: Driver, key: int, times: int, speed: float)
 
 def test_the_mouse_chooses_words_and_landers(watching: Driver):
     choice = watching.choice("16")
-    watching.click((choice.row.lefts[1] + 4, choice.box.centery))
+    watching.click((choice.laid()[1][1] + 4, choice.box.centery))
     assert scene(watching).swarm.env.num_envs == 16
     scene(watching).playback.stopped = True
     positions = scene(watching).swarm.env.position
@@ -144,13 +143,13 @@ def test_of_many_networks_only_the_one_that_flies_is_read(many: Driver):
 
 
 def flies(driver: Driver) -> str:
-    choice = driver.the(ChoiceOrList)
+    choice = scene(driver)._model_choice
     return choice.options[choice.index]
 
 
 @pytest.mark.parametrize("way", ["key", "pad", "mouse", "pause"])
 def test_a_list_opens_to_choose_from(many: Driver, context: Context, way: str):
-    row = many.the(ChoiceOrList)
+    row = scene(many)._model_choice
     match way:
         case "key":
             many.key(pygame.K_RETURN)
@@ -180,8 +179,8 @@ def test_what_was_renamed_or_deleted_meanwhile_is_noted(many: Driver, context: C
     library.rename("run 04", "better")
     many.key(pygame.K_ESCAPE)
     watch = scene(many)
-    assert "better" in many.the(ChoiceOrList).options
-    assert "run 03" not in many.the(ChoiceOrList).options
+    assert "better" in scene(many)._model_choice.options
+    assert "run 03" not in scene(many)._model_choice.options
     assert watch.network.name == flies(many)
     many.frames(5)
 

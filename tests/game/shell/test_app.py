@@ -2,7 +2,6 @@ import gc
 import signal
 import weakref
 from functools import partial
-from itertools import pairwise
 from pathlib import Path
 
 import pygame
@@ -83,27 +82,19 @@ def test_escape_in_the_menu_asks_twice(game: Driver):
     assert not game.key(pygame.K_ESCAPE)
 
 
-@pytest.mark.parametrize("name", ["full_screen", "reduced_motion", "colour_safe", "show_hints"])
-def test_a_setting_acts_at_once_is_saved_at_once_and_survives(open_game, context: Context, name: str):
-    before = getattr(Settings(), name)
-    game = open_game(SettingsScene)
-    game.press_on(texts.SETTINGS[name][0])
-    game.app.settings_writer.wait()
-    assert getattr(SettingsFile(context.user_dir).load(), name) is not before
+def test_settings_act_at_once_are_saved_at_once_and_survive(open_game, context: Context):
+    game, names = open_game(SettingsScene), ("full_screen", "reduced_motion", "colour_safe", "show_hints")
+    usual = game.app.canvas.palette
+    for name in names:
+        game.press_on(texts.SETTINGS[name][0])
+        game.app.settings_writer.wait()
+        assert getattr(SettingsFile(context.user_dir).load(), name) is not getattr(Settings(), name)
+    assert game.app.canvas.palette != usual
     game.app.close()
     again = open_game()
-    assert getattr(again.app.context.settings, name) is not before
+    for name in names:
+        assert getattr(again.app.context.settings, name) is not getattr(Settings(), name)
     assert again.app.window.full_screen == again.app.context.settings.full_screen
-
-
-def test_colours_change_with_the_setting(open_game):
-    game = open_game(SettingsScene)
-    usual = game.app.canvas.palette
-    switch = game.widget(texts.SETTINGS["colour_safe"][0]).box.center
-    game.click(switch)
-    assert game.app.canvas.palette != usual
-    game.click(switch)
-    assert game.app.canvas.palette == usual
 
 
 def test_a_mouse_at_rest_takes_nothing_from_the_keyboard(open_game, monkeypatch: pytest.MonkeyPatch):
@@ -328,12 +319,6 @@ def test_a_screenshot_on_a_full_disk_is_no_picture_and_says_so(game: Driver, con
     assert not list((context.user_dir / "screenshots").iterdir())
 
 
-def test_screenshot_into_a_folder_that_cannot_be(game: Driver, context: Context):
-    context.user_dir.mkdir(parents=True, exist_ok=True)
-    (context.user_dir / "screenshots").write_text("in the way")
-    assert game.key(pygame.K_F12)
-
-
 def test_no_display_is_a_clear_error(context: Context, monkeypatch):
     monkeypatch.setenv("SDL_VIDEODRIVER", "nonesuch")
     pygame.display.quit()
@@ -387,33 +372,12 @@ def test_the_picture_of_a_scene_gives_way_to_the_next_and_not_where_motion_is_re
         game.app.scenes.apply(Replace(Plain((200, 0, 0))))
         game.frames(30)
         game.app.scenes.apply(Replace(Plain((0, 0, 200))))
-        reds = []
+        seen = []
         for _ in range(20):
             game.frames(1)
-            reds.append(corner()[0])
+            seen.append(corner())
+        reds = [red for red, *_ in seen]
         assert reds[-1] == 0
         assert reds == sorted(reds, reverse=True)
         assert (100 < reds[0] < 200) is not still
-
-
-def test_the_last_scene_fades_over_the_next_and_is_gone_after_a_moment(open_game):
-    class Plain(Probe):
-        def draw(self, canvas, alpha: float) -> None:
-            canvas.surface.fill((200, 100, 40))
-
-    game = open_game(Probe())
-    game.frames(1)
-    game.app.context.settings.reduced_motion = False
-    game.app.canvas.surface.fill((20, 60, 240))
-    game.app.scenes.apply(Push(Plain()))
-    seen = []
-    for _ in range(14):
-        game.app.scenes.draw(game.app.canvas, 1.0)
-        seen.append(tuple(game.app.canvas.surface.get_at((300, 200)))[:3])
-        game.app.scenes.update()
-    share = [(200 - red) / 180 for red, _, _ in seen]
-    assert share[0] == pytest.approx((11 / 12) ** 2, abs=0.02)
-    assert all(after <= before for before, after in pairwise(share))
-    assert seen[-1] == (200, 100, 40)
-    for red, green, blue in seen:  # always a mixture of both
-        assert (green, blue) == pytest.approx((100 - 40 * (200 - red) / 180, 40 + 200 * (200 - red) / 180), abs=4)
+        assert all(blue == pytest.approx(200 - red, abs=4) for red, _, blue, _ in seen)  # always a mixture of both

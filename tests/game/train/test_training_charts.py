@@ -17,7 +17,7 @@ from game.training.beside import EarlierRun, put_beside, take_away
 from game.training.library import Library
 from game.training.run import TrainingRun
 from game.training.workers import LANDERS
-from game.ui.series import run_style
+from game.ui.curves import run_style
 from tests.ai.training.test_hints import HEALTHY
 
 NUMBERS = list(COLUMNS[:10])
@@ -63,7 +63,7 @@ def test_a_twin_that_is_paid_otherwise_is_not_compared_by_its_pay() -> None:
     charts = looked(
         TrainingCharts(more=True), healthy, Beside([EarlierRun("other", other, 1)], "healthy", paid_otherwise=True)
     )
-    compared = {chart.label: [run.series.name for run in chart.runs] for chart in charts.charts}
+    compared = {chart.label: [run.name for run in chart.runs] for chart in charts.charts}
     for name in ("success", "loss", "epsilon"):
         assert compared[texts.TRAIN_CHARTS[name]] == ["healthy", "other"], name
     assert "other" not in compared[texts.TRAIN_CHARTS["mean_return"]]

@@ -1,6 +1,6 @@
 """Rows and columns: a panel lays itself out, wraps, reflows, scrolls, and knows where each thing stands."""
 
-from itertools import pairwise
+from itertools import pairwise, product
 
 import pygame
 import pytest
@@ -99,20 +99,19 @@ def test_columns_stand_side_by_side_or_one_below_the_other():
         assert cursor.y == (50 if beside else 112)
 
 
-@pytest.mark.parametrize("size", WINDOWS)
-@pytest.mark.parametrize("text_size", list(TEXT_SIZES))
-def test_text_can_be_read_and_stays_in_any_window_at_any_size(page: Driver, size, text_size: str):
-    page.resize(size)
-    page.write_in(text_size)
-    page.frames(3)
-    canvas = page.app.canvas.reading
-    assert canvas.scale * CAPTION >= 12 * TEXT_SIZES[text_size]  # pixels
-    panel = page.top.panel
-    assert panel.box.right <= canvas.view.right
-    assert all(panel.box.left - 1 <= box.left and box.right <= panel.box.right + 1 for box in boxes(page).values())
-    rows = sorted(boxes(page).values(), key=lambda box: (box.left, box.top))
-    for above, below in pairwise(rows):
-        assert not above.inflate(-2, -2).colliderect(below.inflate(-2, -2))
+def test_text_can_be_read_and_stays_in_any_window_at_any_size(page: Driver):
+    for size, text_size in product(WINDOWS, TEXT_SIZES):
+        page.resize(size)
+        page.write_in(text_size)
+        page.frames(3)
+        canvas = page.app.canvas.reading
+        assert canvas.scale * CAPTION >= 12 * TEXT_SIZES[text_size]  # pixels
+        panel = page.top.panel
+        assert panel.box.right <= canvas.view.right, (size, text_size)
+        widgets = boxes(page).values()
+        assert all(panel.box.left - 1 <= box.left and box.right <= panel.box.right + 1 for box in widgets)
+        for above, below in pairwise(sorted(widgets, key=lambda box: (box.left, box.top))):
+            assert not above.inflate(-2, -2).colliderect(below.inflate(-2, -2)), (size, text_size)
 
 
 def test_larger_text_is_larger_by_its_factor_and_takes_more_lines(page: Driver, monkeypatch: pytest.MonkeyPatch):

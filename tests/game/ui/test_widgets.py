@@ -14,10 +14,9 @@ from game.input.controls import Command
 from game.scenes.menus.settings import SettingsScene
 from game.scenes.play.choices import ChoicesScene
 from game.scenes.play.scene import PlayScene
-from game.ui import focus
 from game.ui.actions import hints_of
 from game.ui.context import Context
-from game.ui.form import Form
+from game.ui.form import DOWN, LEFT, RIGHT, UP, Form, neighbour
 from game.ui.listing import shortened
 from game.ui.panel import Panel
 from game.ui.panel_scene import PanelScene
@@ -53,20 +52,20 @@ def page(open_game: Callable[..., Driver]) -> tuple[Driver, Page]:
 
 def test_arrows_follow_a_column_round_and_cross_to_the_next(subtests: pytest.Subtests):
     for start, direction, end in [
-        (0, focus.DOWN, 1),
-        (2, focus.DOWN, 0),
-        (0, focus.UP, 2),
-        (1, focus.RIGHT, 4),
-        (4, focus.LEFT, 1),
-        (4, focus.RIGHT, 4),
-        (5, focus.DOWN, 3),
+        (0, DOWN, 1),
+        (2, DOWN, 0),
+        (0, UP, 2),
+        (1, RIGHT, 4),
+        (4, LEFT, 1),
+        (4, RIGHT, 4),
+        (5, DOWN, 3),
     ]:
         with subtests.test(start=start, direction=direction, end=end):
-            assert focus.neighbour(COLUMNS, start, direction) == end
+            assert neighbour(COLUMNS, start, direction) == end
 
 
 def test_a_single_widget_keeps_the_focus():
-    assert focus.neighbour(COLUMNS[:1], 0, focus.DOWN) == 0
+    assert neighbour(COLUMNS[:1], 0, DOWN) == 0
 
 
 def test_tab_visits_every_widget_and_comes_round(page: tuple[Driver, Page]):
@@ -131,7 +130,7 @@ def test_a_held_direction_repeats(page: tuple[Driver, Page]):
 def test_a_slider_stops_at_its_ticks_as_well_as_at_each_step(context: Context, open_game: Callable[..., Driver]):
     open_game(Page)
     form, ticks = Form(context), {0.0: "Off", 0.04: "Guard", 0.64: "Guide"}
-    slider = SliderRow(form.manager, "", 0.0, (0.0, 1.0), lambda _: None, 0.1, str, ticks=ticks)
+    slider = SliderRow(form.manager, "", 0.0, (0.0, 1.0), lambda _: None, step=0.1, figure=str, ticks=ticks)
     up, down = [0.04, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.64, 0.7], [0.64, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1, 0.04, 0.0]
     for direction, stops in ((1, up), (-1, down)):
         for stop in stops:
@@ -242,10 +241,10 @@ def test_a_choice_of_many_goes_on_pages_that_keys_and_mouse_turn():
     names = [f"network {number}" for number in range(30)]
     manager = PointsManager()
     choice = Choice(manager, (64, 250, 400, 20), "", names, 0, lambda _: None)
-    pages = choice.row.pages
+    pages, lefts, _ = choice.laid()
     assert [number for page in pages for number in page] == list(range(30))
     for page in pages:
-        last = choice.row.lefts[page[-1]] + typeface.width(names[page[-1]], 15, "regular")
+        last = lefts[page[-1]] + typeface.width(names[page[-1]], 15, "regular")
         assert last <= 464 - GAP + 1
 
     def click(x: float) -> None:
@@ -254,9 +253,9 @@ def test_a_choice_of_many_goes_on_pages_that_keys_and_mouse_turn():
 
     click(460)
     assert choice.index == pages[1].start
-    click(choice.row.lefts[pages[1][1]] + 3)
+    click(lefts[pages[1][1]] + 3)
     assert choice.index == pages[1][1]
-    click(choice.row.lefts[pages[1].start] - 14)
+    click(lefts[pages[1].start] - 14)
     assert choice.index == pages[0][-1]
     for _ in range(40):
         choice.shift(1)
