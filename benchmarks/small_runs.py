@@ -12,8 +12,8 @@ from ai.training.config import Config
 from ai.training.small_run import SMALL_RUN, Plan, SmallRun, SmallState
 from ai.training.statistics import wilson
 from benchmarks.sabotages import mean_of_shares
-from game.scenes.learn.duels import BOUND, DARING, EVERY, NORMALISED, PAY, config_of
 from game.scenes.learn.memory import LATEST, TODAY, YESTERDAY, MemoryChapter
+from game.scenes.learn.runs import BOUND, DARING, EVERY, NORMALISED, PAY, config_of
 
 DECISIONS = 600
 

@@ -1,7 +1,7 @@
 """Explanations: every word and bar says what it is, its unit, and what it means now.
 
 Whoever draws something notes its area with `Canvas.explain`. The mouse, at rest over an area, shows a tooltip; by keys
-and gamepad, F1 or the gamepad's Back button explains one area after the other.
+and gamepad, F1 or the gamepad's Back button explains the first area, and the arrows one after the other.
 """
 
 from __future__ import annotations
@@ -33,22 +33,20 @@ _MOUSE: Final = (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN)
 class Explained:
     """Tooltips of one scene: pass it every event before the scene's own, `update` it, and draw it last.
 
-    Where the arrows fly (`flies`), only the key that began goes on to the next area.
+    The arrows go on to other areas; the key that began, Esc or a click ends it.
 
     Attributes:
         stepping: whether areas are explained one after the other, without a mouse.
 
     """
 
-    def __init__(self, flies: bool = False) -> None:
-        self.stepping, self._flies = False, flies
+    def __init__(self) -> None:
+        self.stepping = False
         self._number = self._rest = 0
         self._ready = False  # whether the mouse has rested for long enough
 
     def action(self) -> Action:
         """Return the action that explains the first area; to be the last of a table, as F1 can be bound otherwise."""
-        if self._flies:  # a gamepad's button has another use there, and the hints are few
-            return Action(pygame.K_F1, self._begin)
         return Action(pygame.K_F1, self._begin, texts.HINT_EXPLAIN, gamepad=Command.CHOICES)
 
     def handle_event(self, event: pygame.event.Event) -> bool:
@@ -62,9 +60,11 @@ class Explained:
         command = translate(event)
         if not self.stepping:
             return False
-        if self.action().answers(event) or (command in _AFTER and not self._flies):
+        if self.action().answers(event):
+            self.stepping = False
+        elif command in _AFTER:
             self._number += 1
-        elif command in _BEFORE and not self._flies:
+        elif command in _BEFORE:
             self._number -= 1
         elif command in _LEAVE:
             self.stepping = False

@@ -19,7 +19,6 @@ class StillPicture:
         self._language = texts.LANGUAGE
 
     def draw(self, canvas: Canvas) -> None:
-        """Draw the picture over the whole window."""
         whole = canvas.whole
         size, language = whole.surface.get_size(), texts.LANGUAGE
         if self._picture is None or (self._picture.get_size(), self._language) != (size, language):

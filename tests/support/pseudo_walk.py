@@ -35,9 +35,9 @@ from game.scenes import scene_of
 from game.scenes.digits.inside import DigitInsideScene
 from game.scenes.error_screen import ErrorScene
 from game.scenes.learn import pay
-from game.scenes.learn.duels import DaringChapter, TargetChapter
 from game.scenes.learn.memory import MemoryChapter
 from game.scenes.learn.path import FIRST
+from game.scenes.learn.runs import DaringChapter, TargetChapter
 from game.scenes.learn.scene import ChapterScene
 from game.scenes.lesson.scene import LessonScene
 from game.scenes.play.scene import PlayScene
@@ -46,7 +46,8 @@ from game.shell.app import App
 from game.training.beside import put_beside
 from game.training.run import TrainingRun
 from game.ui.context import Context
-from game.ui.widgets import Choice
+from game.ui.rows import ChoiceRow
+from tests.game.tour.checkers import IN_HAND
 from tests.game.tour.stops import STOPS, Stop
 from tests.support import inline_worker
 from tests.support.driver import Driver
@@ -315,12 +316,13 @@ class Walk:
                 driver.resize(window)
                 self._note(driver, f"{stop}, {window}")
             driver.resize(VIEW_SIZE)
-            for place, widget in enumerate(list(self._widgets(driver))):
+            held = str(stop) in IN_HAND  # another widget in focus would let go of the lander
+            for place, widget in enumerate([] if held else list(self._widgets(driver))):
                 if widget not in self._widgets(driver):
                     break
                 driver.form.focus(widget)
                 self._note(driver, f"{stop}, widget {place}")
-                for number in range(len(widget.options)) if isinstance(widget, Choice) else ():
+                for number in range(len(widget.options)) if isinstance(widget, ChoiceRow) else ():
                     widget.choose(number)
                     self._note(driver, f"{stop}, widget {place}, option {number}")
         finally:

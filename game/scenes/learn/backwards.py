@@ -126,8 +126,6 @@ class BackwardsChapter(Chapter):
         read = self.classifier.predict(bright(self._pixels[OTHERS])).argmax(axis=1)
         return int((read == self._labels[OTHERS]).sum())
 
-    # What it tells
-
     def unit(self, stage: int, unit: int) -> str:
         """Return what a unit answered, and its share of the blame once that has come so far."""
         answer = decimal(float(self.units[stage - 1][unit]), 2, "+")
@@ -139,7 +137,6 @@ class BackwardsChapter(Chapter):
         return f"{name} {texts.LEARN_BACKWARDS_BLAME[kind].format(blame=decimal(blame, 3, '+'))}"
 
     def why(self) -> str:
-        """Return what the steps have changed: this digit's reading, the weights, and the reading of others."""
         return texts.LEARN_BACKWARDS_WHY.format(
             label=self.label, read=self.read_as, before=percent(self.before), after=percent(self.odds[self.label]),
             steps=self.steps, moved=self.moved, share=percent(self.moved / self.network.values.size),

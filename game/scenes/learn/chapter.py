@@ -42,6 +42,7 @@ class Chapter(ABC):
         door: where the same can be done freely.
         shape: height of the picture, as a share of its width.
         tried: whether the player has done what the chapter is about, so that `why` has something to tell.
+        complete: whether all that it asks for was done, beyond a try; then its "see why" makes it done.
         problem: why there is nothing to show or to try; empty if there is.
         changed: set when there are other controls than before; the scene describes them anew.
 
@@ -52,6 +53,7 @@ class Chapter(ABC):
     door: ClassVar[Route]
     shape: ClassVar[float] = 0.52
     problem = ""
+    complete = True
 
     def __init__(self, context: Context) -> None:
         self.context = context
@@ -93,6 +95,9 @@ class Chapter(ABC):
     @abstractmethod
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
         """Draw the picture in a box, in points, `alpha` of the way from the step before to this one."""
+
+    def enter(self) -> None:  # noqa: B027 - only one depends on other screens
+        """Come to the top again, after another screen."""
 
     def update(self) -> None:  # noqa: B027 - nothing moves in some chapters
         """Advance by 1/60 s; called on every page but the first, on which the picture stands still."""

@@ -11,12 +11,13 @@ from typing import Final
 import numpy as np
 import pygame
 
+from ai.environment import Doubles
 from ai.lander.environment import LanderEnv
 from ai.nn import SGD, Adam, Array, CostFunctions, DivergenceError, FullyConnectedLayer, NeuralNetwork, Optimizer
 from game.core import texts
 from game.core.scene import Route
 from game.drawing.canvas import Canvas, Point
-from game.drawing.paint_cache import InPieces, PaintCache, Steps
+from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import CAPTION, HUMAN, MUTE, NET, SMALL, Colour
 from game.explain.figures import decimal
 from game.scenes.learn.chapter import Chapter, Code
@@ -40,7 +41,6 @@ _PAUSE: Final = (15, 6)  # updates from one step to the next: on the line, in th
 _LINE: Final = ((-3.0, 5.0), (-3.0, 46.0))  # weights and costs at the ends of the line's picture
 _MAP: Final = ((-2.0, 4.0), (-7.0, 5.0))  # of the two weights on the map
 _CELLS: Final = 40
-_A_CELL: Final = 500  # pixels of a picture that could be painted while the cost of one cell is measured
 _DEEP: Final[Colour] = (96, 128, 200)  # the valley's floor
 _LOST: Final = 50.0  # weight beyond which a descent has left for good
 
@@ -98,12 +98,9 @@ class Descent:
         self._look()
         self.lost = max(map(abs, self.trail[-1])) > _LOST
 
-    def cost(self, weights: Sequence[float]) -> float:
-        """Return what the network costs with other weights, and leave it as it is."""
-        before = self.network.values.copy()
-        self.network.values[:] = [*weights, 0.0]
-        cost = self.network.cost(self.network.predict(self._inputs), self._targets)
-        self.network.values = before
+    def cost(self, weights: Doubles) -> Doubles:
+        """Return what the network would cost with other weights, (n, inputs) to (n,): its mean squared error."""
+        cost: Doubles = np.square(self._inputs @ weights.T - self._targets).mean(axis=0)
         return cost
 
     @property
@@ -139,18 +136,13 @@ class DownhillChapter(Chapter):
         self.line = Descent(coasting[0][:, :1], coasting[1], SGD(_FIRST_RATE), LINE_START)
         self.plain = Descent(*burning, SGD(_FIRST_RATE), VALLEY_START)
         self.adam = Descent(*burning, Adam(ADAM_RATE), VALLEY_START)
-        self._curve = [(weight, self.line.cost((weight,))) for weight in np.linspace(*_LINE[0], 121).tolist()]
-        self._heights = InPieces(self._measured)
+        weights = np.linspace(*_LINE[0], 121)
+        self._curve = list(zip(weights.tolist(), self.line.cost(weights[:, None]).tolist(), strict=True))
+        places = np.meshgrid(*(np.linspace(*reach, _CELLS) for reach in _MAP), indexing="ij")
+        heights = self.plain.cost(np.stack(places, axis=-1).reshape(-1, 2)).reshape(_CELLS, _CELLS)
+        bands = np.floor(2.0 * np.log2(heights + 0.05))
+        self._map = 1.0 - (bands - bands.min()) / (bands.max() - bands.min())
         self.restart()
-
-    def _measured(self, share: float) -> Steps[Array]:
-        """Measure the cost everywhere on the map, at a share of its cells."""
-        across, up = (np.linspace(*reach, round(share * _CELLS)).tolist() for reach in _MAP)
-        heights = np.zeros((len(across), len(up)))
-        for column, first in enumerate(across):
-            heights[column] = [self.plain.cost((first, second)) for second in up]
-            yield _A_CELL * len(up)
-        return heights
 
     def restart(self) -> None:
         self.rate, self.valley, self.tried = _FIRST_RATE, False, False
@@ -204,16 +196,13 @@ class DownhillChapter(Chapter):
             self.results[kind] = {"rate": self.rate, **figures}
         self.tried = bool(self.results)
 
-    # What it tells
-
     def why(self) -> str:
-        """Return what each kind of step length has led to, as far as it was tried."""
         told = texts.LEARN_DOWNHILL_WHY
         return " ".join(told[kind].format(**self.results[kind]) for kind in KINDS if kind in self.results)
 
     def code(self) -> Sequence[Code]:
         slope = float((self.plain if self.valley else self.line).slopes[0])
-        plain = Code(SGD._fill_step, np.multiply, {np.multiply: f"{slope:+.3f} · {self.rate:.3f}"})
+        plain = Code(SGD._fill_step, np.multiply, {np.multiply: f"{decimal(slope, 3, '+')} · {self.rate:.3f}"})
         adam = Code(Adam._fill_step, np.divide, {np.divide: texts.LEARN_DOWNHILL_ADAM_NOTE})
         return [plain, adam, Code(Optimizer.step, "values")]
 
@@ -238,8 +227,6 @@ class DownhillChapter(Chapter):
         told = texts.LEARN_DOWNHILL_LOST if descent.lost else texts.LEARN_DOWNHILL_COST
         return f"{name}: {told.format(cost=descent.costs[-1], steps=len(descent.costs) - 1)}"
 
-    # The picture
-
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
         line = [(weight, cost) for (weight,), cost in zip(self.line.trail, self.line.costs, strict=True)]
         trails, reach, words = [(line, HUMAN)], _LINE, texts.LEARN_DOWNHILL_AXES
@@ -247,7 +234,7 @@ class DownhillChapter(Chapter):
             ways = [[(across, up) for across, up in each.trail] for each in (self.plain, self.adam)]
             trails, reach, words = list(zip(ways, (HUMAN, NET), strict=True)), _MAP, texts.LEARN_DOWNHILL_MAP
             box = pygame.FRect(box.left, box.top, min(box.width, 1.3 * box.height), box.height)
-            self._cache.draw(canvas, box, self._heights.whole, self._paint_map)
+            self._cache.draw(canvas, box, (), lambda sheet: paint_heat(sheet, self._map, _DEEP, _DEEP))
         else:
             _draw_way(canvas, box, reach, self._curve, NET)
         for trail, colour in trails:
@@ -264,11 +251,6 @@ class DownhillChapter(Chapter):
             _draw_way(canvas, box, reach, ends, MUTE)
         canvas.text(words[0], (box.left + 8, box.top + 16), size=CAPTION, colour=MUTE)
         canvas.text(words[1], (box.right - 8, box.bottom - 8), size=CAPTION, colour=MUTE, align="right")
-
-    def _paint_map(self, sheet: Canvas) -> None:
-        bands = np.floor(2.0 * np.log2(self._heights.picture + 0.05))
-        levels = (bands - bands.min()) / (bands.max() - bands.min())
-        paint_heat(sheet, 1.0 - levels, _DEEP, _DEEP)
 
 
 def _draw_way(canvas: Canvas, box: pygame.FRect, reach: Reach, points: Sequence[Point], colour: Colour) -> None:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
 from typing import Final
 
 import numpy as np
 import pygame
+from numpy.typing import NDArray
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.replay import PrioritisedReplayBuffer, ReplayBuffer
@@ -15,16 +15,13 @@ from ai.environment import Doubles
 from ai.training.config import Config
 from ai.training.small_run import SMALL_RUN, TESTED, Plan, SmallState
 from game.core import texts
-from game.core.scene import Route
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.paint import mix
-from game.drawing.paint_cache import PaintCache
-from game.drawing.tokens import CAPTION, HUMAN, INK, MUTE, NET, NIGHT1, SMALL, Colour
+from game.drawing.tokens import CAPTION, HUMAN, INK, MUTE, NET, NIGHT0, NIGHT1, SMALL
 from game.explain.figures import percent
 from game.scenes.learn.chapter import Code
 from game.scenes.learn.runs import RunsChapter, draw_landers
-from game.ui.context import Context
 from game.ui.panel import Column
 
 KINDS: Final = ("even", "surprising", "latest")
@@ -48,13 +45,9 @@ class MemoryChapter(RunsChapter):
 
     """
 
-    key, door = "memory", Route("train")
+    key = "memory"
     LENGTH = YESTERDAY + TODAY
     PLAN = Plan(heights=(5.0, 8.0), change=YESTERDAY, later=(0.3, 1.0), tested=(5.0, 8.0))
-
-    def __init__(self, context: Context) -> None:
-        self._painted = [PaintCache() for _ in range(_ROWS)]
-        super().__init__(context)
 
     def restart(self) -> None:
         super().restart()
@@ -84,8 +77,8 @@ class MemoryChapter(RunsChapter):
         self.seed = 0
         super().start()
 
-    def _take(self, states: tuple[SmallState, ...]) -> None:
-        super()._take(states)
+    def take(self, states: tuple[SmallState, ...]) -> None:
+        super().take(states)
         memory = states[0].memory
         self._oldest = memory.oldest
         for number, pay in enumerate((memory.cells.reward / SMALL_RUN.reward_scale).tolist(), memory.first):
@@ -97,7 +90,7 @@ class MemoryChapter(RunsChapter):
         drawn = memory.drawn[: SMALL_RUN.batch_size]  # for the first of this decision's learning steps
         self.light[np.minimum(drawn // _EACH, len(self.light) - 1)] = 1.0
 
-    def _finish(self) -> None:
+    def finish(self) -> None:
         """Keep the result, to compare it with that of other memories."""
         passed, changed = np.nan_to_num(self.history(0, "passed")), min(YESTERDAY, self.LENGTH)
         self.results[KINDS[self.flown]] = float(passed[changed]), float(passed[changed:].min())
@@ -110,7 +103,6 @@ class MemoryChapter(RunsChapter):
         return int(np.argmax(lost)) if max(lost) >= _FORGOTTEN else len(KINDS)
 
     def why(self) -> str:
-        """Return for each memory that was tried how it flew from high up before and after."""
         named = dict(zip(KINDS, texts.LEARN_MEMORY_NAMES, strict=True))
         return " ".join(
             texts.LEARN_MEMORY_WHY.format(name=named[kind], before=percent(before), after=percent(after))
@@ -150,29 +142,25 @@ class MemoryChapter(RunsChapter):
                 canvas.text(told, (area.right - 10, area.top + 20), size=SMALL, align="right", tabular=True)
 
     def _draw_wall(self, canvas: Canvas, box: pygame.FRect) -> None:
-        """Draw the wall; rows are painted anew as memories come or go, and the light of what is drawn over them."""
+        """Draw the cells, the light of what was drawn from them, and where today begins."""
         wide, high = box.width / _COLUMNS, box.height / _ROWS
-        for row, painted in enumerate(self._painted):
-            cells = slice(row * _COLUMNS, (row + 1) * _COLUMNS)
-            held = min(max(self._oldest // _EACH, cells.start), cells.stop)
-            area, shows = (box.left, box.top + row * high, box.width, high), (int(self._come[cells].sum()), held)
-            painted.draw(canvas, area, shows, partial(self._paint_row, row, wide, high))
-        for cell in (*np.flatnonzero(self.light > 0.25).tolist(), None):
-            row, column = divmod(YESTERDAY * SMALL_RUN.num_envs // _EACH if cell is None else cell, _COLUMNS)
-            x, y = box.left + column * wide, box.top + row * high
-            if cell is None:
-                canvas.line((x, y), (x, y + high), HUMAN, 2)
-            else:
-                canvas.fill(canvas.rect(x, y + high - 3, wide - 1, 2), INK, float(self.light[cell]))
-
-    def _paint_row(self, row: int, wide: float, high: float, sheet: Canvas) -> None:
-        for column in range(_COLUMNS):
-            cell, x = row * _COLUMNS + column, column * wide
-            area = sheet.rect(x, 0, wide - 1, high - 1)
-            if not self._come[cell] or (cell + 1) * _EACH <= self._oldest:
-                sheet.fill(area, NIGHT1, 0.5)
-                continue
-            sheet.fill(area, _colour(sheet, float(self._paid[cell])))
+        colours = _colours(canvas, self._paid)
+        gone = (self._come == 0) | ((np.arange(_COLUMNS * _ROWS) + 1) * _EACH <= self._oldest)
+        colours[gone] = mix(NIGHT0, NIGHT1, 0.5)
+        picture = pygame.surfarray.make_surface(colours.reshape(_ROWS, _COLUMNS, 3).swapaxes(0, 1))
+        area = canvas.rect(*box)
+        canvas.surface.blit(pygame.transform.scale(picture, area.size), area)
+        for column in range(1, _COLUMNS):
+            canvas.line((box.left + column * wide, box.top), (box.left + column * wide, box.bottom), NIGHT0)
+        for row in range(1, _ROWS):
+            canvas.line((box.left, box.top + row * high), (box.right, box.top + row * high), NIGHT0)
+        for cell in np.flatnonzero(self.light > 0.25).tolist():
+            row, column = divmod(cell, _COLUMNS)
+            place = canvas.rect(box.left + column * wide + 1, box.top + (row + 1) * high - 3, wide - 1, 2)
+            canvas.fill(place, INK, float(self.light[cell]))
+        row, column = divmod(YESTERDAY * SMALL_RUN.num_envs // _EACH, _COLUMNS)
+        x, y = box.left + column * wide, box.top + row * high
+        canvas.line((x, y), (x, y + high), HUMAN, 2)
 
 
 def _write_cells(cursor: Cursor) -> None:
@@ -181,14 +169,17 @@ def _write_cells(cursor: Cursor) -> None:
     for name, pay in (("good", 2 * _LARGE), ("warn", -2 * _LARGE), ("net", 5.0)):
         words = texts.LEARN_MEMORY_CELLS[name]
         if canvas := cursor.canvas:
-            canvas.fill(canvas.rect(x, small.baseline - 10, 11, 11), _colour(canvas, pay))
+            red, green, blue = _colours(canvas, np.array([pay]))[0].tolist()
+            canvas.fill(canvas.rect(x, small.baseline - 10, 11, 11), (red, green, blue))
             canvas.text(words, (x + 17, small.baseline), size=CAPTION, colour=MUTE)
         x += small.measured(words) + 40
     cursor.gap(20)
 
 
-def _colour(canvas: Canvas, pay: float) -> Colour:
-    """Return the colour of a cell, by the pay of its memory."""
-    if abs(pay) > _LARGE:
-        return mix(NIGHT1, canvas.palette.good if pay > 0 else canvas.palette.warn, 0.55)
-    return mix(NIGHT1, NET, 0.25 + 0.25 * min(max(pay / 5.0, -1.0), 1.0))
+def _colours(canvas: Canvas, pay: Doubles) -> NDArray[np.uint8]:
+    """Return the colours (n, 3) of cells, by the pay (n,) of their memories."""
+    large, pay = np.abs(pay)[:, None] > _LARGE, pay[:, None]
+    tint = np.where(large, np.where(pay > 0, canvas.palette.good, canvas.palette.warn), NET)
+    share = np.where(large, 0.55, 0.25 + 0.25 * np.clip(pay / 5.0, -1.0, 1.0))
+    colours: NDArray[np.uint8] = (NIGHT1 + share * (tint - np.array(NIGHT1))).astype(np.uint8)
+    return colours

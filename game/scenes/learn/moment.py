@@ -14,16 +14,15 @@ import pygame
 from ai.agent.agent import DeepQAgent
 from ai.agent.decision import Decision, in_points
 from ai.environment import Floats
-from ai.lander.environment import ACTION_NAMES, NUM_ACTIONS, LanderEnv, Outcome
+from ai.lander.environment import ACTION_NAMES, NUM_ACTIONS, PARAMS, LanderEnv, Outcome
 from ai.nn import NeuralNetwork
 from ai.training.config import Config
 from game.core import texts
 from game.core.scene import Route
-from game.core.source import Mark
 from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
 from game.drawing.tokens import CAPTION, FAINT, HUMAN, INK, LINE, MUTE, NET, NIGHT1, SMALL
-from game.explain.figures import points
+from game.explain.figures import decimal, points
 from game.explain.tables import Part, formula
 from game.flight import networks
 from game.flight.flight import DECISION_STEPS
@@ -42,7 +41,7 @@ MOMENTS: Final = (
     (8, "random", 5),
 )
 SCALE: Final = (-150.0, 200.0)  # points, of the line
-_MIDDLE, _METRES = (0.0, 9.4), 50.0  # metres: of the picture, and across it
+_METRES, _BELOW = 50.0, 1.6  # metres: across the picture, and below the ground
 _ANSWERS: Final = (150.0, 80.0, 20.0)  # points of the answers, before that of less than 0
 _ASKED: Final = range(80, 121)  # decisions until the end, that are about the hundred of the question
 _ALIKE: Final = 5.0  # points by which what came of two actions may differ and be about the same
@@ -50,16 +49,7 @@ _NAMES, _FIGURES = 112.0, 62.0  # points for an action's name, and for a figure
 
 
 class Came(NamedTuple):
-    """What came of one flight, in points.
-
-    Attributes:
-        guess, value: what the player and the network had foretold.
-        came, plain: the pay that came, with and without the discount.
-        decisions: decisions until the end.
-        landed: whether it landed.
-        decision: the network's at the moment.
-
-    """
+    """What came of one flight: two guesses, the pay with and without the discount in points, decisions to its end."""
 
     guess: float
     value: float
@@ -67,28 +57,26 @@ class Came(NamedTuple):
     plain: float
     decisions: int
     landed: bool
-    decision: Decision
+    decision: Decision  # the network's at the moment
 
 
 class MomentChapter(Chapter):
     """A frozen moment of a flight of the shipped network; it flies on, and is paid as it was in training.
 
     Attributes:
-        agent: the network.
-        guess: the player's, in points.
-        value: the network's value of the moment, in points.
+        guess, value: what the player and the network expect, in points; `values` are the network's, one an action.
         came, plain: pay since the moment, with and without the discount.
         judged: the moments that have been flown to their ends.
 
     """
 
-    key, door, shape = "moment", Route("watch"), 0.52
+    key, door = "moment", Route("watch")
     sky: float = 0.72  # share of the picture's height for the flight
     flying = False
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
-        network = networks.chosen(context.models_dir, context.user_dir)
+        network = networks.load(networks.DEFAULT, context.models_dir / networks.LANDER / networks.DEFAULT)
         self.judged: list[Came] = []
         if isinstance(network.policy, DeepQAgent):
             self.agent = network.policy
@@ -103,7 +91,7 @@ class MomentChapter(Chapter):
 
     def _freeze(self) -> None:
         """Fly to the moment, and stop there."""
-        self.guess = self.came = self.plain = self.value = 0.0
+        self.guess = self.came = self.plain = 0.0
         self.flying, self._steps = False, 0
         seed, spawn, decisions = MOMENTS[self._number]
         self.env = LanderEnv(1, seed, spawn, frame_skip=1, weights=Config.of(self.agent).reward_weights)
@@ -171,16 +159,13 @@ class MomentChapter(Chapter):
         if self._steps % DECISION_STEPS == 0:
             self._path.append(self.env.position[0].copy())
         if self.over:
-            landed = bool(self.env.outcome[0] == Outcome.LANDED)
-            self._end(Came(self.guess, self.value, self.came, self.plain, -(-self._steps // DECISION_STEPS), landed,
-                           self._first))  # fmt: skip
+            landed, decisions = bool(self.env.outcome[0] == Outcome.LANDED), -(-self._steps // DECISION_STEPS)
+            self.end(Came(self.guess, self.value, self.came, self.plain, decisions, landed, self._first))
 
-    def _end(self, came: Came) -> None:
+    def end(self, came: Came) -> None:
         """Keep what came of the flight."""
         self.judged.append(came)
         self.tried = self.changed = True
-
-    # What it tells
 
     def verdict(self) -> int | None:
         """Return the answer next to what came of the last moment; None if it was not about a hundred decisions."""
@@ -190,7 +175,6 @@ class MomentChapter(Chapter):
         return len(_ANSWERS) if last.came < 0 else int(np.argmin(np.abs(np.array(_ANSWERS) - last.came)))
 
     def why(self) -> str:
-        """Return the last moment's numbers, and how far off both judges were on average."""
         last = self.judged[-1]
         told = texts.LEARN_MOMENT_WHY.format(
             guess=points(last.guess, 1), value=points(last.value, 1), came=points(last.came, 1),
@@ -207,7 +191,7 @@ class MomentChapter(Chapter):
         config, told = self.agent.config, self.judged[-1].decision if self.judged else self._first
         assert told.values is not None
         assert told.points is not None
-        best = f"{float(told.values.max()):.3f}"
+        best = decimal(float(told.values.max()), 3)
         scaled = f"{best} / {config.reward_scale:g} = {points(float(told.points.max()), 1)}"
         asked = texts.LEARN_MOMENT_BEST.format(value=best)
         return [
@@ -220,7 +204,7 @@ class MomentChapter(Chapter):
         column.add(formula(self._figures))
 
     def _figures(self) -> list[Part]:
-        """Return the figures of the three judges."""
+        """Return the guesses, and what came."""
         guess = Part(points(self.guess, 0), texts.LEARN_MOMENT_GUESS, colour=HUMAN)
         if not self.flying:
             return [guess]
@@ -229,11 +213,10 @@ class MomentChapter(Chapter):
                 Part(points(self.came, 1), came),
                 Part(points(self.plain, 1), texts.LEARN_MOMENT_PLAIN, colour=MUTE)]  # fmt: skip
 
-    # The picture
-
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
         world = pygame.FRect(box.left, box.top, box.width, self.sky * box.height)
-        view = view_in(world, _MIDDLE, _METRES, canvas.scale)
+        high = _METRES * world.height / world.width
+        view = view_in(world, (0.0, PARAMS.ground - _BELOW + high / 2), _METRES, canvas.scale)
         with inside(canvas, world):
             draw_ground(canvas, world, view)
             for a, b in pairwise(view.points(self._path).tolist()):
@@ -278,62 +261,51 @@ class ChoiceChapter(MomentChapter):
 
     """
 
-    key, shape, sky = "choice", 0.68, 0.52
+    key, shape, sky = "choice", 0.62, 0.5
 
     def __init__(self, context: Context) -> None:
-        self.first: int | None = None
         self.results: dict[int, Came] = {}
         super().__init__(context)
 
     def restart(self) -> None:
-        self.first, self.results = None, {}
+        self.results.clear()
         super().restart()
 
     def turn(self) -> None:
-        """Go to the next moment."""
-        self.first, self.results = None, {}
+        self.results.clear()
         super().turn()
+
+    def _freeze(self) -> None:
+        super()._freeze()
+        self.first: int | None = None
+        self.best, self.worst = int(self.values.argmax()), int(self.values.argmin())
 
     def controls(self, column: Column) -> None:
         for action, name in enumerate(ACTION_NAMES):
-            colour = NET if action == self.best else INK
-            column.button(
-                texts.said(name).capitalize(), partial(self.begin_with, action), size=SMALL + 1, colour=colour
-            )
+            colour, press = NET if action == self.best else INK, partial(self.begin_with, action)
+            column.button(texts.said(name).capitalize(), press, size=SMALL + 1, colour=colour)
         column.button(texts.LEARN_MOMENT_NEXT, self.turn)
 
     def begin_with(self, action: int) -> None:
         """Go back to the moment, and let the flight begin with an action for one decision."""
         self._freeze()
-        self.first = action
-        self.decision = replace(self.decision, action=np.array([action]))
+        self.first, self.decision = action, replace(self.decision, action=np.array([action]))
         self.go()
 
-    def _end(self, came: Came) -> None:
-        super()._end(came)
+    def end(self, came: Came) -> None:
+        super().end(came)
         if self.first is not None:
             self.results[self.first] = came
         self.tried = len(self.results) > 1
 
-    @property
-    def best(self) -> int:
-        """The action with the highest value."""
-        return int(self.values.argmax())
-
-    @property
-    def worst(self) -> int:
-        """The action with the lowest value."""
-        return int(self.values.argmin())
-
     def verdict(self) -> int | None:
         """Return what came of the lowest value; None before it and the highest were flown, and where that was lost."""
-        if not {self.best, self.worst} <= set(self.results) or not self.results[self.best].landed:
+        best, worst = self.results.get(self.best), self.results.get(self.worst)
+        if best is None or worst is None or not best.landed:
             return None
-        best, worst = self.results[self.best], self.results[self.worst]
         return 0 if not worst.landed else 1 if best.came - worst.came <= _ALIKE else 2
 
     def why(self) -> str:
-        """Return the value of each action that was tried, and what came of it."""
         told = " ".join(
             texts.LEARN_CHOICE_WHY[came.landed].format(
                 action=texts.said(ACTION_NAMES[action]), value=points(float(self.values[action]), 1),
@@ -346,8 +318,11 @@ class ChoiceChapter(MomentChapter):
         return f"{told} {texts.LEARN_CHOICE_SURPRISE}" if surprises else told
 
     def code(self) -> Sequence[Code]:
-        best: dict[Mark, str] = {NeuralNetwork.predict: texts.said(ACTION_NAMES[self.best])}
-        return [Code(DeepQAgent.q_values, NeuralNetwork.predict, best), Code(DeepQAgent.decide)]
+        best = texts.said(ACTION_NAMES[self.best])
+        return [
+            Code(DeepQAgent.q_values, NeuralNetwork.predict, {NeuralNetwork.predict: best}),
+            Code(DeepQAgent.decide),
+        ]
 
     def below(self, column: Column) -> None:
         column.aside(texts.LEARN_CHOICE_LEGEND)

@@ -103,8 +103,6 @@ class NeuronChapter(Chapter):
         body.set(velocity=body.velocity + np.array([side * _SHOVE[0], 0.0]), mask=flying)
         body.set(angular_velocity=body.angular_velocity - side * _SHOVE[1], mask=flying)
 
-    # The flight
-
     def _begin(self) -> None:
         lean = _LEANS[self._flights % len(_LEANS)]
         self._flights += 1
@@ -146,10 +144,7 @@ class NeuronChapter(Chapter):
             self.tried = self.tried or any(self.weights)
         self.tried = self.tried or self.best[0] >= GOAL
 
-    # What it tells
-
     def why(self) -> str:
-        """Return for how long the best flight lasted, and with which weights."""
         seconds, weights = self.best
         tilt, spin, speed = (decimal(weight, 1, "+") for weight in weights)
         told = texts.LEARN_NEURON_WHY["flew" if seconds >= GOAL else "fell"]
@@ -157,8 +152,11 @@ class NeuronChapter(Chapter):
 
     def code(self) -> Sequence[Code]:
         inputs, weights = self.sensed[0], self.layer.weights[:, 0]
-        total = " ".join(f"{value:+.2f}×{weight:.1f}" for value, weight in zip(inputs, weights, strict=True))
-        sums: dict[Mark, str] = {np.dot: total, "output": f"{float(self.layer.bias[0]):+.1f}"}
+        total = " ".join(
+            f"{decimal(value, 2, '+')}×{decimal(weight, 1)}"
+            for value, weight in zip(inputs.tolist(), weights.tolist(), strict=True)
+        )
+        sums: dict[Mark, str] = {np.dot: total, "output": decimal(float(self.layer.bias[0]), 1, "+")}
         return [Code(FullyConnectedLayer.predict, np.dot, sums)]
 
     def below(self, column: Column) -> None:

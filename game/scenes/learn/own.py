@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Hashable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from dataclasses import replace
 from functools import partial
 from typing import Final, NamedTuple
 
@@ -32,7 +31,6 @@ from game.ui.panel import Column
 # Where each step is done; a race is begun here.
 STEPS: Final = {"train": "train", "land": "runs", "choose": "runs", "hand": "play", "race": "", "file": ""}
 LANDS: Final = 0.9  # share of its starts that a file of one's own is to land
-_LOOK: Final = 60  # updates between two looks at the player's files
 _INDENT: Final = 32.0
 
 
@@ -44,7 +42,7 @@ class Step(NamedTuple):
 
 
 class OwnChapter(Chapter):
-    """A list of five steps with the player's own network, read from their files; nothing to fail.
+    """A list of steps with the player's own network, read from their files whenever the chapter comes to the top.
 
     Attributes:
         steps: the steps by their names in `STEPS`.
@@ -60,9 +58,13 @@ class OwnChapter(Chapter):
         self.restart()
 
     def restart(self) -> None:
-        self._wait = 0
-        self._seen: Hashable = None
-        self._look()
+        self._runs = [run for run in self._library.runs() if not run.problem or run.flyable]
+        self.steps = {name: Step(done, told) for name, done, told in self._found()}
+        self.tried = self.steps["train"].done
+        self.complete = all(step.done for step in self.steps.values())
+
+    def enter(self) -> None:
+        self.restart()
 
     def controls(self, column: Column) -> None:
         for name, route in STEPS.items():
@@ -71,11 +73,6 @@ class OwnChapter(Chapter):
 
     def _open_files(self) -> Transition:
         return push("pilots", partial(own_pilots.take, self.context))
-
-    def update(self) -> None:
-        self._wait = (self._wait + 1) % _LOOK
-        if self._wait == 0:
-            self._look()
 
     def race(self) -> Transition | None:
         """Race the latest of the player's networks that can be read."""
@@ -88,70 +85,55 @@ class OwnChapter(Chapter):
         self.context.note(texts.LEARN_OWN_NONE)
         return None
 
-    # What has been done
-
-    def _look(self) -> None:
-        """Read the player's networks, choice and logbook, if any of them has changed."""
-        raced = self.context.settings.learnt.get(self.key)
-        raced_at = raced.get("raced") if isinstance(raced, dict) else None
-        seen = (tuple(self._dates()), self.context.settings.model, raced_at)
-        if seen != self._seen:
-            self._seen = seen
-            self._runs = [run for run in self._library.runs() if not run.problem or run.flyable]
-            self.steps = {name: Step(done, told) for name, (done, told) in self._found(raced_at)}
-            self.tried = self.steps["train"].done
-
-    def _dates(self) -> Iterator[float]:
-        """Yield what tells whether the player's files have changed: dates, and the logbook's size."""
-        for path in (
-            self.context.user_dir / networks.PLAYERS,
-            self._library.unsaved,
-            self._records.logbook,
-            self._shelf.results,
-        ):
-            with suppress(OSError):
-                yield from path.stat()[6:9:2]
-
-    def _found(self, raced_at: object) -> Iterator[tuple[str, tuple[bool, str]]]:
-        """Yield each step by its name: whether it is done, and what is known of it."""
-        told, runs, rescued = texts.LEARN_OWN_TOLD, self._runs, self._library.rescued()
+    def _found(self) -> Iterator[tuple[str, bool, str]]:
+        """Yield each step's name, whether it is done, and what is known of it."""
+        told, runs, rescued, context = texts.LEARN_OWN_TOLD, self._runs, self._library.rescued(), self.context
         first = runs[0] if runs else rescued
         key = "trained" if runs else "unnamed" if rescued else "untrained"
-        values = {"name": first.name, "decisions": f"{first.decisions:,}"} if first else {}
-        yield "train", (first is not None, told[key].format(**values))
+        yield (
+            "train",
+            first is not None,
+            told[key].format(name=first.name if first else "", decisions=f"{first.decisions:,}" if first else ""),
+        )
 
         measured = [run for run in (*runs, rescued) if run and run.success is not None]
         best = max(measured, key=lambda run: run.success or 0.0, default=None)
         key = "unmeasured" if best is None else "landed_unnamed" if best is rescued else "landed"
-        values = {"name": best.name, "share": percent(best.success or 0.0)} if best else {}
-        yield "land", (bool(best and best.success), told[key].format(**values))
+        share = (best.success or 0.0) if best else 0.0
+        yield "land", share > 0, told[key].format(name=best.name if best else "", share=percent(share))
 
-        mine = self.context.user_dir / networks.PLAYERS
-        folders = networks.folders(self.context.models_dir, self.context.user_dir)
-        own = {name for name, folder in folders.items() if folder.parent == mine}
-        name = self.context.settings.model
-        key = "chosen" if name in own else "shipped"
-        yield "choose", (name in own, told[key].format(name=name or networks.DEFAULT))
+        folders = networks.folders(context.models_dir, context.user_dir)
+        own = {name for name, folder in folders.items() if folder.parent == context.user_dir / networks.PLAYERS}
+        name = context.settings.model
+        yield "choose", name in own, told["chosen" if name in own else "shipped"].format(name=name or networks.DEFAULT)
 
         flown = self._records.entries()
-        shared = [entry for entry in flown if entry.network in own and entry.human < 1.0]
-        values = {"name": shared[-1].network, "share": percent(1.0 - shared[-1].human)} if shared else {}
-        yield "hand", (bool(shared), told["handed" if shared else "alone"].format(**values))
+        shared = next((entry for entry in reversed(flown) if entry.network in own and entry.human < 1.0), None)
+        yield (
+            "hand",
+            shared is not None,
+            told["handed" if shared else "alone"].format(
+                name=shared.network if shared else "", share=percent(1.0 - shared.human if shared else 0.0)
+            ),
+        )
 
-        done = type(raced_at) is int and any(entry.when >= raced_at for entry in flown)
-        yield "race", (done, told["raced" if done else "unraced"])
+        raced_at = Progress(context.settings).raced
+        raced = raced_at is not None and any(entry.when >= raced_at for entry in flown)
+        yield "race", raced, told["raced" if raced else "unraced"]
 
         files = []
         with suppress(OSError):
             files = own_pilots.own(self._shelf.measured())
         pilot = max(files, key=lambda each: each.landed, default=None)
-        values = {"name": pilot.name, "share": percent(pilot.landed)} if pilot else {}
-        yield "file", (bool(pilot and pilot.landed >= LANDS), told["flown" if pilot else "unwritten"].format(**values))
-
-    # What it tells
+        yield (
+            "file",
+            bool(pilot and pilot.landed >= LANDS),
+            told["flown" if pilot else "unwritten"].format(
+                name=pilot.name if pilot else "", share=percent(pilot.landed if pilot else 0.0)
+            ),
+        )
 
     def why(self) -> str:
-        """Return how long the player's network has trained, and how it flies."""
         if not self._runs:
             return self.steps["train"].told
         run = self._runs[0]
@@ -169,19 +151,17 @@ class OwnChapter(Chapter):
 
     def _write_step(self, name: str, cursor: Cursor) -> None:
         """Write a step behind a ring, or a full one once it is done."""
-        step, words = self.steps[name], replace(cursor, left=cursor.left + _INDENT, width=cursor.width - _INDENT)
-        words.size, words.weight, words.colour = TITLE - 3, "light", INK if step.done else MUTE
+        step, size = self.steps[name], TITLE - 3
         if canvas := cursor.canvas:
-            x, y = cursor.left + 10, words.y + 0.7 * words.size
+            x, y = cursor.left + 10, cursor.y + 0.7 * size
             if step.done:
                 canvas.dot((x, y), 8, canvas.palette.good)
                 canvas.marker("check", (x, y), 9, (0, 0, 0))
             else:
                 canvas.outline((x - 7, y - 7, 14, 14), 7, FAINT, 1.5)
-        words.text(texts.LEARN_OWN_STEPS[name])
-        told = replace(words, size=SMALL, weight="regular", colour=HUMAN if step.done else MUTE)
-        told.text(step.told)
-        cursor.y = told.y + 14
+        cursor.styled(texts.LEARN_OWN_STEPS[name], size, INK if step.done else MUTE, "light", indent=_INDENT)
+        cursor.styled(step.told, SMALL, HUMAN if step.done else MUTE, indent=_INDENT)
+        cursor.gap(14)
 
     def draw(self, canvas: Canvas, box: pygame.FRect, alpha: float) -> None:
         """Draw nothing: the list is all there is."""

@@ -12,7 +12,6 @@ if TYPE_CHECKING:
     from game.scenes.learn.chapter import Chapter
 
 PAGES: Final = ("predict", "try", "why", "code")
-_MOST_ANSWERS: Final = 4
 
 
 class Entry(NamedTuple):
@@ -31,9 +30,9 @@ PATH: Final[dict[str, Entry]] = {
     "pay": Entry("pay.PayChapter", 5),
     "moment": Entry("moment.MomentChapter", 4),
     "choice": Entry("moment.ChoiceChapter", 3),
-    "target": Entry("duels.TargetChapter", 3),
+    "target": Entry("runs.TargetChapter", 3),
     "memory": Entry("memory.MemoryChapter", 4),
-    "daring": Entry("duels.DaringChapter", 3),
+    "daring": Entry("runs.DaringChapter", 3),
     "own": Entry("own.OwnChapter", 5),
 }
 FIRST: Final = next(iter(PATH))
@@ -63,34 +62,35 @@ class Progress:
 
     def guess(self, key: str) -> int | None:
         """Return the number of the answer that was given in a chapter; None before."""
-        return self._number(key, "guess", _MOST_ANSWERS)
+        guess = self._number(key, "guess")
+        return guess if guess is not None and guess < len(list(filter(None, texts.LEARN_ANSWERS[key]))) else None
 
     def answer(self, key: str) -> str:
         """Return the words of the answer that was given; empty before."""
         guess = self.guess(key)
-        return dict(enumerate(texts.LEARN_ANSWERS[key])).get(guess, "") if guess is not None else ""
-
-    def page(self, key: str) -> int:
-        """Return the page, an index of `PAGES`, on which a chapter was left; 0 before it was opened."""
-        return self._number(key, "page", len(PAGES)) or 0
+        return "" if guess is None else str(texts.LEARN_ANSWERS[key][guess])
 
     def state(self, key: str) -> int:
-        """Return 2 for a chapter that was tried and its "see why" read, 1 for one that was opened, else 0."""
-        return 2 if self._value(key, "done") is True else int(isinstance(self._settings.learnt.get(key), dict))
+        """Return 2 for a chapter that is done, 1 for one that was opened, else 0."""
+        return 2 if self._of(key).get("done") is True else int(isinstance(self._settings.learnt.get(key), dict))
 
     def done(self, key: str) -> bool:
-        """Return whether a chapter was tried and its "see why" read."""
+        """Return whether a chapter was tried, its "see why" read, and all that it asks for done."""
         return self.state(key) == 2
 
+    @property
+    def raced(self) -> int | None:
+        """When the last race of a network of one's own was begun, in seconds; None before."""
+        return self._number("own", "raced")
+
     def note(self, key: str, **values: int | bool) -> None:
-        """Note a `guess`, a `page` or that a chapter is `done`."""
-        before = self._settings.learnt.get(key)
-        self._settings.learnt[key] = {**(before if isinstance(before, dict) else {}), **values}
+        """Note that a chapter was opened, and a `guess`, that it is `done`, or when it was `raced`."""
+        self._settings.learnt[key] = {**self._of(key), **values}
 
-    def _number(self, key: str, name: str, most: int) -> int | None:
-        value = self._value(key, name)
-        return value if type(value) is int and 0 <= value < most else None
+    def _number(self, key: str, name: str) -> int | None:
+        value = self._of(key).get(name)
+        return value if type(value) is int and value >= 0 else None
 
-    def _value(self, key: str, name: str) -> Any:
-        chapter = self._settings.learnt.get(key)
-        return chapter.get(name) if isinstance(chapter, dict) else None
+    def _of(self, key: str) -> dict[str, Any]:
+        noted = self._settings.learnt.get(key)
+        return noted if isinstance(noted, dict) else {}

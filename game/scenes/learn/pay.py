@@ -13,7 +13,7 @@ from ai.environment import Bools, Doubles, Ints
 from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.rewards import REWARDS, RewardWeights
 from ai.pilots.child import PAY
-from ai.training.config import Config
+from ai.training.config import PRESETS, Config
 from ai.training.history import Checkpoint
 from ai.training.lander_session import live
 from ai.training.messages import SwarmState
@@ -23,6 +23,7 @@ from game.core.scene import Route, push
 from game.core.worker import Worker, WorkerState
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, SMALL
+from game.explain.figures import points
 from game.flight.poses import Poses
 from game.scenes.learn.chapter import Chapter, Code
 from game.scenes.learn.pictures import draw_ground, view_in
@@ -50,7 +51,7 @@ _SIZE, _METRES, _MIDDLE = 0.6, 26.0, (0.0, 6.4)  # of a lander's picture; what t
 
 def config_of(pay: RewardWeights) -> Config:
     """Return the settings of a small, short run on that pay."""
-    return Config().changed(
+    return PRESETS["modern"].changed(
         num_envs=64, spawn=SPAWN, gradient_steps=6, learning_starts=1000, epsilon_decisions=8000,
         schedule_decisions=DECISIONS, replay_size=100_000, reward_weights=pay,
     )  # fmt: skip
@@ -146,7 +147,10 @@ class PayChapter(Chapter):
         if self.own:
             return self.own.name
         pay, steps = PAYS[self.pay], 1 / DT
-        return texts.LEARN_PAY_POINTS.format(second=pay.time * steps, engine=pay.engine * steps, terminal=pay.terminal)
+        return texts.LEARN_PAY_POINTS.format(
+            second=points(pay.time * steps, 0), engine=points(pay.engine * steps, 1), landing=points(pay.terminal, 0),
+            crash=points(-pay.terminal, 0),
+        )  # fmt: skip
 
     def choose(self, index: int) -> None:
         """Choose a pay, an index into `PAYS`."""
@@ -192,10 +196,7 @@ class PayChapter(Chapter):
         if trial.over:
             self.results[self.own.name if self.own else self.pay], self.tried, self.changed = trial.flown(), True, True
 
-    # What it tells
-
     def why(self) -> str:
-        """Return how the flights of each run ended."""
         return " ".join(
             texts.LEARN_PAY_WHY.format(name=texts.LEARN_PAY_NAMES.get(key, key), count=FLIGHTS, **flown)
             for key, flown in self.results.items()
@@ -203,7 +204,7 @@ class PayChapter(Chapter):
 
     def code(self) -> Sequence[Code]:
         pay = PAYS[self.pay]
-        weights = texts.LEARN_PAY_NOTE.format(time=pay.time, terminal=pay.terminal)
+        weights = texts.LEARN_PAY_NOTE.format(time=points(pay.time, 1), terminal=points(pay.terminal, 0))
         return [Code(LanderEnv.step, "parts", {"parts": weights, np.add.accumulate: f"{len(REWARDS)}"})]
 
     def below(self, column: Column) -> None:

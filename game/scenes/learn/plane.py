@@ -127,7 +127,6 @@ class PlaneChapter(Chapter):
         self._shown = self.right
 
     def why(self) -> str:
-        """Return how many points were on the right side, for each number of hidden units that was tried."""
         return " ".join(
             texts.LEARN_PLANE_WHY.format(units=units, right=self.results[units], count=len(self.points))
             for units in sorted(self.results)

@@ -29,7 +29,7 @@ _SHARES, _LEAST, _APART = (1.0, 1.8), 240.0, 36.0  # of the columns of words and
 _BODY: Final = SMALL + 1.5
 _OPEN: Final[Colour] = (190, 198, 214)  # an answer that was not given
 _AROUND, _LOWEST = 250.0, 0.85  # points above and below the picture; the least share of its height
-_LISTING, _NOTES = 420.0, 230.0  # height of a listing, and width of what stands beside its lines
+_LISTING: Final = 420.0  # height of a listing
 _INDENT: Final = 18.0  # of a verdict, behind its line
 
 
@@ -47,10 +47,16 @@ class ChapterScene(PanelScene):
         self._progress, self.explained = Progress(context.settings), Explained()
         self.chapter = chapter_type(key)(context)
         # One that is done asks for a guess again. Of any other, a try from an earlier visit is gone with its numbers.
-        self.page = PREDICT if self._progress.done(key) else min(self._progress.page(key), TRY)
+        guessed = self._progress.guess(key) is not None and not self._progress.done(key)
+        self.page = TRY if guessed else PREDICT
         self._function, self._told, self._code = 0, "", list[Code]()
         context.settings.chapter = key
+        self._progress.note(key, done=self._progress.done(key) and self.chapter.complete)
         self.turn_to(self.page)
+
+    def enter(self) -> None:
+        self.chapter.enter()
+        self.reword()
 
     def close(self) -> None:
         self.chapter.close()
@@ -62,20 +68,22 @@ class ChapterScene(PanelScene):
         return self.chapter.key
 
     def turn_to(self, page: int) -> None:
-        """Show another page, and keep that it was opened."""
+        """Show another page; "see why" makes a chapter done that was tried."""
         on_tabs = page != self.page and self.form.focused is self._tabs
         self.page = page
-        self._progress.note(self.key, page=page)
         if page == WHY and self.chapter.tried:
-            self._progress.note(self.key, done=True)
-        self._told = self.chapter.why() if self.chapter.tried else ""
-        # Of what runs on, the numbers of this moment: they could not be read otherwise.
-        self._code = list(self.chapter.code()) if page == CODE and not self.chapter.problem else []
+            self._progress.note(self.key, done=self.chapter.complete)
         self.context.apply_settings()
         self.panel.scrolled = 0.0
-        self.build()
+        self.reword()
         if not on_tabs:
             self.form.focus(self.form.widgets[1])
+
+    def reword(self) -> None:
+        """Describe the page with the numbers of this moment: of what runs on they could not be read otherwise."""
+        self._told = self.chapter.why() if self.chapter.tried else ""
+        self._code = list(self.chapter.code()) if self.page == CODE and not self.chapter.problem else []
+        self.build()
 
     def _restart(self) -> None:
         """Begin the chapter's picture anew."""
@@ -181,7 +189,9 @@ class ChapterScene(PanelScene):
         waits = texts.LEARN_STILL_RUNS if self.chapter.running else texts.LEARN_TRY_FIRST
         column.text(self._told or waits, size=_BODY)
         column.gap(8)
-        column.text(self.chapter.words["why"], size=_BODY, colour=MUTE)
+        for name in ("why", "differs"):
+            column.text(self.chapter.words.get(name, ""), size=_BODY, colour=MUTE)
+            column.gap(8)
 
     def _write_verdict(self, guess: int, came: int | None, cursor: Cursor) -> None:
         """Write the card of a guess: what was said, and what came of this very try."""
@@ -228,7 +238,7 @@ class ChapterScene(PanelScene):
             column.text(texts.LEARN_NO_SOURCE, size=_BODY, colour=MUTE)
             return
         current, notes = placed(source, code)
-        add_listing(column, _LISTING, lambda: (source, current, notes), _NOTES)
+        add_listing(column, _LISTING, lambda: (source, current, notes))
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         super().draw(canvas, alpha)

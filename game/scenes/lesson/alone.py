@@ -16,8 +16,8 @@ from game.drawing.tokens import CAPTION, FAINT, HUMAN, INK, LINE, MUTE, NET, NIG
 from game.explain.figures import points
 from game.explain.tables import Part, formula
 from game.scenes.lesson.flight import said_action
-from game.scenes.lesson.frame import Frame
-from game.scenes.lesson.step import LearningStep
+from game.scenes.lesson.frame import Frame, pulled
+from game.scenes.lesson.step import LearningStep, Pulls
 from game.ui.panel import Column
 
 _HEIGHT: Final = 220.0  # of the way, and of the six values
@@ -44,6 +44,7 @@ class AloneFrame(Frame):
         before, target = (points(each / self._scale) for each in (lesson.predicted[self._action], lesson.target))
         sentence = words[1].format(action=said_action(self._action), value=before, target=target)
         super().__init__(words, target, (NeuralNetwork.correct,), sentence=sentence)
+        self._moved = float(lesson.predicted_after[self._action]) - float(lesson.predicted[self._action])
         self._frames = 0
         self.again()
 
@@ -85,7 +86,8 @@ class AloneFrame(Frame):
 
     def _told(self) -> str:
         words = texts.LESSON_ALONE_ARRIVED if self.alone.arrived else texts.LESSON_ALONE_MORE
-        return words.format(count=self._step.examples - 1)
+        pulls = Pulls.of(self._step, self._lesson.derivative, self._moved)
+        return words.format(count=self._step.examples, own=pulled(pulls.own / self._scale))
 
     def _figures(self) -> list[Part]:
         """Return the value, and its target."""

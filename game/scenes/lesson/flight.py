@@ -17,7 +17,6 @@ from ai.explain.agent_lesson import Flown, Lesson
 from ai.lander.environment import ACTION_NAMES, OBSERVATION_SCALE, PARAMS, Outcome
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.drawing.cursor import Cursor
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import INK, SMALL, VIEW_SIZE
 from game.explain.figures import decimal, number, points
@@ -56,91 +55,84 @@ def sensed(value: float, feature: int) -> str:
     return figure if unit is None else texts.LESSON_UNITS[unit].format(value=figure)
 
 
-class MomentFrame(Frame):
-    """Frame of the moment: a picture, and the nine inputs with their units."""
+def moment_frame(lesson: Lesson) -> Frame:
+    """Return the frame of the moment: a picture, and the nine inputs with their units."""
+    units, cache = in_units(lesson.cell.state).tolist(), PaintCache()
+    lines = [
+        Line((name, sensed(value, feature), number(given)), texts.LESSON_INPUTS_HELP[feature],
+             told((texts.LESSON_IN_UNITS, sensed(value, feature)),
+                  (texts.LESSON_SCALED.format(scale=f"{OBSERVATION_SCALE[feature]:g}"),
+                   number(float(lesson.cell.state[feature]))),
+                  (texts.LESSON_GIVEN, number(given))))
+        for feature, (name, value, given) in enumerate(zip(texts.INPUTS, units, lesson.state.tolist(), strict=True))
+    ]  # fmt: skip
 
-    def __init__(self, lesson: Lesson) -> None:
-        self._state, self._action = np.asarray(lesson.cell.state), int(lesson.cell.action)
-        units = in_units(self._state).tolist()
-        functions = (DeepQAgent.learn, DeepQAgent._learn_from, Normalizer.__call__)
-        super().__init__(texts.LESSON_FRAMES["moment"], sensed(units[1], 1), functions, "rows")
-        self._cache = PaintCache()
-        self._lines = [
-            Line((name, sensed(value, feature), number(given)), texts.LESSON_INPUTS_HELP[feature],
-                 told((texts.LESSON_IN_UNITS, sensed(value, feature)),
-                      (texts.LESSON_SCALED.format(scale=f"{OBSERVATION_SCALE[feature]:g}"),
-                       number(float(self._state[feature]))),
-                      (texts.LESSON_GIVEN, number(given))))
-            for feature, (name, value, given) in enumerate(zip(texts.INPUTS, units, lesson.state.tolist(), strict=True))
-        ]  # fmt: skip
+    def draw(canvas: Canvas, box: pygame.FRect) -> None:
+        cache.draw(canvas, box, (), partial(_paint, box.width, units, int(lesson.cell.action)))
 
-    def describe(self, column: Column) -> None:
+    def describe(column: Column) -> None:
         left, right = column.beside((1, 1), _LEAST)
-        left.add(self._write_picture)
+        left.picture(lambda width: width * VIEW_SIZE[1] / VIEW_SIZE[0], draw)
+        left.gap(4)
         left.aside(texts.LESSON_PICTURE_NOTE)
-        right.add(table((texts.LESSON_INPUTS, texts.LESSON_IN_UNITS, texts.LESSON_GIVEN), lambda: self._lines))
+        right.add(table((texts.LESSON_INPUTS, texts.LESSON_IN_UNITS, texts.LESSON_GIVEN), lambda: lines))
 
-    def _write_picture(self, cursor: Cursor) -> None:
-        box = cursor.take(cursor.width * VIEW_SIZE[1] / VIEW_SIZE[0])
-        if cursor.canvas:
-            self._cache.draw(cursor.canvas, box, (), partial(self._paint, box.width))
-        cursor.gap(4)
-
-    def _paint(self, width: float, canvas: Canvas) -> None:
-        """Paint the moon with the lander, its engines and an arrow for its velocity, on a sheet of that width."""
-        share = width / VIEW_SIZE[0]
-        moon = pygame.Surface(canvas.size)
-        Backdrop(canvas.size, np.random.default_rng(_MOON), reduced_motion=True).paint(moon)
-        canvas.surface.blit(moon, (0, 0))
-        span = (1 - share) / (2 * share * POINTS_PER_METRE)
-        view = View(canvas.scale, (HOME[0] + span * VIEW_SIZE[0], HOME[1] - span * VIEW_SIZE[1]), share)
-        draw_pad(canvas, view, (0.0, PARAMS.pad_top), PARAMS.pad_width, 0.0)
-        units = in_units(self._state).tolist()
-        place = np.array([units[0], units[1] + PARAMS.pad_top + PARAMS.stand])
-        thrust = np.array([self._action >= 3, self._action % 3 == 2, self._action % 3 == 1], float)
-        pose = np.array([*place, math.atan2(units[4], units[5])])
-        draw_craft(canvas, view, LANDER, pose, thrust, 1.0, 0, 1.5)
-        (x, y), across, up = view.points(place).tolist(), units[2] * _ARROW, units[3] * _ARROW
-        if math.hypot(across, up) > 2:
-            canvas.line((x, y), (x + across, y - up), INK, 1.5)
-            canvas.dot((x + across, y - up), 2.5, INK)
+    functions = (DeepQAgent.learn, DeepQAgent._learn_from, Normalizer.__call__)
+    return Frame(texts.LESSON_FRAMES["moment"], sensed(units[1], 1), functions, "rows", describe)
 
 
-class HappenedFrame(Frame):
-    """Frame of what happened: the action and the pay of each decision, and the state after."""
+def _paint(width: float, units: list[float], action: int, canvas: Canvas) -> None:
+    """Paint the moon with the lander, its engines and an arrow for its velocity, on a sheet of that width."""
+    share = width / VIEW_SIZE[0]
+    moon = pygame.Surface(canvas.size)
+    Backdrop(canvas.size, np.random.default_rng(_MOON), reduced_motion=True).paint(moon)
+    canvas.surface.blit(moon, (0, 0))
+    span = (1 - share) / (2 * share * POINTS_PER_METRE)
+    view = View(canvas.scale, (HOME[0] + span * VIEW_SIZE[0], HOME[1] - span * VIEW_SIZE[1]), share)
+    draw_pad(canvas, view, (0.0, PARAMS.pad_top), PARAMS.pad_width, 0.0)
+    place = np.array([units[0], units[1] + PARAMS.pad_top + PARAMS.stand])
+    thrust = np.array([action >= 3, action % 3 == 2, action % 3 == 1], float)
+    draw_craft(canvas, view, LANDER, np.array([*place, math.atan2(units[4], units[5])]), thrust, 1.0, 0, 1.5)
+    (x, y), across, up = view.points(place).tolist(), units[2] * _ARROW, units[3] * _ARROW
+    if math.hypot(across, up) > 2:
+        canvas.line((x, y), (x + across, y - up), INK, 1.5)
+        canvas.dot((x + across, y - up), 2.5, INK)
 
-    def __init__(self, lesson: Lesson) -> None:
-        self._lesson, self._pay = lesson, float(lesson.cell.reward) / lesson.config.reward_scale
-        super().__init__(texts.LESSON_FRAMES["happened"], in_points(self._pay), (NStep.add,), "self._returns")
 
-    def describe(self, column: Column) -> None:
-        lesson, flown, count = self._lesson, self._lesson.flown, int(self._lesson.cell.steps)
+def happened_frame(lesson: Lesson) -> Frame:
+    """Return the frame of what happened: the action and the pay of each decision, and the state after."""
+    flown, count, discount = lesson.flown, int(lesson.cell.steps), lesson.config.discount
+    pay = float(lesson.cell.reward) / lesson.config.reward_scale
+    before, after = (in_units(each).tolist() for each in (lesson.cell.state, lesson.cell.next_state))
+
+    def describe(column: Column) -> None:
         left, right = column.beside((1, 1), _LEAST)
-        lines = self._decisions(flown) if flown else []
-        words = texts.LESSON_RETURN.format(discount=f"{lesson.config.discount:g}", count=count)
-        whole = Line((words, *[""] * (2 if flown else 0), points(self._pay)), texts.LESSON_RETURN_HELP, lit=True)
+        lines = _decisions(flown, discount) if flown else []
+        words = texts.LESSON_RETURN.format(discount=f"{discount:g}", count=count)
+        whole = Line((words, *[""] * (2 if flown else 0), points(pay)), texts.LESSON_RETURN_HELP, lit=True)
         left.add(table(texts.LESSON_PAY if flown else (), lambda: [*lines, whole]))
         if flown is None:
             left.aside(texts.LESSON_NOT_KNOWN)
-        before, after = (in_units(each).tolist() for each in (lesson.cell.state, lesson.cell.next_state))
         changes = [
-            Line((name, sensed(before[feature], feature), sensed(after[feature], feature)),
-                 texts.LESSON_INPUTS_HELP[feature])
-            for feature, name in enumerate(texts.INPUTS)
-        ]  # fmt: skip
+            Line((name, sensed(before[feature], feature), sensed(after[feature], feature)), help_)
+            for feature, (name, help_) in enumerate(zip(texts.INPUTS, texts.LESSON_INPUTS_HELP, strict=True))
+        ]
         head = (texts.LESSON_AFTER.format(count=count), texts.LESSON_BEFORE, texts.LESSON_NOW)
         right.add(table(head, lambda: changes))
         if flown is not None and flown.outcome != Outcome.FLYING:
             right.text(texts.LESSON_OUTCOMES[flown.outcome - 1], size=SMALL)
 
-    def _decisions(self, flown: Flown) -> list[Line]:
-        """Return a line for each decision: its action, its pay, how much that counts, and that much of it."""
-        lines, discount = [], self._lesson.config.discount
-        for place, (action, pay) in enumerate(zip(flown.actions.tolist(), flown.rewards.tolist(), strict=True)):
-            words = (texts.REWARD_PARTS.get(name, (name,))[0] for name in flown.parts)
-            parts = [(word, points(float(paid[place]))) for word, paid in zip(words, flown.parts.values(), strict=True)
-                     if paid[place]]  # fmt: skip
-            factor, what = discount**place, texts.LESSON_DECISION.format(number=place + 1)
-            cells = (said_action(action), points(pay), f"× {factor:.3f}", points(pay * factor))
-            lines.append(Line(cells, what, told(*parts, (texts.LESSON_IN_ALL, points(pay)))))
-        return lines
+    return Frame(texts.LESSON_FRAMES["happened"], in_points(pay), (NStep.add,), "self._returns", describe)
+
+
+def _decisions(flown: Flown, discount: float) -> list[Line]:
+    """Return a line for each decision: its action, its pay, how much that counts, and that much of it."""
+    lines = []
+    for place, (action, pay) in enumerate(zip(flown.actions.tolist(), flown.rewards.tolist(), strict=True)):
+        words = (texts.REWARD_PARTS.get(name, (name,))[0] for name in flown.parts)
+        parts = [(word, points(float(paid[place]))) for word, paid in zip(words, flown.parts.values(), strict=True)
+                 if paid[place]]  # fmt: skip
+        factor, what = discount**place, texts.LESSON_DECISION.format(number=place + 1)
+        cells = (said_action(action), points(pay), f"× {factor:.3f}", points(pay * factor))
+        lines.append(Line(cells, what, told(*parts, (texts.LESSON_IN_ALL, points(pay)))))
+    return lines

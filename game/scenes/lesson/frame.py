@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -13,15 +13,13 @@ from ai.explain.recorder import Function, Line
 from game.core import texts
 from game.core.source import Source, source_of
 from game.drawing.canvas import Point
-from game.drawing.cursor import Cursor
-from game.drawing.tokens import CAPTION, INK, NET
 from game.explain.code_listing import add_listing
-from game.explain.figures import number, points
+from game.explain.figures import number, points, signed
 from game.ui.panel import Column
 
 
 class Frame:
-    """One of the frames of a lesson; a subclass adds its rows.
+    """One of the frames of a lesson; what has a state of its own is a subclass.
 
     Attributes:
         name: its name, on its card.
@@ -33,13 +31,21 @@ class Frame:
     """
 
     def __init__(
-        self, words: Sequence[str], figure: str, functions: Sequence[Function], begin: str = "", sentence: str = ""
+        self,
+        words: Sequence[str],
+        figure: str,
+        functions: Sequence[Function],
+        begin: str = "",
+        describe: Callable[[Column], None] | None = None,
+        sentence: str = "",
     ) -> None:
-        self.name, self.sentence = words[0], sentence or words[1]
+        self.name, self.sentence, self._describe = words[0], sentence or words[1], describe
         self.figure, self.functions, self.begin = figure, tuple(functions), begin
 
     def describe(self, column: Column) -> None:
         """Add the rows."""
+        if self._describe:
+            self._describe(column)
 
     def point(self, place: Point | None) -> None:
         """Follow the pointer, in points; None while it is nowhere."""
@@ -53,8 +59,12 @@ def in_points(value: float) -> str:
     return texts.LESSON_POINTS.format(points=points(value))
 
 
+def pulled(value: float) -> str:
+    """Write how far something moved a value, in points, with digits that tell it from 0."""
+    return points(value) if abs(value) >= 0.1 else signed(value)
+
+
 _LISTING: Final = 300.0  # height
-_MOST: Final = 6  # values of a line that are shown
 _FEW: Final = 4  # numbers of an array that are written out, at most
 # Variables of the agent's code that are rewards, values or differences of these.
 _REWARDS: Final = frozenset((
@@ -66,14 +76,12 @@ _VALUES_OF: Final = ("DeepQAgent._next_value", "DeepQAgent._learn_from")  # func
 
 def in_points_of_reward(line: Line, scale: float) -> Line:
     """Return a line of the agent's code with its rewards and values in points, as all else on the screen has them."""
-
-    def shown(name: str, value: Value) -> Value:
-        rewards = name in _REWARDS or (name == "values" and line.function in _VALUES_OF)
-        if not rewards or value.case is None:
-            return value
-        return replace(value, case=np.asarray(value.case, float) / scale)
-
-    return replace(line, values={name: shown(name, value) for name, value in line.values.items()})
+    names = _REWARDS | {"values"} if line.function in _VALUES_OF else _REWARDS
+    return replace(line, values={
+        name: replace(value, case=np.asarray(value.case, float) / scale)
+        if name in names and value.case is not None else value
+        for name, value in line.values.items()
+    })  # fmt: skip
 
 
 class CodeWalk:
@@ -107,7 +115,7 @@ class CodeWalk:
         return source_of(self._functions[self.line.function] if self.line else next(iter(self._functions.values())))
 
     def describe(self, column: Column) -> None:
-        """Add the listing, what goes from line to line, and what the line sets."""
+        """Add the listing, and what goes from line to line."""
         last = len(self.lines) - 1
         if self.source is None:
             column.aside(texts.LESSON_NO_SOURCE)
@@ -118,7 +126,6 @@ class CodeWalk:
                 texts.LESSON_LINE, self.index, (0, last), self._go, step=1,
                 figure=lambda value: texts.LESSON_LINE_OF.format(number=round(value) + 1, count=last + 1),
             )  # fmt: skip
-        column.add(self._write_values)
 
     def _go(self, index: float) -> None:
         self.index = round(index)
@@ -136,19 +143,6 @@ class CodeWalk:
                 notes.setdefault(line.number, _note(list(line.values.values())))
         return source, self.line.number if self.line else None, notes
 
-    def _write_values(self, cursor: Cursor) -> None:
-        """Write the name and the shape of what the current line has set, and the numbers of this case."""
-        if self.line is None:
-            return
-        cursor.aside(texts.LESSON_SETS if self.line.values else texts.LESSON_SETS_NOTHING)
-        values = list(self.line.values.values())
-        for value in values[:_MOST]:
-            row = cursor.in_style(CAPTION, INK, "code")
-            row.pair(f"{value.name} {shape_of(value)}".rstrip(), case_of(value), NET)
-            cursor.y = row.y + 2
-        if len(values) > _MOST:
-            cursor.aside(texts.LESSON_MORE.format(count=len(values) - _MOST))
-
 
 def shape_of(value: Value) -> str:
     """Write the shape of an array: 256 × 9; nothing for a number."""
@@ -156,18 +150,14 @@ def shape_of(value: Value) -> str:
 
 
 def _note(values: list[Value]) -> str:
-    """Write the first of some values: this case's number, or the shape of an array that has several for it."""
+    """Write the first of some values: this case's numbers, or the shape of an array that has many for it."""
     first = values[0]
-    note = case_of(first) if np.size(first.case) == 1 and first.case is not None else shape_of(first)
+    note = case_of(first) if first.case is not None and np.size(first.case) <= _FEW else shape_of(first)
     return note if len(values) == 1 else f"{note} ..."
 
 
 def case_of(value: Value) -> str:
-    """Write this case's numbers of a value, the first few of many."""
-    if value.case is None:
-        return ""
+    """Write this case's numbers of a value."""
     if isinstance(value.case, bool | np.bool_):
         return str(bool(value.case))
-    numbers = np.asarray(value.case).ravel()
-    shown = " ".join(str(each) if isinstance(each, int) else number(each) for each in numbers[:_FEW].tolist())
-    return shown if len(numbers) <= _FEW else f"{shown} ..."
+    return " ".join(str(each) if isinstance(each, int) else number(each) for each in np.ravel(value.case).tolist())

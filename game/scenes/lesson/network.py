@@ -14,7 +14,7 @@ from game.core import texts
 from game.drawing.canvas import Canvas, Point
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import HUMAN, SMALL
-from game.explain.figures import decimal, number, points, signed
+from game.explain.figures import number, points, signed
 from game.explain.network_plan import Show
 from game.explain.network_view import NetworkView
 from game.explain.tables import Line, table, told
@@ -26,8 +26,8 @@ _HEIGHTS: Final[dict[Show, float]] = {"weights": 370.0, "activations": 370.0, "g
 _TERMS: Final = 6  # products of a unit's sum that are written out one by one; the others are summed
 _MOST_NAMED: Final = 12  # inputs up to which their names stand beside them
 _UNNAMED: Final = (" " * 32,)  # keeps the room of a name free, for the legend below
-_RANKS: Final = 24  # weights to choose from, the steepest first
 _LEAST: Final = 300.0  # width of a column
+_RANKS: Final = 24  # weights to choose from, the steepest first
 
 
 class NetworkFrame(Frame):
@@ -65,7 +65,7 @@ class NetworkFrame(Frame):
         self.view.hover(place)
 
     def update(self, still: bool) -> None:
-        self.view.update(at_once=still)
+        self.view.update()
 
     def _draw(self, canvas: Canvas) -> None:
         """Draw the network; each unit explains itself."""
@@ -133,15 +133,13 @@ class GradientFrame(NetworkFrame):
         column.choice("", whose, int(self.alone), self.show_alone, SMALL)
         super().describe(column)
         column.gap(8)
-        left, right = column.beside((2, 3), _LEAST)
-        left.caption(texts.LESSON_SHARE)
-        left.add(table((), self._share))
         if self._steepest:
-            right.slider(texts.LESSON_PICK_WEIGHT, self.rank + 1, (1, len(self._steepest)), self._pick_rank, step=1,
-                         figure=lambda rank: f"{rank:.0f}")  # fmt: skip
-            right.text(self._title, size=SMALL, colour=HUMAN)
+            left, right = column.beside((2, 3), _LEAST)
+            left.slider(texts.LESSON_PICK_WEIGHT, self.rank + 1, (1, len(self._steepest)), self._pick_rank, step=1,
+                        figure=lambda rank: f"{rank:.0f}")  # fmt: skip
+            left.text(self._title, size=SMALL, colour=HUMAN)
+            left.text(lambda: texts.LESSON_UPHILL if self.uphill else "", size=SMALL)
             right.add(table((), self._parts))
-            right.text(lambda: texts.LESSON_UPHILL if self.uphill else "", size=SMALL)
 
     def _pick_rank(self, rank: float) -> None:
         self.rank = round(rank) - 1
@@ -155,21 +153,6 @@ class GradientFrame(NetworkFrame):
         """Show this example's own share of the gradient, or the whole batch's."""
         self.alone = bool(alone)
         self.flow(self.step.taken.share if alone else self.step.taken.gradient)
-
-    def _share(self) -> list[Line]:
-        """Return how the share of this example compares with the gradient of the whole batch."""
-        taken = self.step.taken
-        gradient, share = (each.astype(float) for each in (taken.gradient, taken.share))
-        whole, own = (float(np.linalg.norm(each)) for each in (gradient, share))
-        agreement = float(share @ gradient) / (whole * own) if whole * own > 0 else 0.0
-        lines = [
-            Line((texts.LESSON_LENGTH_BATCH, number(whole)), texts.LESSON_LENGTH_HELP),
-            Line((texts.LESSON_LENGTH_SHARE, number(own)), texts.LESSON_SHARE_HELP),
-            Line((texts.LESSON_AGREEMENT, decimal(agreement, 2, "+")), texts.LESSON_AGREEMENT_HELP),
-        ]
-        if taken.gradient_length > 1.001 * whole:
-            lines.append(Line((texts.LESSON_CLIPPED, number(taken.gradient_length)), texts.LESSON_CLIPPED_HELP))
-        return lines
 
     @property
     def uphill(self) -> bool:

@@ -15,8 +15,9 @@ from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.tokens import CAPTION, INK, LINE, MUTE, NET, SMALL
 from game.explain.explained import Explained
-from game.explain.lesson_door import ImageDoor
+from game.explain.lesson_door import LessonDoor
 from game.input.controls import Command
+from game.scenes.lesson.alone import AloneFrame
 from game.scenes.lesson.frame import CodeWalk, Frame
 from game.scenes.lesson.frames import parts_of
 from game.ui.actions import Action, Table
@@ -106,7 +107,7 @@ class LessonScene(PanelScene):
 
     """
 
-    def __init__(self, context: Context, lesson: Lesson | DigitLesson, door: ImageDoor | None = None) -> None:
+    def __init__(self, context: Context, lesson: Lesson | DigitLesson, door: LessonDoor | None = None) -> None:
         super().__init__(context)
         self._door, self.current, self.in_code = door, 0, False
         self.explained = Explained()
@@ -116,6 +117,13 @@ class LessonScene(PanelScene):
         """Take a lesson apart; the number of the frame that is shown stays."""
         self.lesson, self.parts = lesson, parts_of(lesson)
         self.build()
+
+    def reword(self) -> None:
+        """Take the lesson apart anew, in the other language."""
+        before = self.parts[0].frame
+        self._take(self.lesson)
+        if isinstance(before, AloneFrame) and isinstance(now := self.parts[0].frame, AloneFrame):
+            now.alone = before.alone  # what was tried stays
 
     @property
     def frame(self) -> Frame:
@@ -129,9 +137,10 @@ class LessonScene(PanelScene):
     # Rows
 
     def describe(self, panel: Panel) -> None:
-        panel.pair(texts.LESSON_TITLE, self._whose, MUTE)
+        panel.text(lambda: f"{texts.LESSON_TITLE}: {self._whose()}", colour=MUTE)
         frames = [part.frame for part in self.parts]
         self.cards = panel.widget(Cards(self.form.manager, frames, self.current, self.show))
+        panel.explain("")  # each card says what it is
         panel.gap(8)
         panel.text(self.frame.sentence)
         panel.gap(8)

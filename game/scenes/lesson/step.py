@@ -131,8 +131,7 @@ class LearningStep:
         return pace
 
 
-@dataclass(frozen=True)
-class Pulls:
+class Pulls(NamedTuple):
     """Change of one output in a step, by its causes, in the unit of the network.
 
     The step of each of our optimizers is a pace times a sum of gradients, parameter by parameter, and the gradient of a
@@ -153,18 +152,17 @@ class Pulls:
     bend: float
 
     @classmethod
-    def of(cls, step: LearningStep, derivative: float, moved: float) -> Pulls | None:
-        """Return the pulls that moved an output by `moved`; None where the cost's `derivative` by it is 0.
+    def of(cls, step: LearningStep, derivative: float, moved: float) -> Pulls:
+        """Return the pulls that moved an output by `moved`, by which the cost has that `derivative`.
 
-        The share of the example in the gradient is that derivative times the slope of the output.
+        The share of the example in the gradient is that derivative times the slope of the output; without an error
+        there is none, and all of it is bend.
         """
-        if derivative == 0.0 or not np.isfinite(derivative):
-            return None
         taken = step.taken
         gradient, share, whole = (each.astype(float) for each in (taken.gradient, taken.share, taken.taken))
         clipped = float(np.linalg.norm(gradient)) / taken.gradient_length if taken.gradient_length > 0 else 1.0
         own, together = step.pace * share * clipped, step.pace * gradient
-        pulls = [-float(share @ part) / derivative for part in (own, together - own, whole - together)]
+        pulls = [-float(share @ part) / (derivative or 1.0) for part in (own, together - own, whole - together)]
         own, others, earlier = pulls
         return cls(own, others, earlier, moved - sum(pulls))
 

@@ -22,86 +22,101 @@ from game.drawing.tokens import CAPTION, EMBER, FAINT, HUMAN, INK, LINE, MUTE, N
 from game.explain.figures import decimal, number, points, signed
 from game.explain.tables import Line, Part, formula, table, told
 from game.scenes.lesson.flight import said_action
-from game.scenes.lesson.frame import Frame, in_points
+from game.scenes.lesson.frame import Frame, in_points, pulled
 from game.scenes.lesson.step import LearningStep, Pulls
 from game.ui.panel import Column
 
 _LEAST: Final = 300.0  # width of a column
 
 
-class TargetFrame(Frame):
-    """Frame of the target."""
+def target_frame(lesson: Lesson) -> Frame:
+    """Return the frame of the target: its sum, and the values afterwards with who picks and who judges."""
 
-    def __init__(self, lesson: Lesson) -> None:
-        self._lesson, self._scale = lesson, lesson.config.reward_scale
-        functions = (DeepQAgent.targets, DeepQAgent._next_value, NeuralNetwork.predict)
-        super().__init__(texts.LESSON_FRAMES["target"], in_points(lesson.target / self._scale), functions, "targets")
-
-    def describe(self, column: Column) -> None:
-        column.add(formula(self._sum))
+    def describe(column: Column) -> None:
+        column.add(formula(lambda: _sum(lesson)))
         column.gap(4)
         left, right = column.beside((1, 1), _LEAST)
-        left.add(table(self._head(), self._values))
-        for words in self._roles():
+        lines = _values(lesson)
+        left.add(table(_head(lesson), lambda: lines))
+        for words in _roles(lesson):
             right.text(words, size=SMALL, colour=MUTE)
             right.gap(4)
 
-    def _sum(self) -> list[Part]:
-        lesson, steps, ended = self._lesson, int(self._lesson.cell.steps), bool(self._lesson.cell.terminal)
-        target, pay, value = (float(each) / self._scale for each in (lesson.target, lesson.cell.reward,
-                                                                     lesson.next_value))  # fmt: skip
-        whole = told(
-            (texts.LESSON_PART_PAY, points(pay)),
-            (texts.LESSON_PART_VALUE.format(factor=f"{lesson.discount:.4f}", value=points(value)),
-             points(0.0 if ended else lesson.discount * value)),
-            (texts.LESSON_TARGET, points(target)),
-        )  # fmt: skip
-        factor = told((f"{lesson.config.discount:g}^{steps}", f"{lesson.discount:.4f}"))
-        parts = [
-            Part(points(target), texts.LESSON_TARGET, texts.LESSON_TARGET_HELP, whole),
-            Part("="),
-            Part(points(pay), texts.LESSON_PART_PAY, texts.LESSON_RETURN_HELP),
-            Part("+"),
-            Part(f"{lesson.discount:.3f}", texts.LESSON_PART_DISCOUNT.format(count=steps), texts.LESSON_DISCOUNT_HELP,
-                 factor),
-            Part("×"),
-            Part(points(value), texts.LESSON_PART_NEXT, texts.LESSON_NEXT_HELP),
-        ]  # fmt: skip
-        return [*parts, Part("×"), Part("0", texts.LESSON_PART_ENDED, texts.LESSON_NOTHING_AFTER)] if ended else parts
+    functions = (DeepQAgent.targets, DeepQAgent._next_value, NeuralNetwork.predict)
+    figure = in_points(lesson.target / lesson.config.reward_scale)
+    return Frame(texts.LESSON_FRAMES["target"], figure, functions, "targets", describe)
 
-    def _head(self) -> tuple[str, ...]:
-        """Return the heads of the values' table: one network, or one that picks and one that judges."""
-        if self._lesson.next_online is not None:
-            return "", texts.LESSON_PICK, texts.LESSON_JUDGE
-        judge = texts.LESSON_PICK_AND_JUDGE if self._lesson.config.target_judges else texts.LESSON_NEWEST_JUDGES
-        return "", judge
 
-    def _values(self) -> list[Line]:
-        """Return the values of the six actions afterwards, by each of the networks, on one scale."""
-        lesson = self._lesson
-        columns = [each for each in (lesson.next_online, lesson.next_judged) if each is not None]
-        shown = np.stack(columns, axis=1) / self._scale
-        low, span = float(shown.min()), max(float(np.ptp(shown)), 1e-9)
-        return [
-            Line((said_action(action), *map(points, row)), texts.LESSON_NEXT_HELP,
-                 told((texts.LESSON_OWN_SCALE, " ".join(number(value * self._scale) for value in row))),
-                 lit=action == lesson.best, bars=[(value - low) / span for value in row])
-            for action, row in enumerate(shown.tolist())
-        ]  # fmt: skip
+def _sum(lesson: Lesson) -> list[Part]:
+    """Return the target as pay, plus the discounted value afterwards."""
+    steps, ended = int(lesson.cell.steps), bool(lesson.cell.terminal)
+    target, pay, value = (float(each) / lesson.config.reward_scale
+                          for each in (lesson.target, lesson.cell.reward, lesson.next_value))  # fmt: skip
+    whole = told(
+        (texts.LESSON_PART_PAY, points(pay)),
+        (texts.LESSON_PART_VALUE.format(factor=f"{lesson.discount:.4f}", value=points(value)),
+         points(0.0 if ended else lesson.discount * value)),
+        (texts.LESSON_TARGET, points(target)),
+    )  # fmt: skip
+    factor = told((f"{lesson.config.discount:g}^{steps}", f"{lesson.discount:.4f}"))
+    parts = [
+        Part(points(target), texts.LESSON_TARGET, texts.LESSON_TARGET_HELP, whole),
+        Part("="),
+        Part(points(pay), texts.LESSON_PART_PAY, texts.LESSON_RETURN_HELP),
+        Part("+"),
+        Part(f"{lesson.discount:.3f}", texts.LESSON_PART_DISCOUNT.format(count=steps), texts.LESSON_DISCOUNT_HELP,
+             factor),
+        Part("×"),
+        Part(points(value), texts.LESSON_PART_NEXT, texts.LESSON_NEXT_HELP),
+    ]  # fmt: skip
+    return [*parts, Part("×"), Part("0", texts.LESSON_PART_ENDED, texts.LESSON_NOTHING_AFTER)] if ended else parts
 
-    def _roles(self) -> list[str]:
-        """Say which network picks, which one judges, and what comes of it; or what stands in for a second one."""
-        lesson, config, words = self._lesson, self._lesson.config, texts.LESSON_ROLES_NEWEST
-        if lesson.next_online is not None:
-            said = [*texts.LESSON_ROLES_DOUBLE]
-        elif config.target_judges:
-            said = [*texts.LESSON_ROLES_SINGLE]
-        else:
-            pays = [words["pays"].format(count=int(lesson.cell.steps))] if config.n_step > 1 else []
-            said = [words["picks"], *pays, words["normalised" if config.layer_normalisation else "bare"]]
-        judged = lesson.next_judged / self._scale
-        own, most = points(float(judged[lesson.best])), points(float(judged.max()))
-        return [text.format(action=said_action(lesson.best), value=own, most=most) for text in said]
+
+def _head(lesson: Lesson) -> tuple[str, ...]:
+    """Return the heads of the values' table: one network, or one that picks and one that judges."""
+    if lesson.next_online is not None:
+        return "", texts.LESSON_PICK, texts.LESSON_JUDGE
+    return "", texts.LESSON_PICK_AND_JUDGE if lesson.config.target_judges else texts.LESSON_NEWEST_JUDGES
+
+
+def _values(lesson: Lesson) -> list[Line]:
+    """Return the values of the six actions afterwards, by each of the networks, on one scale."""
+    scale = lesson.config.reward_scale
+    shown = np.stack([each for each in (lesson.next_online, lesson.next_judged) if each is not None], axis=1) / scale
+    low, span = float(shown.min()), max(float(np.ptp(shown)), 1e-9)
+    return [
+        Line((said_action(action), *map(points, row)), texts.LESSON_NEXT_HELP,
+             told((texts.LESSON_OWN_SCALE, " ".join(number(value * scale) for value in row))),
+             lit=action == lesson.best, bars=[(value - low) / span for value in row])
+        for action, row in enumerate(shown.tolist())
+    ]  # fmt: skip
+
+
+def _roles(lesson: Lesson) -> list[str]:
+    """Say which network picks, which one judges, and what comes of it; or what stands in for a second one."""
+    config, words = lesson.config, texts.LESSON_ROLES_NEWEST
+    if lesson.next_online is not None:
+        said = [*texts.LESSON_ROLES_DOUBLE]
+    elif config.target_judges:
+        said = [*texts.LESSON_ROLES_SINGLE]
+    else:
+        pays = [words["pays"].format(count=int(lesson.cell.steps))] if config.n_step > 1 else []
+        said = [words["picks"], *pays, words["normalised" if config.layer_normalisation else "bare"]]
+    judged = lesson.next_judged / config.reward_scale
+    own, most = points(float(judged[lesson.best])), points(float(judged.max()))
+    return [text.format(action=said_action(lesson.best), value=own, most=most) for text in said]
+
+
+def draw_on_line(canvas: Canvas, box: pygame.FRect, ends: tuple[float, float], marks: Sequence[float]) -> list[float]:
+    """Draw a value on its way, `marks`: where it begins, where it is, and its target; return where they stand."""
+    low, high, y = min(marks), max(marks), box.centery
+    start, now, target = (ends[0] + (ends[1] - ends[0]) * (mark - low) / max(high - low, 1e-9) for mark in marks)
+    canvas.line((box.left, y), (box.right, y), LINE)
+    canvas.line((start, y), (now, y), NET, 2.5)
+    canvas.dot((start, y), 4, FAINT)
+    canvas.dot((now, y), 5, NET)
+    canvas.marker("ring", (target, y), 12, HUMAN)
+    return [start, now, target]
 
 
 Curve = Callable[[float], float]
@@ -120,7 +135,7 @@ class ErrorFrame(Frame):
         self._cost: Cost = COSTS[lesson.config.cost]()
         said = texts.LESSON_TOO[error > 0].format(by=decimal(abs(error), 2)) if error else ""
         functions = (DeepQAgent.gradient_step, self._cost.function, self._cost.derivative)
-        super().__init__(words, in_points(error), functions, "errors", f"{words[1]} {said}".strip())
+        super().__init__(words, in_points(error), functions, "errors", sentence=f"{words[1]} {said}".strip())
         largest = max(float(np.abs(lesson.batch_errors).max()), abs(lesson.error), 1e-6)
         self._delta = float(self._cost.options.get("delta", 0.0))
         # Where errors are far from the bend of the cost, the bend is out of sight, and the curves say so truly.
@@ -165,14 +180,11 @@ class ErrorFrame(Frame):
 
     def _draw_line(self, canvas: Canvas, box: pygame.FRect) -> None:
         """Draw the value and its target on a line, and the error between them."""
-        lesson, y = self._lesson, box.top + 34
+        lesson, y = self._lesson, box.centery
         predicted, target = float(lesson.predicted[int(lesson.cell.action)]) / self._scale, lesson.target / self._scale
         ends = (box.left + 0.15 * box.width, box.left + 0.85 * box.width)
-        here, there = ends if predicted <= target else ends[::-1]
-        canvas.line((box.left, y), (box.right, y), LINE)
-        canvas.line((here, y), (there, y), EMBER, 2.5)
-        canvas.dot((here, y), 5, NET)
-        canvas.marker("ring", (there, y), 12, HUMAN)
+        _, here, there = draw_on_line(canvas, box, ends, (predicted, predicted, target))
+        canvas.line((here, y), (there, y), EMBER, 1.5)
         for x, value, word, colour in ((here, predicted, texts.LESSON_PREDICTED, NET),
                                        (there, target, texts.LESSON_TARGET, HUMAN)):  # fmt: skip
             canvas.text(f"{word} {points(value)}", (x, y - 16), size=SMALL, colour=colour, align="centre", tabular=True)
@@ -233,61 +245,43 @@ class AfterFrame(Frame):
         self._values = before, after, target = [value / step.scale for value in values]
         figure, write = (number(after), number) if derivative is None else (in_points(after), points)
         super().__init__(words, figure, functions, "values")
-        self.step, self._pulled = step, derivative is not None
+        self.step, self._write = step, write
         self.pulls = None if derivative is None else Pulls.of(step, derivative, values[1] - values[0])
+        self._found = [pull / step.scale for pull in self.pulls or ()]  # in points, in the order of their texts
         closer = abs(before - target) - abs(after - target)
         self._told = telling[closer <= 0].format(
             before=write(before), after=write(after), target=write(target), by=number(abs(closer))
         )
-        if self.pulls is not None:
-            strongest = texts.LESSON_PULL_PARTS[int(np.argmax(np.abs(self._found())))][0]
-            name = strongest.format(count=step.examples - 1)
+        if self._found:
+            strongest = int(np.argmax(np.abs(self._found)))
+            name = texts.LESSON_PULL_PARTS[strongest][0].format(count=step.examples - (strongest > 0))
             self._told = f"{self._told} {texts.LESSON_STRONGEST.format(name=name)}"
 
     def describe(self, column: Column) -> None:
         column.text(self._told, size=SMALL)
         column.picture(_MOVED, self._draw_value)
-        if self._pulled:
+        if self._found:
             column.gap(8)
-            column.aside(texts.LESSON_PULLS if self.pulls else texts.LESSON_NO_PULL)
-        if self.pulls:
+            column.aside(texts.LESSON_PULLS)
             column.picture(_ROW * len(texts.LESSON_PULL_PARTS), self._draw_pulls)
-
-    def _found(self) -> list[float]:
-        """Return the pulls in points, in the order of their texts."""
-        pulls = self.pulls
-        assert pulls is not None
-        return [pull / self.step.scale for pull in (pulls.own, pulls.others, pulls.earlier, pulls.bend)]
 
     def _draw_value(self, canvas: Canvas, box: pygame.FRect) -> None:
         """Draw the value before and after, and its target."""
-        low, high = min(self._values), max(self._values)
-        before, after, target = (
-            box.left + 10 + (box.width - 20) * (value - low) / max(high - low, 1e-9) for value in self._values
-        )
-        y = box.centery
-        canvas.line((box.left, y), (box.right, y), LINE)
-        canvas.line((before, y), (after, y), NET, 2.5)
-        canvas.dot((before, y), 4, FAINT)
-        canvas.dot((after, y), 5, NET)
-        canvas.marker("ring", (target, y), 12, HUMAN)
-        for x, value, word in zip((before, after, target), self._values, texts.LESSON_VALUE_MARKS, strict=True):
-            rows = [(texts.LESSON_OWN_SCALE, number(value * self.step.scale))]
-            if self._pulled:
-                rows.append((texts.LESSON_IN_POINTS.format(scale=f"{self.step.scale:g}"), points(value, 3)))
-            canvas.explain((x - 6, y - 6, 12, 12), word, partial(told, *rows))
+        places, y = draw_on_line(canvas, box, (box.left + 10, box.right - 10), self._values), box.centery
+        for x, value, word in zip(places, self._values, texts.LESSON_VALUE_MARKS, strict=True):
+            canvas.explain((x - 6, y - 6, 12, 12), word, partial(self._write, value))
 
     def _draw_pulls(self, canvas: Canvas, box: pygame.FRect) -> None:
         """Draw a bar for each pull: blue towards the target, orange away from it."""
-        found, (before, _, target) = self._found(), self._values
+        found, (before, _, target) = self._found, self._values
         most, zero = max(1e-12, *map(abs, found)), box.left + 0.83 * box.width
         canvas.line((zero, box.top), (zero, box.bottom), LINE)
         for row, (pull, (word, help_)) in enumerate(zip(found, texts.LESSON_PULL_PARTS, strict=True)):
             y, length = box.top + _ROW * row + 19, 0.16 * box.width * pull / most
-            canvas.text(word.format(count=self.step.examples - 1), (box.left, y), size=SMALL, colour=MUTE,
+            canvas.text(word.format(count=self.step.examples - (row > 0)), (box.left, y), size=SMALL, colour=MUTE,
                         room=_NAMES * box.width)  # fmt: skip
             end = box.left + _FIGURES * box.width
-            canvas.text(points(pull), (end, y), size=SMALL, align="right", tabular=True)
+            canvas.text(pulled(pull), (end, y), size=SMALL, align="right", tabular=True)
             area = canvas.rect(min(zero, zero + length), y - 8, max(abs(length), 1), 7)
             canvas.fill(area, NET if pull * (target - before) >= 0 else EMBER)
-            canvas.explain((box.left, y - 14, box.width, _ROW), help_, partial(points, pull, 3))
+            canvas.explain((box.left, y - 14, box.width, _ROW), help_, partial(pulled, pull))

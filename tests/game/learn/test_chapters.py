@@ -25,7 +25,6 @@ from game.scenes.learn import runs as runs_module
 from game.scenes.learn.backwards import BackwardsChapter
 from game.scenes.learn.chapter import Chapter
 from game.scenes.learn.downhill import DownhillChapter
-from game.scenes.learn.duels import DaringChapter, TargetChapter
 from game.scenes.learn.memory import KINDS, MemoryChapter
 from game.scenes.learn.moment import MOMENTS, ChoiceChapter, MomentChapter
 from game.scenes.learn.neuron import GOAL, HINT, NeuronChapter
@@ -33,6 +32,7 @@ from game.scenes.learn.own import OwnChapter
 from game.scenes.learn.path import PATH, chapter_type
 from game.scenes.learn.pay import ASKED, DECISIONS, FLIGHTS, PAYS, Flown, PayChapter, config_of
 from game.scenes.learn.plane import PlaneChapter
+from game.scenes.learn.runs import DaringChapter, TargetChapter
 from game.scenes.learn.scene import placed
 from game.ui.context import Context
 from tests.support import inline_worker
@@ -103,10 +103,10 @@ def test_the_tilt_and_the_sideways_speed_are_what_it_must_sense(made: Made, subt
         total = float((chapter.sensed[0] * chapter.layer.weights[:, 0]).sum() + chapter.layer.bias[0])
         assert chapter.output == pytest.approx(np.tanh(total), abs=1e-6)
         assert chapter.steer == (1 if chapter.output > 0.5 else 2 if chapter.output < -0.5 else 0)
-    for weights in ((-2.0, 0.0, 1.0), (-6.0, 0.0, 4.0), (-4.0, -4.0, 2.0)):
+    for weights in ((-2.0, 0.0, 1.0), (-4.0, -4.0, 2.0)):
         with subtests.test("with both it stays", weights=weights):
             assert flown_with(chapter, weights, GOAL + 1)[0] > GOAL
-    for weights in ((-2.0, 0.0, 0.0), (-4.0, 0.0, 0.0), (-6.0, 0.0, 0.0), (-4.0, -4.0, 0.0)):
+    for weights in ((-2.0, 0.0, 0.0), (-4.0, -4.0, 0.0)):
         with subtests.test("without the speed each of the four first flights drifts away", weights=weights):
             best, tilt = flown_with(chapter, weights, 40)
             assert best < GOAL
@@ -159,7 +159,8 @@ def test_steps_are_too_short_right_or_too_long_on_the_real_cost(made: Made, subt
             chapter.set_rate(rate)
             descent, (weight,) = chapter.line, chapter.line.trail[0]
             slope = float(descent.slopes[0])
-            higher, lower = descent.cost((weight + 1e-2,)), descent.cost((weight - 1e-2,))
+            higher, lower, here = descent.cost(np.array([[weight + 1e-2], [weight - 1e-2], [weight]]))
+            assert here == pytest.approx(descent.costs[0]), "the curve is that of the network"
             assert slope == pytest.approx((higher - lower) / 2e-2, rel=1e-3)
             for _ in range(15 * (downhill.ENOUGH + 2)):
                 chapter.update()
@@ -206,6 +207,7 @@ def test_the_blame_is_that_of_the_real_backward_pass(made: Made):
     # An output's blame is the slope of its bias before the last activation has bent it.
     bias = network.layers[-2].parameters[1].gradient
     assert bias == pytest.approx(chapter.blames[3] * (1 - chapter.answers**2), abs=1e-5)
+    assert not chapter.blames[0][image[0] == 0].any(), "nor is such a pixel"
     for start, _, slope in chapter.links[0]:
         assert image[0, start] > 0, "no connection of a pixel without ink is to blame"
         assert slope != 0
@@ -441,8 +443,7 @@ def test_the_list_ticks_what_was_really_done_and_nothing_before(made: Made, cont
     chapter = made(OwnChapter)
 
     def done() -> set[str]:
-        for _ in range(60):
-            chapter.update()
+        chapter.enter()
         return {name for name, step in chapter.steps.items() if step.done}
 
     assert done() == set()
@@ -452,6 +453,7 @@ def test_the_list_ticks_what_was_really_done_and_nothing_before(made: Made, cont
     save(training, context.user_dir / "models" / "mine", state=False)
     assert done() == {"train"}
     assert "mine" in chapter.why()
+    assert (chapter.tried, chapter.complete) == (True, False)
     context.settings.model = "mine"
     assert done() == {"train", "choose"}
     records = Records(context.user_dir)

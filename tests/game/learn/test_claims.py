@@ -2,11 +2,19 @@
 
 import numpy as np
 
-from ai.lander.environment import LIMITS, PARAMS
+from ai.agent.agent import DeepQAgent
+from ai.lander.environment import LIMITS, PARAMS, LanderEnv, Outcome
 from ai.lander.rewards import FEET_STEPS_PAID, RewardWeights
+from ai.training.config import PRESETS, Config
 from ai.training.small_run import SMALL_RUN, Plan, SmallRun
-from game.scenes.learn.duels import BOUND, DARING, NORMALISED, PAY, config_of
+from game.core import texts
+from game.core.assets import MODELS_DIR
+from game.scenes.learn import pay
 from game.scenes.learn.memory import LATEST, MemoryChapter
+from game.scenes.learn.moment import MOMENTS
+from game.scenes.learn.pay import PAYS
+from game.scenes.learn.runs import BOUND, DARING, NORMALISED, PAY, DaringChapter, TargetChapter, config_of
+from game.ui.context import Context
 
 
 def test_no_flight_can_score_more_than_the_bound():
@@ -14,7 +22,40 @@ def test_no_flight_can_score_more_than_the_bound():
     # Falling from the ceiling without drag is faster than any lander ever is.
     fastest = np.sqrt(2 * PARAMS.gravity * highest)
     coming = 10 * (weights.distance * highest + weights.speed * fastest)
-    assert coming + weights.feet * FEET_STEPS_PAID + weights.terminal < BOUND
+    coming += weights.feet * FEET_STEPS_PAID
+    assert coming <= 160, "all but the landing"
+    assert weights.terminal == 120
+    assert coming + weights.terminal < BOUND
+
+
+def test_what_the_shipped_network_was_paid_for_is_what_chapter_6_says():
+    agent = DeepQAgent.load(MODELS_DIR / "lander" / "modern")
+    weights, gamma = Config.of(agent).reward_weights, agent.config.discount
+    assert (weights.terminal, -60 * weights.time, round(100 * (1 - gamma), 1)) == (120, 12, 1.5)
+    for seed, spawn, decisions in [moment for moment in MOMENTS if not moment[2]]:
+        env = LanderEnv(1, seed, spawn, frame_skip=4, weights=weights)
+        observation, paid, flown = env.reset(), 0.0, 0
+        while env.outcome[0] == Outcome.FLYING:
+            result = env.step(agent.decide(observation, held=env.actions).action)
+            observation, flown = result.observation, flown + 1
+            paid += float(result.reward[0])
+        way = paid - 120 + 12 * flown / 15
+        assert 80 < way < 120, f"the way of {seed}, {spawn}, {decisions} pays about 100"
+
+
+def test_chapters_say_how_their_runs_differ_from_those_of_train(context: Context):
+    modern = PRESETS["modern"]
+    for kind in (TargetChapter, MemoryChapter, DaringChapter):
+        chapter = kind(context)
+        ours, why = chapter.configs()[0], chapter.words["differs"]
+        assert f"{ours.batch_size} memories at a time, not {modern.batch_size}" in why
+        assert texts.LEARN_SMALL_STEPS.format(count=ours.n_step) + " ahead" in why
+        assert f"not {modern.n_step} decisions" in why or f"not {modern.n_step}," in why
+        assert ours.target_judges
+        assert not modern.target_judges
+    paid = pay.config_of(PAYS["landing"])
+    same = ("batch_size", "n_step", "target_judges", "double", "hidden", "layer_normalisation", "discount")
+    assert [getattr(paid, name) for name in same] == [getattr(modern, name) for name in same]
 
 
 def test_values_can_run_away_without_a_target_network_and_do_not_with_it():

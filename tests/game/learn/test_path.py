@@ -1,5 +1,6 @@
 """The path: its list, the four pages of a chapter, progress, and every way to move through it."""
 
+import re
 from collections.abc import Callable
 
 import pygame
@@ -58,40 +59,29 @@ def test_the_list_leads_into_a_chapter_and_remembers_where_one_was(open_game: Op
     assert driver.top.page == TRY
 
 
-def test_each_chapter_is_gone_through_by_keys_by_mouse_and_by_gamepad(
-    open_game: Open, context: Context, subtests: pytest.Subtests
-):
+def test_each_chapter_is_gone_through(open_game: Open, context: Context, subtests: pytest.Subtests):
     settle(context)
     for key in KEYS:
         with subtests.test(key):
-            go_through(open_game, key)
-
-
-def go_through(open_game: Open, key: str) -> None:
-    driver = open_game(ChapterScene, key)
-    scene = driver.top
-    driver.button(pygame.CONTROLLER_BUTTON_A)
-    for _ in range(2):
-        driver.button(pygame.CONTROLLER_BUTTON_RIGHTSHOULDER)
-    assert scene.page == CODE
-    for page in (WHY, TRY, PREDICT):
-        driver.frames(2)
-        driver.key(pygame.K_b)
-        assert scene.page == page
-    for label in (texts.LEARN_ANSWERS[key][1], texts.LEARN_ON[TRY], texts.LEARN_ON[WHY]):
-        driver.frames(2)
-        driver.click(driver.widget(label).box.center)
-    assert scene.page == CODE
-    assert Progress(driver.app.context.settings).answer(key) == texts.LEARN_ANSWERS[key][1]
-    assert (texts.LEARN_NEXT_CHAPTER in driver.hints()) == (following(key) is not None)
-    driver.press_on(scene.chapter.words["door"])
-    driver.frames(30)
-    assert driver.top_name not in ("ChapterScene", "ErrorScene")
-    driver = open_game(ChapterScene, key)
-    driver.top.turn_to(CODE)
-    driver.press_on(texts.LEARN_TO_CHAPTER if following(key) else texts.LEARN_TO_LIST)
-    driver.frames(20)
-    assert driver.top.key == (following(key) or key)
+            driver = open_game(ChapterScene, key)
+            scene = driver.top
+            for label in (texts.LEARN_ANSWERS[key][1], texts.LEARN_ON[TRY], texts.LEARN_ON[WHY]):
+                driver.frames(2)
+                driver.click(driver.widget(label).box.center)
+            assert scene.page == CODE
+            assert Progress(driver.app.context.settings).answer(key) == texts.LEARN_ANSWERS[key][1]
+            assert (texts.LEARN_NEXT_CHAPTER in driver.hints()) == (following(key) is not None)
+            driver.key(pygame.K_b)
+            driver.button(pygame.CONTROLLER_BUTTON_RIGHTSHOULDER)
+            assert scene.page == CODE
+            driver.press_on(scene.chapter.words["door"])
+            driver.frames(30)
+            assert driver.top_name not in ("ChapterScene", "ErrorScene")
+            driver = open_game(ChapterScene, key)
+            driver.top.turn_to(CODE)
+            driver.press_on(texts.LEARN_TO_CHAPTER if following(key) else texts.LEARN_TO_LIST)
+            driver.frames(20)
+            assert driver.top.key == (following(key) or key)
 
 
 def test_a_chapter_is_done_once_it_was_tried_and_its_why_read(open_game: Open, context: Context, monkeypatch):
@@ -140,13 +130,54 @@ def test_a_try_that_ends_while_its_why_is_open_is_waited_for_and_told(open_game:
         assert not scene.chapter.running or end, "leaving a chapter ends its run"
 
 
+def test_no_hyphen_stands_for_a_minus_and_another_language_changes_all_words_at_once(
+    open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch, subtests: pytest.Subtests
+):
+    settle(context)
+    begin = {"neuron": "hint", "moment": "go"}
+    for key in KEYS:
+        with subtests.test(key):
+            driver = open_game(ChapterScene, key)
+            scene = driver.top
+            scene.turn_to(TRY)
+            if key in begin:
+                getattr(scene.chapter, begin[key])()
+            driver.skip(20)
+            for page in range(len(PAGES)):
+                scene.turn_to(page)
+                said = written(driver, monkeypatch)
+                assert not re.findall(r"(?<![\w.])-\d", said)
+                try:
+                    texts.choose("de")
+                    driver.frames(1)
+                    scene.reword()
+                    german = written(driver, monkeypatch)
+                finally:
+                    texts.choose("en")
+                    scene.reword()
+                assert texts.LEARN[key]["question"] not in german
+
+
+def test_a_chapter_of_steps_is_done_when_all_of_them_are(open_game: Open, context: Context):
+    settle(context, learnt={"own": {"done": True}})
+    driver = open_game(ChapterScene, "own")
+    progress, chapter = Progress(driver.app.context.settings), driver.top.chapter
+    assert not progress.done("own"), "it says 0 of 6"
+    chapter.tried = True
+    driver.top.turn_to(WHY)
+    assert not progress.done("own")
+    chapter.complete = True
+    driver.top.turn_to(WHY)
+    assert progress.done("own")
+
+
 def test_damaged_progress_counts_as_nothing_done_and_the_path_goes_on(open_game: Open, context: Context):
-    damaged = {"neuron": 3, "plane": {"guess": "two", "page": 99, "done": 1}, "downhill": {"guess": -1, "page": True}}
+    damaged = {"neuron": 3, "plane": {"guess": "two", "done": 1}, "downhill": {"guess": -1}}
     settle(context, learnt=damaged, chapter="gone")
     driver = open_game(LearnScene)
     progress = Progress(driver.app.context.settings)
     for key in ("neuron", "plane", "downhill"):
-        assert (progress.guess(key), progress.page(key), progress.done(key)) == (None, 0, False)
+        assert (progress.guess(key), progress.done(key)) == (None, False)
         assert progress.answer(key) == ""
     driver.frames(3)
     driver.key(pygame.K_RETURN)
@@ -155,7 +186,7 @@ def test_damaged_progress_counts_as_nothing_done_and_the_path_goes_on(open_game:
     driver.key(pygame.K_RETURN)
     assert progress.guess("neuron") == 0
     beyond = Progress(Settings(learnt={"neuron": {"guess": 3}}))
-    assert beyond.answer("neuron") == "", "it has three answers"
+    assert (beyond.guess("neuron"), beyond.answer("neuron")) == (None, ""), "it has three answers"
     for learnt in ([], 7, "x"):
         assert Settings.from_dict({"learnt": learnt, "text_size": "large"}) == Settings(text_size="large")
 
@@ -164,15 +195,7 @@ def test_progress_of_before_still_counts():
     saved = {"neuron": {"guess": 1, "page": 3, "done": True}, "moment": {"page": 2}}
     progress = Progress(Settings.from_dict({"learnt": saved}))
     assert [progress.state(key) for key in ("neuron", "moment", "own")] == [2, 1, 0]
-    assert (progress.guess("neuron"), PAGES[progress.page("moment")]) == (1, "why")
-
-
-def test_without_source_code_the_page_says_so(open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch):
-    settle(context)
-    monkeypatch.setattr(chapter_scene, "source_of", lambda _: None)
-    driver = open_game(ChapterScene, "neuron")
-    driver.top.turn_to(CODE)
-    assert texts.LEARN_NO_SOURCE in written(driver, monkeypatch)
+    assert progress.guess("neuron") == 1
 
 
 def test_what_cannot_be_read_is_said_and_the_chapter_stays_usable(
@@ -187,3 +210,7 @@ def test_what_cannot_be_read_is_said_and_the_chapter_stays_usable(
                 driver.top.turn_to(page)
                 assert driver.top.chapter.problem.split()[0] in written(driver, monkeypatch)
                 driver.key(pygame.K_r)
+    monkeypatch.setattr(chapter_scene, "source_of", lambda _: None)
+    driver = open_game(ChapterScene, "neuron")
+    driver.top.turn_to(CODE)
+    assert texts.LEARN_NO_SOURCE in written(driver, monkeypatch)
