@@ -221,8 +221,7 @@ class ErrorFrame(Frame):
         sheet.text(texts.LESSON_POINTS.format(points=widest), (box.right, y), size=CAPTION, colour=MUTE, align="right")
 
 
-_MOVED, _ROW = 60.0, 30.0  # heights
-_NAMES, _FIGURES = 0.52, 0.66  # of the width: where names and figures of pulls end
+_MOVED: Final = 60.0  # height
 
 
 class AfterFrame(Frame):
@@ -263,7 +262,7 @@ class AfterFrame(Frame):
         if self._found:
             column.gap(8)
             column.aside(texts.LESSON_PULLS)
-            column.picture(_ROW * len(texts.LESSON_PULL_PARTS), self._draw_pulls)
+            column.beside((1, 1), _LEAST)[0].add(table((), self._lines))
 
     def _draw_value(self, canvas: Canvas, box: pygame.FRect) -> None:
         """Draw the value before and after, and its target."""
@@ -271,17 +270,11 @@ class AfterFrame(Frame):
         for x, value, word in zip(places, self._values, texts.LESSON_VALUE_MARKS, strict=True):
             canvas.explain((x - 6, y - 6, 12, 12), word, partial(self._write, value))
 
-    def _draw_pulls(self, canvas: Canvas, box: pygame.FRect) -> None:
-        """Draw a bar for each pull: blue towards the target, orange away from it."""
-        found, (before, _, target) = self._found, self._values
-        most, zero = max(1e-12, *map(abs, found)), box.left + 0.83 * box.width
-        canvas.line((zero, box.top), (zero, box.bottom), LINE)
-        for row, (pull, (word, help_)) in enumerate(zip(found, texts.LESSON_PULL_PARTS, strict=True)):
-            y, length = box.top + _ROW * row + 19, 0.16 * box.width * pull / most
-            canvas.text(word.format(count=self.step.examples - (row > 0)), (box.left, y), size=SMALL, colour=MUTE,
-                        room=_NAMES * box.width)  # fmt: skip
-            end = box.left + _FIGURES * box.width
-            canvas.text(pulled(pull), (end, y), size=SMALL, align="right", tabular=True)
-            area = canvas.rect(min(zero, zero + length), y - 8, max(abs(length), 1), 7)
-            canvas.fill(area, NET if pull * (target - before) >= 0 else EMBER)
-            canvas.explain((box.left, y - 14, box.width, _ROW), help_, partial(pulled, pull))
+    def _lines(self) -> list[Line]:
+        """Return a line for each pull; those towards the target are lit."""
+        (before, _, target), most = self._values, max(1e-12, *map(abs, self._found))
+        return [
+            Line((word.format(count=self.step.examples - (row > 0)), pulled(pull)), help_,
+                 lit=pull * (target - before) >= 0, bars=[abs(pull) / most])
+            for row, (pull, (word, help_)) in enumerate(zip(self._found, texts.LESSON_PULL_PARTS, strict=True))
+        ]  # fmt: skip
