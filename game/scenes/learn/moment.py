@@ -41,7 +41,7 @@ MOMENTS: Final = (
     (8, "random", 5),
 )
 SCALE: Final = (-150.0, 200.0)  # points, of the line
-_METRES, _BELOW = 50.0, 1.6  # metres: across the picture, and below the ground
+_METRES, _BELOW = 52.0, 1.2  # metres: across the picture, and below the ground
 _ANSWERS: Final = (150.0, 80.0, 20.0)  # points of the answers, before that of less than 0
 _ASKED: Final = range(80, 121)  # decisions until the end, that are about the hundred of the question
 _ALIKE: Final = 5.0  # points by which what came of two actions may differ and be about the same
@@ -239,7 +239,7 @@ class ChoiceChapter(MomentChapter):
 
     """
 
-    key, shape = "choice", 0.32
+    key, shape = "choice", 0.3
 
     def __init__(self, context: Context) -> None:
         self.results: dict[int, Came] = {}
@@ -303,8 +303,7 @@ class ChoiceChapter(MomentChapter):
         ]
 
     def below(self, column: Column) -> None:
-        column.add(table(("", texts.LEARN_CHOICE_HEAD[0], texts.LEARN_CHOICE_HEAD[1]), self._lines))
-        column.aside(texts.LEARN_CHOICE_LEGEND)
+        column.add(table(("", *texts.LEARN_CHOICE_HEAD), self._lines))
 
     def _lines(self) -> list[Line]:
         """Return each action with its value, and what came of it; bars are on one scale."""
