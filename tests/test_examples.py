@@ -47,7 +47,7 @@ def test_the_stack_comes_to_rest(capsys: pytest.CaptureFixture[str]):
 
 
 def test_the_pay_that_goes_wrong_is_a_pay():
-    pay = load(PAY, "pay.py", (EXAMPLES / "pay_that_goes_wrong.py").read_text())
+    pay, _ = load(PAY, "pay.py", (EXAMPLES / "pay_that_goes_wrong.py").read_text())
     question = np.zeros((18, 2))
     question[9 + 6] = 4  # steps flown
     question[9 + 4] = [0, 2]  # the second has crashed

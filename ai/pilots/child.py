@@ -1,7 +1,8 @@
 """The process of a player's file: it loads the file, and answers one question after another.
 
 Both ways go blocks of bytes behind their length in four bytes. In come the file's path and source once, then arrays of
-numbers; out come `READY`, `ANSWER` with the numbers, or `PROBLEM` with a line's number and words. Nothing is pickled.
+numbers, or nothing at all, which asks at which line the file is. Out come `READY` with what the file has, `ANSWER` with
+the numbers, or `PROBLEM` with a line's number and words. Nothing is pickled.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
 from queue import SimpleQueue
-from threading import Thread
+from threading import Thread, main_thread
 from typing import Any, BinaryIO, Final
 
 import numpy as np
@@ -23,6 +24,7 @@ from ai.lander.rewards import Situation
 from ai.lander.rules import NUM_ACTIONS, NUM_FEATURES
 
 READY, ANSWER, PROBLEM = b"r", b"a", b"p"
+MANY: Final = b"m"  # after `READY`: the file has `act_many`, and gets all its landers at once
 LONGEST: Final = 1 << 22  # bytes of a block
 WORDS: Final = 300  # characters of a problem
 ACT, PAY = "act", "pay"  # what a file is asked for
@@ -34,12 +36,12 @@ Answer = Callable[[bytes], bytes]  # numbers to numbers, as bytes
 def main() -> None:
     """Serve until the other end is closed."""
     asked, told = _own_ends()
+    kind, path, source = ((read_block(asked) or b"").decode() for _ in range(3))
     questions: SimpleQueue[bytes] = SimpleQueue()
-    Thread(target=_listen, args=(asked, questions), daemon=True).start()
-    kind, path, source = (questions.get().decode() for _ in range(3))
+    Thread(target=_listen, args=(asked, told, path, questions), daemon=True).start()
     try:
-        answer = load(kind, path, source)
-        write_block(told, READY)
+        answer, many = load(kind, path, source)
+        write_block(told, READY + MANY * many)
         while True:
             question = questions.get()
             try:
@@ -67,10 +69,15 @@ def _own_ends() -> tuple[BinaryIO, BinaryIO]:
     return ends
 
 
-def _listen(asked: BinaryIO, questions: SimpleQueue[bytes]) -> None:
-    """Receive in a thread: once nobody asks any more, an endless loop ends too."""
+def _listen(asked: BinaryIO, told: BinaryIO, path: str, questions: SimpleQueue[bytes]) -> None:
+    """Receive in a thread: an endless loop can say where it is, and ends too once nobody asks any more."""
     while (question := read_block(asked)) is not None:
-        questions.put(question)
+        if question:
+            questions.put(question)
+            continue
+        stack = traceback.walk_stack(sys._current_frames()[main_thread().ident or 0])
+        line = next((line for frame, line in stack if frame.f_code.co_filename == path), 0)
+        write_block(told, PROBLEM + f"{line} ".encode())
     os._exit(0)
 
 
@@ -105,17 +112,20 @@ class AnswerError(ValueError):
     """An answer of the file that cannot be used, in words."""
 
 
-def load(kind: str, path: str, source: str) -> Answer:
-    """Run a file, and return what answers with its function; raises what the file raises, or AnswerError."""
+def load(kind: str, path: str, source: str) -> tuple[Answer, bool]:
+    """Run a file; return what answers with its function, and whether that takes many at once.
+
+    Raises what the file raises, or AnswerError.
+    """
     sys.path.insert(0, str(Path(path).parent))
     names: dict[str, Any] = {"__name__": "pilot", "__file__": path}
     exec(compile(source, path, "exec"), names)
     if kind == PAY:
-        return _paying(_function(names, "pay"))
+        return _paying(_function(names, "pay")), True
     if callable(many := names.get("act_many")):
-        return lambda question: actions(many(_rows(question)), len(_rows(question)), "act_many").tobytes()
+        return lambda question: actions(many(_rows(question)), len(_rows(question)), "act_many").tobytes(), True
     one = _function(names, "act")
-    return lambda question: b"".join(actions(one(row), 1, "act").tobytes() for row in _rows(question))
+    return lambda question: b"".join(actions(one(row), 1, "act").tobytes() for row in _rows(question)), False
 
 
 def _function(names: dict[str, Any], name: str) -> Callable[..., Any]:

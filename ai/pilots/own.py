@@ -25,9 +25,10 @@ from ai.pilots.process import PilotError, PilotProcess
 
 PATIENCE: Final = 0.05  # seconds for a decision in a flight that somebody watches
 LATE: Final = 3  # decisions in a row that may not take longer
-LOADING: Final = 60.0  # seconds for a file to be loaded: PyTorch takes its time
+LOADING: Final = 25.0  # seconds for a file to be loaded: PyTorch takes its time
 FIRST: Final = 2.0  # seconds for the first decision of a file that was saved
-ALONE: Final = 10.0  # seconds for an answer where nobody watches
+ALONE: Final = 5.0  # seconds for an answer where nobody watches
+_PIECE: Final = 64  # landers that a file with `act` alone is asked for at once, where nobody watches
 LARGEST: Final = 1_000_000  # bytes of a file
 _LOOK: Final = 0.2  # seconds between two looks at the file
 
@@ -48,7 +49,7 @@ def loaded(path: Path, kind: str = ACT) -> PilotProcess:
     try:
         if process.ready(LOADING):
             return process
-        raise PilotError(f"the file was not loaded after {LOADING:.0f} seconds")
+        raise process.late(f"it was not loaded after {LOADING:.0f} seconds", 1.0)
     except PilotError:
         process.close()
         raise
@@ -63,10 +64,14 @@ class MeasuredPilot:
 
     def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:  # noqa: ARG002
         """Actions (n,) for observations (n, 9)."""
-        seconds = max(ALONE, PATIENCE * len(observation))
-        actions = self._process.act(observation[:, :NUM_FEATURES], seconds)
-        if actions is None:
-            raise PilotError(f"{len(observation)} decisions took longer than {seconds:.0f} seconds")
+        count = len(observation)
+        piece = count if self._process.many else _PIECE
+        actions = np.empty(count, np.intp)
+        for start in range(0, count, piece):
+            rows = observation[start : start + piece, :NUM_FEATURES]
+            if (answer := self._process.act(rows, ALONE)) is None:
+                raise self._process.late(f"{len(rows):,} decisions took longer than {ALONE:.0f} seconds", 1.0)
+            actions[start : start + piece] = answer
         return actions
 
 
@@ -76,8 +81,9 @@ class OwnPilot:
     Attributes:
         path: the file.
         problem: what is wrong with the file as it was saved last; empty while there is nothing.
+        flies_on: whether the last good one flies then.
         chosen: whether it is to fly, and not another that the player chose since.
-        told: the problem that was told last, for whoever tells each once.
+        told: the words on it that were told last, for whoever tells each once.
         ready: whether a process has answered yet; until then it coasts.
 
     """
@@ -85,14 +91,15 @@ class OwnPilot:
     work = 100_000  # multiplications that a decision may well take the time of, for those who ask for many
 
     def __init__(self, path: Path, patience: float = PATIENCE, clock: Callable[[], float] = time.monotonic) -> None:
-        self.path, self.problem, self.told, self.ready, self.chosen = path, "", "", False, True
+        self.path, self.problem, self.told = path, "", ""
+        self.flies_on, self.ready, self.chosen = False, False, True
         self._patience, self._clock = patience, clock
         self._flying: PilotProcess | None = None
         self._before: PilotProcess | None = None  # flew well, and waits in case that the one that flies does not
         self._next: PilotProcess | None = None  # loads the file that was saved last
-        self._late, self._until, self._looked = 0, 0.0, -_LOOK
+        self._asked, self._slow, self._until = False, "", 0.0  # of the next one: whether, and until when, it may decide
+        self._late, self._looked = 0, -_LOOK
         self._stamp: tuple[int, int] | None = None
-        self._observation: Floats | None = None
         self.look()
 
     def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:
@@ -106,10 +113,10 @@ class OwnPilot:
                 self._late = 0 if actions is not None else self._late + 1
                 if self._late == LATE:
                     longest = f"{1000 * self._patience:.0f} ms"
-                    raise PilotError(f"{LATE} decisions in a row took longer than {longest}: its process was ended")
+                    raise self._flying.late(f"{LATE} decisions in a row took longer than {longest}")
             except PilotError as error:
-                self.problem = str(error)
-                if not self._fall_back():
+                self.problem, self.flies_on = str(error), self._fall_back()
+                if not self.flies_on:
                     break
             else:
                 if actions is not None:
@@ -130,7 +137,7 @@ class OwnPilot:
                 if self._next.ready():
                     self.ready = True
                 elif now > self._until:
-                    raise PilotError("it takes too long to begin: its process was ended")
+                    raise self._next.late(self._slow)
             except PilotError as error:
                 self._refuse(error)
 
@@ -144,11 +151,12 @@ class OwnPilot:
     def _load(self, now: float) -> None:
         if self._next:
             self._next.close()
-            self._next = None
+        self._next = None
         try:
-            self._next, self._until = begin(self.path), now + LOADING
+            self._next, self._asked, self._until = begin(self.path), False, now + LOADING
+            self._slow = f"it was not loaded after {LOADING:.0f} seconds"
         except PilotError as error:
-            self.problem = str(error)
+            self._refuse(error)
 
     def _take_over(self, observation: Floats) -> None:
         """Let the file that was saved last fly from its first answer on."""
@@ -156,7 +164,11 @@ class OwnPilot:
             if self._next is None or not self._next.ready():
                 return
             if self._next.act(observation, self._patience) is None:
-                self._until = min(self._until, self._clock() + FIRST)
+                if not self._asked:
+                    self._asked, self._until = True, self._clock() + FIRST
+                    self._slow = f"its first decision took longer than {FIRST:.0f} seconds"
+                elif self._clock() > self._until:
+                    raise self._next.late(self._slow)
                 return
         except PilotError as error:
             self._refuse(error)
@@ -167,10 +179,10 @@ class OwnPilot:
         self.problem, self._late = "", 0
 
     def _refuse(self, error: PilotError) -> None:
-        assert self._next
-        self.problem = str(error)
-        self._next.close()
-        self._next = None
+        self.problem, self.flies_on = str(error), self._flying is not None
+        if self._next:
+            self._next.close()
+            self._next = None
 
     def _fall_back(self) -> bool:
         """Return whether another flies now in place of the one that failed; one that only raised stays otherwise."""
@@ -204,7 +216,7 @@ def pay_by(env: LanderEnv, path: Path) -> Callable[[], None]:
         result = usual(actions)
         pay = process.pay(before, Situation.of(env), ALONE)
         if pay is None:
-            raise PilotError(f"pay took longer than {ALONE:.0f} seconds")
+            raise process.late(f"pay took longer than {ALONE:.0f} seconds", 1.0)
         return replace(result, reward=pay.astype(np.float32))
 
     env.step = step  # type: ignore[method-assign]

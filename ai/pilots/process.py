@@ -10,10 +10,11 @@ import subprocess
 import sys
 import time
 import weakref
+from contextlib import suppress
 from pathlib import Path
 from queue import Empty, SimpleQueue
 from threading import Thread
-from typing import Final
+from typing import BinaryIO, Final, cast
 
 import numpy as np
 
@@ -21,7 +22,7 @@ from ai.environment import Doubles, Floats, Ints
 from ai.files import CONTROLS
 from ai.lander.rewards import Situation
 from ai.lander.rules import NUM_ACTIONS
-from ai.pilots.child import ACT, ANSWER, PROBLEM, READY, WORDS, read_block, write_block
+from ai.pilots.child import ACT, ANSWER, MANY, PROBLEM, READY, WORDS, read_block, write_block
 
 SERVE: Final = "--pilot-process"  # the argument by which the packed app becomes such a process
 _ROOT: Final = str(Path(__file__).parents[2])
@@ -41,8 +42,10 @@ class PilotProcess:
     """A process that runs a file's source, and answers with its `act` or its `pay`.
 
     Every method but `close` returns at once, or within the seconds that it is given; they raise PilotError for what is
-    wrong with the file, and once the process has ended.
+    wrong with the file, and once the process has ended. `many` says whether the file has `act_many`, once it is ready.
     """
+
+    many = False
 
     def __init__(self, path: Path, source: str, kind: str = ACT) -> None:
         command = [sys.executable, SERVE] if getattr(sys, "frozen", False) else [sys.executable, "-c", _CODE]
@@ -93,6 +96,17 @@ class PilotProcess:
             raise PilotError("its process gave an answer that is none")
         return pay
 
+    def late(self, words: str, seconds: float = 0.1) -> PilotError:
+        """End the process, which took too long; return that in words, with the line at which the file was."""
+        Thread(target=_ask_where, args=(self._process.stdin,), daemon=True).start()
+        line = 0
+        try:
+            self._receive(time.monotonic() + seconds)
+        except PilotError as error:
+            line = error.line
+        self.close()
+        return PilotError(f"{words}: its process was ended", line)
+
     def _ask(self, question: bytes, size: int, seconds: float) -> bytes | None:
         until = time.monotonic() + seconds
         while self._waiting:  # one that came too late before
@@ -122,6 +136,7 @@ class PilotProcess:
             raise PilotError(CONTROLS.sub(" ", words), int(line) if line.isdecimal() and len(line) < 9 else 0)
         if kind not in (READY, ANSWER):
             raise PilotError("its process gave an answer that is none")
+        self.many = self.many or block == READY + MANY
         return told
 
     @property
@@ -136,19 +151,22 @@ class PilotProcess:
 
 def _talk(process: subprocess.Popen[bytes], questions: SimpleQueue[bytes | None], answers: SimpleQueue[bytes]) -> None:
     """Send and receive in a thread: a process that reads or writes half of it blocks nobody else."""
-    assert process.stdin
-    assert process.stdout
-    try:
+    asked, told = cast("BinaryIO", process.stdin), cast("BinaryIO", process.stdout)
+    with suppress(OSError, ValueError):  # it has ended, or was closed meanwhile
         for _ in range(3):  # what the file is
-            write_block(process.stdin, questions.get() or b"")  # type: ignore[arg-type]
-        while block := read_block(process.stdout):  # type: ignore[arg-type]
+            write_block(asked, questions.get() or b"")
+        while block := read_block(told):
             answers.put(block)
             if (question := questions.get()) is None:
                 break
-            write_block(process.stdin, question)  # type: ignore[arg-type]
-    except (OSError, ValueError):  # it has ended, or was closed meanwhile
-        pass
+            write_block(asked, question)
     answers.put(_ENDED)
+
+
+def _ask_where(stdin: BinaryIO) -> None:
+    """Ask at which line a file is; a process that reads nothing any more holds up this thread alone."""
+    with suppress(OSError, ValueError):
+        write_block(stdin, b"")
 
 
 def _end(process: subprocess.Popen[bytes], questions: SimpleQueue[bytes | None], talk: Thread) -> None:
@@ -157,8 +175,5 @@ def _end(process: subprocess.Popen[bytes], questions: SimpleQueue[bytes | None],
     questions.put(None)
     talk.join(1.0)
     for stream in (process.stdin, process.stdout):
-        try:
-            assert stream
-            stream.close()
-        except OSError:  # what was never read
-            pass
+        with suppress(OSError):  # what was never read
+            cast("BinaryIO", stream).close()

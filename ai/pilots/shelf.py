@@ -10,7 +10,7 @@ from pathlib import Path
 from threading import Thread
 from typing import Annotated, Final
 
-from ai.files import Share, Sized, Within, append_line, free_path, read_lines, read_text, write_text
+from ai.files import Count, Share, Sized, Within, append_line, free_path, read_lines, read_text, write_text
 from ai.pilots.child import ACT, PAY
 
 TEMPLATES: Final = Path(__file__).parents[2] / "assets" / "pilots"
@@ -25,13 +25,28 @@ _Figure = Annotated[float, Within(0, 1e9)]
 
 @dataclass(frozen=True)
 class Measured:
-    """What came of a pilot's flights from the same starts; seconds and fuel are those of the landings."""
+    """What came of a pilot's flights from the same starts.
+
+    Attributes:
+        seconds, fuel: those of the landings.
+        when: when it began, in seconds since 1970.
+        lost: how many flights were lost by each `Cause` of a crash from the first on, then outside, then to time.
+
+    """
 
     name: Annotated[str, Sized(_LONGEST)]
     landed: Share
     seconds: _Figure = 0.0
     fuel: _Figure = 0.0
-    when: Annotated[float, Within(0, 32_503_680_000 - 1)] = 0.0  # seconds since 1970
+    when: Annotated[float, Within(0, 32_503_680_000 - 1)] = 0.0
+    lost: Annotated[tuple[Count, ...], Sized(7)] = ()
+
+    def stale(self, path: Path) -> bool:
+        """Whether the file was saved again since."""
+        try:
+            return path.stat().st_mtime > self.when
+        except OSError:  # it is gone
+            return False
 
 
 class Shelf:

@@ -11,7 +11,7 @@ from ai.digits.filters import FilterMoment
 from ai.training.history import History
 from game.core import texts
 from game.digits import certainty
-from game.digits.pictures import mosaic
+from game.digits.pictures import mosaic, tiling
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
 from game.drawing.prose import draw_wrapped
@@ -106,12 +106,6 @@ class FilterFilm:
 def _paint(sheet: Canvas, moment: FilterMoment, room: tuple[float, float]) -> None:
     images = moment.images.astype(np.float32)
     images = np.nan_to_num(images / np.abs(images).max(axis=(1, 2), keepdims=True).clip(1e-9))
-
-    def tile(columns: int) -> float:
-        """Return how large the square of each filter can be."""
-        return min((room[0] + _GAP) / columns, (room[1] + _GAP) / -(-len(images) // columns)) - _GAP
-
-    columns = max(range(1, len(images) + 1), key=tile)
-    pitch = tile(columns) + _GAP
-    size = sheet.rect(0, 0, columns * pitch - _GAP, -(-len(images) // columns) * pitch - _GAP).size
+    columns, room = tiling(len(images), images.shape[1:], room, _GAP)
+    size = sheet.rect(0, 0, *room).size
     sheet.surface.blit(mosaic(images, columns, size, _GAP * sheet.scale), (0, 0))

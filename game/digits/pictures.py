@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import lru_cache
 from typing import Final
 
@@ -9,7 +10,8 @@ import numpy as np
 import numpy.typing as npt
 import pygame
 
-from game.drawing.tokens import HUMAN, INK, MUTE, NET, NIGHT0, PALETTE, Colour
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import HUMAN, INK, LINE, MUTE, NET, NIGHT0, PALETTE, Colour
 
 Numbers = npt.NDArray[np.float32]
 _GAP: Final = 255  # palette index of a gap
@@ -31,6 +33,17 @@ AMBER: Final = _shades(MUTE, HUMAN)
 def picture(values: Numbers, size: tuple[int, int], shades: npt.NDArray[np.uint8] = GREY) -> pygame.Surface:
     """Return a picture of numbers (height, width) in -1 to 1, every number a sharp rectangle; `size` in pixels."""
     return mosaic(values[None], 1, size, 0, shades)
+
+
+def framed(values: Numbers, shades: npt.NDArray[np.uint8] = GREY) -> Callable[[Canvas], None]:
+    """Return what paints such a picture over a whole sheet, with a hairline around it."""
+
+    def paint(sheet: Canvas) -> None:
+        area = sheet.surface.get_rect()
+        sheet.surface.blit(picture(values, area.size, shades), area)
+        pygame.draw.rect(sheet.surface, LINE, area, 1)
+
+    return paint
 
 
 def mosaic(

@@ -129,6 +129,13 @@ class Canvas:
         canvas.pointer = None if self.pointer is None else (self.pointer[0] - x, self.pointer[1] - y)
         return canvas
 
+    @property
+    def ungrown(self) -> Canvas:
+        """This canvas, on which text has the size that is said: for rows, which measure it with its growth."""
+        canvas = copy(self)
+        canvas.grows, canvas._whole = False, self.whole
+        return canvas
+
     def px(self, points: float) -> int:
         """Return a length in whole pixels."""
         return round(points * self.scale)

@@ -8,11 +8,16 @@ from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+import numpy as np
+
+from ai.files import brief
 from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.pilots import Pilot
+from ai.lander.rules import Cause
 from ai.pilots.own import MeasuredPilot, OwnPilot
 from ai.pilots.shelf import Measured, Shelf
 from ai.training.tasks import Evaluation, flown
+from game.core import texts
 from game.flight import networks
 from game.flight.flight_file import Entry
 
@@ -22,6 +27,7 @@ if TYPE_CHECKING:
 STARTS: Final = 1000
 _SEED: Final = 2_000_003  # of the starts that all are measured from
 RIVALS: Final = ("modern", "classic", networks.SCRIPTED)
+_LONGEST: Final = 90  # characters of a problem
 _MARK: Final = "/"  # before a rival's name: no file's name has it
 
 
@@ -38,10 +44,19 @@ def flying(context: Context) -> networks.Network | None:
     if pilot is None or not pilot.chosen:
         return None
     pilot.look()
-    if pilot.problem not in ("", pilot.told):
-        pilot.told = pilot.problem
-        context.note(f"{pilot.path.name}: {pilot.problem}")
+    if (words := wrong(pilot)) != pilot.told:
+        pilot.told = words
+        if words:
+            context.note(words)
     return networks.Network(pilot.path.name, pilot)
+
+
+def wrong(pilot: OwnPilot) -> str:
+    """Say what is wrong with the file as it was saved last, and whether the last good one flies on; or nothing."""
+    if not pilot.problem:
+        return ""
+    words = texts.PILOTS_FLIES_ON if pilot.flies_on else texts.PILOTS_WRONG
+    return words.format(name=pilot.path.name, problem=brief(pilot.problem, _LONGEST))
 
 
 def measure(user_dir: Path, models_dir: Path, path: Path) -> Generator[list[Any], None, None]:
@@ -84,7 +99,7 @@ def by_hand(entries: list[Entry]) -> tuple[Measured, int] | None:
 def _measured(shelf: Shelf, name: str, pilot: Pilot) -> Generator[list[Any], None, None]:
     env = LanderEnv(STARTS, _SEED)
     env.reset()
-    trial = flown(pilot, env)
+    began, trial = time.time(), flown(pilot, env)
     score: Evaluation | None = None
     while score is None:
         try:
@@ -92,6 +107,9 @@ def _measured(shelf: Shelf, name: str, pilot: Pilot) -> Generator[list[Any], Non
             yield [float((env.outcome != Outcome.FLYING).mean())]
         except StopIteration as done:
             score = Evaluation.of(done.value)
-    told = Measured(name, score.success, score.mean_time or 0.0, score.mean_fuel or 0.0, round(time.time(), 3))
+    crashed = np.bincount(env.cause[env.outcome == Outcome.CRASHED], minlength=len(Cause))[1:]
+    others = [(env.outcome == outcome).sum() for outcome in (Outcome.OUT_OF_BOUNDS, Outcome.TIMED_OUT)]
+    lost = tuple(int(count) for count in (*crashed, *others))
+    told = Measured(name, score.success, score.mean_time or 0.0, score.mean_fuel or 0.0, round(began, 3), lost)
     shelf.keep(told)
     yield [told]

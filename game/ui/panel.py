@@ -139,9 +139,9 @@ class Column:
     button, toggle, choice = _adding(ButtonRow), _adding(ToggleRow), _adding(ChoiceRow)
     slider, entry, listing = _adding(SliderRow), _adding(EntryRow), _adding(ListRow)
 
-    def words(self, words: Sequence[tuple[str, OnPress]]) -> list[ButtonRow]:
+    def words(self, words: Sequence[tuple[str, OnPress]], size: float = TEXT) -> list[ButtonRow]:
         """Add words to press, side by side on as many lines as they need."""
-        buttons = [self._form.add(ButtonRow(self._form.manager, label, press)) for label, press in words]
+        buttons = [self._form.add(ButtonRow(self._form.manager, label, press, size=size)) for label, press in words]
         self._widgets += buttons
         self.add(partial(_write_words, buttons))
         return buttons

@@ -13,10 +13,8 @@ from game.drawing.tokens import SMALL
 from game.input.controls import Command
 from game.ui.actions import Action
 from game.ui.panel import Column
-from game.ui.widget import PointsManager
-from game.ui.widgets import Choice
+from game.ui.rows import ChoiceRow
 
-LABEL_WIDTH: Final = 84.0
 _WORDS: Final = {0.25: "×¼", 0.5: "×½", 1.0: "×1", 2.0: "×2", 4.0: "×4"}
 
 
@@ -36,25 +34,18 @@ class Playback:
     def __init__(self, clock: TimeScale, speeds: Sequence[float], advance: Callable[[], None]) -> None:
         self._clock, self._speeds, self._advance = clock, speeds, advance
         self.stopped = False
-        self._row: Choice | None = None
+        self._row: ChoiceRow | None = None
 
     @property
-    def words(self) -> list[str]:
-        """The speeds as they are written."""
-        return [_WORDS[speed] for speed in self._speeds]
+    def word(self) -> str:
+        """The speed as it is written."""
+        return _WORDS[self._clock.rate]
 
-    def row(self, manager: PointsManager, box: pygame.typing.RectLike) -> Choice:
-        """Return the row of speeds, a widget to be added to a form."""
-        now = self._speeds.index(self._clock.rate)
-        self._row = row = Choice(
-            manager, box, texts.WATCH_SPEED, self.words, now, self._choose, label_width=LABEL_WIDTH, size=SMALL
-        )
-        return row
-
-    def describe(self, column: Column) -> None:
-        """Add the row of speeds."""
-        now = self._speeds.index(self._clock.rate)
-        self._row = column.choice(texts.WATCH_SPEED, self.words, now, self._choose, SMALL)
+    def describe(self, column: Column, size: float = SMALL) -> ChoiceRow:
+        """Add the row of speeds, and return it."""
+        words, now = [_WORDS[speed] for speed in self._speeds], self._speeds.index(self._clock.rate)
+        self._row = column.choice(texts.WATCH_SPEED, words, now, self._choose, size)
+        return self._row
 
     def actions(
         self,

@@ -12,16 +12,16 @@ import pygame
 
 from game.core.scene import Transition
 from game.drawing.cursor import BASELINE, LEADING, Cursor
-from game.drawing.tokens import HUMAN, INK, MUTE, NET, SMALL, STEP, TEXT, Colour
+from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NET, SMALL, STEP, TEXT, Colour
 from game.drawing.typeface import Weight
 from game.ui.curves import run_style
 from game.ui.tooltip import draw_swatch
 from game.ui.widget import EASE, NOWHERE, OnPress, PointsManager, RowWidget, mix
-from game.ui.widgets import Choice, TextButton, draw_switch
 
 Words = str | Callable[[], str]  # a function for words that change
 _SWITCH: Final = (32.0, 16.0)
 _LABELS: Final = 150.0  # points for the label before a slider or a choice
+_ALL: Final = -1  # the word that opens a list, among the numbers of the options
 _FIGURES: Final = 66.0
 _TRACK: Final = 120.0  # the shortest track beside its label
 _WORDS: Final = 24.0  # between two options
@@ -33,7 +33,7 @@ def said(words: Words) -> str:
     return words if isinstance(words, str) else words()
 
 
-class ButtonRow(RowWidget, TextButton):
+class ButtonRow(RowWidget):
     """Words to press, with the player's figure beside them and an explanation below; a short line shows the focus."""
 
     def __init__(
@@ -48,8 +48,15 @@ class ButtonRow(RowWidget, TextButton):
         weight: Weight = "regular",
         colour: Colour = MUTE,
     ) -> None:
-        super().__init__(manager, NOWHERE, label, press, size=size, weight=weight, colour=colour)
+        super().__init__(manager, NOWHERE, label)
+        self._on_press, self._size, self._weight, self._colour = press, size, weight, colour
         self._aside, self._figure = aside, figure
+
+    def press(self) -> Transition | None:
+        return self._on_press()
+
+    def tint(self) -> Colour:
+        return mix(self._colour, INK, self.warmth)
 
     def measured(self, cursor: Cursor) -> float:
         """Return the width of its words on one line, with something to spare."""
@@ -139,8 +146,11 @@ class ToggleRow(RowWidget):
         words.colour = mix(mix(MUTE, INK, 0.6), INK, self.warmth)
         if cursor.canvas:
             top = cursor.y + LEADING * cursor.size / 2 - _SWITCH[1] / 2
-            box = (cursor.right - _SWITCH[0], top, *_SWITCH)
-            draw_switch(cursor.canvas, box, self._slid)
+            box = pygame.FRect(cursor.right - _SWITCH[0], top, *_SWITCH)
+            half = box.height / 2
+            cursor.canvas.pill(box, mix(FAINT, NET, self._slid))
+            knob = (box.left + half + (box.width - box.height) * self._slid, box.centery)
+            cursor.canvas.dot(knob, half - 2.5, INK)
             cursor.canvas.cover(cursor.canvas.rect(*box))
         words.text(self.label)
         if self._aside:
@@ -250,8 +260,15 @@ class SliderRow(RowWidget):
             free += wide + STEP
 
 
-class ChoiceRow(RowWidget, Choice):
-    """Choice of one word: the label on the left or above, the words on as many lines as they need."""
+class ChoiceRow(RowWidget):
+    """Choice of one word: the label on the left or above, the words on as many lines as they need.
+
+    With `on_open`, words for which one line is too short are one alone, the chosen one, and then `all_word`, which
+    opens a list of all, as a press of a key does.
+
+    """
+
+    _labels, _compact = _LABELS, False
 
     def __init__(
         self,
@@ -261,45 +278,75 @@ class ChoiceRow(RowWidget, Choice):
         index: int,
         change: Callable[[int], None],
         size: float = TEXT,
+        *,
+        on_open: OnPress | None = None,
+        all_word: str = "",
     ) -> None:
-        super().__init__(manager, NOWHERE, label, options, index, change, size=size)
-        self._places: list[pygame.FRect] = []
+        super().__init__(manager, NOWHERE, label)
+        self.options, self.index, self._on_change, self._size = options, index, change, size
+        self._on_open, self._all_word = on_open, all_word
+        self._places: dict[int, pygame.FRect] = {}
+
+    def compact(self, labels: float, pad: float) -> None:
+        """Take no more room than the words do, with so many points for the label: for choices over a picture."""
+        self._labels, self.pad, self._compact = labels, pad, True
+
+    def choose(self, index: int) -> None:
+        """Choose an option by its number."""
+        index = min(max(index, 0), len(self.options) - 1)
+        if index != self.index:
+            self.index = index
+            self._on_change(index)
 
     def press(self) -> Transition | None:
+        mouse = self.ui_manager.get_mouse_position()
+        under = next((number for number, place in self._places.items() if place.collidepoint(mouse)), None)
+        if self._on_open and (self.ringed or under == _ALL):
+            return self._on_open()
         if self.ringed:
             self.choose((self.index + 1) % len(self.options))
-            return None
-        mouse = self.ui_manager.get_mouse_position()
-        for number, place in enumerate(self._places):
-            if place.collidepoint(mouse):
-                self.choose(number)
+        elif under is not None:
+            self.choose(under)
         return None
+
+    def lay(self, cursor: Cursor) -> None:
+        super().lay(cursor)
+        if self._compact and cursor.canvas is None:
+            self.rect.width = round(self.reach + _WORDS / 2)
+
+    def shift(self, direction: int) -> bool:
+        before = self.index
+        self.choose(self.index + direction)
+        return self.index != before
 
     def write(self, cursor: Cursor) -> None:
         words = cursor.in_style(self._size, mix(mix(MUTE, INK, 0.6), INK, self.warmth))
-        widths = [words.measured(option) for option in self.options]
-        left = cursor.left
+        options = dict(enumerate(self.options))
+        left, wide = cursor.left, sum(map(words.measured, self.options)) + _WORDS * (len(self.options) - 1)
         if self.label:
-            beside = cursor.left + max(_LABELS, words.measured(self.label) + _WORDS)
-            if beside + sum(widths) + _WORDS * (len(widths) - 1) <= cursor.right:
+            beside = cursor.left + max(self._labels, words.measured(self.label) + _WORDS)
+            if beside + wide <= cursor.right or self._on_open:
                 left = beside
                 replace(words).text(self.label)
             else:
                 words.text(self.label)
-        x, places = left, []
-        for number, (option, width) in enumerate(zip(self.options, widths, strict=True)):
+        if self._on_open and left + wide > cursor.right:
+            options = {self.index: self.options[self.index], _ALL: self._all_word}
+        x, places = left, {}
+        for number, option in options.items():
+            width = words.measured(option)
             if x > left and x + width > cursor.right:
                 x, words.y = left, words.y + LEADING * self._size + STEP
-            chosen = number == self.index
             if canvas := cursor.canvas:
-                colour = INK if chosen else MUTE
+                colour = INK if number == self.index else MUTE
                 canvas.text(option, (x, words.baseline), size=self._size, colour=colour)
-                if chosen:
+                if number == self.index:
                     y = words.baseline + 0.5 * self._size
                     canvas.line((x, y), (x + width, y), NET, 2)
-            places.append(pygame.FRect(x - _WORDS / 2, words.y - 4, width + _WORDS, LEADING * self._size + 8))
+            places[number] = pygame.FRect(x - _WORDS / 2, words.y - 4, width + _WORDS, LEADING * self._size + 8)
             x += width + _WORDS
         if cursor.canvas is None:
             self._places = places
-            self.reach = 0.0 if self.label else max(place.right for place in places) - _WORDS / 2 - cursor.left
+            ends = max(place.right for place in places.values()) - _WORDS / 2
+            self.reach = 0.0 if self.label and not self._compact else ends - cursor.left
         cursor.y = words.y + LEADING * self._size

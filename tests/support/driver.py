@@ -2,16 +2,18 @@
 
 import json
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from multiprocessing import active_children
 from typing import Any, TypeVar
 
 import pygame
 
+from game.core import texts
 from game.core.settings import FILE_NAME
 from game.shell.app import App
 from game.ui.form import Form
-from game.ui.widgets import Choice
+from game.ui.rows import ChoiceRow
 
 Kind = TypeVar("Kind")
 
@@ -129,9 +131,9 @@ class Driver:
         [found] = [widget for widget in self.form.widgets if type(widget) is kind]
         return found
 
-    def choice(self, option: str) -> Choice:
+    def choice(self, option: str) -> ChoiceRow:
         """The choice on the screen that offers an option."""
-        return next(each for each in self.form.widgets if isinstance(each, Choice) and option in each.options)
+        return next(each for each in self.form.widgets if isinstance(each, ChoiceRow) and option in each.options)
 
     def press_on(self, label: str) -> None:
         """Move the focus to the widget of that label, and press it."""
@@ -156,3 +158,18 @@ class Driver:
     def resize(self, size: tuple[int, int]) -> None:
         self.app.window.size = size
         self.frames(10)  # until the window has settled
+
+    @contextmanager
+    def speaking(self, language: str) -> Iterator[None]:
+        """Speak another language meanwhile, as once it was chosen in the settings over the scene."""
+        before = texts.LANGUAGE
+        try:
+            self._speak(language)
+            yield
+        finally:
+            self._speak(before)
+
+    def _speak(self, language: str) -> None:
+        self.app.context.settings.language = language
+        self.app.apply_settings()
+        self.frames(2)

@@ -46,7 +46,7 @@ from game.shell.app import App
 from game.training.beside import put_beside
 from game.training.run import TrainingRun
 from game.ui.context import Context
-from game.ui.widgets import Choice
+from game.ui.rows import ChoiceRow
 from tests.game.tour.stops import STOPS, Stop
 from tests.support import inline_worker
 from tests.support.driver import Driver
@@ -320,7 +320,7 @@ class Walk:
                     break
                 driver.form.focus(widget)
                 self._note(driver, f"{stop}, widget {place}")
-                for number in range(len(widget.options)) if isinstance(widget, Choice) else ():
+                for number in range(len(widget.options)) if isinstance(widget, ChoiceRow) else ():
                     widget.choose(number)
                     self._note(driver, f"{stop}, widget {place}, option {number}")
         finally:

@@ -10,13 +10,13 @@ import pygame
 from ai.explain.unit_sums import Place
 from ai.nn import ConvolutionLayer, FullyConnectedLayer
 from game.core import texts
-from game.core.scene import Transition, push
+from game.core.scene import push
 from game.digits.cells import CellPicker
-from game.digits.pictures import GREY, SIGNED, Numbers, picture
+from game.digits.pictures import GREY, SIGNED, Numbers, framed
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
 from game.drawing.prose import draw_wrapped
-from game.drawing.tokens import HUMAN, LINE, TITLE
+from game.drawing.tokens import HUMAN, TITLE
 from game.explain.code_listing import draw_listing
 from game.input.controls import Command
 from game.scenes.digits.sums import describe_sum, figure
@@ -34,8 +34,6 @@ _LEAST: Final = 280.0
 _READ, _GIVEN, _TILES, _SEEN = 250.0, 170.0, 76.0, 110.0  # heights of pictures
 _CODE: Final = 340.0
 _MOST_WEIGHTS: Final = 400_000  # of a stage whose weights are shown as pictures
-_FIRST: Final = 120  # updates before the window slides
-_PACE: Final = 8  # updates that the sliding window stays where it is
 
 
 class DigitInsideScene(PanelScene):
@@ -43,7 +41,6 @@ class DigitInsideScene(PanelScene):
 
     Attributes:
         walk: the units that are looked at, one of each stage.
-        sliding: whether the window moves by itself.
         in_code: whether the code is shown in place of the maps.
 
     """
@@ -52,37 +49,21 @@ class DigitInsideScene(PanelScene):
         super().__init__(context)
         self._classifier, self._image = classifier, np.asarray(image, np.float32)
         self.walk = UnitWalk(classifier, self._image)
-        self.in_code, self._steps, self._seen = False, 0, PaintCache()
-        self.sliding = self._slides and not context.settings.reduced_motion
+        self.in_code, self._seen = False, PaintCache()
         self.build()
 
     def actions(self) -> Table:
-        slide = texts.HINT_STOP if self.sliding else texts.PATCH_SLIDE
         return [
             Action(Command.NEXT, lambda: self._choose(self.walk.number + 1), texts.PATCH_ON),
             Action(Command.PREVIOUS, lambda: self._choose(self.walk.number - 1), texts.PATCH_BACK),
-            *([Action(pygame.K_SPACE, self._toggle, slide, gamepad=Command.HANDOVER)] if self._slides else []),
             Action(Command.CHOICES, self._show_code, texts.PATCH_MAPS if self.in_code else texts.PATCH_IN_CODE),
             self.form.goes_back(texts.HINT_BACK),
         ]
 
-    def update(self) -> Transition | None:
-        self._steps += 1
-        if self.sliding and self._steps > _FIRST and self._steps % _PACE == 0:
-            self.walk.slide()
-            self._follow()
-        return super().update()
-
     # What is looked at
-
-    @property
-    def _slides(self) -> bool:
-        """Whether there is a window that can slide here."""
-        return self.walk.stage.kind == "convolution" and not self.walk.at_answer
 
     def _choose(self, number: int) -> None:
         if 0 <= number <= len(self.walk.stages) and number != self.walk.number:
-            self.sliding = False
             self.walk.choose(number)
             self.build()
 
@@ -91,11 +72,7 @@ class DigitInsideScene(PanelScene):
         self.in_code = not self.in_code
         self.build()
 
-    def _toggle(self) -> None:
-        self.sliding = not self.sliding
-
     def _look_at(self, place: Place) -> None:
-        self.sliding = False
         channel, stage = self.walk.channel, self.walk.stage
         self.walk.look_at(place)
         if stage.kind in ("convolution", "connected") and place[2] == self.walk.place[2] and self._reads:
@@ -104,7 +81,6 @@ class DigitInsideScene(PanelScene):
 
     def _look_into(self, row: int, column: int) -> None:
         assert self._read_maps
-        self.sliding = False
         self.walk.look_into(row * self._read_maps.columns + column)
         self._follow()
 
@@ -245,16 +221,11 @@ class DigitInsideScene(PanelScene):
     def _draw_digit(self, canvas: Canvas, box: pygame.FRect) -> None:
         """Draw the digit, and which part of it the unit depends on."""
         side = min(box.size)
-        self._seen.draw(canvas, (*box.topleft, side, side), side, self._paint_digit)
+        self._seen.draw(canvas, (*box.topleft, side, side), side, framed(self._image))
         if not self.walk.at_answer:
             pixel, (above, beside, below, right) = side / self._image.shape[0], self.walk.field
             corner = (box.left + beside * pixel, box.top + above * pixel)
             canvas.outline((*corner, (right - beside) * pixel, (below - above) * pixel), 1, HUMAN, 1.5)
-
-    def _paint_digit(self, sheet: Canvas) -> None:
-        area = sheet.surface.get_rect()
-        sheet.surface.blit(picture(self._image, area.size), area)
-        pygame.draw.rect(sheet.surface, LINE, area, 1)
 
     def _draw_code(self, canvas: Canvas, box: pygame.FRect) -> None:
         if found := code_of(self.walk):

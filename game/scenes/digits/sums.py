@@ -11,7 +11,7 @@ import pygame
 
 from ai.explain.unit_sums import UnitSum
 from game.core import texts
-from game.digits.pictures import SIGNED, Numbers, mosaic, picture, tiling
+from game.digits.pictures import SIGNED, Numbers, picture
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.paint_cache import PaintCache
@@ -22,10 +22,8 @@ from game.ui.panel import Column
 _HEIGHT: Final = 140.0  # of a matrix
 _LEAST: Final = 150.0
 _MOST_WRITTEN: Final = 7  # cells along a side up to which figures fit into them
-_ALL: Final = 100.0
 _FULL: Final = 0.84  # of a cell's width for its figure: any wider, two of them would read as one
 _DIM: Final = 0.45  # of a cell's colour behind its figure
-_GAP: Final = 2.0
 _ROW: Final = 28.0  # of a digit of the answer
 
 
@@ -88,13 +86,6 @@ def _describe_products(column: Column, walk: UnitWalk) -> None:
     second.line()
     second.pair(texts.PATCH_TOTAL, lambda: figure(_unit(walk).total, 3), NET)
     second.pair(texts.PATCH_GAVE, lambda: figure(_unit(walk).output, 3))
-    if maps > 1:
-        column.gap()
-        column.caption(texts.PATCH_ALL.format(count=maps))
-        painted = PaintCache()
-        column.picture(_ALL, lambda canvas, box: painted.draw(
-            canvas, box, (walk.place, walk.channel), partial(_paint_all, box.size, _unit(walk).products, walk.channel)
-        ))  # fmt: skip
 
 
 def _add_matrix(column: Column, words: str, values: Callable[[], Numbers], *, strongest: bool = False) -> None:
@@ -131,18 +122,6 @@ def _paint_matrix(sheet: Canvas, box: pygame.FRect, values: Numbers, *, stronges
         at = box.left + (column + 0.5) * across, box.top + (row + 0.5) * down + 0.36 * size
         colour = NET if lit else INK if value else MUTE
         sheet.text(figure(float(value)), at, size=size, align="centre", tabular=True, colour=colour)
-
-
-def _paint_all(room: tuple[float, float], products: Numbers, channel: int, sheet: Canvas) -> None:
-    """Draw the products of all maps, and an edge around those that are written out."""
-    tiles = np.moveaxis(products, 2, 0)
-    columns, size = tiling(len(tiles), products.shape[:2], room, _GAP)
-    area = sheet.rect(0, 0, *size)
-    shown = tiles / max(float(np.abs(tiles).max()), 1e-9)
-    sheet.surface.blit(mosaic(shown, columns, area.size, _GAP * sheet.scale), area)
-    row, column = divmod(channel, columns)
-    across, down = (size[0] + _GAP) / columns, (size[1] + _GAP) / -(-len(tiles) // columns)
-    sheet.outline((column * across - _GAP, row * down - _GAP, across + _GAP, down + _GAP), 1, INK)
 
 
 def _write_answer(cursor: Cursor, walk: UnitWalk) -> None:

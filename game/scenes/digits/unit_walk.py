@@ -101,19 +101,6 @@ class UnitWalk:
             if self.stage.kind in ("pooling", "activation"):
                 self.look_at((*self.place[:2], channel))
 
-    def slide(self) -> None:
-        """Move the window on to the next place where there is something to read, row by row, over and over."""
-        height, width, _ = self.stage.outputs.shape
-        row, column, channel = self.place
-        kept = self.channel
-        for step in range(1, height * width + 1):
-            row, column = divmod((self.place[0] * width + self.place[1] + step) % (height * width), width)
-            top, left, bottom, right = self.stage.read_by((row, column, row + 1, column + 1))
-            if self.stage.inputs[top:bottom, left:right].any():
-                break
-        self.look_at((row, column, channel))
-        self.channel = kept if self.stage.kind == "convolution" else self.channel
-
     def _sum_up(self) -> None:
         """Write the unit's sum out, and look at the input's map that has most say in it."""
         self.field = receptive_field(self.stages[: self.number + 1], self.place)

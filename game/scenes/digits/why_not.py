@@ -14,11 +14,11 @@ from ai.explain.contrast import SQUARE, Contrast, InkChange
 from game.core import texts
 from game.core.scene import Transition, push
 from game.digits import certainty
-from game.digits.pictures import SIGNED, Numbers, picture
+from game.digits.pictures import SIGNED, Numbers, framed
 from game.drawing.canvas import Canvas
 from game.drawing.cursor import Cursor
 from game.drawing.paint_cache import PaintCache
-from game.drawing.tokens import LABEL, LINE, MUTE, NET, SMALL, TITLE
+from game.drawing.tokens import LABEL, MUTE, NET, SMALL, TITLE
 from game.input.controls import Command
 from game.scenes.digits.answer import DigitBars, write_large
 from game.scenes.digits.pad import side_in
@@ -197,7 +197,7 @@ class WhyNotScene(PanelScene):
     def _draw_image(self, canvas: Canvas, box: pygame.FRect) -> None:
         """Draw the digit, with both squares of ink in it."""
         side = box.height
-        self._painted.draw(canvas, (*box.topleft, side, side), self.image.tobytes(), self._paint_image)
+        self._painted.draw(canvas, (*box.topleft, side, side), self.image.tobytes(), framed(self.image))
         if (seen := self.seen) is None or not seen.measured or seen.asked == seen.answer:
             return
         pixel = side / SIDE
@@ -208,20 +208,9 @@ class WhyNotScene(PanelScene):
                 canvas.outline((left, top, SQUARE * pixel, SQUARE * pixel), 3, colour, 2)
                 canvas.text("+" if change.ink else "−", (left + SQUARE * pixel + 6, top + 14), colour=colour)
 
-    def _paint_image(self, sheet: Canvas) -> None:
-        area = sheet.surface.get_rect()
-        sheet.surface.blit(picture(self.image, area.size), area)
-        pygame.draw.rect(sheet.surface, LINE, area, 1)
-
     def _draw_map(self, canvas: Canvas, box: pygame.FRect, number: int) -> None:
         if seen := self.seen:
-            values = (seen.there, seen.missing)[number]
-
-            def paint(sheet: Canvas) -> None:
-                area = sheet.surface.get_rect()
-                sheet.surface.blit(picture(values, area.size, SIGNED), area)
-                pygame.draw.rect(sheet.surface, LINE, area, 1)
-
+            paint = framed((seen.there, seen.missing)[number], SIGNED)
             self._maps[number].draw(canvas, (*box.topleft, box.height, box.height), seen, paint)
 
 

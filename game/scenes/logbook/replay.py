@@ -38,11 +38,13 @@ from game.scenes.logbook.claim import BELOW_CLAIM, Claimed
 from game.ui.actions import Action, Table
 from game.ui.clipboard import give
 from game.ui.context import Context
+from game.ui.form import Part
 from game.ui.form_scene import FormScene
 from game.ui.hints import HintRow
-from game.ui.playback import LABEL_WIDTH, Playback
-from game.ui.widget import OnPress
-from game.ui.widgets import GAP, TextButton
+from game.ui.panel import Panel
+from game.ui.playback import Playback
+from game.ui.rows import ButtonRow
+from game.ui.widget import Widget
 from game.world.camera import ClearArea, View
 from game.world.path_preview import draw_futures
 from game.world.paths import draw_faint
@@ -55,9 +57,9 @@ _AHEAD: Final = 3  # decisions of six futures that are flown in a frame
 _SCOUT: Final = 10  # steps looked ahead in every frame: a few milliseconds
 _STRIP: Final = (MARGIN, 78.0, VIEW_SIZE[0] - 2 * MARGIN, 60.0)
 _FIGURE: Final = 88.0  # half of what the seconds take, and who flies
-_VERBS: Final = 149.0
-_CLEAR: Final = ClearArea(head=_VERBS + 34.0)  # below it
-_VERB: Final = 20.0
+_VERBS: Final = 141.0  # where the words begin
+_CLEAR: Final = ClearArea(head=_VERBS + 42.0)  # below them
+_LABELS: Final = 60.0
 _FIRST_HINTS: Final = 4  # hints in the first row
 
 
@@ -147,7 +149,9 @@ class ReplayScene(FormScene):
         if not self.playback.stopped:
             self._heard.follow(self._scenery.stage.thrust[0])
         self._scenery.breathe()
-        return self.form.update()
+        outcome = self.form.update()
+        self._lay_out()
+        return outcome
 
     # Time
 
@@ -221,28 +225,34 @@ class ReplayScene(FormScene):
     # Words
 
     def _build(self) -> None:
-        manager, recording = self.form.manager, self.record.recording
+        recording = self.record.recording
         flown = recording.actions, recording.hands
-        self._strip = Timeline(manager, _STRIP, texts.REPLAY_LANES, *flown, self.seek, self._stop_or_go)
+        self._strip = Timeline(self.form.manager, _STRIP, texts.REPLAY_LANES, *flown, self.seek, self._stop_or_go)
         self.form.add(self._strip)
-        width = LABEL_WIDTH + sum(typeface.width(word, SMALL, "regular") + GAP for word in self.playback.words)
-        box = (MARGIN, _VERBS, round(width), _VERB)
-        self.form.add(self.playback.row(manager, box))
-        rows: list[tuple[str, OnPress]] = [
+        self._rows: list[Widget] = []
+        self._describe()
+
+    def _describe(self) -> None:
+        part, self._size = Part(self.form), (size := typeface.grown(SMALL))
+        self._panel = Panel(part)
+        speeds, verbs = self._panel.beside((2, 3), least=0.0)
+        self.playback.describe(speeds, size).compact(_LABELS, ButtonRow.pad)
+        *_, self._export_word, _ = verbs.words([
             (texts.REPLAY_TAKE_OVER, self._take_over),
             (texts.FRIEND_ANSWER if self.claimed else texts.LOGBOOK_RACE, self._race),
             (texts.CODE_COPY, self._copy),
             (texts.REPLAY_EXPORT, self._begin_or_stop_export),
             (texts.BACK, Pop),
-        ]
-        x = VIEW_SIZE[0] - MARGIN - sum(typeface.width(word, SMALL, "regular") + 28 for word, _ in rows) + 28
-        words = []
-        for word, press in rows:
-            wide = typeface.width(word, SMALL, "regular")
-            words.append(TextButton(manager, (round(x), _VERBS, round(wide) + 2, _VERB), word, press, size=SMALL))
-            self.form.add(words[-1])
-            x += wide + 28
-        self._export_word = words[3]
+        ], size)  # fmt: skip
+        self.form.replace(self._rows, part.widgets)
+        self._rows = part.widgets
+        self._lay_out()
+
+    def _lay_out(self) -> None:
+        if self._size != typeface.grown(SMALL):
+            self._describe()
+        scale = self.context.in_window((0, 0, 1000, 0)).width / 1000
+        self._panel.lay_out(pygame.FRect(MARGIN, _VERBS, VIEW_SIZE[0] - 2 * MARGIN, 100.0), scale)
 
     def _take_over(self) -> Transition | None:
         """Fly on from the moment that is shown."""
@@ -299,6 +309,7 @@ class ReplayScene(FormScene):
         self._draw_title(canvas)
         self._draw_moment(canvas)
         self.form.draw(canvas)
+        self._panel.draw(canvas.at(*self.form.anchor).ungrown)
         self.draw_hints(canvas)
         self.explained.draw(canvas)
 

@@ -12,7 +12,7 @@ from engine import DT, Body, Circle, Polygon, Shape, Sprite, World
 from engine.shapes import Point
 from engine.vector import Array
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import INK, MUTE, SMALL
+from game.drawing.tokens import MUTE, SMALL
 from game.world.camera import View
 from game.world.grip import Grip
 
@@ -20,7 +20,6 @@ CLEAR: Final = 0.35  # height that is seen above the ground, as a share of the r
 BELOW: Final = 0.05  # and below it
 _WALL: Final = 4.0
 _WALL_HEIGHT: Final = 200.0
-_GAUGE: Final = 64.0
 _FIXED, _BOXES, _DISCS = range(3)  # layers
 
 
@@ -30,8 +29,6 @@ class Label:
 
     Attributes:
         within: whether the value is within its limit, shown by a mark beside the words; None for no mark.
-        fill: filled share of a bar under the words, 0 to 1; None for no bar.
-        limit: place of a tick on that bar, 0 to 1.
 
     """
 
@@ -39,11 +36,9 @@ class Label:
     place: tuple[float, float]
     body: Body | None = None
     within: bool | None = None
-    fill: float | None = None
-    limit: float | None = None
 
     def draw(self, canvas: Canvas, view: View, poses: Array) -> None:
-        """Draw it with its mark and its bar; `poses` (bodies, 3) are as drawn."""
+        """Draw it with its mark; `poses` (bodies, 3) are as drawn."""
         place = np.asarray(self.place)
         if self.body is not None:
             place = place + poses[self.body.index, :2]
@@ -53,11 +48,6 @@ class Label:
             canvas.dot((left, y), 2.5, canvas.palette.good)
         elif self.within is not None:
             canvas.marker("triangle", (left, y), 9, canvas.palette.warn)
-        if self.fill is not None:
-            canvas.bar((x - _GAUGE / 2, y + 11, _GAUGE, 2), self.fill, INK)
-        if self.limit is not None:
-            tick = x - _GAUGE / 2 + self.limit * _GAUGE
-            canvas.line((tick, y + 8), (tick, y + 16), INK)
 
 
 @dataclass(frozen=True)
@@ -213,12 +203,6 @@ class Exhibit:
         inverse, heights = self.world.params.inverse_mass[:, 0], self.world.state.pose[0, :, 1]
         moving = inverse > 0
         return self.kinetic_energy + self.gravity * float((heights[moving] / inverse[moving]).sum())
-
-    @property
-    def contact_count(self) -> int:
-        """Number of contact points."""
-        contacts = self.world.contacts
-        return int(contacts.valid.sum()) if contacts else 0
 
     def push(self, *bodies: Body) -> float:
         """Return the last step's normal force, in newtons: between two bodies, or of all others on a single one."""

@@ -16,7 +16,6 @@ _FOOT: Final = -0.014  # shares of a room's width above the ground, for the name
 _TOUCH: Final = 0.005  # gap in metres below which a body counts as landed
 _SLID: Final = 0.1  # metres from its place from which a box counts as having slid
 _DISC: Final = 0.42  # metres, the radius of a disc of 1 kg: all have the same density
-_WALL: Final = 0.1  # a face whose normal points up by less is a wall
 
 
 class Slopes(Exhibit):
@@ -26,6 +25,7 @@ class Slopes(Exhibit):
     quantities = (Quantity("degrees", (5.0, 36.0), 30.0, 1.0), Quantity("friction", (0.0, 1.0), 0.5, 0.05))
     size = (1.4, 0.9)
     length = 16.0 / math.cos(math.pi / 6)  # metres along the slope
+    foot = 5.0  # its lower end
     which = 2  # the box whose friction can be changed, and whose acceleration is measured
     timed = (10, 40)  # steps between which it is measured
 
@@ -39,7 +39,7 @@ class Slopes(Exhibit):
         """Place the slipperiest box lowest, so that none runs into another."""
         self.frictions = (0.2, 0.35, self.values["friction"], 0.65, 0.8)
         slope = math.radians(self.values["degrees"])
-        right, top = 5.0, self.length * math.sin(slope)
+        right, top = self.foot, self.length * math.sin(slope)
         left = right - self.length * math.cos(slope)
         middle = np.array([(left + right) / 2, top / 2])
         corners = np.array([(left, 0.0), (right, 0.0), (left, top)]) - middle
@@ -70,29 +70,18 @@ class Slopes(Exhibit):
         return {"degrees": degrees, "tangent": math.tan(math.radians(degrees)), "slid": len(self.slid)}
 
     def labels(self) -> list[Label]:
-        labels = []
+        tangent, labels = math.tan(math.radians(self.values["degrees"])), []
         for box, friction in zip(self.boxes, self.frictions, strict=True):
-            tangent, words, within = self.steepness(box), texts.SLOPE_FRICTION.format(friction=friction), None
-            if tangent is not None:
+            words, within = texts.SLOPE_FRICTION.format(friction=friction), None
+            if self.on_slope(box):
                 within = tangent <= friction
                 words = texts.SLOPE_LABEL.format(tangent=tangent, sign="<" if within else ">", friction=friction)
             labels.append(Label(words, (0.45, 1.0), box, within))
         return labels
 
-    def steepness(self, box: Body) -> float | None:
-        """Return tan θ of the ground that a box lies flat on; None in the air, on an edge, or on a movable body."""
-        if not self.steps:
-            return math.tan(math.radians(self.values["degrees"]))
-        contacts = self.world.contacts
-        if contacts is None:
-            return None
-        rows = np.flatnonzero((contacts.body == box.index).any(axis=1)).tolist()
-        if len(rows) != 1:
-            return None
-        (row,) = rows
-        right, up = np.abs(contacts.normal[row])
-        fixed = not self.world.params.dynamic[contacts.body[row]].all()
-        return float(right / up) if fixed and contacts.valid[row].all() and up > _WALL else None
+    def on_slope(self, box: Body) -> bool:
+        """Whether a box that no hand has touched is still above the slope."""
+        return not self.is_touched(box) and bool(box.position[0, 0] + self.size[0] / 2 < self.foot)
 
 
 class Bounce(Exhibit):
@@ -237,13 +226,9 @@ class DragRace(Exhibit):
 
     def labels(self) -> list[Label]:
         labels = []
-        fastest = math.sqrt(2 * self.gravity * self.top)
         for number, (disc, (name, mass, _, _)) in enumerate(zip(self.discs, self.lanes, strict=True)):
-            now, terminal = speed(disc), self.terminal(number)
-            limit = terminal / fastest if terminal < fastest else None
-            text = texts.DRAG_SPEED.format(speed=now)
-            labels.append(Label(text, (2.0, 0.1), disc, fill=min(1.0, now / fastest), limit=limit))
-            words = texts.DRAG_LANES[name].format(mass=mass, terminal=terminal)
+            labels.append(Label(texts.DRAG_SPEED.format(speed=speed(disc)), (2.0, 0.1), disc))
+            words = texts.DRAG_LANES[name].format(mass=mass, terminal=self.terminal(number))
             below = _FOOT * self.width * (1 + 1.4 * (number % 2))  # in two rows: they are long
             labels.append(Label(words, (self._lane(number), below)))
         return labels

@@ -42,11 +42,10 @@ _REACH: Final = 8.0  # points by which the mouse may miss a body
 _BUDGET: Final = 6e-3  # seconds of a frame for measuring, during which the exhibit waits
 _REST: Final = 6  # steps without a change after which an exhibit of many bodies is made anew
 _MANY: Final = 24
-_SMOOTHING: Final = 0.05
 
 
 class PhysicsScene(PanelScene):
-    """Physics gallery, one exhibit at a time; `now` is the clock in seconds that times its steps.
+    """Physics gallery, one exhibit at a time; `now` is the clock in seconds by which a range is measured.
 
     Attributes:
         chosen: name of the exhibit.
@@ -86,7 +85,6 @@ class PhysicsScene(PanelScene):
         self._outlines = Outlines(self.exhibit.sprites)
         self._poses = self._poses_before = self.exhibit.poses
         self._clock.begin()
-        self.step_time = 0.0
         if self.plot:
             self.plot = LawPlot(self.exhibit, self._axis, self.results)
 
@@ -101,6 +99,11 @@ class PhysicsScene(PanelScene):
 
     def _turn(self, direction: int) -> None:
         self._choose(list(EXHIBITS).index(self.chosen) + direction)
+
+    def reword(self) -> None:
+        if self.plot:
+            self.plot = LawPlot(self.exhibit, self._axis, self.results)
+        self.build()
 
     def _choose_gravity(self, index: int) -> None:
         self._gravity = index
@@ -158,10 +161,7 @@ class PhysicsScene(PanelScene):
         return super().update()
 
     def _step(self) -> None:
-        before = self._now()
         self.exhibit.step(self.grip)
-        spent = self._now() - before
-        self.step_time += (spent - self.step_time) * (_SMOOTHING if self.step_time else 1.0)
         self._poses_before, self._poses = self._poses, self.exhibit.poses
 
     # Keys
@@ -240,14 +240,8 @@ class PhysicsScene(PanelScene):
         column.explain(what["speed"])
         column.toggle(texts.PHYSICS_CONTACTS, self.contacts_drawn, lambda _: self.toggle_contacts())
         column.explain(what["contacts"])
-        for words, read, key in (
-            (texts.BODIES, lambda: str(len(self.exhibit.bodies)), "bodies"),
-            (texts.CONTACT_POINTS, lambda: str(self.exhibit.contact_count) if self.exhibit.steps else "–", "points"),
-            (texts.KINETIC_ENERGY, lambda: f"{self.exhibit.kinetic_energy:.1f} J", "energy"),
-            (texts.STEP_TIME, lambda: f"{1e3 * self.step_time:.1f} ms", "step"),
-        ):
-            column.pair(words, read)
-            column.explain(what[key])
+        column.pair(texts.KINETIC_ENERGY, lambda: f"{self.exhibit.kinetic_energy:.1f} J")
+        column.explain(what["energy"])
 
     @property
     def more(self) -> bool:

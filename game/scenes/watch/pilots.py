@@ -9,17 +9,19 @@ from pathlib import Path
 from typing import Final
 
 from ai.pilots.child import ACT, PAY
+from ai.pilots.own import LOADING
 from ai.pilots.shelf import Measured, Shelf, edit
 from game.core import texts
 from game.core.scene import Pop, Transition, push
 from game.core.worker import Worker, WorkerState
-from game.drawing.tokens import HUMAN, INK, MUTE, TEXT
+from game.drawing.tokens import HUMAN, INK, MUTE, SMALL, TEXT
 from game.explain.figures import percent
 from game.flight import networks, own
 from game.flight.logbook import Records
 from game.ui.context import Context
 from game.ui.panel import Column, Panel
 from game.ui.panel_scene import PanelScene
+from game.ui.widget import OnPress
 
 _LEAST: Final = 360.0  # points of a column
 _LATEST: Final = 8  # measurements that are listed
@@ -93,13 +95,15 @@ class PilotsScene(PanelScene):
         path = self._files[self._name]
         column.text(self._name, size=22.0, weight="light")
         column.aside(str(path))
-        measuring = [] if self._shelf.kind != ACT or self._worker else [(texts.PILOTS_MEASURE, self._measure)]
-        race = [(texts.PILOTS_RACE, self._race)] if self._shelf.kind == ACT else []
-        column.words([(self._words[3], self._use), (texts.PILOTS_EDIT, self._edit), *measuring, *race])
+        verbs: list[tuple[str, OnPress]] = [(self._words[3], self._use), (texts.PILOTS_EDIT, self._edit)]
         if self._shelf.kind != ACT:
+            column.words(verbs)
             return
+        measure = (texts.PILOTS_CANCEL, self._cancel) if self._worker else (texts.PILOTS_MEASURE, self._measure)
+        column.words([*verbs, (texts.PILOTS_RACE, self._race), measure])
         if self._worker:
-            column.aside(texts.PILOTS_MEASURING)
+            words = texts.PILOTS_MEASURING
+            column.aside(lambda: words[self._share > 0].format(count=own.STARTS, seconds=LOADING))
             column.bar(lambda: self._share)
         if mine := next((each for each in self._own if each.name == self._name), None):
             self._describe_card(column, mine)
@@ -114,6 +118,11 @@ class PilotsScene(PanelScene):
         column.gap()
         column.caption(texts.PILOTS_CARD.format(count=own.STARTS))
         column.pair(self._name, _figures(mine), HUMAN)
+        lost = sorted(zip(mine.lost, texts.PILOTS_LOST, strict=False), reverse=True)
+        if counts := " · ".join(words.format(count=count) for count, words in lost if count):
+            column.aside(texts.PILOTS_LOST_BY.format(counts=counts))
+        path = self._files[self._name]
+        column.text(lambda: texts.PILOTS_STALE if mine.stale(path) else "", size=SMALL, colour=HUMAN)
         known = own.rivals(self._measured)
         for name in own.RIVALS:
             if name in known:
@@ -159,20 +168,25 @@ class PilotsScene(PanelScene):
         own.take(self.context, self._files[self._name])
         return push("play", rival=self.context.pilot, rival_name=self._name)
 
+    def _cancel(self) -> None:
+        self.close()
+        self._worker = None
+        self.enter()
+
     def _measure(self) -> None:
         context, self._share, self._said = self.context, 0.0, ""
         self._worker = Worker(own.measure, context.user_dir, context.models_dir, self._files[self._name])
         self.build()
 
     def update(self) -> Transition | None:
-        """Hear how a measurement goes on."""
+        """Follow a measurement."""
         worker = self._worker
         if worker:
-            for told in worker.poll():
-                if isinstance(told, Measured):
+            for news in worker.poll():
+                if isinstance(news, Measured):
                     self.enter()
                 else:
-                    self._share = told
+                    self._share = news
             if worker.state in (WorkerState.ENDED, WorkerState.FAILED) and worker.gone:
                 self._worker, self._said = None, worker.problem
                 self.enter()

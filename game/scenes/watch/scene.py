@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Final
@@ -30,20 +29,18 @@ from game.scenes.watch.touch import Hand
 from game.scenes.watch.watched import SIZES, Watched
 from game.ui.actions import Action, Run, Table
 from game.ui.context import Context
+from game.ui.form import Part
 from game.ui.form_scene import FormScene
 from game.ui.hints import HintRow
-from game.ui.playback import LABEL_WIDTH
-from game.ui.widget import OnPress
-from game.ui.widgets import GAP, Choice
-from game.world.camera import Camera
+from game.ui.panel import Panel
+from game.ui.widget import OnPress, Widget
 from game.world.policy_map import ACTION
 
 COUNTS: Final = tuple(SIZES)
-_ROW: Final = (MARGIN, 624.0, 22.0)  # left and top of the first row of choices, and how far to the next
-_ROW_HEIGHT: Final = 17.0
-_WIDEST: Final = 452.0  # of a row: the pad begins there
+_ROWS: Final = (452.0, 712.0)  # greatest width of the choices, for the pad begins there, and where they end
+_LABELS: Final = 60.0
+_BETWEEN: Final = 2.0  # points above and below each row
 _LONGEST_NAME: Final = 24
-_LONGEST_PROBLEM: Final = 110
 _READOUTS: Final = (758.0, 880.0, 1002.0, 1124.0)  # left ends of the read-outs
 _TOUCHED: Final = pygame.Rect(40, 108, PANEL.left - 80, 600)  # where the hand can put a lander
 
@@ -73,6 +70,7 @@ class WatchScene(FormScene):
         self.explained = Explained()
         self.problem = self._wanted = self._told = ""
         self._awaited: networks.Network | None = None  # a file that is being loaded, to fly then
+        self._valued = True  # whether who flies gives values
         self._settings = context.settings
         self._guests = dict([guest]) if guest else {}
         self._seed = int(context.rng.integers(2**31)) if seed is None else seed
@@ -80,11 +78,8 @@ class WatchScene(FormScene):
         names = self.policies.names
         first = guest[0] if guest else context.settings.model
         wanted = names.index(first) if first in names else 0
-        self._model_choice = self.form.add(self._network_row(wanted))
-        counts = [str(count) for count in COUNTS]
-        self._count_choice = self.form.add(self._row(1, texts.WATCH_COUNT, counts, self._count, self._choose_count))
-        self._speed_choice = self.form.add(self.playback.row(self.form.manager, self._row_box(2, self.playback.words)))
-        self._map_choice = self.form.add(self._map_row())
+        self._rows: list[Widget] = []
+        self._describe(wanted)
         self.hand = self.form.add(Hand(self.form.manager, self.world, _TOUCHED, context.view))
         self._choose_network(wanted)
         if self.problem:
@@ -100,16 +95,6 @@ class WatchScene(FormScene):
         return self.world.swarm
 
     @property
-    def camera(self) -> Camera:
-        """The camera on them."""
-        return self.world.camera
-
-    @property
-    def shown(self) -> int:
-        """Number of the lander whose decisions are shown."""
-        return self.world.shown
-
-    @property
     def decision(self) -> Decision:
         """The decision that the shown lander flies."""
         return self.world.decision
@@ -117,8 +102,13 @@ class WatchScene(FormScene):
     def enter(self) -> None:
         """Follow a change of the networks and of the settings."""
         self._look_again()
+        self._describe(self._model_choice.index)
         if self.world.stage.calm != self._settings.reduced_motion:
             self.world.set_up_camera()
+
+    def reword(self) -> None:
+        self._told = ""
+        self._describe(self._model_choice.index)
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Explain, touch or pick a lander, or pass the event to the actions and the choices."""
@@ -142,15 +132,16 @@ class WatchScene(FormScene):
             return says(lambda: hand.turn(notches), texts.TOUCH_PARTS[1], lambda: world.tilt_words)
 
         def shown(direction: int) -> Run:
-            return says(lambda: self._turn(direction), texts.HINT_NEXT_LANDER, lambda: str(self.shown + 1))
+            return says(lambda: self._turn(direction), texts.HINT_NEXT_LANDER, lambda: str(world.shown + 1))
 
+        turn_map = says(self._turn_map, texts.HINT_MAP, lambda: texts.MAP_KINDS[world.policy_map.kind])
         undo = Action(pygame.K_z, says(world.untouch, texts.HINT_UNTOUCH), "" if by_pad else texts.HINT_UNTOUCH)
         return [
             stop,
             Action(step.key, says(playback.step, texts.HINT_DECISION, self._flown), step.hint),
             Action(Command.MODE, self._touch, texts.HINT_TOUCH),
             *([undo] if world.can_untouch else []),
-            Action(pygame.K_m, says(self._turn_map, texts.HINT_MAP, self._map), "" if by_pad else texts.HINT_MAP),
+            Action(pygame.K_m, turn_map, "" if by_pad else texts.HINT_MAP),
             Action(Command.NEXT, shown(1), texts.HINT_NEXT_LANDER if many else ""),
             Action(Command.RETRY, says(self._begin_anew, texts.HINT_RESTART), texts.HINT_RESTART),
             Action(pygame.K_o, self._open_pilots, "" if by_pad else texts.HINT_PILOTS),
@@ -158,7 +149,7 @@ class WatchScene(FormScene):
             Action(Command.PREVIOUS, shown(-1)),
             Action(pygame.K_q, turned(1)),
             Action(pygame.K_e, turned(-1)),
-            *(Action(each.key, says(each.run, texts.WATCH_SPEED, self._speed)) for each in speeds),
+            *(Action(each.key, says(each.run, texts.WATCH_SPEED, lambda: playback.word)) for each in speeds),
             self.explained.action(),
         ]
 
@@ -178,13 +169,15 @@ class WatchScene(FormScene):
 
     def update(self) -> Transition | None:
         """Fly as many steps as the chosen speed makes due."""
-        if self._awaited and isinstance(pilot := self._awaited.policy, OwnPilot):
+        if isinstance(pilot := (self._awaited or self.network).policy, OwnPilot):
             pilot.look()
-            if pilot.ready:
+            if self._awaited and pilot.ready:
                 self._fly(self._awaited)
         self.world.update()
         self.explained.update()
-        return self.form.update()
+        outcome = self.form.update()
+        self._lay_out()
+        return outcome
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the world, the swarm, the panel and the choices."""
@@ -201,15 +194,21 @@ class WatchScene(FormScene):
     # What flies
 
     def _begin(self) -> None:
-        assert self.network.policy is not None
-        self.world.begin(COUNTS[self._count], self._seed, self.network.policy)
+        policy = self.network.policy
+        assert policy is not None
+        if isinstance(policy, networks.QPolicy) is not self._valued:
+            self._valued = not self._valued
+            if not self._valued:
+                self.world.policy_map.kind = min(self.world.policy_map.kind, ACTION)
+            self._describe(self._model_choice.index)
+        self.world.begin(COUNTS[self._count], self._seed, policy)
 
     def _begin_anew(self) -> None:
         self._seed = int(self.context.rng.integers(2**31))
         self._begin()
 
     def _turn(self, direction: int) -> None:
-        self.world.shown = (self.shown + direction) % COUNTS[self._count]
+        self.world.shown = (self.world.shown + direction) % COUNTS[self._count]
 
     def _pick(self, point: tuple[float, float]) -> bool:
         """Show the decisions of the lander nearest to a point of the canvas, if one is close."""
@@ -240,12 +239,6 @@ class WatchScene(FormScene):
     def _flown(self) -> str:
         return str(texts.said(ACTION_NAMES[int(self.decision.action[0])]))
 
-    def _map(self) -> str:
-        return self._map_choice.options[self._map_choice.index]
-
-    def _speed(self) -> str:
-        return self._speed_choice.options[self._speed_choice.index]
-
     # Choices
 
     def _known(self) -> networks.Policies:
@@ -255,27 +248,38 @@ class WatchScene(FormScene):
             policies.add(networks.Network(pilot.path.name, pilot))
         return policies
 
-    def _row(self, row: int, label: str, words: Sequence[str], index: int, chosen: Callable[[int], None]) -> Choice:
-        box = self._row_box(row, words)
-        return Choice(self.form.manager, box, label, words, index, chosen, label_width=LABEL_WIDTH, size=SMALL)
-
-    def _row_box(self, row: int, words: Sequence[str]) -> pygame.Rect:
-        x, y, pitch = _ROW
-        width = LABEL_WIDTH + sum(typeface.width(word, SMALL, "regular") + GAP for word in words) - GAP
-        return pygame.Rect(x, y + row * pitch, math.ceil(min(width, _WIDEST)), _ROW_HEIGHT)
-
-    def _network_row(self, index: int) -> Choice:
-        words = [brief(networks.word(name), _LONGEST_NAME) for name in self.policies.names]
-        box, everything = self._row_box(0, words), texts.WATCH_ALL.format(count=len(words))
-        return Choice(
-            self.form.manager, box, texts.WATCH_MODEL, words, index, self._choose_network, label_width=LABEL_WIDTH,
-            size=SMALL, on_open=self._open_networks, all_word=everything,
+    def _describe(self, chosen: int) -> None:
+        """Describe the rows anew: who flies, how many, how fast, and the map; one without values has none of scores."""
+        part, self._size = Part(self.form), (size := typeface.grown(SMALL))
+        self._panel = panel = Panel(part)
+        names = [brief(networks.word(name), _LONGEST_NAME) for name in self.policies.names]
+        self._model_choice = panel.choice(
+            texts.WATCH_MODEL, names, chosen, self._choose_network, size,
+            on_open=self._open_networks, all_word=texts.WATCH_ALL.format(count=len(names)),
         )  # fmt: skip
+        counts = [str(count) for count in COUNTS]
+        count = panel.choice(texts.WATCH_COUNT, counts, self._count, self._choose_count, size)
+        speed = self.playback.describe(panel, size)
+        kinds = texts.MAP_KINDS if self._valued else texts.MAP_KINDS[: ACTION + 1]
+        self._map_choice = panel.choice(texts.WATCH_MAP, kinds, self.world.policy_map.kind, self._choose_map, size)
+        choices = self._model_choice, count, speed, self._map_choice
+        for row, choice, what in zip(panel.rows, choices, texts.EXPLAIN_CHOICES, strict=True):
+            row.what = what
+            choice.compact(_LABELS, _BETWEEN)
+        for old, new in zip(self._rows, part.widgets, strict=False):
+            new.warmth = old.warmth
+        self.form.replace(self._rows, part.widgets)
+        self._rows = part.widgets
+        self._lay_out()
 
-    def _map_row(self, values: bool = True) -> Choice:
-        """Return the row of maps; a pilot without values has none of scores."""
-        kinds = texts.MAP_KINDS if values else texts.MAP_KINDS[: ACTION + 1]
-        return self._row(3, texts.WATCH_MAP, kinds, self.world.policy_map.kind, self._choose_map)
+    def _lay_out(self) -> None:
+        """Put the rows above the lower edge of the page, whatever their height."""
+        if self._size != typeface.grown(SMALL):
+            self._describe(self._model_choice.index)
+        (width, end), scale = _ROWS, self.context.in_window((0, 0, 1000, 0)).width / 1000
+        self._panel.lay_out(pygame.FRect(MARGIN, 0, width, end), scale)
+        height = self._panel.height + 1
+        self._panel.lay_out(pygame.FRect(MARGIN, end - height, width, height), scale)
 
     def _pause(self) -> Transition:
         return push("pause", self, self._begin_anew, texts.PAUSE_NEW_STARTS, self._pause_words)
@@ -283,21 +287,18 @@ class WatchScene(FormScene):
     def _pause_words(self) -> list[tuple[str, OnPress]]:
         name = brief(networks.word(self._wanted or self.network.name), _LONGEST_NAME)
         return [
-            (texts.PAUSE_NETWORK.format(name=name), self._open_networks),
+            (texts.WATCH_PAUSE.format(name=name), self._open_networks),
             (texts.PILOTS_OPEN, self._open_pilots),
         ]
 
-    def _want(self, name: str) -> None:
-        self._wanted = name
-
     def _open_networks(self) -> Transition:
-        return push("runs", choose=self._want)
+        return push("runs", choose=partial(setattr, self, "_wanted"))
 
     def _open_pilots(self) -> Transition:
         def choose(path: Path | None) -> None:
             if path:
                 own.take(self.context, path)
-                self._want(path.name)
+                self._wanted = path.name
 
         return push("pilots", choose, now=self.context.pilot.path if self.context.pilot else None)
 
@@ -311,9 +312,7 @@ class WatchScene(FormScene):
             return
         self.policies = policies
         index = next((policies.names.index(name) for name in (wanted, self.network.name) if name in policies.names), 0)
-        row = self._network_row(index)
-        self.form.replace([self._model_choice], [row])
-        self._model_choice = row
+        self._describe(index)
         self._choose_network(index)
 
     def _choose_network(self, index: int) -> None:
@@ -328,17 +327,11 @@ class WatchScene(FormScene):
 
     def _fly(self, network: networks.Network) -> None:
         self.network, self._awaited = network, None
-        values = isinstance(network.policy, networks.QPolicy)
         own_flies = isinstance(network.policy, OwnPilot)
         if self.context.pilot:
             self.context.pilot.chosen = own_flies
         if network.name not in self._guests and not own_flies:
             self._settings.model = network.name
-        if not values:
-            self.world.policy_map.kind = min(self.world.policy_map.kind, ACTION)
-        row = self._map_row(values)
-        self.form.replace([self._map_choice], [row])
-        self._map_choice = row
         self._begin()
 
     def _choose_count(self, index: int) -> None:
@@ -361,13 +354,10 @@ class WatchScene(FormScene):
         readouts.draw_hand(canvas, self._said, NET)
         middle.explain((VIEW_SIZE[0] / 2 - 110, 24, 220, 34), texts.EXPLAIN_FLIES, self._who)
         draw_landings(left, (MARGIN, 118), self.swarm.landed, self.swarm.lost)
-        shown = readouts.flight_readouts(self.swarm.env, self.shown)
+        shown = readouts.flight_readouts(self.swarm.env, self.world.shown)
         readouts.draw_readouts(canvas, [shown[name] for name in readouts.PILOT], _READOUTS)
         self._draw_notice(middle)
-        rows = (self._model_choice, self._count_choice, self._speed_choice, self._map_choice)
-        for row, what in zip(rows, texts.EXPLAIN_CHOICES, strict=True):
-            canvas.at(*self.form.anchor).explain(row.box, what)
-        self.form.draw(canvas)
+        self._panel.draw(canvas.at(*self.form.anchor).ungrown)
         if self._settings.show_hints or self.context.controls.mouse_in_use:  # for the mouse, they are what it presses
             self.draw_hints(canvas)
 
@@ -376,7 +366,7 @@ class WatchScene(FormScene):
         words = partial(canvas.text, size=SMALL, align="centre")
         middle, problem = VIEW_SIZE[0] / 2, self._problem()
         if problem:
-            box = words(brief(problem, _LONGEST_PROBLEM), (middle, 84), colour=canvas.palette.warn)
+            box = words(problem, (middle, 84), colour=canvas.palette.warn)
             canvas.marker("cross", (box.left - 12, 80), 9, canvas.palette.warn)
         elif self.world.touched:
             words(texts.TOUCH_COUNTS, (middle, 84), colour=HUMAN)
@@ -388,15 +378,15 @@ class WatchScene(FormScene):
     def _problem(self) -> str:
         """Return what is wrong with a network that was chosen, or with the player's own file."""
         network = self._awaited or self.network
-        if isinstance(network.policy, OwnPilot) and network.policy.problem:
-            return f"{network.name}: {network.policy.problem}"
-        return self.problem
+        return self.problem or (own.wrong(network.policy) if isinstance(network.policy, OwnPilot) else "")
 
     def _who(self) -> str:
         """Say who decides."""
-        if isinstance(self.network.policy, networks.QPolicy):
-            return texts.EXPLAIN_FLIES_NETWORK.format(name=brief(self.network.name, _LONGEST_NAME))
-        return texts.EXPLAIN_FLIES_SCRIPTED
+        if self.network.name == networks.SCRIPTED:
+            return texts.EXPLAIN_FLIES_SCRIPTED
+        mine = isinstance(self.network.policy, OwnPilot)
+        words = texts.EXPLAIN_FLIES_OWN if mine else texts.EXPLAIN_FLIES_NETWORK
+        return words.format(name=brief(self.network.name, _LONGEST_NAME))
 
     @property
     def _said(self) -> str:

@@ -41,7 +41,7 @@ WRONG = {
 
 def told(source: str, kind: str = ACT, question: bytes = OBSERVATIONS.tobytes()) -> str:
     try:
-        load(kind, PATH, source)(question)
+        load(kind, PATH, source)[0](question)
     except BaseException as error:
         return problem(error, PATH)
     return ""
@@ -60,13 +60,13 @@ def test_what_a_file_raises_may_be_of_any_length_and_kind():
 
 def test_act_and_act_many_answer_row_by_row_and_may_change_what_they_get():
     rows = np.arange(27, dtype=np.float32).reshape(3, 9)
-    one = load(ACT, PATH, "def act(o):\n    o += 1\n    return int(o[0]) % 6")(rows.tobytes())
-    many = load(ACT, PATH, "def act_many(o):\n    o += 1\n    return o[:, 0].astype(int) % 6")(rows.tobytes())
+    one = load(ACT, PATH, "def act(o):\n    o += 1\n    return int(o[0]) % 6")[0](rows.tobytes())
+    many = load(ACT, PATH, "def act_many(o):\n    o += 1\n    return o[:, 0].astype(int) % 6")[0](rows.tobytes())
     assert one == many == bytes([1, 4, 1])
 
 
 def test_the_template_of_a_pay_is_the_usual_pay():
-    pay = load(PAY, PATH, (TEMPLATES / "pay.py").read_text())
+    pay, _ = load(PAY, PATH, (TEMPLATES / "pay.py").read_text())
     env, rng = LanderEnv(64, 3), np.random.default_rng(4)
     env.reset()
     ended = 0

@@ -1,6 +1,7 @@
 """A file is flown as it is saved: what takes over when, and what flies on."""
 
 import os
+import time
 from pathlib import Path
 from typing import ClassVar
 
@@ -41,6 +42,10 @@ class Fake:
             self.gone = self.does == "dies"
             raise PilotError(self.does, 7)
         return np.full(len(observation), int(self.does))
+
+    def late(self, words: str) -> PilotError:
+        self.gone = True
+        return PilotError(words, 2)
 
     def close(self) -> None:
         self.gone = True
@@ -131,6 +136,7 @@ def test_late_decisions_are_skipped_and_three_in_a_row_end_the_process(pilot: Ow
     fake.does = "late"
     assert flown(pilot, 3) == 0  # it coasts
     assert "3 decisions in a row took longer than 50 ms" in pilot.problem
+    assert not pilot.flies_on
     assert running() == []
     save(pilot, "2")
     assert flown(pilot) == 2
@@ -142,7 +148,17 @@ def test_one_that_never_begins_is_ended(pilot: OwnPilot):
     assert flown(pilot, 10) == 1
     assert running() == ["1", "loading"]
     assert flown(pilot, 100) == 1
-    assert "too long" in pilot.problem
+    assert pilot.problem == "line 2: it was not loaded after 25 seconds"
+    assert pilot.flies_on
+    assert running() == ["1"]
+
+
+def test_one_that_never_answers_first_is_ended_and_told_at_once(pilot: OwnPilot):
+    assert flown(pilot) == 1
+    save(pilot, "late")
+    assert flown(pilot, 5) == 1
+    assert pilot.problem == "line 2: its first decision took longer than 2 seconds"
+    assert pilot.flies_on
     assert running() == ["1"]
 
 
@@ -185,6 +201,26 @@ def test_a_real_file_flies_as_it_is_saved(tmp_path: Path):
     pilot.close()
 
 
+def test_a_real_loop_that_was_saved_in_flight_is_told_with_its_line_and_the_last_good_one_flies_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setattr(own, "FIRST", 0.1)
+    path = tmp_path / "pilot.py"
+    path.write_text("def act(o): return 4")
+    pilot = OwnPilot(path, patience=1.0)
+    until = time.monotonic() + 60
+    while flown(pilot) != 4:
+        assert time.monotonic() < until
+    path.write_text("def act(o):\n    while True: pass")
+    while not pilot.problem:
+        flown(pilot)
+        assert time.monotonic() < until
+    assert pilot.problem == "line 2: its first decision took longer than 0 seconds: its process was ended"
+    assert pilot.flies_on
+    assert flown(pilot) == 4
+    pilot.close()
+
+
 def test_measuring_raises_what_is_wrong(tmp_path: Path):
     path = tmp_path / "pilot.py"
     path.write_text("def act(o): return 7")
@@ -195,6 +231,26 @@ def test_measuring_raises_what_is_wrong(tmp_path: Path):
     path.write_text("x")
     with pytest.raises(PilotError, match="line 1: NameError"):
         MeasuredPilot(path)
+
+
+def test_measuring_keeps_the_order_of_landers_and_says_where_a_loop_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    path = tmp_path / "pilot.py"
+    rows = np.zeros((150, 9), np.float32)
+    rows[:, 0] = np.arange(150) % 6
+    for source in (
+        "def act(o): return int(o[0])",
+        "def act_many(o):\n    assert len(o) == 150\n    return o[:, 0].astype(int)",
+    ):
+        path.write_text(source)
+        pilot = MeasuredPilot(path)
+        assert np.array_equal(pilot.act(rows), rows[:, 0])
+        pilot.close()
+    monkeypatch.setattr(own, "ALONE", 0.2)
+    path.write_text("def act(o):\n    while True:\n        o += 1")
+    pilot = MeasuredPilot(path)
+    with pytest.raises(PilotError, match=r"line [23]: 64 decisions took longer"):
+        pilot.act(rows)
+    assert pilot._process.gone
 
 
 def test_landers_are_paid_by_a_file(tmp_path: Path):

@@ -75,7 +75,15 @@ def test_an_endless_loop_is_late_and_ends_with_the_process(started):
     for _ in range(3):
         assert process.act(OBSERVATION, 0.01) is None
     assert not process.ready()
-    process.close()
+    assert str(process.late("it took long", LONG)) == "line 2: it took long: its process was ended"
+    assert process.gone
+
+
+def test_one_that_answers_nothing_more_is_ended_all_the_same(started):
+    process = started("import os, signal\ndef act(o):\n    os.kill(os.getpid(), signal.SIGSTOP)")
+    assert process.ready(LONG)
+    assert process.act(OBSERVATION, 0.1) is None
+    assert str(process.late("it took long")) == "it took long: its process was ended"
     assert process.gone
 
 

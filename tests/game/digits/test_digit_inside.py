@@ -156,33 +156,12 @@ def test_arrows_move_any_window_and_back(inside: Driver, stage: int):
     assert walk.place == (there[0] - 1, there[1] + 2, there[2])
 
 
-def test_the_window_slides_by_itself_until_it_is_touched(open_game: Open, modern, nine):
-    driver = open_game(DigitInsideScene, modern, nine)
-    walk = scene(driver).walk
-    assert scene(driver).sliding
-    driver.frames(110)
-    before = walk.place
-    driver.frames(30)
-    assert walk.place != before
-    assert walk.place[2] == before[2]
-    driver.key(pygame.K_SPACE)
-    before = walk.place
-    driver.frames(40)
-    assert walk.place == before
-    driver.button(pygame.CONTROLLER_BUTTON_Y)
-    assert scene(driver).sliding
-    driver.move(maps(driver)[1].place(3, 3).center)
-    assert not scene(driver).sliding
-    assert walk.place[:2] == (3, 3)
-
-
-def test_the_window_begins_on_ink_and_slides_over_ink_alone(modern, nine):
+def test_the_way_begins_on_ink_and_ends_at_the_answer(modern, nine):
     walk = UnitWalk(modern, nine)
-    assert walk.value(len(walk.stages)) == walk.probabilities.max(), "the way ends at the answer"
-    for _ in range(150):
-        top, left, bottom, right = walk.field
-        assert nine[top:bottom, left:right].any()
-        walk.slide()
+    assert walk.value(len(walk.stages)) == walk.probabilities.max()
+    top, left, bottom, right = walk.field
+    assert nine[top:bottom, left:right].any()
+    assert walk.unit.products.any()
 
 
 def test_figures_in_a_matrix_do_not_touch_at_any_size_of_text(inside: Driver, monkeypatch):
@@ -210,13 +189,6 @@ def test_figures_in_a_matrix_do_not_touch_at_any_size_of_text(inside: Driver, mo
         for row in written.values():
             boxes = sorted(row, key=lambda box: box.left)
             assert all(one.right + 3 < other.left for one, other in pairwise(boxes)), size
-
-
-def test_with_reduced_motion_nothing_slides_unasked(inside: Driver):
-    before = scene(inside).walk.place
-    inside.frames(200)
-    assert scene(inside).walk.place == before
-    assert texts.PATCH_SLIDE in inside.hints()
 
 
 def test_the_code_beside_each_stage_is_that_of_its_layer(inside: Driver, monkeypatch):
@@ -328,7 +300,7 @@ def test_what_is_said_of_ink_is_true(why_not: Driver, modern, monkeypatch):
         after = network.predict(modern.shaped(top.contrast.changed(change.row, change.column, change.ink)))[0]
         before = network.predict(modern.shaped(top.image))[0]
         assert after[7] > before[7]
-        assert f"{figure(float(before[7]))} to {figure(float(after[7]))}" in said
+        assert f"{figure(float(after[7]))} instead of {figure(float(before[7]))}" in said
 
 
 def test_places_are_named_within_the_ink(why_not: Driver):

@@ -142,7 +142,7 @@ def test_the_network_that_is_looked_into_is_chosen_by_mouse_keys_and_pad(drawing
     assert list(seen) == ["classic", "modern"]
     assert not np.array_equal(seen["classic"], seen["modern"])
     tabs = drawing.choice("Classic")
-    drawing.click(tabs._places[1].center)  # type: ignore[attr-defined]
+    drawing.click(tabs._places[1].center)
     assert scene(drawing).chosen == "classic"
 
 

@@ -120,7 +120,7 @@ def test_a_stopped_lander_is_dragged_where_it_is_seen(open_game, context: Contex
     driver.key(pygame.K_SPACE)
     watch = driver.top
     canvas = driver.app.canvas
-    place = canvas.points(watch.camera.view(1.0).filling(canvas).pixels(watch.swarm.env.position[0]).tolist())
+    place = canvas.points(watch.world.camera.view(1.0).filling(canvas).pixels(watch.swarm.env.position[0]).tolist())
     x, y = watch.swarm.env.position[0].tolist()
     driver.move(place)
     driver.post(pygame.MOUSEBUTTONDOWN, pos=driver.to_window(place), button=1)

@@ -77,7 +77,7 @@ def test_watch_draws_the_decision_that_is_flown_and_nothing_else(
     assert isinstance(watch, WatchScene)
     watch.swarm.policy = Witness(agent)
     watch.world.shown = count - 1
-    slot, env = watch.shown, watch.swarm.env
+    slot, env = watch.world.shown, watch.swarm.env
     drawn = Drawn(monkeypatch)
     kept = longest = steps = 0
     for step in range(1000):

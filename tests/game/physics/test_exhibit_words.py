@@ -111,26 +111,23 @@ def test_energy_that_a_hand_brings_in_is_told_of(kind: Callable[[float], Exhibit
     assert figures(said(exhibit))[1] > figures(said(exhibit))[0] or kind is Heap
 
 
-def test_only_boxes_that_slid_by_themselves_count_and_steepness_is_told_only_where_they_lie():
+def test_only_boxes_that_slid_by_themselves_count_and_the_slope_is_told_only_of_them():
     slopes = Slopes(EARTH)
     steep = np.tan(np.radians(30))
-    lying, not_lying = 0, 0
+    lying = 0
     for _ in life(slopes, 12.0, hands=8):
         slid = figures(said(slopes))[2]
         assert slid <= sum(friction < steep for friction in slopes.frictions)
         for box, friction, label in zip(slopes.boxes, slopes.frictions, slopes.labels(), strict=True):
             if label.within is None:
-                not_lying += 1
                 assert label.text == f"μ = {friction:.2f}"
                 continue
             lying += 1
             tangent, told = figures(label.text)
             assert (told, label.within) == (friction, tangent <= friction)
-            assert tangent == pytest.approx(0.0, abs=0.01) or tangent == pytest.approx(steep, abs=0.01)
-            lean = (float(box.angle[0]) + np.pi / 4) % (np.pi / 2) - np.pi / 4
-            assert abs(np.tan(lean)) == pytest.approx(tangent, abs=0.12)  # a hard touch sinks one corner in
-    assert lying > 300
-    assert not_lying > 300
+            assert tangent == pytest.approx(steep, abs=0.01)
+            assert abs(np.tan(float(box.angle[0]))) == pytest.approx(tangent, abs=0.12)
+    assert lying > 150
     still = Slopes(EARTH)
     hold(still, still.boxes[-1], (0.0, 12.0))
     assert len(still.frictions) - 1 not in still.slid

@@ -82,7 +82,7 @@ def test_exhibits_are_chosen_by_keys_mouse_and_pad(gallery: Driver):
         (lambda: gallery.key(pygame.K_n), 2),
         (lambda: gallery.keys(pygame.K_b, pygame.K_b, pygame.K_b), -1),
         (lambda: gallery.key(pygame.K_n), 0),
-        (lambda: gallery.click(gallery.choice(texts.EXHIBITS[names[0]][0])._places[3].center), 3),  # type: ignore[attr-defined]
+        (lambda: gallery.click(gallery.choice(texts.EXHIBITS[names[0]][0])._places[3].center), 3),
         (lambda: gallery.button(pygame.CONTROLLER_BUTTON_RIGHTSHOULDER), 4),
         (lambda: gallery.button(pygame.CONTROLLER_BUTTON_DPAD_LEFT), 3),
     ):
@@ -342,6 +342,17 @@ def test_a_run_adds_its_point_to_the_plot(open_game: Open):
     assert [value for value, _ in scene(driver).plot.points] == [0.4, 0.8]
     driver.key(pygame.K_g)
     assert scene(driver).plot is None
+
+
+def test_another_language_is_spoken_at_once(gallery: Driver, monkeypatch: pytest.MonkeyPatch):
+    gallery.key(pygame.K_g)
+    words = words_written(monkeypatch)
+    with gallery.speaking("de"):
+        words.clear()
+        gallery.frames(1)
+        assert scene(gallery).plot._what == texts.LAWS[scene(gallery).exhibit.name][0]
+        assert texts.LAW_STEP in words
+        assert texts.EXHIBITS["heap"][0] in words
 
 
 def test_the_plot_follows_the_size_of_text_and_of_the_window(gallery: Driver):

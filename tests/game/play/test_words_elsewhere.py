@@ -68,7 +68,7 @@ def test_watch_says_who_flies_and_how_many_have_landed(open_game: Open, context:
     check_watch(reading, flies="weighs" if name == "broken" else name, broken=name == "broken")
     assert swarm.lost == count
     watch.playback.stopped = True
-    watch._count_choice.choose(2)
+    driver.choice("64").choose(2)
     check_watch(reading, flies="weighs" if name == "broken" else name, broken=name == "broken")
 
 

@@ -1,6 +1,7 @@
 """The player's own pilots in the game: made, edited, measured and flown in Watch as they are saved."""
 
 import errno
+import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -57,6 +58,7 @@ def test_from_watch_to_a_new_pilot_that_flies_as_it_is_saved(watching: Driver, c
     watching.wait(lambda: pilot.problem)
     assert pilot.problem == "line 2: ZeroDivisionError: division by zero"
     assert watch.decision.action[0] == 4
+    assert watch._problem().endswith("The last good one flies on.")
     watching.key(pygame.K_m)
     watching.frames(5)
     assert watch.swarm.landed == 0
@@ -99,10 +101,12 @@ def test_what_goes_wrong_with_a_new_file_is_told(
         assert not watching.top._files
 
 
-def test_it_is_measured_beside_the_others_and_kept(watching: Driver, context: Context, monkeypatch: pytest.MonkeyPatch):
+def test_it_is_measured_beside_the_others_and_kept(
+    watching: Driver, context: Context, monkeypatch: pytest.MonkeyPatch, written: list[str]
+):
     monkeypatch.setattr(own, "STARTS", 20)
     monkeypatch.setattr(pilots, "Worker", InlineWorker)
-    shelf.Shelf(context.user_dir).new()
+    path = shelf.Shelf(context.user_dir).new()
     watching.key(pygame.K_o)
     for _ in range(2):
         watching.press_on(texts.PILOTS_MEASURE)
@@ -111,7 +115,31 @@ def test_it_is_measured_beside_the_others_and_kept(watching: Driver, context: Co
     assert [each.name for each in measured] == ["pilot", "/scripted", "pilot"]  # the rival once
     assert measured[0].landed == measured[2].landed <= 0.8 < own.rivals(measured)["scripted"].landed
     assert [each.name for each in own.own(measured)] == ["pilot", "pilot"]
-    watching.frames(2)
+    lost = {texts.PILOTS_LOST[number].format(count=count) for number, count in enumerate(measured[2].lost) if count}
+    assert sum(measured[2].lost) == round(20 * (1 - measured[2].landed))
+    written.clear()
+    watching.frames(1)
+    said = " ".join(written)
+    assert lost
+    assert all(words in said for words in lost)
+    assert texts.PILOTS_STALE not in said
+    path.write_text(GOOD)
+    os.utime(path, (measured[2].when + 9, measured[2].when + 9))
+    watching.frames(1)
+    assert texts.PILOTS_STALE in " ".join(written)
+
+
+def test_a_measurement_is_cancelled_in_the_place_of_its_word(watching: Driver, context: Context):
+    shelf.Shelf(context.user_dir).new().write_text("def act(o):\n    while True: pass")
+    watching.key(pygame.K_o)
+    watching.frames(1)
+    place = watching.widget(texts.PILOTS_MEASURE).box.topleft
+    watching.press_on(texts.PILOTS_MEASURE)
+    watching.frames(1)
+    assert watching.widget(texts.PILOTS_CANCEL).box.topleft == place
+    watching.press_on(texts.PILOTS_CANCEL)
+    assert watching.top._worker is None
+    assert watching.widget(texts.PILOTS_MEASURE).box.topleft == place
 
 
 def test_what_is_wrong_with_a_measured_file_is_told(watching: Driver, context: Context, monkeypatch):

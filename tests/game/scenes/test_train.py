@@ -31,8 +31,8 @@ from game.training.run import TrainingRun
 from game.ui.charts import Scrubber
 from game.ui.entry import EntryRow
 from game.ui.form import DOWN, LEFT, RIGHT, UP, neighbour
+from game.ui.rows import ChoiceRow
 from game.ui.widget import Widget
-from game.ui.widgets import Choice
 from tests.support.driver import Driver
 from tests.support.small import LANDERS as SMALL
 
@@ -271,7 +271,7 @@ def test_every_widget_can_be_reached_by_directions_alone(train: Driver) -> None:
         while frontier:
             index = frontier.pop()
             # Left and right turn some, and lead nowhere; a choice leads on at its ends.
-            turns = type(form.widgets[index]).shift not in (Widget.shift, Choice.shift)
+            turns = type(form.widgets[index]).shift not in (Widget.shift, ChoiceRow.shift)
             ways = (UP, DOWN) if turns else (UP, DOWN, LEFT, RIGHT)
             fresh = {neighbour(boxes, index, way, in_order=True) for way in ways} - reached
             reached |= fresh

@@ -17,7 +17,7 @@ from game.scenes.train.scene import TrainScene
 from game.training.digit_models import DigitModels, runs_dir
 from game.training.library import Library
 from game.ui.context import Context
-from game.ui.widgets import TextButton
+from game.ui.rows import ButtonRow
 from tests.support.driver import Driver
 from tests.support.written import Written
 
@@ -59,7 +59,7 @@ def test_few_words_and_choices_come_first(
 ) -> None:
     driver = open_game(first)
     driver.frames(2)
-    choices = [each for each in driver.form.widgets if isinstance(each, Knob | TextButton)]
+    choices = [each for each in driver.form.widgets if isinstance(each, Knob | ButtonRow)]
     assert len([each for each in choices if isinstance(each, Knob)]) == 3
     assert len(choices) <= MOST_CHOICES, [each.label for each in choices]
     assert len(words_in(driver, monkeypatch)) <= MOST_WORDS, words_in(driver, monkeypatch)

@@ -8,6 +8,7 @@ import pytest
 
 from ai.agent.agent import DeepQAgent
 from ai.training.config import Config
+from game.core import texts
 from game.core.settings import SettingsFile
 from game.drawing.canvas import Canvas
 from game.explain.run_status import draw_landings
@@ -16,6 +17,7 @@ from game.scenes.train.networks import NetworksScene
 from game.scenes.watch.scene import WatchScene
 from game.training.library import Library
 from game.ui.context import Context
+from game.ui.rows import ChoiceRow
 from game.world.camera import Camera
 from tests.support.driver import Driver
 
@@ -89,16 +91,16 @@ def test_slower_and_faster(watching: Driver, key: int, times: int, speed: float)
 
 def test_the_mouse_chooses_words_and_landers(watching: Driver):
     choice = watching.choice("16")
-    watching.click((choice.laid()[1][1] + 4, choice.box.centery))
+    watching.click(choice._places[1].center)
     assert scene(watching).swarm.env.num_envs == 16
     scene(watching).playback.stopped = True
     positions = scene(watching).swarm.env.position
     apart = [np.sort(np.hypot(*(positions - place).T))[1] for place in positions]
     free = [slot for slot in np.argsort(apart)[::-1] if abs(positions[slot][0]) < 9 and slot]
     watching.click(tuple(Camera().view(1.0).points(positions[free[0]])))
-    assert scene(watching).shown == free[0]
+    assert scene(watching).world.shown == free[0]
     watching.keys(pygame.K_n)
-    assert scene(watching).shown == (free[0] + 1) % 16
+    assert scene(watching).world.shown == (free[0] + 1) % 16
 
 
 def test_a_gamepad_stops_steps_and_chooses(watching: Driver):
@@ -111,7 +113,7 @@ def test_a_gamepad_stops_steps_and_chooses(watching: Driver):
     watching.button(pygame.CONTROLLER_BUTTON_DPAD_RIGHT)
     assert scene(watching).swarm.env.num_envs == 16
     watching.button(pygame.CONTROLLER_BUTTON_RIGHTSHOULDER)
-    assert scene(watching).shown == 1
+    assert scene(watching).world.shown == 1
     watching.button(pygame.CONTROLLER_BUTTON_START)
     assert "PauseScene" in watching.top_name
 
@@ -142,6 +144,10 @@ def test_of_many_networks_only_the_one_that_flies_is_read(many: Driver):
     assert scene(many).policies.read.keys() == {"run 03", "run 04"}
 
 
+def of_networks(driver: Driver) -> ChoiceRow:
+    return driver.widget(texts.WATCH_MODEL)
+
+
 def flies(driver: Driver) -> str:
     choice = scene(driver)._model_choice
     return choice.options[choice.index]
@@ -156,7 +162,7 @@ def test_a_list_opens_to_choose_from(many: Driver, context: Context, way: str):
         case "pad":
             many.button(pygame.CONTROLLER_BUTTON_A)
         case "mouse":
-            many.click((row.box.right - 6, row.box.centery))
+            many.click(row._places[-1].center)
         case _:
             many.keys(pygame.K_ESCAPE, pygame.K_DOWN, pygame.K_DOWN, pygame.K_RETURN)
     runs = many.top
@@ -198,13 +204,13 @@ def test_a_missing_network_is_listed_with_what_is_wrong_and_another_flies(watchi
 
 def test_motion_reduced_in_a_pause_brings_the_camera_to_rest(watching: Driver):
     watch = scene(watching)
-    assert watch.camera.view(1.0).zoom != 1
+    assert watch.world.camera.view(1.0).zoom != 1
     watching.key(pygame.K_ESCAPE)
     watching.app.context.settings.reduced_motion = True
     watching.key(pygame.K_ESCAPE)
     assert scene(watching) is watch
     watching.frames(5)
-    assert watch.camera.view(1.0) == Camera().view(1.0)
+    assert watch.world.camera.view(1.0) == Camera().view(1.0)
 
 
 @pytest.mark.parametrize(("landed", "good"), [(0, False), (5, False), (8, True)])
@@ -220,3 +226,13 @@ def test_only_a_rate_of_success_has_its_colour(
     monkeypatch.setattr(Canvas, "text", text)
     draw_landings(watching.app.canvas, (0, 0), landed, 10 - landed)
     assert (colours[f"{10 * landed}"] == watching.app.canvas.palette.good) == good
+
+
+def test_another_language_is_spoken_at_once(watching: Driver, written: list[str]):
+    names = ("WATCH_MODEL", "WATCH_COUNT", "WATCH_SPEED", "WATCH_MAP")
+    english = {getattr(texts, name) for name in names}
+    with watching.speaking("de"):
+        written.clear()
+        watching.app.draw()
+        assert {getattr(texts, name) for name in names} <= set(written)
+        assert not set(written) & english - {getattr(texts, name) for name in names}

@@ -46,14 +46,14 @@ def hand(driver: Driver) -> Hand:
 
 
 def state(driver: Driver) -> np.ndarray:
-    env, slot = scene(driver).swarm.env, scene(driver).shown
+    env, slot = scene(driver).swarm.env, scene(driver).world.shown
     return np.array([*env.position[slot], *env.velocity[slot], env.angle[slot], env.angular_velocity[slot]])
 
 
 def check_decision(driver: Driver) -> None:
     """The decision shown is the policy's own, on what the lander senses now; and it is flown."""
     watch = scene(driver)
-    slot, swarm, shown = watch.shown, watch.swarm, watch.decision
+    slot, swarm, shown = watch.world.shown, watch.swarm, watch.decision
     assert np.array_equal(shown.observation[0], swarm.env.observe()[slot])
     policy = watch.network.policy
     assert policy is not None
@@ -253,12 +253,12 @@ def test_a_wreck_flies_again_and_only_the_shown_one_of_a_swarm_is_touched(open_g
         watch.swarm.step()
     watch.world.shown = int(np.flatnonzero(watch.swarm.env.outcome != Outcome.FLYING)[0])
     driver.key(pygame.K_SPACE)
-    others = np.arange(16) != watch.shown
+    others = np.arange(16) != watch.world.shown
     before = watch.swarm.env.observe()[others]
     driver.key(pygame.K_g)
     driver.post(pygame.KEYDOWN, key=pygame.K_UP, mod=0, unicode="", scancode=0)
     driver.frames(60)
-    assert watch.swarm.env.outcome[watch.shown] == Outcome.FLYING
+    assert watch.swarm.env.outcome[watch.world.shown] == Outcome.FLYING
     assert np.array_equal(watch.swarm.env.observe()[others], before)
     assert watch.swarm.touched.sum() == 1
     check_decision(driver)

@@ -9,6 +9,7 @@ import pytest
 from game.core import texts
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
+from game.drawing.cursor import Cursor
 from game.drawing.tokens import INK, SMALL, VIEW_SIZE
 from game.input.controls import Command
 from game.scenes.menus.settings import SettingsScene
@@ -20,9 +21,8 @@ from game.ui.form import DOWN, LEFT, RIGHT, UP, Form, neighbour
 from game.ui.listing import shortened
 from game.ui.panel import Panel
 from game.ui.panel_scene import PanelScene
-from game.ui.rows import SliderRow
+from game.ui.rows import ChoiceRow, SliderRow
 from game.ui.widget import PointsManager
-from game.ui.widgets import GAP, Choice
 from tests.support.driver import Driver
 
 COLUMNS = [pygame.Rect(x, y, 80, 20) for x in (0, 200) for y in (0, 40, 80)]
@@ -237,26 +237,25 @@ def test_texts_are_kept_and_forgotten_with_the_size(tmp_path: Path):
     assert typeface.render.cache_info().currsize == 0
 
 
-def test_a_choice_of_many_goes_on_pages_that_keys_and_mouse_turn():
-    names = [f"network {number}" for number in range(30)]
+def test_a_choice_of_too_many_shows_the_chosen_one_and_opens_a_list():
+    opened: list[bool] = []
     manager = PointsManager()
-    choice = Choice(manager, (64, 250, 400, 20), "", names, 0, lambda _: None)
-    pages, lefts, _ = choice.laid()
-    assert [number for page in pages for number in page] == list(range(30))
-    for page in pages:
-        last = lefts[page[-1]] + typeface.width(names[page[-1]], 15, "regular")
-        assert last <= 464 - GAP + 1
-
-    def click(x: float) -> None:
-        manager.mouse_position = (int(x), 260)
+    names = [f"network {number}" for number in range(30)]
+    choice = ChoiceRow(
+        manager, "Flown by", names, 0, lambda _: None, on_open=lambda: opened.append(True), all_word="all 30"
+    )
+    for width, shown in ((400.0, {0, -1}), (4000.0, set(range(30)))):
+        choice.lay(Cursor(64.0, 250.0, width))
+        assert choice._places.keys() == shown
+        assert all(place.right <= 64 + width + 12 for place in choice._places.values())
+    choice.lay(Cursor(64.0, 250.0, 400.0))
+    for place, count in ((choice._places[0], 0), (choice._places[-1], 1)):
+        manager.mouse_position = round(place.centerx), round(place.centery)
         choice.press()
-
-    click(460)
-    assert choice.index == pages[1].start
-    click(lefts[pages[1][1]] + 3)
-    assert choice.index == pages[1][1]
-    click(lefts[pages[1].start] - 14)
-    assert choice.index == pages[0][-1]
+        assert len(opened) == count
+    choice.ringed = True  # by keys
+    choice.press()
+    assert len(opened) == 2
     for _ in range(40):
         choice.shift(1)
     assert choice.index == 29

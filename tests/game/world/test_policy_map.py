@@ -200,7 +200,7 @@ def test_a_key_a_button_and_the_row_choose_the_map(open_game: Open, context: Con
     driver.frames(20)
     assert scene(driver).world.policy_map.kind == ACTION
     assert scene(driver).world.policy_map.cells is not None
-    driver.click((row.laid()[1][SCORE] + 4, row.box.centery))
+    driver.click(row._places[SCORE].center)
     assert scene(driver).world.policy_map.kind == SCORE
     driver.key(pygame.K_m)
     assert scene(driver).world.policy_map.kind == OFF
