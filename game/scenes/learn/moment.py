@@ -309,7 +309,7 @@ class ChoiceChapter(MomentChapter):
         """Return each action with its value, and what came of it; bars are on one scale."""
         came = {action: each.came for action, each in self.results.items()}
         shown = [*self.values.tolist(), *came.values()]
-        low, span, lines = min(shown), max(max(shown) - min(shown), 1e-9), []
+        low, span, lines = min(shown), max(max(shown) - min(shown), 1e-9), list[Line]()
         for action, value in enumerate(self.values.tolist()):
             brought = points(came[action], 1) if action in came else ""
             bars = [(each - low) / span for each in (value, came.get(action, low))]
