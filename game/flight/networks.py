@@ -12,6 +12,7 @@ from ai.agent.decision import Decision
 from ai.environment import Floats, Ints
 from ai.files import brief
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
+from ai.lander.pilots import Pilot
 from ai.lander.sensing import SURROUNDINGS
 from game.core import texts
 from game.core.collection import looks_like_item
@@ -25,14 +26,8 @@ SCRIPTED: Final = "scripted"
 LANDER: Final = "lander"  # folder of the networks that come with the game
 PLAYERS: Final = "models"  # folder of the player's own networks
 PARTS: Final = ("config.json", "online", "target")  # a folder with none of these files is not a network
+Policy = Pilot  # who flies: a network, a scripted pilot, or the player's own
 _log = logging.getLogger("tranquility")
-
-
-class Policy(Protocol):
-    """Policy that chooses actions for a batch of landers."""
-
-    def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:
-        """Return actions (n,) for observations (n, 9); `held` (n,) are the previous actions."""
 
 
 @runtime_checkable

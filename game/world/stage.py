@@ -21,10 +21,9 @@ from game.world import lander as art
 from game.world.camera import View
 from game.world.craft import STAND, draw_craft, draw_crowd, draw_fires, foot_place, scaling, shaded, stand
 from game.world.flame import begin_flames
-from game.world.landscape.relief import Relief
 from game.world.landscape.wind import Wind
-from game.world.particles import DUST, Particles
-from game.world.wreck import Departure, Wreck
+from game.world.particles import DUST, Particles, Relief
+from game.world.wreck import Wreck
 
 _IGNITE: Final = 0.34  # share of the way to full or no thrust that a flame covers per step
 _DIE: Final = 0.22
@@ -72,7 +71,7 @@ class Stage:
         self.flash = np.zeros(count, np.intp)
         self.jolt = 0.0
         self._lander = Sprite(env.lander, art.LANDER, art.SIZE)
-        self._after: Wreck | Departure | None = None
+        self._after: Wreck | None = None
         self._flicker = 0
         begin_flames()
         self._down = np.zeros(2, bool)
@@ -129,11 +128,9 @@ class Stage:
             self._burn()
             self._touch()
 
-    def _begin_after(self) -> Wreck | Departure | None:
+    def _begin_after(self) -> Wreck | None:
         """Return what still moves after the end; with reduced motion, no wreck tumbles."""
         env = self._env
-        if env.outcome[0] == Outcome.OUT_OF_BOUNDS:
-            return Departure(env, 0)
         if env.outcome[0] != Outcome.CRASHED:
             return None
         if env.intact[0]:
@@ -174,7 +171,7 @@ class Stage:
 
     def sprite(self, slot: int = 0, size: float = 1.0) -> Sprite:
         """Return the sprite of a slot's lander; `size` 1 is true to scale."""
-        sprite = self._after.sprite if isinstance(self._after, Wreck) else self._lander
+        sprite = self._after.sprite if self._after else self._lander
         image = art.WRECK if self._wrecked[slot] else art.LANDER
         return replace(sprite, image=image, size=(size * sprite.size[0], size * sprite.size[1]))
 

@@ -25,7 +25,6 @@ from game.drawing.shapes import Shape
 from game.drawing.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, VIEW_SIZE
 from game.explain import readouts
 from game.explain.explained import Explained
-from game.explain.timeline import Timeline, runs
 from game.export.export import Export
 from game.flight import networks, sharing
 from game.flight.flight import StickHolder
@@ -35,6 +34,7 @@ from game.flight.outcomes import ending_word
 from game.flight.replay import FlightReplay, flown_elsewhere
 from game.input.controls import Command
 from game.scenes.logbook.claim import BELOW_CLAIM, Claimed
+from game.scenes.logbook.timeline import Timeline, runs
 from game.ui.actions import Action, Table
 from game.ui.clipboard import give
 from game.ui.context import Context
@@ -46,8 +46,7 @@ from game.ui.playback import Playback
 from game.ui.rows import ButtonRow
 from game.ui.widget import Widget
 from game.world.camera import ClearArea, View
-from game.world.path_preview import draw_futures
-from game.world.paths import draw_faint
+from game.world.paths import draw_faint, draw_futures
 from game.world.scenery import Scenery
 
 SPEEDS: Final = (0.25, 0.5, 1.0, 2.0)

@@ -39,7 +39,7 @@ from game.scenes.play.words import why_not_saved
 from game.world.camera import ClearArea, View
 from game.world.landscape.backdrop import EARTH, EARTH_RADIUS
 from game.world.landscape.ground import begin_hills
-from game.world.path_preview import PathPreview, draw_futures
+from game.world.paths import PathPreview, draw_futures
 from game.world.scenery import Scenery
 
 if TYPE_CHECKING:
