@@ -266,7 +266,8 @@ class Adviser:
             self.reset()
         self._now = now
         run = RecentCurves(history, config, dead_share, clipped_share)
-        settled = run.since_change() >= 100.0  # flights: before that, curves are still those of before the change
+        # Before that, curves are those of before a change, and it is not known yet what that has brought.
+        settled = run.since_change() >= 100.0 * COLLAPSE  # flights
         holding = {rule.name: rule for rule in RULES if (settled or rule.of_settings) and rule.holds(run)}
         self._since = {name: self._since.get(name, now) for name in holding}
         if self.shown is not None and now - self._shown_since < STAY:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, Final
@@ -19,7 +19,7 @@ from ai.training.edits import EDITED, Edit, NetworkEditor
 from ai.training.explanations import Explanations
 from ai.training.history import COLUMNS, PARTS, REVERTED, Checkpoint, Point, Validation
 from ai.training.loop import Progress, Training
-from ai.training.messages import NetworkState, SwarmState
+from ai.training.messages import DIVERGED, NetworkState, SwarmState
 from ai.training.session import Session, Turns
 from ai.training.state import State
 from ai.training.tasks import Score
@@ -51,19 +51,30 @@ class LanderSession(Session[Training]):
         self._checkpoint_at = training.agent.decisions + self._checkpoint_every
         self._began_learning = training.agent.gradient_steps
         self._learned_from: set[str] = set()  # digests of demonstrations
+        self.paid_by = ""  # the player's own file, if not the usual pay
         if not self.history.checkpoints:
             self.record(self._checkpoint(0.0))
 
     @classmethod
-    def live(cls, config: Config, seed: int = 0, *, pay: Path | None = None, **options: Any) -> Turns:
+    def live(
+        cls, config: Config, seed: int = 0, *, pay: Path | None = None, pays: Sequence[Path] = (), **options: Any
+    ) -> Turns:
         """Lead a session, made as by `of`; every turn is one decision of all landers.
 
-        `pay` is a file of the player's own that pays in place of the usual pay; validations keep that. Raises
+        `pay` is a file of the player's own that pays in place of the usual pay; validations keep that. A run that goes
+        on is paid by its own file, if that is among the player's `pays`; else `lost` says that it is not. Raises
         PilotError for what is wrong with it, and ValueError for settings that are not a lander's.
         """
         session = cls.of(config, seed, **options)
+        training = session.training
+        if before := training.around.get("paid_by"):  # of a run that goes on
+            pay = next((each for each in pays if str(each) == before), None)
+            if pay is None:
+                unpaid = f"{Path(str(before)).name} paid it, and is not there: it goes on with the usual pay"
+                training.lost = "; ".join(filter(None, (training.lost, unpaid)))
         with ExitStack() as ends:
             if pay:
+                session.paid_by = str(pay)
                 ends.callback(pay_by(session.env, pay))
             yield from session.lead()
 
@@ -80,7 +91,7 @@ class LanderSession(Session[Training]):
     def state(self) -> State:
         return {
             "point_at": self._point_at, "checkpoint_at": self._checkpoint_at, "began_learning": self._began_learning,
-            "learned_from": sorted(self._learned_from),
+            "learned_from": sorted(self._learned_from), "paid_by": self.paid_by,
         }  # fmt: skip
 
     def load_state(self, state: State) -> None:
@@ -159,7 +170,7 @@ class LanderSession(Session[Training]):
         values = agent.network.values.copy()
         if not np.isfinite(values).all():
             raise FloatingPointError(
-                f"the network was not finite after learning step {agent.gradient_steps}; "
+                f"the network was {DIVERGED} after learning step {agent.gradient_steps}; "
                 f"most likely the learning rate of {agent.optimizer.learning_rate:g} is too high"
             )
         normalizer = agent.normalizer.to_json() if agent.normalizer else None

@@ -46,9 +46,7 @@ class Session(ABC, Generic[R]):
         self.training, self.keep = training, keep
         self.history = History.read(source, self.columns) if source else History(self.columns)
         self.keeper = Keeper(training, keep, self.history, self.state)
-        self.messages: list[Any] = [
-            RunStarted(training.config, training.seed, training.moment, training.lost, training.steps)
-        ]
+        self.messages: list[Any] = []
         self._turned_at: dict[str, float] = {}  # by the clock, when each knob was turned last
 
     @classmethod
@@ -122,6 +120,9 @@ class Session(ABC, Generic[R]):
         """
         training = self.training
         try:
+            self.messages.insert(
+                0, RunStarted(training.config, training.seed, training.moment, training.lost, training.steps)
+            )
             self.show()
             command = yield self._answer(None)
             while not (training.done or command == ("finish",)):

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from itertools import count
 from typing import Any, Final, Generic, Protocol, TypeVar
 
+import numpy as np
+
 from ai.training.history import History
 
 _OVERHEAD: Final = 1024  # bytes of a message besides its arrays, about
@@ -97,7 +99,12 @@ class EarlierRun:
 
 
 def put_beside(runs: list[EarlierRun], name: str, run: History) -> None:
-    """Add an earlier run, in place of one of its name, with the first line style that is free."""
+    """Add an earlier run, in place of one of its name, with the first line style that is free.
+
+    One that has no curve yet, as no flight has ended, is left out.
+    """
+    if not np.isfinite(run["success" if "success" in run.columns else "loss"]).any():
+        return
     run.checkpoints.clear()  # only its curves are shown, and there may be many such runs
     runs[:] = [each for each in runs if each.name != name]
     taken = {each.style for each in runs}

@@ -54,6 +54,7 @@ class TrainingRun:
     Attributes:
         runs: number of runs so far.
         pay: the player's own file that pays the runs that begin from now on; None for the usual pay.
+        pays: all such files, one of which may have paid a run that goes on.
         swarm_state, network_state, in_force, lesson, confusion, edits: the latest message of each kind.
         swarms, networks, filters: those of the whole run, as far as they were kept.
         earlier: the runs shown beside it, the latest first.
@@ -70,6 +71,7 @@ class TrainingRun:
         self._launch: Callable[[], str] | None = None  # starts the waiting run; returns a note for the player
         self._orders: list[Callable[[Worker], None]] = []  # for the waiting run
         self.pay: Path | None = None
+        self.pays: tuple[Path, ...] = ()
         self.config: Any = kind.of()
         self.seed, self.begun = 0, False
         self.earlier: list[EarlierRun] = []
@@ -150,7 +152,8 @@ class TrainingRun:
         `name` is that of its settings. Returns a note, or ""; for a run that must wait, it comes from `poll`.
         """
         self.leave()
-        if len(self.history):
+        again = (config, seed) == (self.config, self.seed) and not self.history.setting_changes
+        if resume is not None or not again:  # or else both curves would be the same
             put_beside(self.earlier, self.name, self.history)
         self._clear()
         self.config, self.seed, self.runs = config, seed, self.runs + 1
@@ -168,7 +171,9 @@ class TrainingRun:
                 self.collection.discard_rescued()  # from where it can still be restored
         except (ModelFormatError, LibraryError) as error:
             notes.append(str(error))
-        pay = {"pay": self.pay} if self.pay and resume is None else {}
+        pay: dict[str, Any] = {"pay": self.pay} if self.pay and resume is None else {}
+        if resume is not None and self.pays:
+            pay = {"pays": self.pays}
         self._worker = Worker(self.kind.session.live, config, seed, keep=keep, resume=resume, **pay)
         self._worker.patience = self.kind.patience
         self._worker.set_pace(PACES[self.pace])
@@ -352,7 +357,7 @@ class TrainingRun:
         note = self.begin(config, seed, name=name)
         # It writes nothing to the disk: its twin has the place of the run without a name.
         self.twin, self.differing = TrainingRun(self.kind, self.collection, keeps=False), differing
-        self.twin.pace = self.pace
+        self.twin.pace, self.twin.pay = self.pace, self.pay
         self.twin.begin(experiment, seed)
         self._keep_in_step()
         return note
