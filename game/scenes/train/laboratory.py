@@ -96,7 +96,7 @@ class Laboratory:
             judged = judged_at(healthy, other)
             early = texts.LAB_JUDGED_AT.format(count=math.ceil(judged)) if math.isfinite(judged) else ""
             figures = texts.LAB_FIGURES_THEN.format(
-                count=int(twin.history["decisions"][-1]), other=100 * other.landed, healthy=100 * healthy.landed
+                count=int(twin.history["decisions"][-1]), other=100 * other.landed(), healthy=100 * healthy.landed()
             )
         self.said = {
             "differs": listed_differences(run.config, twin.config),
