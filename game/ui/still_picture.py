@@ -17,7 +17,6 @@ class StillPicture:
         self._picture: pygame.Surface | None = None
 
     def draw(self, canvas: Canvas) -> None:
-        """Draw the picture over the whole window."""
         whole = canvas.whole
         if self._picture is None or self._picture.get_size() != whole.surface.get_size():
             self._picture = self._paint(whole)

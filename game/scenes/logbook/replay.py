@@ -25,7 +25,6 @@ from game.drawing.shapes import Shape
 from game.drawing.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, VIEW_SIZE
 from game.explain import readouts
 from game.explain.explained import Explained
-from game.explain.timeline import Timeline, runs
 from game.export.export import Export
 from game.flight import networks, sharing
 from game.flight.flight import StickHolder
@@ -35,6 +34,7 @@ from game.flight.outcomes import ending_word
 from game.flight.replay import FlightReplay, flown_elsewhere
 from game.input.controls import Command
 from game.scenes.logbook.claim import BELOW_CLAIM, Claimed
+from game.scenes.logbook.timeline import Timeline, runs
 from game.ui.actions import Action, Table
 from game.ui.clipboard import give
 from game.ui.context import Context
