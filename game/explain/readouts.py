@@ -317,13 +317,13 @@ def draw_centred_bars(
         canvas.line((middle, y - 4), (middle, y + 4), MUTE)
 
 
-def draw_share(canvas: Canvas, left: float, top: float, width: float, human: float) -> None:
-    """Draw the player's and the network's share of a flight; a share above zero never reads as 0 %."""
+def draw_share(canvas: Canvas, left: float, top: float, width: float, human: float, who: str) -> None:
+    """Draw the player's share of a flight, and that of `who` else flew it; a share above zero never reads as 0 %."""
     you = round(100 * human) if human in (0.0, 1.0) else min(max(round(100 * human), 1), 99)
     if you:
         canvas.text(texts.SHARE_YOU.format(percent=you), (left, top), size=SMALL, colour=HUMAN, tabular=True)
     if you < 100:
-        network = texts.SHARE_NETWORK.format(percent=100 - you)
+        network = texts.SHARE_NETWORK.format(who=who, percent=100 - you)
         canvas.text(network, (left + width, top), size=SMALL, colour=NET, align="right", tabular=True)
     edge = width * human
     if human > 0:

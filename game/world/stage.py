@@ -31,6 +31,7 @@ _DUST_HEIGHT: Final = 6.0
 _LIGHT_HEIGHT: Final = 9.0
 _FLASH_STEPS: Final = 24
 _JOLT: Final = 11.0  # points, of the hardest blow
+_SAGS: Final = (0.35, 0.30)  # metres and radians by which an upright wreck sinks onto its hull
 _WRECK_DETAIL: Final = 0.6  # resolution of a wreck, of what the closest view would need
 
 
@@ -196,11 +197,11 @@ class Stage:
         self._draw_flash(canvas, view, x, y, slot)
 
     def _draw_wreck(self, canvas: Canvas, view: View, sprite: Sprite, pose: Doubles, slot: int) -> None:
-        """Draw the dark wreck of a crash; one that does not tumble sags to the side it leans to."""
+        """Draw the dark wreck of a crash; one that does not tumble sags to the side of its broken leg."""
         x, y, angle = pose.tolist()
         if self._after is None:
             sag = 1 - (self.flash[slot] / _FLASH_STEPS) ** 2
-            y, angle = y - 0.16 * sag, angle + 0.16 * sag * (1 if angle >= 0 else -1)
+            y, angle = y - _SAGS[0] * sag * max(0.0, math.cos(angle)), angle - _SAGS[1] * sag
         size = art.share(sprite)
         middle = view.pixel(*stand(x, y, angle, size))
         # A new picture for each degree that it tumbles, none of them seen from as near as a craft in flight.

@@ -39,7 +39,8 @@ class Wreck:
         surface = _SETTLES if whole else _TUMBLES
         self._world = World(gravity=(0.0, -env.gravity), batch=1, iterations=5)
         x, y = FOOT_CENTRE
-        shapes = [Polygon(HULL), Polygon.box(*FOOT_SIZE, (-x, y)), Polygon.box(*FOOT_SIZE, (x, y))]
+        feet = [(-x, y), (x, y)] if whole else [(-x, y)]  # without the other leg it comes to lie on its hull
+        shapes = [Polygon(HULL), *(Polygon.box(*FOOT_SIZE, foot) for foot in feet)]
         blow = 0.0 if whole else float(env.impact[slot, :2].max())
         self._body = self._world.add(
             shapes, env.position[slot], float(env.angle[slot]), mass=params.mass, inertia=params.inertia,

@@ -25,7 +25,7 @@ from game.drawing.shapes import Shape
 from game.drawing.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, VIEW_SIZE
 from game.explain import readouts
 from game.explain.explained import Explained
-from game.export.export import Export
+from game.export.film import Export
 from game.flight import networks, sharing
 from game.flight.flight import StickHolder
 from game.flight.flight_file import Record
@@ -343,7 +343,8 @@ class ReplayScene(FormScene):
         canvas = canvas.at(0, -1)
         figure = canvas.text(f"{seconds} s", (middle, 58), size=22, weight="light", align="centre", tabular=True)
         by_hand = flight.flown_by is StickHolder.HUMAN
-        by = (texts.YOU_FLEW if by_hand else texts.NETWORK_FLEW) if not self.claimed else texts.FRIEND_FLEW[by_hand]
+        other = networks.sentence(texts.NETWORK_FLEW, networks.flew(self.record.entry.network))
+        by = texts.FRIEND_FLEW[by_hand] if self.claimed else texts.YOU_FLEW if by_hand else other
         if self.ended:
             by = ending_word(flight.outcome.name, intact=flight.intact) if flight.over else by
         canvas.text(by, (middle, 34), size=SMALL, colour=MUTE, align="centre", room=2 * _FIGURE - 16)
